@@ -156,12 +156,10 @@ def drozdov(
     denominator = np.asarray(0.8 * np.sqrt(viscosity) * sliding + rolling * phi + 13.4)
     least = float(np.min(denominator))
     if least < 1.0:
-        raise InputError(
-            f"drozdov gives a friction coefficient of 1/{least:.3g}",
-            where="drozdov",
-            why="pressure and viscosity are far beyond the discs that it was fitted to",
-            remedy="Check the units (Pa, m^2/s), or choose another friction law",
-        )
+        what = f"drozdov gives a friction coefficient of 1/{least:.3g}"
+        why = "pressure and viscosity are far beyond the discs that it was fitted to"
+        remedy = "Check the units (Pa, m^2/s), or choose another friction law"
+        raise InputError(what, "drozdov", why, remedy)
     warn_outside(
         "drozdov",
         (

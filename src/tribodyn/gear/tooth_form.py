@@ -349,12 +349,9 @@ class ToothForm:
         """
         base = self.base_radius
         if not radius >= base * (1.0 - 1e-12):
-            raise InputError(
-                f"radius = {radius * 1e3:.6g} mm",
-                where=Argument("radius"),
-                why=f"The involute begins at the base radius {base * 1e3:.6g} mm",
-                remedy="Use half_tooth for points of the fillet",
-            )
+            why = f"The involute begins at the base radius {base * 1e3:.6g} mm"
+            remedy = "Use half_tooth for points of the fillet"
+            raise InputError(f"radius = {radius * 1e3:.6g} mm", Argument("radius"), why, remedy)
         return math.sqrt(max((radius - base) * (radius + base), 0.0)) / base
 
     def half_tooth_angle(self, radius: float) -> float:

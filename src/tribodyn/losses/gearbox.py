@@ -365,12 +365,8 @@ def gearbox_losses(
     teeth = np.asarray(gear, dtype=float)
     if teeth.size not in (1, torque.size * speed.size) or not np.all(teeth >= 0.0):
         why = "It is one power for each torque and speed, not negative"
-        raise InputError(
-            f"gear has the shape {teeth.shape}",
-            Argument("gear"),
-            why,
-            remedy="Give one value for each gear",
-        )
+        what = f"gear has the shape {teeth.shape}"
+        raise InputError(what, Argument("gear"), why, "Give one value for each gear")
     lost: dict[str, Array] = {part: np.zeros(shape) for part in PARTS}
     lost["gear"] = np.array(np.broadcast_to(teeth, shape))
     for name, turns in (("pinion", 1.0), ("wheel", 1.0 / pair.ratio)):

@@ -253,9 +253,7 @@ def _coefficient(
             f"viscosity, taking the base oil as {base_oil}; a measured value is better."
         )
         return estimate, (remark,)
-    raise InputError(
-        f"pressure_viscosity_coefficient = {given} and base_oil = {base_oil}",
-        where="arguments pressure_viscosity_coefficient and base_oil",
-        why="exactly one of the two determines how the viscosity rises with pressure",
-        remedy="Give a measured coefficient, or the base oil for an estimate",
-    )
+    what = f"pressure_viscosity_coefficient = {given} and base_oil = {base_oil}"
+    why = "exactly one of the two determines how the viscosity rises with pressure"
+    remedy = "Give a measured coefficient, or the base oil for an estimate"
+    raise InputError(what, "arguments pressure_viscosity_coefficient and base_oil", why, remedy)

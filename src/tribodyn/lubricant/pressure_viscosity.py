@@ -81,12 +81,10 @@ def _log_viscosity_ratio(dynamic_viscosity: float) -> float:
     require_positive("dynamic_viscosity", dynamic_viscosity, "Pa*s")
     ratio = math.log(dynamic_viscosity) + _LOG_POLE
     if ratio <= 0.0:
-        raise InputError(
-            f"dynamic_viscosity = {dynamic_viscosity:.6g} Pa*s",
-            where=Argument("dynamic_viscosity"),
-            why=f"the Roelands law needs more than exp(-{_LOG_POLE}) = 6.32e-5 Pa*s",
-            remedy="Check the unit: 82 mPa*s is 0.082 Pa*s",
-        )
+        what = f"dynamic_viscosity = {dynamic_viscosity:.6g} Pa*s"
+        why = f"the Roelands law needs more than exp(-{_LOG_POLE}) = 6.32e-5 Pa*s"
+        remedy = "Check the unit: 82 mPa*s is 0.082 Pa*s"
+        raise InputError(what, Argument("dynamic_viscosity"), why, remedy)
     return ratio
 
 

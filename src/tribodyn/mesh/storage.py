@@ -212,12 +212,8 @@ def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
     place = Path(path)
     if place.exists():
         why = "An existing file is never overwritten"
-        raise OutputExistsError(
-            f"{path} exists already",
-            "argument path",
-            why,
-            remedy="Give another path, or overwrite=True",
-        )
+        what = f"{path} exists already"
+        raise OutputExistsError(what, "argument path", why, "Give another path, or overwrite=True")
     facts = {name: float(getattr(table, name)) for name in FACTS}
     columns: dict[str, Array] = {"phase": table.phase}
     for name, unit in UNITS.items():

@@ -135,12 +135,8 @@ def parameter_map(
     axes = _read_axes(system, over, mesh_frequency, units)
     if transient < 0 or cycles < 2 or (steps is not None and steps < 1):
         what = f"transient = {transient}, cycles = {cycles}, steps = {steps}"
-        raise InputError(
-            what,
-            where="argument cycles",
-            why="At least two mesh cycles are looked at",
-            remedy="Give cycles=2 or more",
-        )
+        why = "At least two mesh cycles are looked at"
+        raise InputError(what, "argument cycles", why, "Give cycles=2 or more")
     systems = [system] if isinstance(system, System) else [system(float(v)) for v in axes.first]
     name = signal_name(systems[0], signal)
     begin = None if start is None else read_start(systems[0], start)
@@ -259,12 +255,10 @@ def _steps(number: Array, steps: int | None) -> Index:
         return np.asarray(2 ** np.ceil(np.log2(needed)).astype(np.int64))
     worst = float(number.max()) / steps
     if worst > LIMIT:
-        raise InputError(
-            f"omega_max*dt = {worst:.3f} with {steps} steps per mesh cycle",
-            where="argument steps",
-            why=f"The limit is {LIMIT}; beyond it the result is not physics",
-            remedy=f"Use at least {math.ceil(float(number.max()) / LIMIT)}, or leave it out",
-        )
+        what = f"omega_max*dt = {worst:.3f} with {steps} steps per mesh cycle"
+        why = f"The limit is {LIMIT}; beyond it the result is not physics"
+        remedy = f"Use at least {math.ceil(float(number.max()) / LIMIT)}, or leave it out"
+        raise InputError(what, "argument steps", why, remedy)
     return np.full(number.shape, int(steps))
 
 

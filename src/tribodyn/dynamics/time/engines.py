@@ -90,12 +90,10 @@ def refuse_newmark(
 ) -> None:
     """Refuse parameters, or a step that is beyond the limit of a conditionally stable scheme."""
     if not (np.isfinite(gamma) and np.isfinite(beta) and gamma >= 0.5 and beta >= 0.0):
-        raise InputError(
-            f"gamma = {gamma:g}, beta = {beta:g}",
-            where="arguments gamma, beta",
-            why="With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no meaning",
-            remedy="Average acceleration is gamma = 0.5, beta = 0.25",
-        )
+        what = f"gamma = {gamma:g}, beta = {beta:g}"
+        why = "With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no meaning"
+        remedy = "Average acceleration is gamma = 0.5, beta = 0.25"
+        raise InputError(what, "arguments gamma, beta", why, remedy)
     if 2.0 * beta >= gamma:
         return
     scales = np.ones((period.size, 6)) if parameters is None else parameters.table(period.size)
@@ -318,12 +316,8 @@ def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
     known = isinstance(method, str)
     name = ENGINES[method].method if known and method in ENGINES else method
     if not known or name not in _BEGIN:
-        raise InputError(
-            f'method = "{method}"',
-            where="argument method",
-            why="It is one of " + ", ".join(f'"{each}"' for each in _BEGIN),
-            remedy="Choose one of these",
-        )
+        why = "It is one of " + ", ".join(f'"{each}"' for each in _BEGIN)
+        raise InputError(f'method = "{method}"', "argument method", why, "Choose one of these")
     begin, own = _BEGIN[name]
     given = {option: value for option, value in options.items() if value is not None}
     for option in [each for each in given if each not in own]:
@@ -331,12 +325,9 @@ def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
             del given[option]  # where all engines march
             continue
         owner = next(each for each, (_, others) in _BEGIN.items() if option in others)
-        raise InputError(
-            f'{option} = {given[option]} with method = "{method}"',
-            where=f"argument {option}",
-            why=f'It belongs to "{owner}"',
-            remedy=f'Leave it out, or give method = "{owner}"',
-        )
+        what = f'{option} = {given[option]} with method = "{method}"'
+        remedy = f'Leave it out, or give method = "{owner}"'
+        raise InputError(what, f"argument {option}", f'It belongs to "{owner}"', remedy)
     return begin(setting, **given)
 
 

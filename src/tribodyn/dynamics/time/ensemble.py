@@ -210,12 +210,9 @@ def _frequencies(
     odd = [name for name, count in counts.items() if count not in (1, lanes)]
     if frequency.ndim != 1 or odd:
         name = odd[0] if odd else "mesh_frequency"
-        raise InputError(
-            f"{name} is for {counts[name]} lanes, others are for {lanes}",
-            where=f"argument {name}",
-            why="One for each lane, or one for all",
-            remedy="Give one value, or one for each lane",
-        )
+        what = f"{name} is for {counts[name]} lanes, others are for {lanes}"
+        why = "One for each lane, or one for all"
+        raise InputError(what, f"argument {name}", why, "Give one value, or one for each lane")
     return np.array(np.broadcast_to(frequency, (lanes,)))
 
 

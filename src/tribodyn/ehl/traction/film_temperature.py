@@ -192,12 +192,10 @@ def blok_flash_temperature(
     )
     carried = first * np.sqrt(np.abs(speed_1)) + second * np.sqrt(np.abs(speed_2))
     if np.any(carried == 0.0):
-        raise InputError(
-            "surface_speed_1 = surface_speed_2 = 0 m/s",
-            where="arguments surface_speed_1 and surface_speed_2",
-            why="a contact at rest carries no heat away with its surfaces",
-            remedy="Give the speeds of the surfaces relative to the contact",
-        )
+        what = "surface_speed_1 = surface_speed_2 = 0 m/s"
+        why = "a contact at rest carries no heat away with its surfaces"
+        remedy = "Give the speeds of the surfaces relative to the contact"
+        raise InputError(what, "arguments surface_speed_1 and surface_speed_2", why, remedy)
     return np.asarray(FLASH_FACTORS[kind] * heat / (carried * np.sqrt(2.0 * width)))[()]
 
 
@@ -274,12 +272,10 @@ def film_temperature_rise(heat: Callable[[Array], tuple[Array, Array]], resistan
         if np.all(np.abs(step - rise) <= _CLOSE * (step + 1e-6)):
             return step
         rise = step
-    raise ComputationError(
-        f"the film temperature did not settle in {_MOST_STEPS} steps",
-        where="flash temperature",
-        why=f"heat made and led away still differ by {np.max(np.abs(excess)):.3g} K",
-        remedy="Leave out flash_temperature, or check viscosity and speeds",
-    )
+    what = f"the film temperature did not settle in {_MOST_STEPS} steps"
+    why = f"heat made and led away still differ by {np.max(np.abs(excess)):.3g} K"
+    remedy = "Leave out flash_temperature, or check viscosity and speeds"
+    raise ComputationError(what, "flash temperature", why, remedy)
 
 
 #: Thermal loading beyond which the fit was not made: bearings reach several tens.

@@ -51,12 +51,9 @@ class ShearModel(Model):
         given = {name: value for name, value in numbers.items() if value is not None}
         known = {**self.declared, **(LIMIT if given.keys() & LIMIT.keys() else {})}
         for name in sorted(given.keys() - known.keys()):
-            raise InputError(
-                f'{name} does not belong to shear_model = "{self.name}"',
-                Argument(name),
-                f"Its numbers are: {', '.join({**known, **LIMIT})}",
-                "Remove it, or choose another shear model",
-            )
+            what = f'{name} does not belong to shear_model = "{self.name}"'
+            why = f"Its numbers are: {', '.join({**known, **LIMIT})}"
+            raise InputError(what, Argument(name), why, "Remove it, or choose another shear model")
         require_positive("eyring_stress", eyring_stress, "Pa", remedy="5 MPa is 5e6 Pa")
         values = {**{n: o.default for n, o in known.items()}, "eyring_stress": eyring_stress}
         values |= given

@@ -204,10 +204,6 @@ def _spread(name: str, value: ArrayLike, contacts: int) -> Array:
     """Broadcast one value, or one of each contact."""
     array = np.asarray(value, dtype=float)
     if array.shape not in {(), (1,), (contacts,)}:
-        raise InputError(
-            f"{name} has the shape {array.shape}",
-            where=f"argument {name}",
-            why=f"there are {contacts} contacts",
-            remedy="Give one value, or one of each contact",
-        )
+        what, why = f"{name} has the shape {array.shape}", f"there are {contacts} contacts"
+        raise InputError(what, f"argument {name}", why, "Give one value, or one of each contact")
     return np.broadcast_to(array, (contacts,))

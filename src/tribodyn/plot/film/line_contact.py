@@ -282,12 +282,9 @@ def _look(number: int) -> dict[str, Any]:
 def _checked(solutions: Iterable[Any], labels: Iterable[str]) -> tuple[list[Any], list[str]]:
     contacts, names = list(solutions), [str(label) for label in labels]
     if len(contacts) != len(names):
-        raise InputError(
-            f"{len(contacts)} contacts and {len(names)} labels",
-            where="argument labels",
-            why="Each contact has one name in the legend",
-            remedy="Give as many labels as solutions",
-        )
+        what = f"{len(contacts)} contacts and {len(names)} labels"
+        why = "Each contact has one name in the legend"
+        raise InputError(what, "argument labels", why, "Give as many labels as solutions")
     return contacts, names
 
 

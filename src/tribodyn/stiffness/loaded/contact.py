@@ -192,12 +192,8 @@ def phases_of(phases: int | Array, mesh_cycles: int) -> Array:
     if not isinstance(phases, int | np.integer):
         return np.atleast_1d(np.asarray(phases, dtype=float))
     if phases < 8:
-        raise InputError(
-            f"phases = {phases}",
-            where=Argument("phases"),
-            why="A mesh cycle needs at least 8 phases",
-            remedy="Give for example phases=64",
-        )
+        what, why = f"phases = {phases}", "A mesh cycle needs at least 8 phases"
+        raise InputError(what, Argument("phases"), why, "Give for example phases=64")
     return np.arange(int(phases) * mesh_cycles) / int(phases)
 
 

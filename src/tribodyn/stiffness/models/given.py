@@ -75,12 +75,10 @@ def rectangular_stiffness(
     require_positive("double_pair_stiffness", double, "N/m")
     count = in_contact.sum(axis=1)
     if not np.all(np.isin(count, (1, 2))):
-        raise InputError(
-            f"a zone of this mesh has {count.max()} pairs in contact",
-            where="single_pair_stiffness, double_pair_stiffness",
-            why="The two mesh values describe zones of one and two pairs only",
-            remedy="Give pair_stiffness, which holds for any contact ratio",
-        )
+        what = f"a zone of this mesh has {count.max()} pairs in contact"
+        why = "The two mesh values describe zones of one and two pairs only"
+        remedy = "Give pair_stiffness, which holds for any contact ratio"
+        raise InputError(what, "single_pair_stiffness, double_pair_stiffness", why, remedy)
     return share_equally(np.where(count == 1, single, double), in_contact)
 
 
@@ -88,20 +86,16 @@ def _check_forms(pair_stiffness: float | None, totals: dict[str, float | None]) 
     given = {name: value for name, value in totals.items() if value is not None}
     listing = ", ".join(f"{name} = {value:g} N/m" for name, value in given.items())
     if pair_stiffness is not None and given:
-        raise InputError(
-            f"pair_stiffness = {pair_stiffness:g} N/m and {listing} are both given",
-            where=ModelOption("stiffness", "rectangular"),
-            why="They are two ways of saying the same thing",
-            remedy="Keep pair_stiffness, or the two mesh values, not both",
-        )
+        what = f"pair_stiffness = {pair_stiffness:g} N/m and {listing} are both given"
+        why = "They are two ways of saying the same thing"
+        remedy = "Keep pair_stiffness, or the two mesh values, not both"
+        raise InputError(what, ModelOption("stiffness", "rectangular"), why, remedy)
     if pair_stiffness is None and len(given) < len(totals):
         missing = ", ".join(name for name in totals if name not in given)
-        raise InputError(
-            f"{missing} not given" + (f" although {listing} is" if given else ""),
-            where=ModelOption("stiffness", "rectangular"),
-            why="The model needs pair_stiffness, or both mesh values",
-            remedy='Give for example pair_stiffness = "2e8 N/m"',
-        )
+        what = f"{missing} not given" + (f" although {listing} is" if given else "")
+        why = "The model needs pair_stiffness, or both mesh values"
+        remedy = 'Give for example pair_stiffness = "2e8 N/m"'
+        raise InputError(what, ModelOption("stiffness", "rectangular"), why, remedy)
 
 
 _RANGE = (None, 1e3, 1e13, "guards against a wrong unit")
@@ -171,21 +165,16 @@ def fourier_mesh_stiffness(
     coefficients[0, : len(cosine)] = cosine
     coefficients[1, : len(sine)] = sine
     if not np.all(np.isfinite(coefficients)):
-        raise InputError(
-            "a coefficient of the Fourier series is not a finite number",
-            where=ModelOption("stiffness", "fourier", "cosine, sine"),
-            remedy="Give every coefficient in N/m",
-            why="The sum of the series must be finite",
-        )
+        what = "a coefficient of the Fourier series is not a finite number"
+        why, remedy = "The sum of the series must be finite", "Give every coefficient in N/m"
+        raise InputError(what, ModelOption("stiffness", "fourier", "cosine, sine"), why, remedy)
     scan = np.linspace(0.0, 1.0, _POINTS_PER_WAVE * (coefficients.shape[1] + 1))
     least = _series(scan, mean_stiffness, coefficients)
     if least.min() <= 0.0:
-        raise InputError(
-            f"the mesh stiffness is {least.min():.4g} N/m at phase {scan[least.argmin()]:.3f}",
-            where=ModelOption("stiffness", "fourier"),
-            why="A mesh in contact has a positive stiffness over the whole cycle",
-            remedy=f"Raise mean_stiffness = {mean_stiffness:g} N/m or lower the coefficients",
-        )
+        what = f"the mesh stiffness is {least.min():.4g} N/m at phase {scan[least.argmin()]:.3f}"
+        why = "A mesh in contact has a positive stiffness over the whole cycle"
+        remedy = f"Raise mean_stiffness = {mean_stiffness:g} N/m or lower the coefficients"
+        raise InputError(what, ModelOption("stiffness", "fourier"), why, remedy)
     return _series(np.asarray(phase, dtype=float), mean_stiffness, coefficients)
 
 
@@ -230,12 +219,9 @@ _FOURIER = {
 def _fourier(*mesh: Any, **options: Any) -> Array:
     state = MeshState(*mesh)
     if options["mean_stiffness"] is None:
-        raise InputError(
-            "mean_stiffness not given",
-            where=ModelOption("stiffness", "fourier"),
-            why="The series needs its mean",
-            remedy='Give for example mean_stiffness = "2.5e8 N/m"',
-        )
+        what = "mean_stiffness not given"
+        why, remedy = "The series needs its mean", 'Give for example mean_stiffness = "2.5e8 N/m"'
+        raise InputError(what, ModelOption("stiffness", "fourier"), why, remedy)
     return share_equally(fourier_mesh_stiffness(state.phase, **options), state.in_contact)
 
 

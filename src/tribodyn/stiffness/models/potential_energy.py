@@ -44,12 +44,9 @@ class _PairContacts(NamedTuple):
         load = force / self.face_width
         brackets = self.terms - 0.5 * np.log(load)
         if np.any(brackets <= 0.0):
-            raise ComputationError(
-                f"under {np.max(load):.4g} N/m the contact is as wide as the teeth are thick",
-                where="Weber-Banaschek compression",
-                why="The formula holds for a half width much smaller than the depth",
-                remedy="Lower the load",
-            )
+            what = f"under {np.max(load):.4g} N/m the contact is as wide as the teeth are thick"
+            why = "The formula holds for a half width much smaller than the depth"
+            raise ComputationError(what, "Weber-Banaschek compression", why, "Lower the load")
         local = self.scale * load * brackets.sum(axis=0)
         return np.asarray(force / (force * self.structure + local))
 
