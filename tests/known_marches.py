@@ -5,7 +5,8 @@ import numpy as np
 from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, adaptive_engine
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_lanes
-from tribodyn.dynamics.time.engines import AdaptiveMarcher, Setting, newmark_method
+from tribodyn.dynamics.time.engines import AdaptiveMarcher, Setting
+from tribodyn.dynamics.time.newmark import newmark_method
 from tribodyn.interrupt import in_threads
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tribodyn.dynamics import Contact, System, steady_state
-from tribodyn.dynamics.equations.grid import sampled
+from tribodyn.dynamics.equations.nodes import sampled
 from tribodyn.dynamics.equations.step_limit import largest_rate, rate_on_grid
 
 

@@ -12,8 +12,9 @@ import numpy as np
 
 from tribodyn.dynamics import System
 from tribodyn.dynamics._engine.dormand_prince import MATRIX, NODES, WEIGHT_ERROR
-from tribodyn.dynamics.equations.grid import Grid, Nodes
+from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.motion import forces
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import compile_on
 from tribodyn.types import Array
 

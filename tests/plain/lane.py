@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from tribodyn.dynamics import System
-from tribodyn.dynamics.equations.grid import Grid, Nodes
+from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.motion import (
     clearance,
     compression,
@@ -22,6 +22,7 @@ from tribodyn.dynamics.equations.motion import (
     rows_within,
     sides,
 )
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array
 

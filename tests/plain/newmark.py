@@ -6,14 +6,14 @@ import numpy as np
 
 from plain.lane import Motion, PlainLane
 from tribodyn.dynamics import System
-from tribodyn.dynamics.equations.grid import (
-    Grid,
+from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.dynamics.equations.motion import forces
+from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
     friction_tangent,
     push_with_friction,
 )
-from tribodyn.dynamics.equations.motion import forces
 from tribodyn.types import Array
 
 _PASSES = 25

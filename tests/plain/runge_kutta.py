@@ -6,7 +6,8 @@ import numpy as np
 
 from plain.lane import Motion, PlainLane
 from tribodyn.dynamics import System
-from tribodyn.dynamics.equations.grid import Grid, Nodes
+from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.types import Array
 
 

@@ -338,12 +338,8 @@ class RoughnessProfile:
 def _fault(path: str | PathLike[str], line: int, what: str) -> InputError:
     place = f"{Path(path).name}, line {line}" if line else Path(path).name
     why = "A profile has the columns position and height, their units below, for example mm,um"
-    return InputError(
-        f"{what} ({place})",
-        Argument("roughness_profile"),
-        why,
-        remedy="Give a profile, or the path of a file with the columns position and height",
-    )
+    remedy = "Give a profile, or the path of a file with the columns position and height"
+    return InputError(f"{what} ({place})", Argument("roughness_profile"), why, remedy)
 
 
 #: Grid points that a wavelength needs, and the share of the mean square that may lie below.

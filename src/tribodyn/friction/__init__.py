@@ -29,15 +29,12 @@ from tribodyn.friction.discs import drozdov, misharin, odonoghue_cameron
 from tribodyn.friction.ehl import ehl
 from tribodyn.friction.exponential import exponential
 from tribodyn.friction.matsumoto import matsumoto
-from tribodyn.friction.mesh_means.formulas import (
-    iso_6336_22,
-    iso_14179_1,
-    iso_14179_2,
-    niemann,
-    schlenk,
-)
+from tribodyn.friction.mesh_means.iso_6336_22 import iso_6336_22
+from tribodyn.friction.mesh_means.iso_14179 import iso_14179_1, iso_14179_2
 from tribodyn.friction.mesh_means.measured import measured
+from tribodyn.friction.mesh_means.niemann import niemann
 from tribodyn.friction.mesh_means.pitch_point import PitchPoint, pitch_point
+from tribodyn.friction.mesh_means.schlenk import schlenk
 from tribodyn.friction.mixed import mixed, mixed_solved
 from tribodyn.friction.mixed_ehl import mixed_ehl
 from tribodyn.friction.xu import xu_2007

@@ -209,14 +209,10 @@ def _matched(
         where = table.place(point.rows[0])
         if not rest:
             known = sorted({round(table.speed[idle.rows[0]] / _RPM, 1) for idle in idles})
-            problems.append(
-                Problem(
-                    f"no run without load at {speed / _RPM:.4g} rpm",
-                    where,
-                    f"Without load there are {', '.join(f'{k:g} rpm' for k in known) or 'no rows'}",
-                    f"Measure one there, with at most {table.no_load_torque:g} N*m",
-                )
-            )
+            what = f"no run without load at {speed / _RPM:.4g} rpm"
+            why = f"Without load there are {', '.join(f'{k:g} rpm' for k in known) or 'no rows'}"
+            remedy = f"Measure one there, with at most {table.no_load_torque:g} N*m"
+            problems.append(Problem(what, where, why, remedy))
             continue
         scatter = math.sqrt(point.variance + rest[0].variance)
         if point.mean < rest[0].mean - _SCATTER * scatter:

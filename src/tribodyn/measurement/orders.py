@@ -246,12 +246,8 @@ def _checked(signal: Any, angle: Any, max_order: float) -> tuple[Array, Array]:
 
 def _too_short(turned: Array, least: float) -> InputError:
     made = (turned[-1] - turned[0]) / (2.0 * np.pi)
-    return InputError(
-        f"the shaft turns {made:.4g} times",
-        where=Argument("angle"),
-        why=f"At least {least:g} revolutions are needed",
-        remedy="Record longer, or take shorter blocks",
-    )
+    what, why = f"the shaft turns {made:.4g} times", f"At least {least:g} revolutions are needed"
+    return InputError(what, Argument("angle"), why, "Record longer, or take shorter blocks")
 
 
 def _lines(

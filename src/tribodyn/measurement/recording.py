@@ -220,21 +220,13 @@ def _rate(found: Content, names: list[str], given: float | None, path: Any) -> f
             raise InputError(what, str(path), why, remedy)
         rates[f"times of {name}"] = rate_of(time, path, given)
     if not rates:
-        raise InputError(
-            f"{path} tells no sampling rate",
-            where=Argument("sample_rate"),
-            why="It has neither a column named time nor a rate",
-            remedy="Give sample_rate in hertz",
-        )
+        why, remedy = "It has neither a column named time nor a rate", "Give sample_rate in hertz"
+        raise InputError(f"{path} tells no sampling rate", Argument("sample_rate"), why, remedy)
     first = next(iter(rates.values()))
     if any(abs(rate - first) > 1e-5 * first for rate in rates.values()):
         told = ", ".join(f"{name} {rate:.7g} Hz" for name, rate in rates.items())
-        raise InputError(
-            "the sampling rates differ",
-            where=str(path),
-            why=told,
-            remedy="Read channels of one rate with channels=[...], or leave sample_rate out",
-        )
+        remedy = "Read channels of one rate with channels=[...], or leave sample_rate out"
+        raise InputError("the sampling rates differ", str(path), told, remedy)
     return first
 
 
@@ -271,9 +263,6 @@ def _no_channel(name: object, known: Iterable[str]) -> InputError:
     names = list(known)
     near = get_close_matches(str(name), names, 1)
     meant = f' Did you mean "{near[0]}"?' if near else ""
-    return InputError(
-        f"there is no channel {shortened(repr(name))}",
-        Argument("channels"),
-        f"It has {', '.join(names[:20])}{meant}",
-        "Write the name as it stands there",
-    )
+    what = f"there is no channel {shortened(repr(name))}"
+    why = f"It has {', '.join(names[:20])}{meant}"
+    return InputError(what, Argument("channels"), why, "Write the name as it stands there")

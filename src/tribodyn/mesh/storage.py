@@ -170,12 +170,8 @@ def _plain(value: Any) -> Any:
 
 
 def _unreadable(path: str | PathLike[str], reason: str) -> InputError:
-    return InputError(
-        f"{path} is no mesh table",
-        where="argument path",
-        why=reason,
-        remedy="Give a file that MeshTable.save wrote",
-    )
+    what = f"{path} is no mesh table"
+    return InputError(what, "argument path", reason, "Give a file that MeshTable.save wrote")
 
 
 #: Columns of a text file that stand once, for each ramp, for each contact, for each coordinate.

@@ -20,7 +20,6 @@ import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import most_splits, unparted_step
-from tribodyn.dynamics.equations.grid import Nodes, push_with_friction
 from tribodyn.dynamics.equations.motion import (
     WithinSteps,
     clearance,
@@ -30,6 +29,7 @@ from tribodyn.dynamics.equations.motion import (
     quadratic,
     rows_within,
 )
+from tribodyn.dynamics.equations.nodes import Nodes, push_with_friction
 from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.types import Array, Index, Mask

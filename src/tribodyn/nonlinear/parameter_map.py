@@ -283,35 +283,20 @@ def _read_axes(
         remedy = "A system that depends on another value is given as a function of the first one"
         raise InputError(f"over {one} and {two}", where="argument over", why=why, remedy=remedy)
     if own and one in known:
-        raise InputError(
-            f"{one} with a function",
-            where="argument over",
-            why="The function takes that value",
-            remedy="Give a system and a name, or a function alone",
-        )
+        what, remedy = f"{one} with a function", "Give a system and a name, or a function alone"
+        raise InputError(what, "argument over", "The function takes that value", remedy)
     if own and units is None:
-        raise InputError(
-            f"{one} without its unit",
-            where="argument units",
-            why="Axes show values with their units",
-            remedy="Give one unit for each parameter",
-        )
+        what, why = f"{one} without its unit", "Axes show values with their units"
+        raise InputError(what, "argument units", why, "Give one unit for each parameter")
     if any(each.ndim != 1 or not np.all(np.isfinite(each)) for each in values):
-        raise InputError(
-            "values that are no list of numbers",
-            where="argument over",
-            why="Each axis of the map has its values",
-            remedy="Give (name, values) for each of the two axes",
-        )
+        what, why = "values that are no list of numbers", "Each axis of the map has its values"
+        raise InputError(what, "argument over", why, "Give (name, values) for each of the two axes")
     if "mesh_frequency" in (one, two):
         require_positive("mesh_frequency", values[(one, two).index("mesh_frequency")], "Hz")
     elif mesh_frequency is None:
-        raise InputError(
-            "no mesh frequency",
-            where="argument mesh_frequency",
-            why="The time of one mesh cycle follows from it",
-            remedy="Give mesh_frequency in Hz, or return it beside the system",
-        )
+        why = "The time of one mesh cycle follows from it"
+        remedy = "Give mesh_frequency in Hz, or return it beside the system"
+        raise InputError("no mesh frequency", "argument mesh_frequency", why, remedy)
     else:
         require_positive("mesh_frequency", mesh_frequency, "Hz")
     return _Axes((one, two), values[0], values[1])

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from tribodyn.dynamics.linear.natural_modes import NaturalModes
-from tribodyn.dynamics.running_up.run_up import RunUp
+from tribodyn.dynamics.running_up.run_up_result import RunUp
 from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.angular_resampling import window_values

@@ -193,12 +193,8 @@ def sample(
     (0.05, 0.0082)
     """
     if not isinstance(distributions, Mapping) or not distributions:
-        raise InputError(
-            "no quantity is spread",
-            Argument("distributions"),
-            "Wanted: a mapping of names",
-            'Write {"friction.coefficient": "0.05 +- 0.83 %"}',
-        )
+        what, remedy = "no quantity is spread", 'Write {"friction.coefficient": "0.05 +- 0.83 %"}'
+        raise InputError(what, Argument("distributions"), "Wanted: a mapping of names", remedy)
     made = {str(name): distribution(str(name), text) for name, text in distributions.items()}
     count = require_whole("size", size)
     if count * len(made) > _MOST:

@@ -5,13 +5,15 @@
 | ``study_file`` | what a study file says |
 | ``members`` | which members a study has, and how it grows |
 | ``compute`` | what is computed of the members of a chunk |
-| ``store`` | what is stored, whether it is whole, and the same as one lazy data set |
+| ``store`` | what is stored, and whether it is whole |
 | ``run`` | who computes: this machine or the workers of a Dask cluster |
+| ``dataset`` | the store as one lazy data set |
 """
 
 from tribodyn.arguments import guard
+from tribodyn.variants.dataset import open_study
 from tribodyn.variants.run import run_study
-from tribodyn.variants.store import StudyState, open_study, study_state
+from tribodyn.variants.store import StudyState, study_state
 from tribodyn.variants.study_file import Study, load_study, read_study
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""The store of a study: a manifest, a netCDF file for each chunk, all of it as one data set.
+"""The store of a study: a manifest, and one netCDF file for each chunk of its members.
 
 The manifest ``members.jsonl`` has one line for each fact, with a checksum before it: which study it
 is, the members it has (again when it grows), and every chunk that is whole on the disk. A chunk is
@@ -8,7 +8,6 @@ leaves what is told by these lines, and whoever goes on computes the rest.
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import re
@@ -17,25 +16,19 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from tribodyn.errors import Argument, InputError, OutputExistsError, quiet
 from tribodyn.files import lock, whole
 from tribodyn.members import NAME, Members, read_lines
 from tribodyn.stored import read_bytes
 from tribodyn.study.studies.grid import identity
-from tribodyn.variants.compute import KINDS, Job, Part
-from tribodyn.variants.members import Chunk, Grid, Plan, layout_of
+from tribodyn.variants.compute import Job, Part
+from tribodyn.variants.members import Chunk, Plan, layout_of
 
 if TYPE_CHECKING:
-    import xarray
-
     from tribodyn.variants.study_file import Study
-
 
 #: Chunks of one folder, reasons that are told, and chunks from which the time left is judged.
 _FOLDER, _REASONS, _RECENT = 1000, 20, 50
@@ -283,110 +276,3 @@ def _check_place(folder: Path) -> None:
         there = "It is no directory" if folder.exists() or folder.is_symlink() else ""
     if there:
         raise OutputExistsError("this exists already", str(folder), there, "Choose another")
-
-
-#: Reason of a member that is not stored yet.
-_NOT_YET = "not computed yet"
-
-
-def open_study(path: str | os.PathLike[str]) -> xarray.Dataset:
-    """Open the store of a study as one data set, finished or not.
-
-    Parameters
-    ----------
-    path : str or path
-        Directory that :func:`run_study` or ``tribodyn study`` wrote, or writes at the moment.
-
-    Returns
-    -------
-    xarray.Dataset
-        Figures in SI over the keys of a grid, or over ``member`` with the keys beside them, and
-        ``failed``, which tells why a member has none. Nothing is read before it is asked for.
-
-    Raises
-    ------
-    InputError
-        If it is no store; later, if a chunk that is asked for was damaged.
-    """
-    import xarray
-
-    manifest = Manifest(path)
-    layout = manifest.plan.layout
-    coords: dict[str, Any] = {}
-    if isinstance(layout, Grid):
-        dims = {axis.key: len(axis.values) for axis in layout.axes}
-        for axis in layout.axes:
-            values = np.array(axis.values)
-            values = values.astype(object) if values.dtype.kind == "U" else values
-            coords[axis.key] = (axis.key, values, {"units": axis.unit or "1"})
-    else:
-        dims = {"member": layout.count}
-    names = {name for facts in manifest.chunks.values() for name in facts["figures"]}
-
-    def lazy(name: str, kind: Any, **facts: str) -> Any:
-        return (tuple(dims), _lazy(manifest, name, tuple(dims.values()), kind), facts)
-
-    variables = {
-        name: lazy(name, float, units=unit, long_name=meaning)
-        for name, (unit, meaning) in KINDS[manifest.kind].figures.items()
-        if name in names
-    }
-    variables |= {name: lazy(name, object) for name in ("failed", "warnings")}
-    if not isinstance(layout, Grid):
-        for key, unit in layout.units.items():
-            coords[key] = lazy(key, np.dtype(layout.kinds[key]), units=unit or "1")
-    facts = {**manifest.facts, "keep": ", ".join(manifest.facts["keep"])}
-    return xarray.Dataset(variables, coords, facts)
-
-
-def _lazy(manifest: Manifest, name: str, shape: tuple[int, ...], kind: Any) -> Any:
-    """One variable, as xarray reads it when it is asked for."""
-    from xarray.backends import BackendArray
-    from xarray.core import indexing
-
-    class Stored(BackendArray):
-        def __init__(self) -> None:
-            self.shape, self.dtype = shape, np.dtype(kind)
-
-        def __getitem__(self, key: Any) -> Any:
-            outer = indexing.IndexingSupport.OUTER
-            return indexing.explicit_indexing_adapter(key, shape, outer, self.read)
-
-        def read(self, key: tuple[Any, ...]) -> Any:
-            places = [np.arange(size)[each] for size, each in zip(shape, key, strict=True)]
-            kept = tuple(place.size for place in places if place.ndim)
-            grid = np.ix_(*(np.atleast_1d(place) for place in places))
-            members = np.ravel_multi_index(grid, shape).ravel()
-            found = np.full(prod(kept), _absent(name, self.dtype), dtype=self.dtype)
-            for chunk, where, rows in manifest.plan.found(members):
-                if chunk.name in manifest.chunks:
-                    values = _column(manifest, chunk.name, name)
-                    if values is not None:
-                        found[where] = values[rows]
-            return found.reshape(kept)
-
-    return indexing.LazilyIndexedArray(Stored())
-
-
-def _absent(name: str, dtype: np.dtype[Any]) -> Any:
-    """What stands where nothing is stored."""
-    if dtype.kind == "f":
-        return np.nan
-    return {"failed": _NOT_YET}.get(name, "" if dtype.kind == "O" else 0)
-
-
-def _column(manifest: Manifest, chunk: str, name: str) -> Any:
-    """One variable of a chunk; None where it has none of that name."""
-    import h5py
-
-    content = read_chunk(manifest.folder, chunk, manifest.chunks[chunk])
-    if content is None:
-        what = f"{chunk_path(manifest.folder, chunk)} is not as it was written"
-        why, remedy = "It was damaged, changed or removed", "Run the study again: it is mended"
-        raise InputError(what, Argument("path"), why, remedy)
-    with h5py.File(io.BytesIO(content)) as file:
-        if name in file:
-            column = file[name]
-            return column.asstr()[()] if h5py.check_string_dtype(column.dtype) else column[()]
-        figures = manifest.chunks[chunk]["figures"]
-        return file["value"][:, figures.index(name)] if name in figures else None

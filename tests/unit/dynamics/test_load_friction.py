@@ -25,7 +25,7 @@ from tribodyn.dynamics import (
     steady_state,
 )
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.equations.grid import friction_force, friction_tangent
+from tribodyn.dynamics.equations.nodes import friction_force, friction_tangent
 from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.errors import InputError
 

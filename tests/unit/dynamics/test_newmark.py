@@ -10,7 +10,7 @@ from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
 from plain.newmark import newmark_plain
 from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.time.engines import NEWMARK_PRESETS
+from tribodyn.dynamics.time.newmark import NEWMARK_PRESETS
 from tribodyn.errors import ComputationError, InputError
 
 RATE = 3.0

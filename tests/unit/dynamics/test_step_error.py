@@ -7,7 +7,7 @@ import pytest
 
 from known_systems import MESH_FREQUENCY, reference_system
 from tribodyn.dynamics import Contact, System, fzg12, steady_state
-from tribodyn.dynamics.equations.grid import evaluate_nodes, halved_nodes
+from tribodyn.dynamics.equations.nodes import evaluate_nodes, halved_nodes
 from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.errors import ModelWarning
 

@@ -9,8 +9,8 @@ import pytest
 from known_hypoids import h1043, random_blanks
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
-from tribodyn.gear.hypoid.conjugate import Axes, Surface, envelope, relative_curvature
 from tribodyn.gear.hypoid.ease_off import eased_gap
+from tribodyn.gear.hypoid.envelope import Axes, Surface, envelope, relative_curvature
 from tribodyn.gear.hypoid.flank import SIDES
 
 #: Drive side of 10 x 43: place [mm], rotation [deg], sliding [mm], curvature [1/mm], position [mm].

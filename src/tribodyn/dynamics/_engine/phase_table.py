@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.grid import Grid, Nodes, build_grid, system_events
+from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import Program, build_program, compile_on
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError

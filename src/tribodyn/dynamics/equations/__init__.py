@@ -3,7 +3,8 @@
 | module | what it answers |
 |---|---|
 | `system` | What is a structure with its contacts and frictions? |
-| `grid` | How is the mesh cycle divided, and what are the entries in every step? |
+| `grid` | How is the mesh cycle divided so that no step spans a jump? |
+| `nodes` | What are the entries at both ends and in the middle of every step? |
 | `motion` | What forces and accelerations follow from a motion? The law, readable. |
 | `program` | In which flat arrays do the kernels read the law? |
 | `lane_parameters` | By which factors do lanes of an ensemble differ? |

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_whole
-from tribodyn.dynamics.equations.grid import Grid, Nodes, coefficient_count, system_events
+from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.motion import has_gap
+from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count
 from tribodyn.dynamics.equations.program import Program, build_program, compile_system
 from tribodyn.dynamics.equations.step_limit import (
     largest_rate,

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.grid import Grid, Nodes, friction_force
+from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.dynamics.equations.nodes import Nodes, friction_force
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
 

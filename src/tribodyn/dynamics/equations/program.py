@@ -13,14 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.entry import varies as depends_on_phase
-from tribodyn.dynamics.equations.grid import (
-    Grid,
-    Nodes,
-    build_grid,
-    coefficient_count,
-    evaluate_nodes,
-    system_events,
-)
+from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
+from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
 

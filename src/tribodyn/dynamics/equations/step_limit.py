@@ -13,17 +13,14 @@ from dataclasses import fields
 import numpy as np
 
 from tribodyn.checks import require_number
-from tribodyn.dynamics.equations.grid import (
-    Grid,
+from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, system_events
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.nodes import (
     Nodes,
-    RowEvaluator,
-    build_grid,
     evaluate_nodes,
     friction_tangent,
     push_with_friction,
-    system_events,
 )
-from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array, ComplexArray, Index

@@ -150,12 +150,9 @@ class LoadFriction:
 
 def no_direction(where: str) -> InputError:
     """Error of a contact that no motion compresses."""
-    return InputError(
-        "the direction is zero",
-        where=where,
-        why="No coordinate compresses the contact, so that it could never carry",
-        remedy="Give the derivative of the compression with respect to each coordinate",
-    )
+    why = "No coordinate compresses the contact, so that it could never carry"
+    remedy = "Give the derivative of the compression with respect to each coordinate"
+    return InputError("the direction is zero", where, why, remedy)
 
 
 def _matrix(name: str, value: ArrayLike) -> Array:

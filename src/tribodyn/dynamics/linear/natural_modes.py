@@ -9,7 +9,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.grid import (
+from tribodyn.dynamics.equations.grid import system_events
+from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
     force_laws,
@@ -18,7 +19,6 @@ from tribodyn.dynamics.equations.grid import (
     lowest_of_each_law,
     push_with_friction,
     sampled,
-    system_events,
 )
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_between

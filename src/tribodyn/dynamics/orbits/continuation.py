@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.grid import lowest_of_each_law
+from tribodyn.dynamics.equations.nodes import lowest_of_each_law
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.continuation_path import (
     BranchPoint,

@@ -15,14 +15,14 @@ from functools import cached_property
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.grid import (
+from tribodyn.dynamics.equations.motion import compression
+from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
     friction_secant,
     lowest_of_each_law,
     push_with_friction,
 )
-from tribodyn.dynamics.equations.motion import compression
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, warn
 from tribodyn.types import Array

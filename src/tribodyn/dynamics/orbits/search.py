@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from tribodyn.dynamics.equations.grid import force_laws
 from tribodyn.dynamics.equations.motion import compression, has_gap, sides
+from tribodyn.dynamics.equations.nodes import force_laws
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
 from tribodyn.types import Array, ComplexArray
 

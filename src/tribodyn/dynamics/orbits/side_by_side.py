@@ -18,15 +18,8 @@ from tribodyn.dynamics._engine.blocks import WIDTH
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.entry import varies
-from tribodyn.dynamics.equations.grid import (
-    Grid,
-    Nodes,
-    build_grid,
-    evaluate_nodes,
-    halved_grid,
-    step_weights,
-    system_events,
-)
+from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
+from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes, halved_grid, step_weights
 from tribodyn.dynamics.equations.program import Program, build_program, lane_load
 from tribodyn.dynamics.equations.step_limit import refuse_unstable_step
 from tribodyn.dynamics.equations.system import System

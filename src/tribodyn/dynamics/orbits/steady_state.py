@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.equations.grid import halved_nodes
+from tribodyn.dynamics.equations.nodes import halved_nodes
 from tribodyn.dynamics.equations.program import build_program
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start

@@ -11,13 +11,14 @@ from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import unparted_step
-from tribodyn.dynamics.equations.grid import Nodes
 from tribodyn.dynamics.equations.motion import compression, forces, has_gap, sides
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates, orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import Balance
-from tribodyn.dynamics.running_up.run_up_tables import SpeedProfile, Table, Tables, blend_weight
+from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
+from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
 from tribodyn.errors import ComputationError
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
-from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, friction_force
+from tribodyn.dynamics.equations.grid import Grid, RowEvaluator
 from tribodyn.dynamics.equations.motion import quadratic, sides, within_steps
+from tribodyn.dynamics.equations.nodes import friction_force
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.response import Response
 from tribodyn.types import Array

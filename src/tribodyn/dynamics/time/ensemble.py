@@ -163,12 +163,9 @@ def simulate_ensemble(
     """
     frequency = _frequencies(system, mesh_frequency, parameters)
     if not 0 <= averaged <= cycles:
-        raise InputError(
-            f"averaged = {averaged} with cycles = {cycles}",
-            where="argument averaged",
-            why="Statistics cover some of the last mesh cycles",
-            remedy="Give 1 to cycles",
-        )
+        what = f"averaged = {averaged} with cycles = {cycles}"
+        why = "Statistics cover some of the last mesh cycles"
+        raise InputError(what, "argument averaged", why, "Give 1 to cycles")
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
     options |= {"backend": backend}
     lanes, size = frequency.size, (system if isinstance(system, System) else system[0]).size

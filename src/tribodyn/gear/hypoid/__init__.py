@@ -2,10 +2,13 @@
 
 | module | what it answers |
 | --- | --- |
-| `dimensions` | pitch cones, and all dimensions of both blanks that follow from them |
+| `pitch_cones` | the cones that touch in the calculation point |
+| `dimensions` | all dimensions of both blanks that follow from them |
 | `blank` | a pair of blanks from the figures of a drawing |
 | `ease_off` | what the pinion has less than its conjugate |
-| `conjugate` | one side of a pair: what a cutter leaves on the wheel, and its envelope |
+| `formate` | the flank that a face-mill cutter leaves on the wheel |
+| `envelope` | the conjugate of any wheel flank, its curvature and its undercut |
+| `conjugate` | one side of a pair: both surfaces and the ends of the flanks |
 | `flank` | both flanks as grids of points, for export |
 | `tooth_contact` | path of contact, transmission error, pattern, with axes that are misplaced |
 | `contact_lines` | contact lines of conjugate flanks, with exact ends |

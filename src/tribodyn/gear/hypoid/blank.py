@@ -6,7 +6,8 @@ import math
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, Problem, require_between, require_one_of
-from tribodyn.gear.hypoid.dimensions import PitchInput, dimensions
+from tribodyn.gear.hypoid.dimensions import dimensions
+from tribodyn.gear.hypoid.pitch_cones import PitchInput
 from tribodyn.record import Parts, Record, fact, labels_of, quantity, record
 
 #: Hands of a pinion; the wheel has the other one.

@@ -8,8 +8,9 @@ import numpy as np
 
 from tribodyn.errors import ComputationError
 from tribodyn.gear.hypoid.blank import HypoidBlank
-from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch, envelope, solved
+from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
 from tribodyn.gear.hypoid.ease_off import working_depth
+from tribodyn.gear.hypoid.envelope import envelope, solved
 from tribodyn.types import Array, Mask
 
 #: Steps of Newton's method and of the search for ends, samples of a line, grid of a flank.

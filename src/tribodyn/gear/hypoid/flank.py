@@ -14,8 +14,9 @@ from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, require_one_of, shortened, warn
 from tribodyn.files import whole
 from tribodyn.gear.hypoid.blank import HypoidBlank
-from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, turned
+from tribodyn.gear.hypoid.conjugate import ConjugateFlanks
 from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap, working_depth
+from tribodyn.gear.hypoid.envelope import turned
 from tribodyn.record import Record, drawn, fact, quantity, record
 from tribodyn.types import Array, Mask
 

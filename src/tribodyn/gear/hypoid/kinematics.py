@@ -13,7 +13,8 @@ from tribodyn.errors import (
     require_one_of,
     require_positive,
 )
-from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Curvature, Touch, cross
+from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
+from tribodyn.gear.hypoid.envelope import Curvature, cross
 from tribodyn.gear.hypoid.tooth_contact import ToothContact
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array

@@ -90,12 +90,8 @@ def uff(path: Path) -> Content:
                 else "no complete dataset"
             )
         )
-        raise InputError(
-            "holds no time history",
-            where=str(path),
-            why=f"It has {found}",
-            remedy="Export the time histories as dataset 58, and look whether the file is whole",
-        )
+        remedy = "Export the time histories as dataset 58, and look whether the file is whole"
+        raise InputError("holds no time history", str(path), f"It has {found}", remedy)
     return Content(channels, units, rates)
 
 

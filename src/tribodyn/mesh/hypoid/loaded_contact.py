@@ -15,8 +15,9 @@ from tribodyn.errors import (
     require_between,
 )
 from tribodyn.gear import HypoidFlanks, Material, Misalignment
-from tribodyn.gear.hypoid.conjugate import Curvature, Touch, cross
+from tribodyn.gear.hypoid.conjugate import Touch
 from tribodyn.gear.hypoid.contact_lines import ContactLines
+from tribodyn.gear.hypoid.envelope import Curvature, cross
 from tribodyn.gear.hypoid.tooth_contact import gap_of
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.record import Record, drawn, fact, quantity, record

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import math
 import os
 import sys
 import tempfile
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache as remember
 from pathlib import Path
 from typing import NamedTuple
@@ -281,107 +280,3 @@ def store_arrays(name: str, arrays: Mapping[str, Array]) -> bool:
 
 def _path(name: str) -> Path:
     return cache_folder() / "fe2d" / f"{name}.npz"
-
-
-#: Half width of the loads [modules]: wide, so that the dent does not hide the bending.
-_HALF_WIDTH = 0.2
-#: A picture needs no fine mesh.
-_SIZE = MeshSize(flank=0.08, largest=0.14, growth=1.4, body_growth=0.4)
-#: Teeth beyond the loaded ones on each side.
-_MARGIN = 1
-
-
-def deformed_gear(
-    gear: SpurGear,
-    material: Material,
-    loads: Sequence[tuple[int, float, float]],
-    *,
-    reference: str = "bore",
-) -> tuple[Array, Array]:
-    """Outline of the loaded teeth and one more on each side, with their displacements.
-
-    Parameters
-    ----------
-    gear : SpurGear
-        The gear; tooth 0 stands on +y and the flanks with x > 0 are loaded.
-    material : Material
-        Its material.
-    loads : sequence of tuple (int, float [m], float [N/m])
-        Tooth, radius of curvature and load per width. Teeth are counted as the neighbours of
-        :class:`tribodyn.stiffness.GearInfluence`: clockwise here, to the side of larger radii.
-    reference : str
-        ``"bore"``: the bore is held; ``"rim"``: the wind-up of the body is taken off.
-
-    Returns
-    -------
-    tuple of array (2, n) [m]
-        Points of the outline, anticlockwise, the same number for each tooth with the middle of
-        the space shared by neighbours; and their displacements. If all teeth are shown, the last
-        point equals the first.
-
-    Raises
-    ------
-    InputError
-        If there is no load, a place is not on the flank, or as :func:`fe2d_influence`.
-
-    Notes
-    -----
-    The load is spread over 0.4 modules, so that the dent of the contact does not hide the bending
-    of the teeth. Source: see :func:`fe2d_influence`.
-
-    Examples
-    --------
-    >>> gear = SpurGear(teeth=24, normal_module=4.5e-3, normal_pressure_angle=0.349066,
-    ...     profile_shift_coefficient=0.0, tip_diameter=0.117, face_width=0.02, bore_diameter=0.03)
-    >>> outline, moved = deformed_gear(gear, Material(), [(0, 0.02, 100e3)])
-    >>> highest = outline[1].argmax()
-    >>> bool(moved[0, highest] < -5e-6), bool(np.hypot(*outline[:, 0]) < gear.base_radius)
-    (True, True)
-    """
-    wind_up = wind_up_to_take_off(gear, material, reference)
-    teeth, radii, forces = _split(gear, loads)
-    mesh = tooth_mesh(gear, held_radius(gear), _SIZE)
-    ring = Ring(mesh, plane_stress(1.0, material.poissons_ratio))
-    solution = ring.solve(flank_loads(gear, mesh, radii, _HALF_WIDTH, inside=True).forces)
-    shown = _shown(teeth, gear.teeth)
-    points, moves = [], []
-    for tooth in shown:
-        moved = np.zeros((len(mesh.outline), 2))
-        for case, loaded in enumerate(teeth):
-            displacement_of_tooth = ring.displacement(solution, loaded - tooth)[:, case].reshape(
-                -1, 2
-            )
-            moved += forces[case] / material.youngs_modulus * displacement_of_tooth[mesh.outline]
-        turn = 2.0 * math.pi * tooth / gear.teeth
-        # a clockwise turn of rows
-        matrix = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-        keep = slice(None) if tooth == shown[-1] else slice(None, -1)
-        points.append((mesh.nodes[mesh.outline] @ matrix)[keep])
-        moves.append((moved @ matrix)[keep])
-    outline = gear.normal_module * np.concatenate(points).T
-    displacement = np.concatenate(moves).T
-    angle = wind_up * forces.sum() / gear.base_radius
-    return outline, displacement - angle * outline[::-1] * np.array([[-1.0], [1.0]])
-
-
-def _split(
-    gear: SpurGear, loads: Sequence[tuple[int, float, float]]
-) -> tuple[list[int], Array, Array]:
-    if not loads:
-        what = "no load"
-        remedy = "Give (tooth, radius of curvature, load per width) for each contact"
-        raise InputError(what, Argument("loads"), "There is nothing to deform the gear", remedy)
-    teeth = [int(tooth) for tooth, _, _ in loads]
-    radii = np.array([radius for _, radius, _ in loads], dtype=float)
-    tip = gear.roll_angle(gear.tip_radius) * gear.base_radius
-    if not np.all((radii > 0.0) & (radii <= tip * (1.0 + 1e-9))):
-        what = f"radii of curvature {radii.min() * 1e3:.6g} to {radii.max() * 1e3:.6g} mm"
-        why = f"The flank ends at the tip with {tip * 1e3:.6g} mm"
-        raise InputError(what, Argument("loads"), why, "Load the tooth on its involute")
-    return teeth, radii, np.array([load for _, _, load in loads], dtype=float)
-
-
-def _shown(teeth: Sequence[int], count: int) -> list[int]:
-    """Teeth anticlockwise, which is against their number."""
-    first, last = max(teeth) + _MARGIN, min(teeth) - _MARGIN
-    return list(range(first, max(last, first - count + 1) - 1, -1))

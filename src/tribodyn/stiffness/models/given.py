@@ -291,39 +291,25 @@ def tabulated_stiffness(
 def _shape_problems(x: Array, y: Array, name: str) -> list[Problem]:
     if x.ndim == 1 and x.shape == y.shape and x.size >= 2:
         return []
-    return [
-        Problem(
-            what=f"{name} has shape {x.shape}, the stiffness has shape {y.shape}",
-            where=ModelOption("stiffness", "table"),
-            why="A table is two lists of equal length with at least two values",
-            remedy="Give one stiffness for every entry of the abscissa",
-        )
-    ]
+    what = f"{name} has shape {x.shape}, the stiffness has shape {y.shape}"
+    why = "A table is two lists of equal length with at least two values"
+    remedy = "Give one stiffness for every entry of the abscissa"
+    return [Problem(what, ModelOption("stiffness", "table"), why, remedy)]
 
 
 def _order_problems(x: Array, name: str, unit: str) -> list[Problem]:
     bad = np.flatnonzero(~np.isfinite(x))
     if bad.size:
-        return [
-            Problem(
-                what=f"entry {bad[0] + 1} of {name} is {x[bad[0]]}",
-                where=ModelOption("stiffness", "table", name),
-                why="Every entry must be a finite number",
-                remedy="Remove or correct the row",
-            )
-        ]
+        what = f"entry {bad[0] + 1} of {name} is {x[bad[0]]}"
+        why, remedy = "Every entry must be a finite number", "Remove or correct the row"
+        return [Problem(what, ModelOption("stiffness", "table", name), why, remedy)]
     falling = np.flatnonzero(np.diff(x) <= 0.0)
     if falling.size:
         first = falling[0]
         text = f"{x[first]:.6g} is followed by {x[first + 1]:.6g} {unit}".rstrip()
-        return [
-            Problem(
-                what=f"{text} at entry {first + 2} of {name}",
-                where=ModelOption("stiffness", "table", name),
-                why=f"{name} must increase strictly",
-                remedy="Sort the table and remove repeated rows",
-            )
-        ]
+        what = f"{text} at entry {first + 2} of {name}"
+        why, remedy = f"{name} must increase strictly", "Sort the table and remove repeated rows"
+        return [Problem(what, ModelOption("stiffness", "table", name), why, remedy)]
     return []
 
 

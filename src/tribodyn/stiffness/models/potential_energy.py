@@ -222,12 +222,10 @@ def potential_energy_stiffness(
         share = settled
         if change < _TOLERANCE:
             return stiffness
-    raise ComputationError(
-        f"the load share still changes by {change:.2g} after {_PASSES} passes",
-        where=ModelOption("stiffness", "potential-energy"),
-        why=f"It must settle to {_TOLERANCE:g}",
-        remedy="Check the load; the local compression formula may be outside its range",
-    )
+    what = f"the load share still changes by {change:.2g} after {_PASSES} passes"
+    why = f"It must settle to {_TOLERANCE:g}"
+    remedy = "Check the load; the local compression formula may be outside its range"
+    raise ComputationError(what, ModelOption("stiffness", "potential-energy"), why, remedy)
 
 
 @MODELS.define(

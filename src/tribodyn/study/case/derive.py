@@ -331,12 +331,9 @@ _NO_PAIR = {
 
 def no_gear_pair(kind: str) -> Problem:
     """What is said where something asks for the spur gears of a case that has none."""
-    return Problem(
-        f'a case with gears.kind = "{kind}" has no gear pair',
-        "gears.kind",
-        _NO_PAIR[kind],
-        'Give the gears with kind = "spur" for what follows from their shape',
-    )
+    what = f'a case with gears.kind = "{kind}" has no gear pair'
+    remedy = 'Give the gears with kind = "spur" for what follows from their shape'
+    return Problem(what, "gears.kind", _NO_PAIR[kind], remedy)
 
 
 def backlash(case: CaseData) -> float:

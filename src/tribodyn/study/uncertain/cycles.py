@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics._engine.blocks import marching_on
-from tribodyn.dynamics.equations.grid import Nodes
 from tribodyn.dynamics.equations.motion import Forces, Scales, forces, with_middles
+from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.errors import ComputationError, warn

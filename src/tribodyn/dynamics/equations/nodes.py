@@ -1,0 +1,275 @@
+"""The rows of a system on its grid, with names.
+
+Every entry is evaluated at the left end, the middle and the right end of each step. Friction that
+follows the load of a contact, ``F = N sum_k c_k(phi) x^k`` with ``x = min(|N|/load, limit)``, acts
+along ``-direction(phi)``. Its coefficients carry the sign of sliding: a friction coefficient and a
+load share that depend on the tooth force become one polynomial for each row of the table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, system_events
+from tribodyn.dynamics.equations.system import LoadFriction, System, no_direction
+from tribodyn.errors import InputError, real_numbers
+from tribodyn.types import Array, Index, Mask
+
+#: Phases at which a function tells how many coefficients it returns; no likely number of these.
+_PROBE = 37
+
+
+def coefficient_count(where: str, friction: LoadFriction) -> int:
+    """Number of coefficients of one row."""
+    given = friction.coefficients
+    probe = (np.arange(_PROBE) + 0.5) / _PROBE
+    values = real_numbers(where, given(probe) if callable(given) else given, "rows of numbers")
+    shape = values.shape
+    if callable(given) and _PROBE in shape:
+        shape = tuple(np.delete(shape, shape.index(_PROBE)).tolist())
+    if len(shape) > 1 or 0 in shape:
+        why = f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases"
+        remedy = "Return a row of numbers for each phase that the function is given"
+        raise InputError(f"{where} gives the shape {values.shape}", where, why, remedy)
+    return int(shape[0]) if shape else 1
+
+
+def friction_directions(system: System, rows: RowEvaluator) -> Array:
+    """Directions of all frictions on the rows."""
+    out = np.zeros((*rows.nodes.shape, len(system.frictions), system.size))
+    for f, one in enumerate(system.frictions):
+        out[:, :, f] = rows.values(f"frictions[{f}].direction", one.direction, system.size)
+    return out
+
+
+def friction_coefficients(system: System, rows: RowEvaluator) -> Array:
+    """Coefficients of all frictions on the rows, filled up with zeros."""
+    names = [f"frictions[{f}].coefficients" for f in range(len(system.frictions))]
+    pairs = list(zip(names, system.frictions, strict=True))
+    counts = [coefficient_count(name, one) for name, one in pairs]
+    out = np.zeros((*rows.nodes.shape, len(pairs), max(counts, default=1)))
+    for f, (name, one) in enumerate(pairs):
+        out[:, :, f, : counts[f]] = rows.values(name, one.coefficients, counts[f])
+    return out
+
+
+def carried_load(system: System, contact_force: Array) -> Array:
+    """Force N that each friction follows."""
+    columns = [contact_force[..., list(one.contacts)].sum(axis=-1) for one in system.frictions]
+    return np.stack(columns, axis=-1) if columns else np.zeros((*contact_force.shape[:-1], 0))
+
+
+def _ratio(system: System, load: Array) -> tuple[Array, Mask]:
+    """Load over the nominal load, and whether it is below the limit."""
+    nominal = np.array([one.load for one in system.frictions])
+    limit = np.array([one.limit for one in system.frictions])
+    x = np.abs(load) * (1.0 / nominal)
+    return np.minimum(x, limit), x < limit
+
+
+def _polynomial(coefficients: Array, x: Array) -> Array:
+    total = np.zeros(np.broadcast_shapes(coefficients.shape[:-1], x.shape))
+    for item in range(coefficients.shape[-1] - 1, -1, -1):
+        total = total * x + coefficients[..., item]
+    return total
+
+
+def friction_secant(system: System, coefficients: Array, load: Array) -> Array:
+    """Friction over contact force, ``F/N``."""
+    return _polynomial(coefficients, _ratio(system, load)[0])
+
+
+def friction_force(system: System, coefficients: Array, contact_force: Array) -> Array:
+    """Force of each friction."""
+    load = carried_load(system, contact_force)
+    return load * friction_secant(system, coefficients, load)
+
+
+def friction_tangent(system: System, coefficients: Array, load: Array) -> Array:
+    """Change of friction with contact force, ``dF/dN``."""
+    x, below = _ratio(system, load)
+    # d(x P)/dx = sum (k + 1) c_k x^k; beyond the limit P stays.
+    rising = _polynomial(coefficients * np.arange(1, coefficients.shape[-1] + 1), x)
+    return np.where(below, rising, _polynomial(coefficients, x))
+
+
+def push_with_friction(system: System, nodes: Nodes, ratio: Array) -> Array:
+    """Generalized force per unit force of each contact, all friction included."""
+    push = nodes.force_direction
+    for f, one in enumerate(system.frictions):
+        push = push.copy() if f == 0 else push
+        for j in one.contacts:
+            push[..., j, :] += ratio[..., f, None] * nodes.friction_direction[..., f, :]
+    return push
+
+
+#: Sums of stiffnesses below zero by less than this part of the largest are rounding.
+_ROUNDING = 1e-9
+
+
+#: Weights of both ends and the middle of a step.
+_SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
+
+
+class Nodes(NamedTuple):
+    """The same rows with names, for evaluation outside the loop; all at (steps, 3)."""
+
+    phase: Array
+    stiffness: Array
+    damping: Array
+    error: Array
+    error_slope: Array
+    gap: Array
+    direction: Array
+    direction_slope: Array
+    force_direction: Array
+    force: Array
+    weight: Array
+    friction_direction: Array
+    friction_coefficients: Array
+
+
+def evaluate_nodes(system: System, grid: Grid) -> Nodes:
+    """Evaluate every entry on a grid; what was checked on one half as fine is not checked again."""
+    widest = float(grid.width.max())
+    rows = RowEvaluator(grid, checks=widest < 0.49 * system._checked)
+    size = system.size
+    contacts = tuple(system.contacts)
+
+    def scalar(name: str, take: Callable[..., Array]) -> Array:
+        columns = [
+            take(f"contacts[{j}].{name}", getattr(contact, name))[..., 0]
+            for j, contact in enumerate(contacts)
+        ]
+        return np.stack(columns, axis=-1) if columns else np.zeros((grid.steps, 3, 0))
+
+    def vector(name: str, take: Callable[..., Array]) -> Array:
+        if len(contacts) == 1 and (entry := getattr(contacts[0], name)) is not None:
+            return take(f"contacts[0].{name}", entry, size)[:, :, None]
+        out = np.zeros((grid.steps, 3, len(contacts), size))
+        for j, contact in enumerate(contacts):
+            entry = getattr(contact, name)
+            if entry is not None:
+                out[:, :, j] = take(f"contacts[{j}].{name}", entry, size)
+        return out
+
+    direction = vector("direction", rows.values)
+    for j in np.flatnonzero(~direction.any(axis=(0, 1, 3))):
+        raise no_direction(f"contacts[{j}].direction")
+    gap = scalar("gap", rows.values)
+    if np.any(gap < 0.0):
+        what = f"gap = {gap.min():.6g} m"
+        why = "The gap is half the dead zone and cannot be negative"
+        raise InputError(what, "Contact.gap", why, "Use `error` for an interference")
+    nodes = Nodes(
+        phase=grid.left[:, None] + grid.width[:, None] * np.array([0.0, 0.5, 1.0]),
+        stiffness=scalar("stiffness", rows.values),
+        damping=scalar("damping", rows.values),
+        error=scalar("error", rows.values),
+        error_slope=scalar("error", rows.derivatives),
+        gap=gap,
+        direction=direction,
+        direction_slope=vector("direction", rows.derivatives),
+        force_direction=direction + vector("friction", rows.values),
+        force=rows.values("force", system.force, size),
+        weight=step_weights(grid),
+        friction_direction=friction_directions(system, rows),
+        friction_coefficients=friction_coefficients(system, rows),
+    )
+    refuse_falling_force(nodes.phase, nodes.stiffness, nodes.gap, nodes.direction, nodes.error)
+    if grid.width.sum() > 0.99:
+        object.__setattr__(system, "_checked", min(widest, system._checked))
+    return nodes
+
+
+def halved_grid(grid: Grid) -> Grid:
+    """The grid with every step cut in two."""
+    half, first = np.repeat(0.5 * grid.width, 2), np.arange(2 * grid.steps) % 2 == 0
+    left = np.repeat(grid.left, 2) + np.where(first, 0.0, half)
+    events = np.repeat(grid.after_event, 2) & first
+    segments = (np.repeat(part, 2) for part in (grid.segment_left, grid.segment_right))
+    return Grid(left, half, events, *segments)
+
+
+def halved_nodes(system: System, grid: Grid, nodes: Nodes) -> tuple[Grid, Nodes]:
+    """The grid with every step cut in two, and its rows: two of three are there already."""
+    half, count, fine = 0.5 * grid.width, grid.steps, halved_grid(grid)
+    segments = grid.segment_left, grid.segment_right
+    between = evaluate_nodes(
+        system, Grid(grid.left + 0.5 * half, half, grid.after_event, *segments)
+    )
+
+    def joined(old: Array, new: Array) -> Array:
+        rows = np.empty((count, 2, *old.shape[1:]))
+        rows[:, 0, 0], rows[:, 0, 1], rows[:, 0, 2] = old[:, 0], new[:, 0], old[:, 1]
+        rows[:, 1, 0], rows[:, 1, 1], rows[:, 1, 2] = old[:, 1], new[:, 2], old[:, 2]
+        return rows.reshape(2 * count, *old.shape[1:])
+
+    rows = Nodes(*(joined(old, new) for old, new in zip(nodes, between, strict=True)))
+    return fine, rows._replace(weight=step_weights(fine))
+
+
+def step_weights(grid: Grid) -> Array:
+    """Weights of both ends and the middle of every step, (steps, 3)."""
+    return grid.width[:, None] * _SIMPSON
+
+
+def sampled(system: System, steps: int) -> tuple[Grid, Nodes]:
+    """The grid of a system with as many steps, and its rows."""
+    grid = build_grid(system_events(system), steps)
+    return grid, evaluate_nodes(system, grid)
+
+
+def refuse_falling_force(
+    phase: Array, stiffness: Array, gap: Array, direction: Array, error: Array
+) -> None:
+    """Refuse dead zones beyond which the force of a mesh falls with compression."""
+    dead = np.flatnonzero(np.any(gap > 0.0, axis=(0, 1)))
+    if not np.any(stiffness[:, :, dead] < 0.0):
+        return
+    floor = -_ROUNDING * float(np.abs(stiffness).max())
+    for j in dead:
+        total = np.zeros(phase.shape)
+        for i in range(stiffness.shape[2]):
+            same = np.array_equal(direction[:, :, i], direction[:, :, j]) and np.array_equal(
+                error[:, :, i], error[:, :, j]
+            )
+            if same:
+                total += np.where(gap[:, :, i] <= gap[:, :, j], stiffness[:, :, i], 0.0)
+        if total.min() < floor:
+            at = np.unravel_index(int(np.argmin(total)), total.shape)
+            raise InputError(
+                f"the force falls by {-total[at]:.4g} N per m of compression beyond "
+                f"{1e6 * gap[(*at, j)]:.4g} um, at the mesh phase {phase[at]:.4g}",
+                where=f"contacts[{j}].stiffness",
+                why="A contact that is pressed together pushes back more: a force law that "
+                "falls has several compressions for one load",
+                remedy="Give contacts with a dead zone stiffnesses whose sum, from the lowest "
+                "to any other, is not negative",
+            )
+
+
+def force_laws(nodes: Nodes) -> Index:
+    """Number of the force law of each contact: one direction and error belong to one law."""
+    numbers = np.arange(nodes.stiffness.shape[2])
+    for j in numbers:
+        for i in range(j):
+            rows = (nodes.direction, nodes.error)
+            if all(np.array_equal(part[:, :, i], part[:, :, j]) for part in rows):
+                numbers[j] = numbers[i]
+                break
+    return numbers
+
+
+def lowest_of_each_law(nodes: Nodes) -> Mask:
+    """Tell which contacts do not share their compression with a spring that begins lower."""
+    laws, places = force_laws(nodes), np.einsum("rs,rsj->j", nodes.weight, nodes.gap)
+    stiff = nodes.stiffness.any(axis=(0, 1))
+    kept = np.ones(places.size, dtype=bool)
+    for j in range(places.size):
+        for i in np.flatnonzero(stiff & (laws == laws[j])):
+            kept[j] &= (places[i], i) >= (places[j], j)
+    return kept

@@ -1,0 +1,179 @@
+"""Pitch cones of a hypoid pair on crossed axes at a right angle: Method 1 of ISO 23509."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.errors import Argument, InputError
+from tribodyn.types import Array, Mask
+
+#: Pinion offset angles in the axial plane that are searched [rad], and how many.
+_LEAST, _MOST, _SEARCHED = 1e-7, 1.5, 2000
+
+
+class PitchInput(NamedTuple):
+    """What the pitch cones follow from, in SI."""
+
+    teeth_pinion: int
+    teeth_wheel: int
+    offset: float
+    outer_pitch_diameter_wheel: float
+    face_width_wheel: float
+    mean_spiral_angle_pinion: float
+    cutter_radius: float
+
+    @property
+    def ratio(self) -> float:
+        """Teeth of the wheel over those of the pinion."""
+        return self.teeth_wheel / self.teeth_pinion
+
+    @property
+    def first_pitch_angle(self) -> float:
+        """Approximate pitch angle of the wheel; it fixes the mean radius."""
+        return math.atan(self.ratio / 1.2)
+
+    @property
+    def mean_radius_wheel(self) -> float:
+        """Radius of the calculation point about the wheel's axis."""
+        width = self.face_width_wheel * math.sin(self.first_pitch_angle)
+        return 0.5 * (self.outer_pitch_diameter_wheel - width)
+
+
+class PitchCones(NamedTuple):
+    """The two pitch cones that touch in the calculation point; pairs are (pinion, wheel)."""
+
+    pitch_angle: tuple[float, float]
+    spiral_angle: tuple[float, float]
+    cone_distance: tuple[float, float]
+    offset_angle: float  #: in the pitch plane
+    limit_pressure_angle: float
+    limit_curvature: float  #: of the tooth trace; that of the cutter without offset
+
+
+def pitch_cones(given: PitchInput) -> PitchCones:
+    """Cones whose limit curvature is that of the cutter; the spiral bevel pair without offset."""
+    if given.offset == 0.0:
+        return _spiral_bevel(given)
+    _require_reach(given)
+    sense = math.copysign(1.0, given.offset)
+    angle = sense * np.geomspace(_LEAST, _MOST, _SEARCHED)
+    cones = _cones_at(angle, given)
+    valid = _possible(cones)
+    excess = cones.limit_curvature - 1.0 / given.cutter_radius
+    crossing = valid[1:] & valid[:-1] & (excess[1:] * excess[:-1] <= 0.0)
+    if not np.any(crossing):
+        raise _no_cones(given, np.asarray(cones.limit_curvature)[valid])
+    from scipy.optimize import brentq
+
+    # The smallest offset angle belongs to the cones that roll best on each other.
+    first = int(np.argmax(crossing))
+    root = brentq(
+        lambda x: float(_cones_at(x, given).limit_curvature) - 1.0 / given.cutter_radius,
+        angle[first],
+        angle[first + 1],
+        xtol=1e-18,
+        rtol=1e-15,
+    )
+    found = _cones_at(root, given)
+    pairs = [(float(one), float(other)) for one, other in found[:3]]
+    return PitchCones(pairs[0], pairs[1], pairs[2], *(float(value) for value in found[3:]))
+
+
+def limit_pressure_tangent(
+    pitch: tuple[Array, Array], spiral: tuple[Array, Array], distance: tuple[Array, Array]
+) -> Array:
+    """Tangent of the limit pressure angle times the cosine of the offset angle, ISO 23509."""
+    slip = distance[0] * np.sin(spiral[0]) - distance[1] * np.sin(spiral[1])
+    taper = [np.tan(angle) for angle in pitch]
+    return np.asarray(
+        -taper[0] * taper[1] * slip / (distance[0] * taper[0] + distance[1] * taper[1])
+    )
+
+
+def _cones_at(offset_angle: ArrayLike, given: PitchInput) -> Any:
+    """Cones for pinion offset angles in the axial plane: clause 6.3.2; NaN where there are none."""
+    eta, ratio, offset = np.asarray(offset_angle), given.ratio, given.offset
+    radius, wanted = given.mean_radius_wheel, math.tan(given.mean_spiral_angle_pinion)
+    start = math.asin(offset * math.sin(given.first_pitch_angle) / radius)
+    enlargement = wanted * math.sin(start) + math.cos(start)
+    pinion_radius = radius * enlargement / ratio
+    with np.errstate(all="ignore"):
+        wheel_angle = np.arcsin((offset - pinion_radius * np.sin(eta)) / radius)
+        pitch = np.arctan(np.sin(eta) / np.tan(wheel_angle))
+        plane = np.arcsin(np.sin(wheel_angle) / np.cos(pitch))
+        spiral = np.arctan((enlargement - np.cos(plane)) / np.sin(plane))
+        growth = np.sin(plane) * (wanted - np.tan(spiral))
+        more = radius * growth / ratio
+        wheel_angle = np.arcsin(np.sin(wheel_angle) - more * np.sin(eta) / radius)
+        pitch = np.arctan(np.sin(eta) / np.tan(wheel_angle))
+        plane = np.arcsin(np.sin(wheel_angle) / np.cos(pitch))
+        spiral = np.arctan((enlargement + growth - np.cos(plane)) / np.sin(plane))
+        pitches = (pitch, np.arctan(np.sin(wheel_angle) / np.tan(eta)))
+        spirals = (spiral, spiral - plane)
+        distances = ((pinion_radius + more) / np.sin(pitch), radius / np.sin(pitches[1]))
+        tangent = limit_pressure_tangent(pitches, spirals, distances) / np.cos(plane)
+        limit = np.arctan(tangent)
+        slopes = [np.tan(angle) for angle in spirals]
+        leaning = sum(
+            slope / (distance * np.tan(angle))
+            for slope, distance, angle in zip(slopes, distances, pitches, strict=True)
+        )
+        widths = [d * np.cos(angle) for d, angle in zip(distances, spirals, strict=True)]
+        bent = 1.0 / widths[0] - 1.0 / widths[1] - tangent * leaning
+        curvature = np.cos(limit) * bent / (slopes[0] - slopes[1])
+    return PitchCones(pitches, spirals, distances, plane, limit, curvature)  # type: ignore[arg-type]
+
+
+def _possible(cones: Any) -> Mask:
+    """Whether cones open towards each other and their teeth are inclined by less than 90 deg."""
+    finite = np.isfinite(cones.limit_curvature)
+    angles = (*cones.pitch_angle, *cones.spiral_angle)
+    acute = [(angle > 0.0) & (angle < 0.5 * math.pi) for angle in angles]
+    return np.asarray(np.all([finite, *acute, *(d > 0.0 for d in cones.cone_distance)], axis=0))
+
+
+def _spiral_bevel(given: PitchInput) -> PitchCones:
+    """Rolling cones with a common apex: Method 0, clause 6.2."""
+    pinion = math.atan(1.0 / given.ratio)
+    wheel = 0.5 * math.pi - pinion
+    distance = 0.5 * given.outer_pitch_diameter_wheel / math.sin(wheel)
+    distance -= 0.5 * given.face_width_wheel
+    spiral = given.mean_spiral_angle_pinion
+    curvature = 1.0 / given.cutter_radius
+    return PitchCones((pinion, wheel), (spiral,) * 2, (distance,) * 2, 0.0, 0.0, curvature)
+
+
+def _require_reach(given: PitchInput) -> None:
+    reach = given.mean_radius_wheel / math.sin(given.first_pitch_angle)
+    if abs(given.offset) < reach:
+        return
+    raise InputError(
+        f"offset = {given.offset * 1e3:.6g} mm",
+        Argument("offset"),
+        f"The pinion passes the wheel: its axis is further off than {reach * 1e3:.6g} mm",
+        "Reduce the offset or enlarge the wheel; usual are 5 to 20 % of its outer pitch diameter",
+    )
+
+
+def _no_cones(given: PitchInput, curvature: Array) -> InputError:
+    spiral = math.degrees(given.mean_spiral_angle_pinion)
+    design = f"offset {given.offset * 1e3:.6g} mm and a spiral angle of {spiral:.4g} deg"
+    if not curvature.size:
+        return InputError(
+            f"no pitch cones touch with {design}",
+            Argument("offset"),
+            "Every position of the calculation point leaves a cone angle or a spiral angle outside "
+            "0 to 90 deg",
+            "Reduce the offset, or give a larger spiral angle of the pinion",
+        )
+    low, high = float(np.min(curvature)), float(np.max(curvature))
+    limits = f"from {1e3 / high:.4g} mm" if high > 0.0 else "no positive radius"
+    limits += f" to {1e3 / low:.4g} mm" if low > 0.0 else " up" if high > 0.0 else ""
+    what = f"cutter_radius = {given.cutter_radius * 1e3:.6g} mm"
+    why = f"With {design} the limit curvature of the teeth allows {limits} (ISO 23509, Method 1)"
+    remedy = "Choose a cutter in this range, or change offset or spiral angle"
+    return InputError(what, Argument("cutter_radius"), why, remedy)

@@ -1,0 +1,124 @@
+"""A store as one lazy data set: what is asked for is read, and proved to be as it was written."""
+
+from __future__ import annotations
+
+import io
+import os
+from math import prod
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import Argument, InputError
+from tribodyn.variants.compute import KINDS
+from tribodyn.variants.members import Grid
+from tribodyn.variants.store import Manifest, chunk_path, read_chunk
+
+if TYPE_CHECKING:
+    import xarray
+
+#: Reason of a member that is not stored yet.
+_NOT_YET = "not computed yet"
+
+
+def open_study(path: str | os.PathLike[str]) -> xarray.Dataset:
+    """Open the store of a study as one data set, finished or not.
+
+    Parameters
+    ----------
+    path : str or path
+        Directory that :func:`run_study` or ``tribodyn study`` wrote, or writes at the moment.
+
+    Returns
+    -------
+    xarray.Dataset
+        Figures in SI over the keys of a grid, or over ``member`` with the keys beside them, and
+        ``failed``, which tells why a member has none. Nothing is read before it is asked for.
+
+    Raises
+    ------
+    InputError
+        If it is no store; later, if a chunk that is asked for was damaged.
+    """
+    import xarray
+
+    manifest = Manifest(path)
+    layout = manifest.plan.layout
+    coords: dict[str, Any] = {}
+    if isinstance(layout, Grid):
+        dims = {axis.key: len(axis.values) for axis in layout.axes}
+        for axis in layout.axes:
+            values = np.array(axis.values)
+            values = values.astype(object) if values.dtype.kind == "U" else values
+            coords[axis.key] = (axis.key, values, {"units": axis.unit or "1"})
+    else:
+        dims = {"member": layout.count}
+    names = {name for facts in manifest.chunks.values() for name in facts["figures"]}
+
+    def lazy(name: str, kind: Any, **facts: str) -> Any:
+        return (tuple(dims), _lazy(manifest, name, tuple(dims.values()), kind), facts)
+
+    variables = {
+        name: lazy(name, float, units=unit, long_name=meaning)
+        for name, (unit, meaning) in KINDS[manifest.kind].figures.items()
+        if name in names
+    }
+    variables |= {name: lazy(name, object) for name in ("failed", "warnings")}
+    if not isinstance(layout, Grid):
+        for key, unit in layout.units.items():
+            coords[key] = lazy(key, np.dtype(layout.kinds[key]), units=unit or "1")
+    facts = {**manifest.facts, "keep": ", ".join(manifest.facts["keep"])}
+    return xarray.Dataset(variables, coords, facts)
+
+
+def _lazy(manifest: Manifest, name: str, shape: tuple[int, ...], kind: Any) -> Any:
+    """One variable, as xarray reads it when it is asked for."""
+    from xarray.backends import BackendArray
+    from xarray.core import indexing
+
+    class Stored(BackendArray):
+        def __init__(self) -> None:
+            self.shape, self.dtype = shape, np.dtype(kind)
+
+        def __getitem__(self, key: Any) -> Any:
+            outer = indexing.IndexingSupport.OUTER
+            return indexing.explicit_indexing_adapter(key, shape, outer, self.read)
+
+        def read(self, key: tuple[Any, ...]) -> Any:
+            places = [np.arange(size)[each] for size, each in zip(shape, key, strict=True)]
+            kept = tuple(place.size for place in places if place.ndim)
+            grid = np.ix_(*(np.atleast_1d(place) for place in places))
+            members = np.ravel_multi_index(grid, shape).ravel()
+            found = np.full(prod(kept), _absent(name, self.dtype), dtype=self.dtype)
+            for chunk, where, rows in manifest.plan.found(members):
+                if chunk.name in manifest.chunks:
+                    values = _column(manifest, chunk.name, name)
+                    if values is not None:
+                        found[where] = values[rows]
+            return found.reshape(kept)
+
+    return indexing.LazilyIndexedArray(Stored())
+
+
+def _absent(name: str, dtype: np.dtype[Any]) -> Any:
+    """What stands where nothing is stored."""
+    if dtype.kind == "f":
+        return np.nan
+    return {"failed": _NOT_YET}.get(name, "" if dtype.kind == "O" else 0)
+
+
+def _column(manifest: Manifest, chunk: str, name: str) -> Any:
+    """One variable of a chunk; None where it has none of that name."""
+    import h5py
+
+    content = read_chunk(manifest.folder, chunk, manifest.chunks[chunk])
+    if content is None:
+        what = f"{chunk_path(manifest.folder, chunk)} is not as it was written"
+        why, remedy = "It was damaged, changed or removed", "Run the study again: it is mended"
+        raise InputError(what, Argument("path"), why, remedy)
+    with h5py.File(io.BytesIO(content)) as file:
+        if name in file:
+            column = file[name]
+            return column.asstr()[()] if h5py.check_string_dtype(column.dtype) else column[()]
+        figures = manifest.chunks[chunk]["figures"]
+        return file["value"][:, figures.index(name)] if name in figures else None
