@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
+from tribodyn.drawing import Sketch
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
 
@@ -83,6 +85,20 @@ def test_what_a_result_has_not_is_refused(result: Any, name: str) -> None:
         return
     with pytest.raises(InputError, match=r"\w"):
         FIGURES[name](result)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_reports_need_no_plotly_to_write_the_same(
+    result: Any, drawn: dict[str, go.Figure], name: str
+) -> None:
+    figure = FIGURES[name]
+    assert isinstance(figure, Drawing)
+    sketch = figure.sketch(result)
+    assert isinstance(sketch, Sketch)
+    written = json.loads(sketch.to_json())
+    # Plotly leaves out lists of no marks.
+    written["layout"] = {key: each for key, each in written["layout"].items() if each != []}
+    assert written == json.loads(drawn[name].to_json())
 
 
 @pytest.mark.parametrize("name", NAMES)
