@@ -19,14 +19,10 @@ def exponential_growth(exponent: ArrayLike, pressure: ArrayLike, law: str) -> Ar
     """Factor exp(exponent) by which pressure raises the viscosity."""
     exponents = np.asarray(exponent, dtype=float)
     if np.any(exponents > _LARGEST_EXPONENT):
-        raise InputError(
-            f"pressure = {np.max(pressure):.6g} Pa",
-            where=Argument("pressure"),
-            why=f"the {law} law raises the viscosity there by more than exp(700), "
-            "far beyond any liquid",
-            remedy="Check the unit of the pressure (Pa) and of the pressure-viscosity "
-            "coefficient (1/Pa), or use the Roelands law",
-        )
+        what = f"pressure = {np.max(pressure):.6g} Pa"
+        why = f"the {law} law raises the viscosity there by more than exp(700), beyond any liquid"
+        remedy = "Check the units of pressure (Pa) and of its coefficient (1/Pa), or take Roelands"
+        raise InputError(what, Argument("pressure"), why, remedy)
     return np.asarray(np.exp(exponents))[()]
 
 

@@ -178,10 +178,8 @@ def result_comparison(found: ResultComparison) -> Any:
     """Draw transmission error and mesh force of all results over each other."""
     motions = [Motion(each) for each in found.results]
     panels: list[Panel] = []
-    for quantity, name in (
-        ("dynamic_transmission_error", "transmission_error"),
-        ("mesh_force", "mesh_force"),
-    ):
+    names = {"dynamic_transmission_error": "transmission_error", "mesh_force": "mesh_force"}
+    for quantity, name in names.items():
         traces = [
             line(
                 *motion.curve(quantity, getattr(motion, name)),
