@@ -121,7 +121,7 @@ class _Terms:
 
     def rows(self) -> Array:
         """All factors of a row side by side."""
-        rows = np.zeros((*self.shape, max(len(self.factors), 1)))
+        rows = np.empty((*self.shape, max(len(self.factors), 1)))
         wide = [np.broadcast_to(values, self.shape) for values in self.factors]
         for lead in np.ndindex(self.shape[:-2]):  # which keeps the rows of one system in the cache
             for item, values in enumerate(wide):

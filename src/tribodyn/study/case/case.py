@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from copy import copy
 from functools import cached_property
 from inspect import Signature
+from pathlib import Path
 from typing import Any, ClassVar
 
 from tribodyn.errors import InputError
@@ -67,6 +68,8 @@ class Case(CaseData, whole=True):
     """
 
     __signature__: ClassVar[Signature]
+    #: Files that it names, once they were looked for; other numbers name no others.
+    _files: dict[str, Path] | None = None
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         found = list(unsound(data))

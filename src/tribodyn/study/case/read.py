@@ -220,8 +220,10 @@ def file_keys() -> list[str]:
 @contextmanager
 def unchanged_files(case: Case) -> Iterator[None]:
     """Refuse what was computed while a file that the case names was replaced or deleted."""
-    values = dict(case.values())
-    files = {key: Path(values[key]) for key in file_keys() if values.get(key)}
+    if case._files is None:
+        values = dict(case.values())
+        case._files = {key: Path(values[key]) for key in file_keys() if values.get(key)}
+    files = case._files
     before = {key: _state(path) for key, path in files.items()}
     yield
     why = "A part of what was computed may belong to the file before, a part to the one after"
