@@ -37,6 +37,10 @@ from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 
+#: Steps of all systems that are marched side by side: rows of more are far from the core.
+_STEPS = 16384
+
+
 def orbits_in_touch(
     systems: Sequence[System], mesh_frequency: Array, steps: int
 ) -> list[Response | None]:
@@ -46,7 +50,9 @@ def orbits_in_touch(
     for number, system in enumerate(systems):
         if (key := _structure(system)) is not None:
             groups.setdefault(key, []).append(number)
-    for numbers in groups.values():
+    size = max(1, _STEPS // steps)
+    parts = (g[first : first + size] for g in groups.values() for first in range(0, len(g), size))
+    for numbers in parts:
         with collected() as told:
             try:
                 group = _Group([systems[i] for i in numbers], mesh_frequency[numbers], steps)
