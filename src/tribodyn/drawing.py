@@ -9,14 +9,19 @@ group ``tribodyn.figures``, which names modules to import, those of others also 
 
 from __future__ import annotations
 
+import json
+import math
+from base64 import b64encode
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 from inspect import cleandoc, signature
 from pathlib import Path
 from typing import Any, TypeVar
+
+import numpy as np
 
 from tribodyn.arguments.reading import checked
 from tribodyn.errors import InputError
@@ -47,6 +52,53 @@ class Need:
         """Return the reason where the need is not met."""
         values = (getattr(subject, name, None) for name in self.attributes.split())
         return "" if any(value is not None for value in values) else self.reason
+
+
+@dataclass
+class Sketch:
+    """A figure as it is described to plotly, which is loaded only for whoever wants its own."""
+
+    data: list[dict[str, Any]]
+    layout: dict[str, Any]
+    frames: list[dict[str, Any]] = field(default_factory=list)
+
+    def figure(self) -> Any:
+        """The figure of plotly, which refuses what it does not know."""
+        import plotly.graph_objects as go
+
+        return go.Figure(vars(self))
+
+    def to_json(self) -> str:
+        """What the figure of plotly writes, without making one."""
+        parts = {name: part for name, part in vars(self).items() if part or name != "frames"}
+        try:
+            return json.dumps(parts, default=_packed, allow_nan=False, separators=(",", ":"))
+        except ValueError:  # JSON has no word for what is no number.
+            return json.dumps(_finite(parts), default=_packed, separators=(",", ":"))
+
+
+def _packed(value: Any) -> Any:
+    """Numbers as plotly packs them into text: whole ones into as few bytes as hold them."""
+    if not isinstance(value, np.ndarray):
+        return value.isoformat() if hasattr(value, "isoformat") else value.item()
+    if value.dtype.kind in "iu" and value.size:
+        kinds = (np.dtype(f"{value.dtype.kind}{size}") for size in (1, 2, 4))
+        ends = value.min(), value.max()
+        fitting = (k for k in kinds if np.iinfo(k).min <= ends[0] and ends[1] <= np.iinfo(k).max)
+        value = value.astype(next(fitting, object)) if value.itemsize == 8 else value
+    if value.dtype.kind not in "fiu" or value.itemsize > 8 or not value.size:
+        return _finite(value.tolist())
+    packed = {"dtype": value.dtype.str[1:], "bdata": b64encode(value.tobytes()).decode("ascii")}
+    return packed if value.ndim == 1 else {**packed, "shape": str(value.shape)[1:-1]}
+
+
+def _finite(part: Any) -> Any:
+    """The same with nothing in the place of what is no number."""
+    if isinstance(part, dict):
+        return {name: _finite(each) for name, each in part.items()}
+    if isinstance(part, list | tuple):
+        return [_finite(each) for each in part]
+    return None if isinstance(part, float) and not math.isfinite(part) else part
 
 
 def _always(result: Any) -> str:
@@ -145,6 +197,26 @@ class Drawing:
         Returns
         -------
         plotly.graph_objects.Figure
+
+        Raises
+        ------
+        InputError
+            If the result has nothing to draw.
+        """
+        drawn = self.sketch(result, *arguments, **options)
+        return drawn.figure() if isinstance(drawn, Sketch) else drawn
+
+    def sketch(self, result: Any, *arguments: Any, **options: Any) -> Any:
+        """Draw the figure of a result, and load plotly only where the function itself does.
+
+        Parameters
+        ----------
+        result, *arguments, **options
+            As for a call.
+
+        Returns
+        -------
+        Sketch or plotly.graph_objects.Figure
 
         Raises
         ------

@@ -160,6 +160,15 @@ class Record:
             return {}
         return {"units": (getattr(self, unit[1:]) or "1") if unit.startswith("@") else unit}
 
+    def _stored(self) -> Parts:
+        """Parts of the data set that holds it; those of one array tell of it alone."""
+        parts = self._parts()
+        if not self.ARRAY:
+            return parts
+        dims, values, told = parts.variables[self.ARRAY]
+        array = {self._array_name(): (dims, values, {**told, **parts.attributes})}
+        return Parts(array, parts.coordinates, {})
+
     def to_xarray(self) -> Any:
         """Return the result as labelled arrays with units.
 
@@ -170,12 +179,8 @@ class Record:
         """
         import xarray
 
-        variables, coordinates, attributes = self._parts()
-        if not self.ARRAY:
-            return xarray.Dataset(variables, coordinates, attributes)
-        dims, values, told = variables[self.ARRAY]
-        name, told = self._array_name(), {**told, **attributes}
-        return xarray.DataArray(values, coordinates, dims, name, told)
+        data = xarray.Dataset(*self._stored())
+        return data[self._array_name()] if self.ARRAY else data
 
     def to_dataframe(self) -> Any:
         """Return the result as a table with named columns.
@@ -233,7 +238,7 @@ class Record:
             why, remedy = "An existing file is never overwritten", "Choose another name"
             raise OutputExistsError(what, where, why, remedy)
         with whole(target) as partial:
-            write_dataset(self.to_xarray(), partial)
+            write_dataset(self._stored(), partial)
         return target
 
     def __eq__(self, other: object) -> bool:

@@ -12,13 +12,15 @@ import io
 import os
 import re
 import stat
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.errors import InputError
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -75,21 +77,80 @@ def plain_number(text: str) -> float | None:
         return None
 
 
+class _Content(NamedTuple):
+    """What a file holds: dimensions, values and attributes of every variable, and what it tells."""
+
+    variables: dict[str, tuple[tuple[str, ...], Array, Mapping[str, Any]]]
+    coordinates: set[str]
+    attributes: Mapping[str, Any]
+
+
+def _content(data: Any) -> _Content:
+    """Content of labelled arrays of xarray, or of the parts of a record."""
+    if hasattr(data, "coords"):
+        whole = data.to_dataset() if hasattr(data, "to_dataset") else data
+        variables = {str(n): (v.dims, v.values, v.attrs) for n, v in whole.variables.items()}
+        return _Content(variables, set(map(str, whole.coords)), whole.attrs)
+    found: dict[str, Any] = {}
+    for name, given in {**data.variables, **data.coordinates}.items():
+        # The values of an axis may stand alone.
+        dims, values, *told = given if isinstance(given, tuple) else (name, given)
+        named = (dims,) if isinstance(dims, str) else tuple(dims)
+        found[name] = named, np.asarray(values), told[0] if told else {}
+    return _Content(found, set(data.coordinates), data.attributes)
+
+
 def write_dataset(data: Any, path: str | PathLike[str]) -> None:
     """Write labelled arrays to a netCDF file, with the checksum of what they hold."""
     import h5py
-    import xarray
 
-    whole: xarray.Dataset = data.to_dataset() if isinstance(data, xarray.DataArray) else data
+    content = _content(data)
     try:
-        whole.to_netcdf(path, engine="h5netcdf")
+        _write(content, path)
         with h5py.File(path, "r+") as file:
             told = bytes(file.attrs[_ORIGIN]).decode()
-            file.attrs[_ORIGIN] = np.bytes_(f"{told},tribodyn={_digest(whole)}")
+            file.attrs[_ORIGIN] = np.bytes_(f"{told},tribodyn={_digest(content)}")
     except RuntimeError as error:  # HDF5 tells some faults of the disk so.
         if number := re.search(r"errno = (\d+)", str(error)):
             raise OSError(int(number[1]), os.strerror(int(number[1])), str(path)) from None
         raise
+
+
+def _write(content: _Content, path: str | PathLike[str]) -> None:
+    """Write the file that xarray writes through h5netcdf, without the second that it loads in."""
+    import h5netcdf
+    import h5py
+
+    sizes: dict[str, int] = {}
+    for name, (dims, values, _) in content.variables.items():
+        shape = [sizes.setdefault(dim, size) for dim, size in zip(dims, values.shape, strict=True)]
+        if shape != list(values.shape) or "/" in name:
+            raise ValueError(f"{name} over {dims} cannot be stored with the other variables")
+    beside = {name for name in content.coordinates if name not in sizes}
+    alone = set(beside)
+    with h5netcdf.File(path, "w") as file:
+        file.dimensions = sizes
+        for name, (dims, values, attributes) in content.variables.items():
+            told, kind = dict(attributes), values.dtype.kind
+            if name not in beside and name not in dims:
+                over = {n for n in beside if set(content.variables[n][0]) <= set(dims)}
+                if over:
+                    told["coordinates"] = " ".join(sorted(over))
+                alone -= over
+            if kind == "b":  # netCDF has no truth values.
+                values, told["dtype"] = values.astype("i1"), "bool"
+            texts = kind in "OU"
+            made = file.create_variable(
+                name,
+                dims,
+                h5py.string_dtype() if texts else values.dtype,
+                fillvalue=values.dtype.type(np.nan) if kind == "f" else None,
+            )
+            made.attrs.update(told)
+            made[...] = values.astype(object) if texts else values
+        file.attrs.update(content.attributes)
+        if alone:
+            file.attrs["coordinates"] = " ".join(sorted(alone))
 
 
 def read_dataset(path: str | PathLike[str], where: Any = "argument path") -> xarray.Dataset:
@@ -103,7 +164,7 @@ def read_dataset(path: str | PathLike[str], where: Any = "argument path") -> xar
             told = _ON_FILE.search(bytes(file.attrs.get(_ORIGIN, b"")))
         with xarray.open_dataset(content, engine="h5netcdf", phony_dims="sort") as opened:
             data = opened.load()
-        whole = told is None or told[1].decode() == _digest(data)
+        whole = told is None or told[1].decode() == _digest(_content(data))
     # A damaged file makes HDF5 and its readers stumble in many ways.
     except Exception as error:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
@@ -116,19 +177,17 @@ def read_dataset(path: str | PathLike[str], where: Any = "argument path") -> xar
     return data
 
 
-def _digest(data: xarray.Dataset) -> str:
+def _digest(content: _Content) -> str:
     """Hash of names, dimensions, values and attributes."""
-    found = hashlib.sha256(_told(data.attrs))
-    for name in sorted(map(str, data.variables)):
-        variable = data.variables[name]
-        values = np.asarray(variable.values)
+    found = hashlib.sha256(_told(content.attributes))
+    for name, (dims, values, attributes) in sorted(content.variables.items()):
         kind = values.dtype.kind
-        found.update(repr((name, variable.dims, values.shape, "f" if kind == "f" else "")).encode())
+        found.update(repr((name, dims, values.shape, "f" if kind == "f" else "")).encode())
         if kind in "biuf":
             found.update(values.astype("<f8" if kind == "f" else "<i8").tobytes())
         else:
             found.update(repr([str(each) for each in values.reshape(-1)]).encode())
-        found.update(_told(variable.attrs))
+        found.update(_told(attributes))
     return found.hexdigest()
 
 

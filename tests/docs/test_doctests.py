@@ -11,6 +11,14 @@ import tribodyn
 
 FOUND = [info.name for info in pkgutil.walk_packages(tribodyn.__path__, "tribodyn.")]
 NAMES = ["tribodyn", *(name for name in FOUND if not name.endswith("__main__"))]
+# Their examples compile kernels of their own.
+SLOW = {
+    "tribodyn.ehl.transient.transient",
+    "tribodyn.dynamics.time.adaptive_solution",
+    "tribodyn.dynamics.orbits.speed_sweep",
+    "tribodyn.dynamics.running_up.run_up",
+}
+EACH = [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in NAMES]
 
 
 def examples(name: str) -> list[doctest.DocTest]:
@@ -27,7 +35,7 @@ def _is_home(example: str, name: str) -> bool:
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", EACH)
 def test_doctests(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     complaints: list[str] = []
@@ -38,6 +46,7 @@ def test_doctests(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_doctests_are_found() -> None:
+    assert set(NAMES) > SLOW
     assert len(examples("tribodyn.units")) >= 4
     assert sum(len(examples(name)) for name in NAMES) >= 60
 

@@ -13,6 +13,8 @@ from pages import PAGES, ROOT, anchors, blocks, broken_links
 from registries import as_before
 
 README = (ROOT / "README.md").read_text("utf-8")
+# Their examples solve films and compile what few others need.
+SLOW = {"film.md", "stiffness.md", "dynamics.md"}
 WITH_PYTHON = [path for path in PAGES if blocks(path.read_text("utf-8"), "python")]
 
 
@@ -27,7 +29,14 @@ def test_readme_has_exactly_the_two_commands() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
-@pytest.mark.parametrize("path", WITH_PYTHON, ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, marks=pytest.mark.slow if path.name in SLOW else ())
+        for path in WITH_PYTHON
+    ],
+    ids=lambda path: path.name,
+)
 def test_python_blocks_run(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {"__name__": "page"}
@@ -40,6 +49,7 @@ def test_python_blocks_run(path: Path, tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_readme_is_among_the_pages_with_code() -> None:
     assert ROOT / "README.md" in WITH_PYTHON
+    assert {path.name for path in WITH_PYTHON} > SLOW
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)

@@ -194,6 +194,7 @@ def test_flanks_that_relief_keeps_apart_are_carried_by_their_film() -> None:
     assert np.all(mesh.film_stiffness[apart] > 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("positions", [30, 60])
 def test_the_approach_is_smooth_whatever_the_positions(positions: int) -> None:
     """No kink beyond those of the dry flanks, and no warning."""

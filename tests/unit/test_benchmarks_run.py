@@ -137,7 +137,7 @@ def test_goals_are_judged(
         ("cold_start", "import tribodyn"),
         ("losses_speed", "loss map"),
         ("friction_speed", "plain formula"),
-        ("learning_speed", "MINPACK"),
+        pytest.param("learning_speed", "MINPACK", marks=pytest.mark.slow),
         ("signals_speed", "resampled"),
         ("study_speed", "the store costs"),
     ],

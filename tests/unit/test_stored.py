@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import socket
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -13,6 +14,7 @@ import xarray
 
 import tribodyn.stored as stored
 from tribodyn.errors import InputError
+from tribodyn.record import Parts
 from tribodyn.stored import read_bytes, read_dataset, write_dataset
 
 
@@ -37,6 +39,47 @@ def test_read_as_it_was_written(tmp_path: Path) -> None:
     xarray.testing.assert_equal(read_dataset(tmp_path / "a.nc"), _data())
     write_dataset(_data().force, tmp_path / "b.nc")
     assert read_dataset(tmp_path / "b.nc").force.identical(_data().force)
+
+
+def _held(path: Path) -> dict[str, Any]:
+    """All that HDF5 holds but references, which are told by the dimensions of the variables."""
+
+    def plain(attributes: Any) -> dict[str, Any]:
+        own = {n: v for n, v in attributes.items() if n not in ("_NCProperties", "REFERENCE_LIST")}
+        lists = own.pop("DIMENSION_LIST", ())
+        return {n: (repr(v), np.asarray(v).dtype) for n, v in own.items()} | {"": len(lists)}
+
+    with h5py.File(path) as file:
+        scales = {n: [[str(s.name) for s in d.values()] for d in v.dims] for n, v in file.items()}
+        values = {n: (v.dtype, repr(v[...].tolist()), plain(v.attrs)) for n, v in file.items()}
+        return {"": plain(file.attrs), "scales": scales, **values}
+
+
+def test_the_file_is_that_of_xarray(tmp_path: Path) -> None:
+    """Values, types, fill values, attributes, dimensions and their scales, coordinates."""
+    data = _data().assign_coords(
+        side=(("gear",), ["left", "right"]),
+        mark=(("event",), [0.25, 0.5]),
+        at=(("time",), [1, 2, 3]),
+    )
+    data.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    write_dataset(data, tmp_path / "b.nc")
+    assert _held(tmp_path / "a.nc") == _held(tmp_path / "b.nc")
+    parts = Parts(
+        {str(n): (v.dims, v.values.tolist(), v.attrs) for n, v in data.data_vars.items()},
+        {str(n): (v.dims, v.values, v.attrs) for n, v in data.coords.items()},
+        dict(data.attrs),
+    )
+    write_dataset(parts, tmp_path / "c.nc")
+    assert _held(tmp_path / "c.nc") == _held(tmp_path / "b.nc")
+    assert read_dataset(tmp_path / "c.nc").identical(read_dataset(tmp_path / "b.nc"))
+
+
+def test_variables_that_do_not_fit_together_are_not_stored(tmp_path: Path) -> None:
+    for name, values in (("b", [1.0]), ("a/b", [1.0, 2.0])):
+        parts = Parts({"a": ("time", [1.0, 2.0]), name: ("time", values)}, {}, {})
+        with pytest.raises(ValueError, match="cannot be stored"):
+            write_dataset(parts, tmp_path / "a.nc")
 
 
 @pytest.mark.parametrize("name", ["force", "period", "touching", "time"])

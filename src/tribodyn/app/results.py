@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any
 
 from dash import dcc, html
@@ -146,11 +147,11 @@ def _drawing(case: Case) -> list[Any]:
     figure = plot.hypoid_pair if case.gears.kind == "hypoid" else plot.gear_pair
     try:
         subject = case.hypoid_flanks if case.gears.kind == "hypoid" else case.gear_pair
-        drawn = figure(subject)
+        drawn = figure.sketch(subject)
     except InputError as error:
         return [html.Div(html.P(error.problems[0].what), className="block")]
     block = drawn_block(figure.name, figure.heading, drawn, figure.caption_of(subject))
-    return [_block(block.__dict__, f"pair-{figure.name}", drawn.to_plotly_json())]
+    return [_block(block.__dict__, f"pair-{figure.name}", json.loads(block.json))]
 
 
 def _block(block: Any, name: str, figure: Any) -> html.Section:

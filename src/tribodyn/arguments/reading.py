@@ -79,11 +79,19 @@ def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict
     return wants
 
 
+@functools.cache
+def _entries(documented: Any) -> dict[str, str]:
+    """What a docstring says of its parameters."""
+    pattern = r"^ *(?=((?:\w+, )*\w+) : (.*\n +.*(?:\n +[a-z(].*)*))"
+    entries: dict[str, str] = {}
+    for names, text in re.findall(pattern, inspect.getdoc(documented) or "", re.MULTILINE):
+        for name in names.split(", "):
+            entries.setdefault(name, re.sub(r"\s+", " ", text.replace("\n", "|", 1)))
+    return entries
+
+
 def _entry(documented: Any, name: str) -> str:
-    """What a docstring says of one parameter."""
-    pattern = rf"^ *(?:\w+, )*{re.escape(name)}(?:, \w+)* : .*\n +.*(?:\n +[a-z(].*)*"
-    found = re.search(pattern, inspect.getdoc(documented) or "", re.MULTILINE)
-    return re.sub(r"\s+", " ", found[0].partition(" : ")[2].replace("\n", "|", 1)) if found else ""
+    return _entries(documented).get(name, "")
 
 
 def _fault(documented: Any, name: str, value: Any, want: Wanted) -> Problem | None:

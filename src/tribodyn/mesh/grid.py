@@ -7,6 +7,7 @@ value before and with the value after.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError
+from tribodyn.monotone import monotone_cubic
 from tribodyn.types import Array, Index
 
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
@@ -245,12 +247,9 @@ class MonotonePhaseFunction:
     values: Array
 
     @cached_property
-    def _pieces(self) -> list[Any]:
-        from scipy.interpolate import PchipInterpolator
-
+    def _pieces(self) -> list[Callable[[Array], Array]]:
         return [
-            PchipInterpolator(self.grid.phase[part], self.values[part], axis=0)
-            for part in self.grid.segments
+            monotone_cubic(self.grid.phase[part], self.values[part]) for part in self.grid.segments
         ]
 
     def __call__(self, phase: Array | float) -> Array:

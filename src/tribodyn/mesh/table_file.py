@@ -34,6 +34,7 @@ from tribodyn.mesh.storage import (
     is_mesh_table,
 )
 from tribodyn.mesh.table import MeshTable
+from tribodyn.monotone import monotone_cubic
 from tribodyn.stored import file_kind, plain_number, read_bytes, read_dataset
 from tribodyn.types import Array
 
@@ -334,13 +335,11 @@ def _cut(
 
 def _between(phase: Array, values: Array, at: Array) -> Array:
     """Monotone curve through the rows of a piece: it swings beyond none of them."""
-    from scipy.interpolate import PchipInterpolator
-
     if not np.isfinite(values).all():  # What is not known everywhere stays so.
         columns = values.reshape(phase.size, -1).T
         known = np.stack([np.interp(at, phase, column) for column in columns], axis=1)
         return known.reshape(at.size, *values.shape[1:])
-    return np.asarray(PchipInterpolator(phase, values, axis=0)(np.clip(at, phase[0], phase[-1])))
+    return monotone_cubic(phase, values)(np.clip(at, phase[0], phase[-1]))
 
 
 def _in_si(path: Any, name: str, unit: str, values: Array) -> Array:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from tribodyn.drawing import Sketch
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
 from tribodyn.plot.look.style import TOP
@@ -83,17 +84,18 @@ def script_json(text: str) -> str:
 
 def drawn_block(name: str, heading: str, drawn: Any, caption: str) -> Block:
     """A section with a figure, whose title the page prints itself and can break into lines."""
-    title, saved = drawn.layout.title.text, TOP - _MARGIN
-    top, height = drawn.layout.margin.t - saved, drawn.layout.height - saved
-    drawn.layout.update(title=None, margin={"t": top}, height=height, overwrite=False)
-    height, json = round(drawn.layout.height), script_json(drawn.to_json())
-    return Block(name, heading, caption, title=title, height=height, json=json)
+    sketch = drawn if isinstance(drawn, Sketch) else Sketch(**drawn.to_plotly_json())
+    layout, saved = dict(sketch.layout), TOP - _MARGIN
+    title, margin = layout.pop("title")["text"], layout["margin"]
+    layout |= {"margin": {**margin, "t": margin["t"] - saved}, "height": layout["height"] - saved}
+    text = script_json(replace(sketch, layout=layout).to_json())
+    return Block(name, heading, caption, title=title, height=round(layout["height"]), json=text)
 
 
 def _block(figure: Drawing, result: Any) -> Block:
     try:
         reason = figure.missing(result)
-        drawn = None if reason else figure(result)
+        drawn = None if reason else figure.sketch(result)
     except InputError as error:
         # A mesh table of another program knows no gears.
         told = error.problems[0]

@@ -229,6 +229,7 @@ def test_every_engine_marches_the_same_motion():
     assert 1e-7 < errors["newmark"] < 1e-5
 
 
+@pytest.mark.slow
 def test_lanes_equal_single_runs():
     system, lanes, cycles = light_system(), 19, 3
     generator = np.random.default_rng(1)

@@ -26,7 +26,10 @@ SCALES = tuple(
 OUTPUTS = np.eye(6)[[1, 5]]
 #: Agreement with Runge-Kutta over the size of a statistic: engine, options, steps, tolerance. Only
 #: Runge-Kutta takes the parts of a step in which a contact opens, so that the time apart differs.
-ENGINES = [("newmark", {}, 1024, 3e-3), ("dormand-prince", {"rtol": 1e-9}, 1024, 8e-4)]
+ENGINES = [
+    pytest.param("newmark", {}, 1024, 3e-3, marks=pytest.mark.slow),  # compiles for many lanes
+    ("dormand-prince", {"rtol": 1e-9}, 1024, 8e-4),
+]
 
 
 def _turning(phase):
@@ -197,6 +200,7 @@ def test_a_preset_is_its_pair_of_numbers():
     assert np.abs(usual.position - given.position).max() > 1e-4
 
 
+@pytest.mark.slow
 def test_newmark_lanes_have_the_period_of_their_stiffness():
     """Average acceleration turns by 2 arctan(omega h / 2) per step."""
     meshed = System([[1.0]], [[0.0]], [[0.0]], [0.0], [Contact([1.0], 4.0)])

@@ -173,7 +173,7 @@ def test_wrong_factors(change, part):
     assert part in str(caught.value)
 
 
-@pytest.mark.parametrize("lanes", [3, 20])
+@pytest.mark.parametrize("lanes", [3, pytest.param(20, marks=pytest.mark.slow)])
 def test_lanes_march_systems_of_their_own(lanes):
     values, _ = _different(lanes, seed=7)
     systems = [_build(**dict(zip(NAMES, row, strict=True)), extra=True) for row in values]

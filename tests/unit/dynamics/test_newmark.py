@@ -104,6 +104,7 @@ def test_compiled_equals_plain(system, frequency, size, options):
     assert np.abs(apart).max() < 1e-11
 
 
+@pytest.mark.slow
 def test_lanes_equal_single_runs_and_threads_change_nothing():
     system, steps, lanes = reference_system(0.1, gap=1e-5), 128, 37
     generator = np.random.default_rng(5)

@@ -276,7 +276,7 @@ def twin(solution):
     return PlainContact(grid.n, solution.domain, grid.lam, oil, grid.load, grid.tail)
 
 
-@pytest.mark.parametrize("method", _TIGHT)
+@pytest.mark.parametrize("method", ["newton", pytest.param("multigrid", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", _CONTACTS)
 def test_solver_equals_plain(name, method):
     case = {"nodes": 257, **_CONTACTS[name]}

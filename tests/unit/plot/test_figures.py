@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
+from tribodyn.drawing import Sketch
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
 
@@ -86,6 +88,20 @@ def test_what_a_result_has_not_is_refused(result: Any, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_reports_need_no_plotly_to_write_the_same(
+    result: Any, drawn: dict[str, go.Figure], name: str
+) -> None:
+    figure = FIGURES[name]
+    assert isinstance(figure, Drawing)
+    sketch = figure.sketch(result)
+    assert isinstance(sketch, Sketch)
+    written = json.loads(sketch.to_json())
+    # Plotly leaves out lists of no marks.
+    written["layout"] = {key: each for key, each in written["layout"].items() if each != []}
+    assert written == json.loads(drawn[name].to_json())
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_every_axis_has_a_unit(drawn: dict[str, go.Figure], name: str) -> None:
     layout = drawn[name].layout
     labels = [layout[key].title.text for key in layout if key.startswith(("xaxis", "yaxis"))]
@@ -135,6 +151,7 @@ def test_transmission_error_counts_from_first_contact(
     assert error.y[0] == pytest.approx(1e6 * (deflection - result.half_backlash))
 
 
+@pytest.mark.slow
 def test_quasi_static_error_counts_what_relieved_flanks_leave_open(drawable: Any) -> None:
     relief = {
         f"gears.{gear}.modification.{key}": value

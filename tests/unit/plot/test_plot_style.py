@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import itertools
+import json
 
+import numpy as np
 import pytest
 
+from tribodyn.drawing import Sketch
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import INK, line
 
@@ -17,7 +20,9 @@ def curves(count: int) -> list[dict[str, object]]:
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_panels_fill_the_height_from_the_top_without_overlap(count: int) -> None:
     heights = [1.0, 0.5, 2.0][:count]
-    made = stack("T", "x", [Panel(f"y{n}", curves(1), height=h) for n, h in enumerate(heights)])
+    made = stack(
+        "T", "x", [Panel(f"y{n}", curves(1), height=h) for n, h in enumerate(heights)]
+    ).figure()
     axes = [made.layout[f"yaxis{'' if n == 0 else n + 1}"] for n in range(count)]
     assert axes[0].domain[1] == pytest.approx(1.0)
     assert axes[-1].domain[0] == pytest.approx(0.0, abs=1e-12)
@@ -30,19 +35,19 @@ def test_panels_fill_the_height_from_the_top_without_overlap(count: int) -> None
 
 
 def test_panels_grow_the_figure() -> None:
-    one, two = (stack("T", "x", [Panel("y", curves(1))] * count) for count in (1, 2))
+    one, two = (stack("T", "x", [Panel("y", curves(1))] * count).figure() for count in (1, 2))
     assert two.layout.height > 1.5 * one.layout.height
 
 
 def test_a_single_curve_has_no_legend_and_several_have_one_beside_their_panel() -> None:
-    made = stack("T", "x", [Panel("a", curves(1)), Panel("b", curves(2))])
+    made = stack("T", "x", [Panel("a", curves(1)), Panel("b", curves(2))]).figure()
     assert [trace.showlegend for trace in made.data] == [False, True, True]
     assert [trace.legend for trace in made.data] == ["legend", "legend2", "legend2"]
     assert made.layout.legend2.y == pytest.approx(made.layout.yaxis2.domain[1])
 
 
 def test_layout_of_the_common_axis_is_merged() -> None:
-    made = stack("T", "x", [Panel("a", curves(1))], {"xaxis": {"range": [0, 3]}})
+    made = stack("T", "x", [Panel("a", curves(1))], {"xaxis": {"range": [0, 3]}}).figure()
     assert made.layout.xaxis.title.text == "x"
     assert tuple(made.layout.xaxis.range) == (0, 3)
 
@@ -65,3 +70,31 @@ def test_marks_need_not_be_sorted() -> None:
 
 def test_no_marks() -> None:
     assert event_lines([]) == {"shapes": [], "annotations": []}
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        [1, 2.5, None],
+        [1.0, float("nan"), float("inf")],
+        np.array([1.0, np.nan]),
+        np.array([0.5, 1.5], dtype=np.float32),
+        np.array([-3, 127]),
+        np.array([-3, 128]),
+        np.array([-3, 2**20]),
+        np.array([-3, 2**40]),
+        np.array([3, 200], dtype=np.uint64),
+        np.array([True, False]),
+        np.array(["a", "<b>"]),
+        np.array([1.0, None, float("nan")], dtype=object),
+        np.array([]),
+        np.arange(6.0).reshape(2, 3),
+        [np.float64(1.0), np.int64(2), np.bool_(True)],
+        np.array(["2020-01-01"], dtype="datetime64[D]"),
+    ],
+)
+def test_a_sketch_is_written_as_plotly_writes_it(values: object) -> None:
+    sketch = Sketch([{"type": "scatter", "customdata": values}], {"height": 300}, [{"name": "0"}])
+    written, plotly = json.loads(sketch.to_json()), json.loads(sketch.figure().to_json())
+    assert written["data"] == plotly["data"]
+    assert written["frames"] == plotly["frames"]

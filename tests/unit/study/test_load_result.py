@@ -34,7 +34,13 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.fixture(scope="module", params=list(CASES))
+SLOW = {"newmark": pytest.mark.slow}  # compiles an engine of its own
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, marks=SLOW.get(name, ())) for name in CASES],
+)
 def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
     result = td.run(_SOUND.replace(CASES[request.param]))
     place = result.save(tmp_path_factory.mktemp("saved") / "out")

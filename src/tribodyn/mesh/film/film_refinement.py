@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.mesh.cycle import PairsInContact, PathPositions, lobatto_polynomial
+from tribodyn.monotone import monotone_cubic
 from tribodyn.types import Array, Index, Mask
 
 #: What is interpolated, in this order; the last as compliance, which has no pole.
@@ -145,10 +146,8 @@ def between(
 
 def _curve(knots: Array, values: Array, age: Array) -> Array:
     """Monotone cubic through the places of a zone."""
-    from scipy.interpolate import PchipInterpolator
-
     at, first = np.unique(knots, return_index=True)
-    return np.asarray(PchipInterpolator(at, values[first])(age))
+    return monotone_cubic(at, values[first])(age)
 
 
 def joined_over_age(

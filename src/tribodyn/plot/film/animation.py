@@ -164,8 +164,6 @@ def animation(
     whole: tuple[Array, Array, Array] | None = None,
 ) -> Any:
     """Draw contacts one after the other, with a slider and a play button."""
-    import plotly.graph_objects as go
-
     places = track.places
     frames = [
         _moving(one, scales, float(place), dry) for one, place in zip(contacts, places, strict=True)
@@ -195,7 +193,7 @@ def animation(
         },
     )
     made.frames = [
-        go.Frame(name=str(number), data=data, traces=moving) for number, data in enumerate(frames)
+        {"name": str(number), "data": data, "traces": moving} for number, data in enumerate(frames)
     ]
     return made
 
@@ -264,7 +262,7 @@ def film_along_path(
         solutions,
         scales,
         Track("path", "Path of contact", positions, letters),
-    )
+    ).figure()
 
 
 @dataclass(frozen=True)
@@ -346,4 +344,4 @@ def film_over_time(transient: TransientLineContact) -> Any:
             displayed("load_per_width", transient.load_per_width),
             scales.film * transient.minimum_film,
         ),
-    )
+    ).figure()

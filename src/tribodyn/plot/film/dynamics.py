@@ -115,7 +115,7 @@ def film_response(
             for name, words, values, axis in rows
         ],
         {"xaxis": logarithmic, **marks},
-    )
+    ).figure()
 
 
 def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None) -> list[Trace]:

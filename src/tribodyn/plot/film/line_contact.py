@@ -379,4 +379,4 @@ def compare_line_contacts(
             Panel(scales[0].film_label, _films(rows), height),
         ],
         {"xaxis": {"range": [ends[:, 0].min(), ends[:, 1].max()]}},
-    )
+    ).figure()

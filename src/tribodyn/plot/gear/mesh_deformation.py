@@ -175,8 +175,6 @@ def mesh_deformation(
     -------
     plotly.graph_objects.Figure
     """
-    import plotly.graph_objects as go
-
     pair, chosen = contact.gear_pair, _chosen(contact, phase)
     torque %= int(np.size(contact.torque))
     meshes = [bent_mesh(contact, at, torque) for at in chosen]
@@ -206,5 +204,5 @@ def mesh_deformation(
         },
     )
     if several:
-        made.frames = [go.Frame(name=str(k), data=data) for k, data in enumerate(frames)]
+        made.frames = [{"name": str(k), "data": data} for k, data in enumerate(frames)]
     return made

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
+from tribodyn.drawing import Sketch
 from tribodyn.plot.look.style import BOTTOM, MUTED, TOP, Trace, figure
 
 #: Pixels of one panel, of the gap between panels, and of the gap with an axis and a title in it.
@@ -59,7 +60,7 @@ def _suffix(number: int) -> str:
 
 def stack(
     title: str, x_label: str, panels: Sequence[Panel], layout: dict[str, Any] | None = None
-) -> Any:
+) -> Sketch:
     """Stack panels over one common horizontal axis, each with its own legend beside it."""
     more = dict(layout or {})
     domains, height = _domains(panels, _GAP)
@@ -75,7 +76,7 @@ def stack(
     return figure(title, traces, {**merged, **more})
 
 
-def stack_rows(title: str, rows: Sequence[Row], layout: dict[str, Any] | None = None) -> Any:
+def stack_rows(title: str, rows: Sequence[Row], layout: dict[str, Any] | None = None) -> Sketch:
     """Stack panels, each over its own horizontal axis and with its own legend."""
     more = dict(layout or {})
     domains, height = _domains([row.panel for row in rows], _WIDE_GAP)

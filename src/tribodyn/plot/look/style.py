@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from tribodyn.drawing import Sketch
+
 #: One curve as plotly describes it.
 Trace = dict[str, Any]
 
@@ -47,10 +49,8 @@ def _axis(**more: Any) -> dict[str, Any]:
 
 def figure(
     title: str, traces: Sequence[dict[str, Any]], layout: dict[str, Any] | None = None
-) -> Any:
-    """Make a plotly figure in the look of the package."""
-    import plotly.graph_objects as go
-
+) -> Sketch:
+    """Describe a figure in the look of the package."""
     common: dict[str, Any] = {
         "template": {"layout": {"xaxis": _axis(**_SPIKE), "yaxis": _axis()}},
         "title": {
@@ -70,7 +70,7 @@ def figure(
         "hoverlabel": {"bgcolor": "white", "bordercolor": GRID, "font": {"family": FONT}},
         "margin": {"l": 70, "r": 24, "t": TOP, "b": BOTTOM},
     }
-    return go.Figure({"data": list(traces), "layout": {**common, **(layout or {})}})
+    return Sketch(list(traces), {**common, **(layout or {})})
 
 
 def button_row(choices: Sequence[tuple[str, dict[str, Any]]]) -> dict[str, Any]:

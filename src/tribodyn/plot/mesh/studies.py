@@ -218,11 +218,11 @@ def tip_relief_map(study: TipReliefOptimum) -> Any:
     before, after = (
         rounded(_QUANTITY, value) for value in (study.objective_before, study.objective)
     )
-    made = stack_rows(
+    return stack_rows(
         f"A tip relief of {amount} over {length} lowers the variation from {before} to {after}",
         [_map(study), _relief_swings(study), _courses(study)],
+        {"hovermode": "closest"},
     )
-    return made.update_layout(hovermode="closest")
 
 
 def _looks(study: ComprehensiveStiffness) -> list[tuple[int, int, str, str, str]]:
@@ -280,6 +280,9 @@ def comprehensive_stiffness(study: ComprehensiveStiffness) -> Any:
     pair, looks = study.gear_pair, _looks(study)
     with_film = float(np.mean(study.mean_mesh_stiffness))
     teeth = float(np.mean(study.mean_tooth_stiffness))
+    words = "Pinion torque" if len(study.pinion_torque) > 1 else "Pinion speed"
+    both = len(study.pinion_torque) > 1 and len(study.pinion_speed) > 1
+    title = {"text": f"{words}, speed" if both else words, "font": {"size": 13}}
     layout = event_lines(pair_letters(pair))
     layout["xaxis"] = {"range": displayed("roll_angle", study.roll_angle[[0, -1]]).tolist()}
     figure = stack(
@@ -289,7 +292,5 @@ def comprehensive_stiffness(study: ComprehensiveStiffness) -> Any:
         [_panel(study, number, looks) for number in range(len(_PANELS))],
         layout,
     )
-    words = "Pinion torque" if len(study.pinion_torque) > 1 else "Pinion speed"
-    both = len(study.pinion_torque) > 1 and len(study.pinion_speed) > 1
-    title = {"text": f"{words}, speed" if both else words, "font": {"size": 13}}
-    return figure.update_layout(legend={"title": title})
+    figure.layout["legend"] |= {"title": title}
+    return figure

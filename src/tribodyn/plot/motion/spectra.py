@@ -128,7 +128,8 @@ def _drawn(title: str, result: Result, panels: list[Panel]) -> Any:
     layout, legend = _harmonic_layout(result, panels)
     panels[0] = replace(panels[0], traces=[*panels[0].traces, *legend])
     drawn = stack(title, "Mesh harmonic", panels, layout)
-    drawn.update_layout(margin={"t": TOP + _NAMES}, height=drawn.layout.height + _NAMES)
+    drawn.layout["margin"] |= {"t": TOP + _NAMES}
+    drawn.layout["height"] += _NAMES
     return drawn
 
 

@@ -268,4 +268,5 @@ def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Any:
     panel = Panel(label, _case_curves(study, values, unit), height=1.6)
     drawn = stack(title, _axis_text(study.axes[0]), [panel])
     varied = ", ".join(_words(axis.name) for axis in study.axes[1:])
-    return drawn.update_layout(legend={"title": {"text": varied, "font": {"size": 13}}})
+    drawn.layout["legend"] |= {"title": {"text": varied, "font": {"size": 13}}}
+    return drawn

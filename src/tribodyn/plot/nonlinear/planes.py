@@ -239,15 +239,15 @@ def parameter_map(survey: ParameterMap) -> Any:
     rows = [Row(x_label, Panel(y_label, [trace], height=1.25)) for _, trace in maps]
     made = stack_rows(_map_title(survey), rows, {"hovermode": "closest"})
     for number, (words, _) in enumerate(maps):
-        low, high = made.layout[f"yaxis{number + 1 if number else ''}"].domain
-        bar = made.data[number].colorbar
-        bar.update(
-            y=0.5 * (low + high),
-            len=high - low,
-            thickness=14,
-            x=1.01,
-            xanchor="left",
-            title={"text": words, "side": "right", "font": {"size": 13}},
-            outlinewidth=0,
-        )
+        low, high = made.layout[f"yaxis{number + 1 if number else ''}"]["domain"]
+        made.data[number]["colorbar"] = {
+            **made.data[number].get("colorbar", {}),
+            "y": 0.5 * (low + high),
+            "len": high - low,
+            "thickness": 14,
+            "x": 1.01,
+            "xanchor": "left",
+            "title": {"text": words, "side": "right", "font": {"size": 13}},
+            "outlinewidth": 0,
+        }
     return made

@@ -114,13 +114,13 @@ def spectrogram(result: Spectrogram) -> Any:
             {"rangemode": "tozero"},
         ),
     ]
-    made = stack(
+    return stack(
         f"Strongest at {significant(frequency)} Hz after {significant(moment)} s: "
         f"{with_unit(float(result.amplitude[number, block]), result.unit)}",
         "Time [s]",
         panels,
+        {"hovermode": "closest"},
     )
-    return made.update_layout(hovermode="closest")
 
 
 def strongest_orders(result: OrderMap, count: int = 3) -> list[float]:
@@ -191,7 +191,7 @@ def order_map(result: OrderMap) -> Any:
         Panel("Order", [surface], height=MAP_HEIGHT),
         Panel(amplitude_label(result.unit), cuts, {"rangemode": "tozero"}),
     ]
-    return stack(title, label, panels).update_layout(hovermode="closest")
+    return stack(title, label, panels, {"hovermode": "closest"})
 
 
 @drawing(
@@ -233,12 +233,12 @@ def waterfall(result: OrderMap | Spectrogram) -> Any:
         "tickfont": {"color": MUTED},
     }
     label = "Speed" if by_order else "Time"
-    made = stack(
+    return stack(
         f"The highest peak is {with_unit(peak, result.unit)}, {what} at {_when(result, block)}",
         words,
         [Panel(label, traces, axis, height=2.6)],
+        {"hovermode": "closest"},
     )
-    return made.update_layout(hovermode="closest")
 
 
 def _when(result: OrderMap | Spectrogram, block: int) -> str:

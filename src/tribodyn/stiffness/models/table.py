@@ -10,6 +10,7 @@ import numpy as np
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.model import numbers
+from tribodyn.monotone import monotone_cubic
 from tribodyn.stiffness.model import MODELS, MeshState, share_equally
 from tribodyn.types import Array
 
@@ -57,8 +58,6 @@ def tabulated_stiffness(
     >>> tabulated_stiffness([0.0, 0.5, 1.0], [1e8, 2e8, 1e8], np.array([0.0, 0.5]))
     array([1.e+08, 2.e+08])
     """
-    from scipy.interpolate import PchipInterpolator
-
     x = np.asarray(abscissa, dtype=float)
     y = np.asarray(stiffness, dtype=float)
     problems = [*(_shape_problems(x, y, name) or _order_problems(x, name, unit))]
@@ -73,7 +72,7 @@ def tabulated_stiffness(
             why=f"The mesh needs {low:.6g} to {high:.6g} {unit}".rstrip(),
             remedy="Extend the table to the whole contact; nothing is extrapolated",
         )
-    return np.asarray(PchipInterpolator(x, y)(np.clip(at, x[0], x[-1])))
+    return monotone_cubic(x, y)(np.clip(at, x[0], x[-1]))
 
 
 def _shape_problems(x: Array, y: Array, name: str) -> list[Problem]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurGear, ToothForm, half_tooth
+from tribodyn.monotone import monotone_cubic
 from tribodyn.types import Array
 
 
@@ -218,11 +219,9 @@ def tooth_bending_compliance(
     >>> print(f"{float(found.bending) * 1e3:.4f} mm/N")
     0.0200 mm/N
     """
-    from scipy.interpolate import PchipInterpolator
-
     knots, thickness = _checked(outline, height, face_width)
     y_load = np.asarray(height, dtype=float)
-    section = PchipInterpolator(knots, thickness)
+    section = monotone_cubic(knots, thickness)
     moments = _section_integrals(section, knots, y_load)
     across, along = np.cos(load_angle), np.sin(load_angle)
     # Moment as polynomial in the height above the foot: cos a (reach - s).

@@ -120,7 +120,7 @@ class Result(Computed):
         str
             One line for each step; units are in brackets in the first line.
         """
-        return to_csv(stored(self.to_xarray(), self.response))
+        return to_csv(stored(self._parts(), self.response))
 
     def cite(self, style: str = "text") -> str:
         """Name the papers behind this result.
@@ -168,7 +168,7 @@ class Result(Computed):
             (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
             (place / "summary.json").write_text(_json(self._summary), encoding="utf-8")
             self.mesh.save(place / "mesh.nc")
-            write_dataset(stored(self.to_xarray(), self.response), place / "response.nc")
+            write_dataset(stored(self._parts(), self.response), place / "response.nc")
             if csv:
                 (place / "response.csv").write_text(self.to_csv(), encoding="utf-8")
             write_report_of(self, place / "report.html")

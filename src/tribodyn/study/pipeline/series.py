@@ -15,8 +15,6 @@ from tribodyn.record import Parts
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    import xarray
-
     from tribodyn.dynamics import FineSamples, Response, System
     from tribodyn.study.pipeline.computed import Computed
 
@@ -308,11 +306,19 @@ def _kept(response: Response) -> int:
     return int(min(response.periods, max(1, LARGEST // cycle)))
 
 
-def stored(data: xarray.Dataset, response: Response) -> xarray.Dataset:
-    """The data set of a result as it is saved: of a long run the last mesh cycles."""
+def stored(parts: Parts, response: Response) -> Parts:
+    """Parts of a result as they are saved: of a long run the last mesh cycles."""
     periods, kept = int(response.periods), _kept(response)
-    data.attrs |= {"periods": kept, "computed_mesh_cycles": periods}
-    return data.isel(time=slice(data.sizes["time"] // periods * (periods - kept), None))
+    first = response.time.size // periods * (periods - kept)
+
+    def last(named: dict[str, Any]) -> dict[str, Any]:
+        return {
+            name: (dims, values[first:] if np.atleast_1d(dims)[0] == "time" else values, *told)
+            for name, (dims, values, *told) in named.items()
+        }
+
+    facts = {**parts.attributes, "periods": kept, "computed_mesh_cycles": periods}
+    return Parts(last(parts.variables), last(parts.coordinates), facts)
 
 
 def told_cycles(response: Response) -> str:
@@ -326,21 +332,21 @@ def told_cycles(response: Response) -> str:
     )
 
 
-def to_csv(data: xarray.Dataset) -> str:
+def to_csv(parts: Parts) -> str:
     """Series over the time as comma-separated values in SI, units in the first line."""
     import io
 
     heads, columns = [], []
-    for name in ("time", *data.data_vars):
-        series = data[name]
-        if series.dims[:1] != ("time",):
+    axes = parts.coordinates
+    for name, (dims, values, told) in {"time": axes["time"], **parts.variables}.items():
+        if np.atleast_1d(dims)[0] != "time":
             continue
-        rows = series.values.reshape(series.sizes["time"], -1)
+        rows = values.reshape(len(values), -1)
         for number, column in enumerate(rows.T):
-            unit, label = series.attrs.get("units", ""), str(name)
-            if "coordinate" in series.dims:
-                label = f"{name}_{data['coordinate'].values[number]}"
-                unit = str(data[f"{name}_unit"].values[number])
+            unit, label = told.get("units", ""), name
+            if "coordinate" in dims:
+                label = f"{name}_{axes['coordinate'][1][number]}"
+                unit = str(axes[f"{name}_unit"][1][number])
             elif rows.shape[1] > 1:
                 label = f"{name}_{number}"
             heads.append(f"{label} [{unit}]")
