@@ -36,7 +36,6 @@ from tribodyn.errors import InputError, collected
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
-
 #: Steps of all systems that are marched side by side: rows of more are far from the core.
 _STEPS = 16384
 
