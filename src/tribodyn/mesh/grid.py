@@ -114,7 +114,8 @@ class PhaseGrid:
         array (...)
             Exact for piecewise cubics.
         """
-        return np.asarray(np.tensordot(self._weights, values, axes=(0, 0)))
+        means = self._weights @ values.reshape(len(values), -1)
+        return np.asarray(means.reshape(values.shape[1:]))
 
     @cached_property
     def _weights(self) -> Array:

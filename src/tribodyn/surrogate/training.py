@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, require_between
@@ -236,6 +235,8 @@ def _fitted(
     ready: Prepared, column: int, seed: int, training: Training
 ) -> tuple[Network, Fit, float, float]:
     """Best network of one target, with its validation errors in the unit of the target."""
+    from threadpoolctl import threadpool_limits
+
     network = Network(ready.features.shape[1], tuple(training.hidden), tuple(training.activations))
     inputs = ready.feature_scaling.scaled(ready.features)
     target = ready.target_scaling.scaled(ready.targets)[:, column]

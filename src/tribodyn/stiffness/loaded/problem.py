@@ -315,7 +315,7 @@ class ContactProblem:
         Raises
         ------
         InputError
-            If they are of another shape.
+            If they are of another shape or not finite.
         ComputationError
             As :meth:`at_loads`.
         """
@@ -364,7 +364,7 @@ class ContactProblem:
         Raises
         ------
         InputError
-            If ``most`` is of another shape.
+            If ``most`` is of another shape or not finite.
         ComputationError
             As :meth:`at_loads`.
         """
@@ -381,6 +381,9 @@ class ContactProblem:
             why = f"It has {dimensions} dimensions, the last one the {count} phases"
             what, remedy = f"{name} has the shape {given.shape}", "Give a value for each phase"
             raise InputError(what, Argument(name), why, remedy)
+        if not np.isfinite(given).all():
+            what = f"{name} = {given[~np.isfinite(given)][0]:g} m"
+            raise InputError(what, Argument(name), "An approach is finite", "Correct the value")
         return given
 
     def _call(self, kernel: Any, solves: int, *arguments: Array) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from tribodyn.errors import InputError, collected
 from tribodyn.study.case.derive import chosen_options
 from tribodyn.study.pipeline.tooth_contact import loaded_settings
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 #: Elastic natural frequencies in a summary.
 _MODES = 12
+#: Systems whose natural frequencies are kept.
+_KEPT = 256
 
 
 def operating_figures(case: Case) -> dict[str, float]:
@@ -113,19 +116,52 @@ def standard_figures(case: Case) -> dict[str, float]:
 
 def mode_figures(system: System, mesh_frequency: float, speed: float) -> dict[str, float]:
     """Elastic natural frequencies, and where the mesh frequency meets that of the mesh."""
-    from tribodyn.dynamics import natural_modes
-
-    try:
-        modes = natural_modes(system)
-    except InputError:
-        return {}  # a structure that is not stable about its static load has none
-    elastic = modes.frequency[modes.rigid :]
+    elastic, own = _frequencies(system)
     figures = {f"natural_frequency_{k}": f for k, f in enumerate(elastic[:_MODES], 1)}
-    if elastic.size and modes.contacts:
-        own = float(modes.frequency[int(np.argmax(modes.contact_share))])
+    if own:
         figures |= {
             "mesh_natural_frequency": own,
             "resonance_speed": speed * own / mesh_frequency,
             "resonance_ratio": mesh_frequency / own,
         }
     return figures
+
+
+#: Elastic natural frequencies, and that of the mesh, of what is known of systems: the same at every
+#: speed, as friction does not count.
+_known_frequencies: dict[object, tuple[Array, float]] = {}
+
+
+def _frequencies(system: System) -> tuple[Array, float]:
+    """Elastic natural frequencies [Hz], and that of the mesh; none where it is not stable."""
+    from tribodyn.dynamics import natural_modes
+
+    key = _without_friction(system)
+    if (known := _known_frequencies.get(key)) is not None:
+        return known
+    try:
+        modes = natural_modes(system)
+    except InputError:
+        return np.zeros(0), 0.0  # a structure that is not stable about its static load has none
+    elastic, own = modes.frequency[modes.rigid :], 0.0
+    if elastic.size and modes.contacts:
+        own = float(modes.frequency[int(np.argmax(modes.contact_share))])
+    if key is not None:
+        if len(_known_frequencies) >= _KEPT:
+            _known_frequencies.clear()
+        _known_frequencies[key] = elastic, own
+    return elastic, own
+
+
+def _without_friction(system: System) -> object:
+    """All that natural modes of one closed contact depend on, in bytes; None of other systems."""
+    from tribodyn.mesh.grid import PhaseFunction
+
+    if len(system.contacts) != 1 or system.frictions:
+        return None
+    direction, stiffness = system.contacts[0].direction, system.contacts[0].stiffness
+    if callable(direction) or not isinstance(stiffness, PhaseFunction):
+        return None
+    parts = system.mass, system.stiffness, direction, stiffness.values
+    grid = stiffness.grid.event_phases, stiffness.grid.intervals
+    return grid, *(np.asarray(part).tobytes() for part in parts)
