@@ -21,7 +21,7 @@ def exponential_growth(exponent: ArrayLike, pressure: ArrayLike, law: str) -> Ar
     if np.any(exponents > _LARGEST_EXPONENT):
         what = f"pressure = {np.max(pressure):.6g} Pa"
         why = f"the {law} law raises the viscosity there by more than exp(700), beyond any liquid"
-        remedy = "Check the units of pressure (Pa) and of its coefficient (1/Pa), or take Roelands"
+        remedy = "Check the units of pressure (Pa) and coefficient (1/Pa), or use the Roelands law"
         raise InputError(what, Argument("pressure"), why, remedy)
     return np.asarray(np.exp(exponents))[()]
 
