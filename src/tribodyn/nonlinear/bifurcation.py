@@ -161,8 +161,9 @@ def bifurcation(
     rows = _rows(values, branches, first, survey, progress)
     finer = values.refined(_refined_steps(values))
     fine = [_begin(values, row, keep) for row in rows]
-    for row, new in zip(rows, fine, strict=True) if verdict and not survey.stop.is_set() else ():
-        march_points(finer, survey, new, row.finished, progress)
+    if verdict and not survey.stop.is_set():
+        judged = ((new, row.finished) for row, new in zip(rows, fine, strict=True))
+        march_points(finer, survey, *judged, progress=progress)
     largest = np.full((len(rows), values.count), np.nan)
     if exponents and not survey.stop.is_set():
         largest = _largest_exponents(values, finer, rows, fine, exponents)
@@ -292,7 +293,7 @@ def _rows(
     row = Outcomes(values.count, survey.keep, values.size, branches[0])
     if first is not None:
         row.first[:] = first
-    march_points(values, survey, row, None, progress)
+    march_points(values, survey, (row, None), progress=progress)
     return [row]
 
 

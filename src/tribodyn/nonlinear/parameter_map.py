@@ -183,7 +183,7 @@ def surveyed(
     """March motions from rest, or from where they begin, and judge each of them."""
     outcomes = Outcomes(points.count, survey.keep, points.size)
     outcomes.first[:] = np.nan if begin is None else begin
-    march_points(points, survey, outcomes, None, progress)
+    march_points(points, survey, (outcomes, None), progress=progress)
     words: NDArray[np.str_] = np.full(points.count, "", dtype="<U12")
     if verdict and not survey.stop.is_set():
         words = _judged(points, step_number, outcomes, survey, progress)
@@ -226,7 +226,8 @@ def _judged(
     words[outcomes.finished & ~alive] = "undecided"
     again = Outcomes(points.count, survey.keep, points.size)
     again.first[:], again.force[:] = outcomes.settled, outcomes.force
-    march_points(finer, survey, again, outcomes.finished & alive & ~same, progress)
+    chosen = outcomes.finished & alive & ~same
+    march_points(finer, survey, (again, chosen), progress=progress)
     for n in np.flatnonzero(again.finished):
         words[n] = step_verdict(
             float(step_number[n]),
