@@ -20,7 +20,8 @@ def pytest_configure(config: pytest.Config) -> None:
     if not config.getoption("--hypothesis-profile"):
         hypothesis.settings.load_profile("same")
     # Tests share the cores already: threads of the matrix library would only wait for each other.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    for library in ("OPENBLAS", "OMP"):
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     folder = Path(tempfile.gettempdir()) / "tribodyn-tests"
     os.environ.setdefault("TRIBODYN_CACHE_DIR", str(folder))
     # A job in the background of a shell may begin with Ctrl-C ignored, and so would all it starts.

@@ -195,13 +195,12 @@ def test_flanks_that_relief_keeps_apart_are_carried_by_their_film() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("positions", [30, 60])
-def test_the_approach_is_smooth_whatever_the_positions(positions: int) -> None:
+def test_the_approach_is_smooth_whatever_the_positions() -> None:
     """No kink beyond those of the dry flanks, and no warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error", ModelWarning)
         mesh = table(
-            pair(tip_relief=10e-6), film_options={"positions": positions},
+            pair(tip_relief=10e-6), film_options={"positions": 30},
             stiffness_model="analytic",
         )  # fmt: skip
     dry = table(pair(tip_relief=10e-6), film_model="none", stiffness_model="analytic")
@@ -223,7 +222,7 @@ def relieved_analytic() -> Any:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("positions", [30, 60, 200])
+@pytest.mark.parametrize("positions", [30, 200])
 def test_the_film_in_series_with_relief_does_not_depend_on_the_positions(positions: int) -> None:
     mesh = table(
         pair(tip_relief=10e-6), film_options={"stiffness": "tangent", "positions": positions}

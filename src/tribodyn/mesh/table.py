@@ -107,12 +107,9 @@ class MeshTable(MeshColumns):
         """
         values = getattr(self, column, None)
         if not isinstance(values, np.ndarray):
-            raise InputError(
-                f'the mesh table has no column "{column}"',
-                where="argument column",
-                why=f"Its columns are: {', '.join(self._columns())}",
-                remedy="Name one of them",
-            )
+            what = f'the mesh table has no column "{column}"'
+            why = f"Its columns are: {', '.join(self._columns())}"
+            raise InputError(what, "argument column", why, "Name one of them")
         if values.dtype == np.bool_:
             return np.asarray(PhaseFunction(self.grid, values.astype(float))(phase) > 0.5)
         return PhaseFunction(self.grid, values)(phase)
@@ -138,11 +135,9 @@ class MeshTable(MeshColumns):
             return None
         # The event that is nearest: its phase and this one may differ by rounding.
         phases = np.array(self.event_phases)
-        apart = np.abs((phases - age + 0.5) % 1.0 - 0.5)
-        phase = float(phases[np.argmin(apart)])
-        number = round(age - phase)
-        touches = bool(self.at("in_contact", phase)[number])
-        return float(self.at(column, phase)[number]) if touches else None
+        event = int(np.argmin(np.abs((phases - age + 0.5) % 1.0 - 0.5)))
+        number, knot = round(age - float(phases[event])), self.grid.segments[event].start
+        return float(values[knot, number]) if self.in_contact[knot, number] else None
 
     def _columns(self) -> list[str]:
         stored = [name for name, value in vars(self).items() if isinstance(value, np.ndarray)]

@@ -94,12 +94,8 @@ def signal_name(system: System, signal: int | str) -> str:
         return f"contact {signal}"
     if signal == 0 and not system.contacts:
         return names[0]
-    raise InputError(
-        f"signal = {signal!r}",
-        where="argument signal",
-        why=f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
-        remedy="Choose one of these",
-    )
+    why = f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}"
+    raise InputError(f"signal = {signal!r}", "argument signal", why, "Choose one of these")
 
 
 @dataclass(frozen=True)
@@ -140,6 +136,10 @@ class Survey:
         )
 
 
+#: Steps of all systems together that are kept compiled, some 60 MB.
+_KEPT = 2**16
+
+
 class Points:
     """Systems, mesh frequencies, factors and steps of all motions of a survey."""
 
@@ -154,6 +154,8 @@ class Points:
         self.factors = factors or {}
         self.count, self.size = len(self.systems), self.systems[0].size
         self.step_number = np.zeros(self.count)
+        self._compiled: dict[int, Compiled] = {}
+        self._lock = threading.Lock()
         groups: dict[tuple[int, int], list[int]] = {}
         for number, system in enumerate(self.systems):
             groups.setdefault((id(system), int(steps[number])), []).append(number)
@@ -163,10 +165,16 @@ class Points:
         """System of a group on its grid; notes ``omega_max * dt``."""
         slowest = float(self.mesh_frequency[group].min())
         first = int(group[0])
-        compiled = compile_lanes(
-            self.systems[first], slowest, int(self.steps[first]), any_step=True
-        )
-        self.step_number[group] = compiled.step_number * slowest / self.mesh_frequency[group]
+        with self._lock:
+            compiled = self._compiled.pop(first, None)
+        if compiled is None:
+            steps = int(self.steps[first])
+            compiled = compile_lanes(self.systems[first], slowest, steps, any_step=True)
+            self.step_number[group] = compiled.step_number * slowest / self.mesh_frequency[group]
+        with self._lock:  # The other branch asks last for what was asked for first.
+            self._compiled[first] = compiled
+            while sum(each.grid.steps for each in self._compiled.values()) > _KEPT:
+                del self._compiled[next(iter(self._compiled))]
         return compiled
 
     def motions(self, compiled: Compiled, group: Index, outcomes: Outcomes) -> Motions:
@@ -239,17 +247,20 @@ def march_group(
 def march_points(
     points: Points,
     survey: Survey,
-    outcomes: Outcomes,
-    chosen: Mask | None = None,
+    *rows: tuple[Outcomes, Mask | None],
     progress: Progress = SILENT,
 ) -> None:
-    """March all motions side by side, each from a start of its own."""
+    """March all motions side by side, each from a start of its own; in ``rows``, those chosen."""
+
+    def wanted(group: Index) -> list[tuple[Outcomes, Mask | None]]:
+        return [row for row in rows if row[1] is None or row[1][group].any()]
 
     def march(group: Index) -> None:
-        if not survey.stop.is_set():
-            march_group(points, survey, outcomes, group, chosen, progress)
+        for outcomes, chosen in wanted(group):
+            if not survey.stop.is_set():
+                march_group(points, survey, outcomes, group, chosen, progress)
 
-    groups = points.groups if chosen is None else [g for g in points.groups if chosen[g].any()]
+    groups = [group for group in points.groups if wanted(group)]
     alone = [group for group in groups if group.size == 1]
     if alone:
         survey.uninterrupted(lambda: each_in_threads(march, alone))

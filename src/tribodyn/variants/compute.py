@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn.errors import Problem, TribodynError, quiet
+from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.types import Array
@@ -44,7 +45,7 @@ class Job(NamedTuple):
 
     def compute(self, progress: Progress = SILENT) -> Part:
         """Compute the members; it depends on nothing but them."""
-        with quiet():
+        with quiet(), shared_films(lasting=True):
             part = _each(partial(KINDS[self.kind].compute, self.case), self.columns, progress)
         names = self.keep or tuple(
             name for name in KINDS[self.kind].figures if name in part.figures

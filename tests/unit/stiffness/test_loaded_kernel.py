@@ -87,6 +87,9 @@ def test_approaches_of_another_number_of_phases_never_reach_a_kernel():
         for wrong in (np.zeros(2), np.zeros((1, 2)), np.zeros((2, 2, 2))):
             with pytest.raises(InputError, match=rf"{name} has the shape \({wrong.shape[0]},"):
                 ask(wrong)
+    for ask, shape in ((given.at_approach, (1, 6)), (given.pickups, 6)):
+        with pytest.raises(InputError, match="= -inf m"):
+            ask(np.full(shape, -np.inf))
 
 
 def test_below_the_smallest_gap_there_is_no_force():

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import socket
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tribodyn.errors import InputError
+from tribodyn.mesh.film import tabled_film
 from tribodyn.variants import read_study, run_study
-from tribodyn.variants.compute import Job
+from tribodyn.variants.compute import KINDS, Job, Part
 from tribodyn.variants.run import compute_alone
 
 _STUDY = 'case = "fzg-roughness"\n[axes]\noperation.speed = "400..900 rpm:3"\n'
@@ -35,3 +37,20 @@ def test_a_worker_of_another_version_refuses() -> None:
     job = Job(study.compute, study.case, (), {"operation.speed": [100.0]})
     with pytest.raises(InputError, match=r"a worker has version .* the study 0\.0\.0"):
         compute_alone("0.0.0", job)
+
+
+def test_chunks_of_a_study_share_their_solved_films(monkeypatch: pytest.MonkeyPatch) -> None:
+    tables = []
+
+    def compute(*_: object) -> Part:
+        tables.append(tabled_film._shared.get())
+        return Part({}, [""], [""])
+
+    monkeypatch.setitem(KINDS, "summary", replace(KINDS["summary"], compute=compute))
+    study = read_study(_STUDY)
+    for speed in (100.0, 110.0):
+        Job("summary", study.case, (), {"operation.speed": [speed]}).compute()
+    assert tables[0] is not None
+    assert tables[0] is tables[1]
+    with tabled_film.shared_films():
+        assert tabled_film._shared.get() not in (None, tables[0])

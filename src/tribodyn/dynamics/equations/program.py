@@ -90,6 +90,10 @@ def compile_on(system: System, grid: Grid) -> tuple[Nodes, Program]:
     return nodes, build_program(system, grid, nodes)
 
 
+#: Steps whose rows are written at a time, so that they stay in the memory near a core.
+_BLOCK = 256
+
+
 class _Terms:
     """Collects factors and the slots that they multiply, in reading order."""
 
@@ -121,11 +125,12 @@ class _Terms:
 
     def rows(self) -> Array:
         """All factors of a row side by side."""
-        rows = np.zeros((*self.shape, max(len(self.factors), 1)))
+        rows = np.empty((*self.shape, max(len(self.factors), 1)))
         wide = [np.broadcast_to(values, self.shape) for values in self.factors]
-        for lead in np.ndindex(self.shape[:-2]):  # which keeps the rows of one system in the cache
+        for *lead, first in np.ndindex(*self.shape[:-2], -(-self.shape[-2] // _BLOCK)):
+            block = (*lead, slice(first * _BLOCK, (first + 1) * _BLOCK))
             for item, values in enumerate(wide):
-                rows[lead][..., item] = values[lead]
+                rows[block][..., item] = values[block]
         return rows.reshape(*self.shape[:-2], -1)
 
 

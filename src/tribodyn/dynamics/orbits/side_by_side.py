@@ -36,6 +36,9 @@ from tribodyn.errors import InputError, collected
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
+#: Steps of all systems that are marched side by side: rows of more are far from the core.
+_STEPS = 16384
+
 
 def orbits_in_touch(
     systems: Sequence[System], mesh_frequency: Array, steps: int
@@ -46,7 +49,9 @@ def orbits_in_touch(
     for number, system in enumerate(systems):
         if (key := _structure(system)) is not None:
             groups.setdefault(key, []).append(number)
-    for numbers in groups.values():
+    size = max(1, _STEPS // steps)
+    parts = (g[first : first + size] for g in groups.values() for first in range(0, len(g), size))
+    for numbers in parts:
         with collected() as told:
             try:
                 group = _Group([systems[i] for i in numbers], mesh_frequency[numbers], steps)

@@ -63,7 +63,8 @@ class FineSamples:
         array
             In the unit of the signal.
         """
-        return np.asarray(np.tensordot(self.weight, signal, axes=(0, 0)))
+        means = self.weight @ signal.reshape(len(signal), -1)
+        return np.asarray(means.reshape(signal.shape[1:]))
 
 
 def sample_extremes(signal: Array) -> tuple[Array, Array]:

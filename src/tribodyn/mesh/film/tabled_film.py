@@ -32,7 +32,7 @@ from tribodyn.mesh.film.film_refinement import (
     places_of,
 )
 from tribodyn.mesh.film.film_table import FilmTable
-from tribodyn.mesh.film.loaded_films import LoadedFilms
+from tribodyn.mesh.film.path_film import LoadedFilms
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import SILENT
 from tribodyn.types import Array, Index, Mask
@@ -71,12 +71,18 @@ class _Shared:
 
 
 _shared: ContextVar[_Shared | None] = ContextVar("shared_films", default=None)
+#: Tables of a process that computes one chunk of a study after the other.
+_lasting = _Shared()
 
 
 @contextmanager
-def shared_films() -> Iterator[None]:
-    """Let all meshes that are computed inside the block take their solved films from one table."""
-    token = _shared.set(_Shared())
+def shared_films(*, lasting: bool = False) -> Iterator[None]:
+    """Let all meshes that are computed inside the block take their solved films from one table.
+
+    A ``lasting`` one is that of all such blocks: a film depends on its contact alone, so that it
+    does not matter who made the table, and what for.
+    """
+    token = _shared.set(_lasting if lasting else _Shared())
     try:
         yield
     finally:

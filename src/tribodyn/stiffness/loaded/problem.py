@@ -122,12 +122,9 @@ def slice_widths(contact: PathOfContact, slices: int | None) -> Array:
     pair = contact.pair
     count = (_SLICES if pair.has_lead_modification else 1) if slices is None else slices
     if not 1 <= count <= _MOST_SLICES:
-        raise InputError(
-            f"slices = {count}",
-            where=Argument("slices"),
-            why=f"The face width is cut into 1 to {_MOST_SLICES} slices",
-            remedy="Leave it out: 21 are taken where flanks vary over the face width",
-        )
+        why = f"The face width is cut into 1 to {_MOST_SLICES} slices"
+        remedy = "Leave it out: 21 are taken where flanks vary over the face width"
+        raise InputError(f"slices = {count}", Argument("slices"), why, remedy)
     return np.full(count, pair.common_face_width / count)
 
 
@@ -318,7 +315,7 @@ class ContactProblem:
         Raises
         ------
         InputError
-            If they are of another shape.
+            If they are of another shape or not finite.
         ComputationError
             As :meth:`at_loads`.
         """
@@ -367,7 +364,7 @@ class ContactProblem:
         Raises
         ------
         InputError
-            If ``most`` is of another shape.
+            If ``most`` is of another shape or not finite.
         ComputationError
             As :meth:`at_loads`.
         """
@@ -384,6 +381,9 @@ class ContactProblem:
             why = f"It has {dimensions} dimensions, the last one the {count} phases"
             what, remedy = f"{name} has the shape {given.shape}", "Give a value for each phase"
             raise InputError(what, Argument(name), why, remedy)
+        if not np.isfinite(given).all():
+            what = f"{name} = {given[~np.isfinite(given)][0]:g} m"
+            raise InputError(what, Argument(name), "An approach is finite", "Correct the value")
         return given
 
     def _call(self, kernel: Any, solves: int, *arguments: Array) -> None:

@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from copy import copy
 from functools import cached_property
 from inspect import Signature
+from pathlib import Path
 from typing import Any, ClassVar
 
 from tribodyn.errors import InputError
+from tribodyn.model import Option
 from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.data import CaseData
@@ -67,6 +69,8 @@ class Case(CaseData, whole=True):
     """
 
     __signature__: ClassVar[Signature]
+    #: Once they were looked for: a case with other numbers names the same.
+    _files: dict[str, Path] | None = None
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         found = list(unsound(data))
@@ -170,10 +174,18 @@ class Case(CaseData, whole=True):
             vars(found)[table] = section
         if derive.case_problems(found):
             return None
+        found._files = self.files()
         found._effective, found._changed = self._effective | numbers, None
         found._given = self._given.with_numbers(changes)
         found._source = self._source.with_replaced(changes, "replace:")
         return found
+
+    def files(self) -> dict[str, Path]:
+        """Files that the case names, by dotted key."""
+        if self._files is None:
+            values = dict(self.values())
+            self._files = {key: Path(values[key]) for key in file_keys() if values.get(key)}
+        return self._files
 
     def _chosen_by(self, changes: Mapping[str, Any]) -> dict[str, str]:
         """Models, laws and methods that changes choose anew, by key; unknown names are left out."""
@@ -230,3 +242,16 @@ class Case(CaseData, whole=True):
 
 
 Case.__signature__ = signature_of(Case)
+
+
+def file_keys() -> list[str]:
+    """Dotted keys of a case that name files."""
+    files = [key for key, option in derive.options_of(Case, "") if option.kind == "file"]
+    for table, field in Case.fields.items():
+        known = field.kind.known().keys if isinstance(field, Table) else {}
+        files += [
+            f"{table}.{name}"
+            for name, option in known.items()
+            if isinstance(option, Option) and option.kind == "file"
+        ]
+    return files

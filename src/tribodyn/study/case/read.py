@@ -12,12 +12,9 @@ from typing import Any
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
-from tribodyn.model import Option
 from tribodyn.stored import read_bytes
-from tribodyn.study.case.case import Case
-from tribodyn.study.case.derive import options_of
+from tribodyn.study.case.case import Case, file_keys
 from tribodyn.study.case.given import Source
-from tribodyn.study.case.section import Table
 
 _SPACE = " \t\r"
 
@@ -162,12 +159,8 @@ def read_text(path: Path) -> str:
         raise InputError(what, f"{path}:{line}", why, "Save it as UTF-8") from None
     except OSError as error:
         reason = error.strerror or str(error)
-        raise InputError(
-            f"the file cannot be read: {reason}",
-            str(path),
-            why="A case is a text file in UTF-8",
-            remedy="Give the path of a case file",
-        ) from None
+        what, why = f"the file cannot be read: {reason}", "A case is a text file in UTF-8"
+        raise InputError(what, str(path), why, "Give the path of a case file") from None
 
 
 def read_case(text: str, name: str = "") -> Case:
@@ -204,24 +197,10 @@ Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
     return Case(Source(name or "case", partial(key_lines, text)), **data)
 
 
-def file_keys() -> list[str]:
-    """Dotted keys of a case that name files."""
-    files = [key for key, option in options_of(Case, "") if option.kind == "file"]
-    for table, field in Case.fields.items():
-        known = field.kind.known().keys if isinstance(field, Table) else {}
-        files += [
-            f"{table}.{name}"
-            for name, option in known.items()
-            if isinstance(option, Option) and option.kind == "file"
-        ]
-    return files
-
-
 @contextmanager
 def unchanged_files(case: Case) -> Iterator[None]:
     """Refuse what was computed while a file that the case names was replaced or deleted."""
-    values = dict(case.values())
-    files = {key: Path(values[key]) for key in file_keys() if values.get(key)}
+    files = case.files()
     before = {key: _state(path) for key, path in files.items()}
     yield
     why = "A part of what was computed may belong to the file before, a part to the one after"

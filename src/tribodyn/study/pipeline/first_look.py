@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,18 +10,18 @@ import numpy as np
 from tribodyn.errors import InputError, collected
 from tribodyn.study.case.derive import chosen_options
 from tribodyn.study.pipeline.tooth_contact import loaded_settings
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.gear import SpurPair
     from tribodyn.losses import GearboxLosses
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
 #: Elastic natural frequencies in a summary.
 _MODES = 12
-#: Phases of a mesh cycle over which the share of the gear bodies is averaged.
-_PHASES = 32
+#: Systems whose natural frequencies are kept.
+_KEPT = 256
 
 
 def operating_figures(case: Case) -> dict[str, float]:
@@ -101,6 +99,7 @@ def gearbox_figures(case: Case, lost: float) -> dict[str, float]:
 def standard_figures(case: Case) -> dict[str, float]:
     """``b c_gamma_alpha`` of ISO 6336-1, and what of the computed deflection the bodies make."""
     from tribodyn.stiffness import iso6336_mesh_stiffness, iso6336_single_stiffness
+    from tribodyn.stiffness.loaded.contact import body_share
 
     pair, force = case.gear_pair, case.pinion_torque / case.gear_pair.pinion.base_radius
     figures = {}
@@ -110,67 +109,59 @@ def standard_figures(case: Case) -> dict[str, float]:
         mean = iso6336_mesh_stiffness(single, pair.transverse_contact_ratio)
         figures["iso_mesh_stiffness"] = pair.common_face_width * mean
     if chosen_options(case, "stiffness").get("reference") == "bore":
-        figures["gear_body_share"] = _body_share(case, force)
+        torque = case.pinion_torque
+        figures["gear_body_share"] = body_share(case.gear_pair, torque, **loaded_settings(case))
     return figures
-
-
-def _body_share(case: Case, force: float) -> float:
-    from tribodyn.stiffness import MODELS
-
-    settings = loaded_settings(case)
-    options = tuple(sorted(settings.pop("options").items()))
-    given = case.gear_pair, tuple(settings.items()), options, force, MODELS.version
-    try:
-        hash(given)
-    except TypeError:  # an option is an array
-        return _share.__wrapped__(*given)
-    return _share(*given)
-
-
-@lru_cache(maxsize=256)
-def _share(pair: SpurPair, settings: Any, options: Any, force: float, _version: int) -> float:
-    from tribodyn.stiffness import loaded_contact
-
-    even: dict[str, Any] = {  # without what makes the teeth differ from each other
-        "run_out": 0.0,
-        "single_pitch_deviation": (),
-        "cumulative_pitch_deviation": (),
-    }
-    pinion, wheel = (
-        replace(gear, modification=replace(gear.modification, **even))
-        for gear in (pair.pinion, pair.wheel)
-    )
-    pair = replace(pair, pinion=pinion, wheel=wheel)
-    torque = force * pair.pinion.base_radius
-    with collected():
-        whole, teeth = (
-            loaded_contact(
-                pair,
-                torque,
-                phases=_PHASES,
-                **dict(settings),
-                options={**dict(options), "reference": reference},
-            ).deflection.mean()
-            for reference in ("bore", "rim")
-        )
-    return float(1.0 - teeth / whole)
 
 
 def mode_figures(system: System, mesh_frequency: float, speed: float) -> dict[str, float]:
     """Elastic natural frequencies, and where the mesh frequency meets that of the mesh."""
-    from tribodyn.dynamics import natural_modes
-
-    try:
-        modes = natural_modes(system)
-    except InputError:
-        return {}  # a structure that is not stable about its static load has none
-    elastic = modes.frequency[modes.rigid :]
+    elastic, own = _frequencies(system)
     figures = {f"natural_frequency_{k}": f for k, f in enumerate(elastic[:_MODES], 1)}
-    if elastic.size and modes.contacts:
-        own = float(modes.frequency[int(np.argmax(modes.contact_share))])
+    if own:
         figures |= {
             "mesh_natural_frequency": own,
             "resonance_speed": speed * own / mesh_frequency,
             "resonance_ratio": mesh_frequency / own,
         }
     return figures
+
+
+#: Elastic natural frequencies, and that of the mesh, of what is known of systems: the same at every
+#: speed, as friction does not count.
+_known_frequencies: dict[object, tuple[Array, float]] = {}
+
+
+def _frequencies(system: System) -> tuple[Array, float]:
+    """Elastic natural frequencies [Hz], and that of the mesh; none where it is not stable."""
+    from tribodyn.dynamics import natural_modes
+
+    key = _without_friction(system)
+    if (known := _known_frequencies.get(key)) is not None:
+        return known
+    try:
+        modes = natural_modes(system)
+    except InputError:
+        return np.zeros(0), 0.0  # a structure that is not stable about its static load has none
+    elastic, own = modes.frequency[modes.rigid :], 0.0
+    if elastic.size and modes.contacts:
+        own = float(modes.frequency[int(np.argmax(modes.contact_share))])
+    if key is not None:
+        if len(_known_frequencies) >= _KEPT:
+            _known_frequencies.clear()
+        _known_frequencies[key] = elastic, own
+    return elastic, own
+
+
+def _without_friction(system: System) -> object:
+    """All that natural modes of one closed contact depend on, in bytes; None of other systems."""
+    from tribodyn.mesh.grid import PhaseFunction
+
+    if len(system.contacts) != 1 or system.frictions:
+        return None
+    direction, stiffness = system.contacts[0].direction, system.contacts[0].stiffness
+    if callable(direction) or not isinstance(stiffness, PhaseFunction):
+        return None
+    parts = system.mass, system.stiffness, direction, stiffness.values
+    grid = stiffness.grid.event_phases, stiffness.grid.intervals
+    return grid, *(np.asarray(part).tobytes() for part in parts)

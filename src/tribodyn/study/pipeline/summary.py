@@ -333,13 +333,17 @@ def _support_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
         "bearing_damping_pinion": result.damping.bearing_pinion,
         "bearing_damping_wheel": result.damping.bearing_wheel,
     }
+    columns = {
+        f"{direction}_{gear}": column(gear, letter)
+        for gear in _GEARS
+        for direction, (letter, _) in directions_of(names).items()
+    }
     for kind, signals in (("bearing_force", forces), ("acceleration", samples.acceleration)):
-        for gear in _GEARS:
-            for direction, (letter, _) in directions_of(names).items():
-                signal = signals[:, column(gear, letter)]
-                figures[f"rms_{kind}_{direction}_{gear}"] = alternating_rms(samples, signal)
-                if "pinion_z" in names and kind == "bearing_force":
-                    figures[f"mean_{kind}_{direction}_{gear}"] = mean(samples, signal)
+        rms, means = alternating_rms(samples, signals), mean(samples, signals)
+        for place, number in columns.items():
+            figures[f"rms_{kind}_{place}"] = rms[number]
+            if "pinion_z" in names and kind == "bearing_force":
+                figures[f"mean_{kind}_{place}"] = means[number]
     if "pinion_z" in names:
         return figures
     along, across = (forces[:, column("pinion", letter)] for letter in "yx")

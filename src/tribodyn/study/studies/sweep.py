@@ -157,7 +157,7 @@ def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[
 
 
 #: Points at most whose motions are found side by side, and groups of them for each processor.
-_TOGETHER, _GROUPS = 16, 4
+_TOGETHER, _GROUPS = 8, 4
 
 
 def _over_points(
