@@ -159,12 +159,8 @@ def read_text(path: Path) -> str:
         raise InputError(what, f"{path}:{line}", why, "Save it as UTF-8") from None
     except OSError as error:
         reason = error.strerror or str(error)
-        raise InputError(
-            f"the file cannot be read: {reason}",
-            str(path),
-            why="A case is a text file in UTF-8",
-            remedy="Give the path of a case file",
-        ) from None
+        what, why = f"the file cannot be read: {reason}", "A case is a text file in UTF-8"
+        raise InputError(what, str(path), why, "Give the path of a case file") from None
 
 
 def read_case(text: str, name: str = "") -> Case:
