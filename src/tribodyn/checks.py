@@ -45,12 +45,9 @@ def one_or_more(**quantities: ArrayLike) -> list[Array]:
     lists = [np.atleast_1d(positive(**{name: value})[0]) for name, value in quantities.items()]
     for name, values in zip(quantities, lists, strict=True):
         if values.ndim != 1 or values.size == 0:
-            raise InputError(
-                f"{name} has the shape {values.shape}",
-                where=Argument(name),
-                why="It is one value or a list of values",
-                remedy="Give each value once; several quantities are combined, each with each",
-            )
+            what = f"{name} has the shape {values.shape}"
+            remedy = "Give each value once; several quantities are combined, each with each"
+            raise InputError(what, Argument(name), "It is one value or a list of values", remedy)
     return lists
 
 

@@ -327,11 +327,9 @@ def draw(result: Any, name: str = "", *arguments: Any, **options: Any) -> Any:
             figure = FIGURES[each]
             if isinstance(figure, Drawing) and kind in figure.of:
                 return figure(result, *arguments, **options)
-    raise InputError(
-        f"no figure draws a {kinds[0]}",
-        why="Figures say which classes they draw when they register",
-        remedy=f'Register one with @drawing(..., of="{kinds[0]}")',
-    )
+    what = f"no figure draws a {kinds[0]}"
+    why = "Figures say which classes they draw when they register"
+    raise InputError(what, why=why, remedy=f'Register one with @drawing(..., of="{kinds[0]}")')
 
 
 #: Takes a result and a path, writes the file and returns its path; by the name of the class.
@@ -355,8 +353,6 @@ def write_report_of(result: Any, path: Path) -> Path:
     for kind in kinds:
         if kind in REPORTS:
             return REPORTS[kind](result, path)
-    raise InputError(
-        f"no report tells of a {kinds[0]}",
-        why="Reports say which class they tell of when they register",
-        remedy=f'Register one with @report_of("{kinds[0]}")',
-    )
+    what = f"no report tells of a {kinds[0]}"
+    why = "Reports say which class they tell of when they register"
+    raise InputError(what, why=why, remedy=f'Register one with @report_of("{kinds[0]}")')

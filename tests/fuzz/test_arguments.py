@@ -189,6 +189,17 @@ def test_what_a_function_stumbles_over_is_told_with_its_cause():
         checked(broken)()
 
 
+def test_what_the_package_itself_calls_is_not_read_again_but_what_its_user_calls_is():
+    film = checked(documented_film)
+    inside: dict[str, Any] = {"__name__": "tribodyn.somewhere", "film": film}
+    exec(
+        "def call(value): return film(value, 2.0)\ndef back(function): return function(1j)", inside
+    )
+    assert inside["call"](1j) == 2j  # the package answers for what it computes
+    with pytest.raises(InputError, match="load_per_width"):
+        inside["back"](lambda value: film(value, 2.0))  # a function that the user gave
+
+
 def test_what_a_given_function_raises_is_told_with_its_place():
     def calls(function: Callable[[float], float]) -> float:
         return function(1.0)

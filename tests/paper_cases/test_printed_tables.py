@@ -7,8 +7,16 @@ import pytest
 from tribodyn.cases import cases, compare_with_paper
 from tribodyn.cases.papers.computations import COMPUTATIONS
 from tribodyn.cases.papers.jobs import Jobs
-from tribodyn.cases.papers.printed import NEITHER, VERDICTS, PrintedRow, papers, printed_rows
-from tribodyn.cases.papers.verdict import course, signs, verdicts
+from tribodyn.cases.papers.printed import (
+    NEITHER,
+    VERDICTS,
+    PrintedRow,
+    course,
+    papers,
+    printed_rows,
+    signs,
+    verdicts,
+)
 
 
 @pytest.mark.parametrize("paper", papers())

@@ -3,7 +3,8 @@
 A page of public names ends with :func:`guard`. Its functions, constructors and methods then refuse
 values of another kind than they are annotated with: texts, truth values, complex numbers, numbers
 that are NaN. What passes is computed as ever; whatever a function still stumbles over is told as an
-error of the package, with the argument at fault where one can be named.
+error of the package, with the argument at fault where one can be named. What the package itself
+calls goes past all this: it stands between the package and its user.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ _PACKAGES = re.compile(r"[/\\](site|dist)-packages[/\\]")
 #: Parameters of functions that leave files behind.
 _WRITES = {"path", "directory", "folder", "place", "force"}
 _REFUSED = (TypeError, ValueError, OverflowError)
+#: Modules of the package, among those that call what is guarded.
+_INSIDE = f"{__name__.partition('.')[0]}."
 
 
 class _Names(dict[str, Any]):
@@ -203,11 +206,16 @@ class _Reader:
 
 
 def checked(function: Callable[..., Any], owner: type | None = None) -> Callable[..., Any]:
-    """Have a function, or a method of the class ``owner``, read its arguments."""
+    """Have a function, or a method of the class ``owner``, read its arguments.
+
+    What the package itself calls has been read where the user called the package.
+    """
     made: list[_Reader] = []
 
     @functools.wraps(function)
     def reading_arguments(*args: Any, **named: Any) -> Any:
+        if sys._getframe(1).f_globals.get("__name__", "").startswith(_INSIDE):
+            return function(*args, **named)
         if not made:
             made.append(_Reader(function, owner))
         reader = made[0]

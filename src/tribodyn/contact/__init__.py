@@ -4,13 +4,17 @@
 | --- | --- |
 | `path` | where on the line of action tooth pairs are, and how their flanks move there |
 | `separation` | how far teeth are apart before and after the path of contact |
-| `hertz` | half width and pressure of a line contact |
-| `ellipse` | half axes, pressure and approach of an elliptical contact |
+| `hertz` | half width and pressure of a line contact, half axes of an elliptical one |
 """
 
 from tribodyn.arguments import guard
-from tribodyn.contact.ellipse import HertzEllipse, hertz_ellipse
-from tribodyn.contact.hertz import HertzLine, effective_modulus, hertz_line
+from tribodyn.contact.hertz import (
+    HertzEllipse,
+    HertzLine,
+    effective_modulus,
+    hertz_ellipse,
+    hertz_line,
+)
 from tribodyn.contact.path import (
     Kinematics,
     PathOfContact,

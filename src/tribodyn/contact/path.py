@@ -186,12 +186,8 @@ class PathOfContact:
         elif side == "left":
             turned = turned - np.ceil(turned) + 1.0
         else:
-            raise InputError(
-                f'side = "{side}"',
-                where=Argument("side"),
-                why='an event has two sides: "left" and "right"',
-                remedy='Write "left" or "right"',
-            )
+            why = 'an event has two sides: "left" and "right"'
+            raise InputError(f'side = "{side}"', Argument("side"), why, 'Write "left" or "right"')
         travelled = turned[:, None] + np.arange(self.pairs)
         limit = self.contact_ratio + (_ROUNDING if side == "left" else -_ROUNDING)
         path = self.A + self.direction * travelled * self.pair.base_pitch
@@ -221,12 +217,8 @@ class PathOfContact:
         offset = np.asarray(path, dtype=float) - self.C
         sides = {None: 0.0, "left": -1.0, "right": 1.0}
         if side not in sides:
-            raise InputError(
-                f'side = "{side}"',
-                where=Argument("side"),
-                why='the pitch point has two sides: "left" and "right"',
-                remedy='Write "left", "right" or leave it out',
-            )
+            what, why = f'side = "{side}"', 'the pitch point has two sides: "left" and "right"'
+            raise InputError(what, Argument("side"), why, 'Write "left", "right" or leave it out')
         at_pitch_point = np.abs(offset) <= _ROUNDING * self.pair.base_pitch
         return np.where(at_pitch_point, self.direction * sides[side], np.sign(offset))
 
@@ -409,11 +401,9 @@ def gear_loss_factor(pair: SpurPair, share: Callable[[Array], Array] | None = No
     path = contact.A + contact.direction * travel * pair.base_pitch
     values = equal_share(contact, path) if share is None else np.asarray(share(path), dtype=float)
     if not np.all(np.isfinite(values)):
-        raise ComputationError(
-            "the load share is not finite on the path of contact",
-            where=Argument("share"),
-            remedy="Return a finite share for every path between A and E",
-            why="Film and friction of a pair are computed under its share of the load",
-        )
+        what = "the load share is not finite on the path of contact"
+        why = "Film and friction of a pair are computed under its share of the load"
+        remedy = "Return a finite share for every path between A and E"
+        raise ComputationError(what, Argument("share"), why, remedy)
     motion = contact.kinematics(path, 1.0)
     return float(weight @ (values * np.abs(motion.sliding_speed))) / pair.pinion.base_radius

@@ -19,11 +19,11 @@ from __future__ import annotations
 from tribodyn.arguments import guard
 from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.ehl.formulas.dimensionless_groups import Groups, line_contact_groups
-from tribodyn.ehl.formulas.elliptical import hamrock_dowson_minimum
 from tribodyn.ehl.formulas.moes import moes_central, moes_dimensionless_central
 from tribodyn.ehl.formulas.power_laws import (
     dowson_1968_minimum,
     dowson_toyoda_central,
+    hamrock_dowson_minimum,
     pan_hamrock_central,
     pan_hamrock_minimum,
 )
@@ -34,15 +34,15 @@ from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.steady.batch import LineContactBatch, solve_line_contacts
 from tribodyn.ehl.steady.line_contact import solve_line_contact, solve_line_contact_moes
 from tribodyn.ehl.steady.solution import LineContactSolution
-from tribodyn.ehl.traction import carreau_eyring  # noqa: F401  (a shear model by name alone)
-from tribodyn.ehl.traction.bair_winer import bair_winer_shear_stress
-from tribodyn.ehl.traction.carreau import carreau_shear_stress
 from tribodyn.ehl.traction.film_state import FilmState
-from tribodyn.ehl.traction.film_temperature import blok_flash_temperature
-from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.traction.newtonian import newtonian_shear_stress
-from tribodyn.ehl.traction.ree_eyring import ree_eyring_shear_stress
-from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
+from tribodyn.ehl.traction.film_temperature import blok_flash_temperature, inlet_heating_factor
+from tribodyn.ehl.traction.shear_models import (
+    SHEAR_MODELS,
+    bair_winer_shear_stress,
+    carreau_shear_stress,
+    newtonian_shear_stress,
+    ree_eyring_shear_stress,
+)
 from tribodyn.ehl.traction.traction import Traction, film_traction
 from tribodyn.ehl.transient.transient import TransientLineContact, solve_transient_line_contact
 

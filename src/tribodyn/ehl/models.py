@@ -173,25 +173,16 @@ class FilmModel(Model):
         problems = [self._unknown(name) for name in given if name not in self.options]
         kind = given.get("stiffness", self.options["stiffness"])
         if kind not in self.stiffness_kinds:
-            problems.append(
-                Problem(
-                    what=f'stiffness = "{kind}"',
-                    where=f'film model "{self.name}"',
-                    why=self.why_not(kind),
-                    remedy='Choose one of these, or the film model "newton"',
-                )
-            )
+            what = f'stiffness = "{kind}"'
+            remedy = 'Choose one of these, or the film model "newton"'
+            problems.append(Problem(what, f'film model "{self.name}"', self.why_not(kind), remedy))
         if problems:
             raise InputError(problems)
         return {**self.options, **given}
 
     def _unknown(self, name: str) -> Problem:
-        return Problem(
-            what=f'there is no option "{name}"',
-            where=f'film model "{self.name}"',
-            why=f"Its options are: {', '.join(self.options)}",
-            remedy=self.nearest(name) or "Remove it",
-        )
+        what, why = f'there is no option "{name}"', f"Its options are: {', '.join(self.options)}"
+        return Problem(what, f'film model "{self.name}"', why, self.nearest(name) or "Remove it")
 
     def films(
         self,

@@ -71,20 +71,15 @@ class RoughnessProfile:
         object.__setattr__(self, "height", height)
         require_one_of("beyond", self.beyond, BEYOND)
         if height.size < 8 or position.size != height.size:
-            raise InputError(
-                f"{height.size} heights and {position.size} positions",
-                where="argument height",
-                why="a profile needs at least 8 heights, each with its position",
-                remedy="Measure more points, and give one position for each height",
-            )
+            what = f"{height.size} heights and {position.size} positions"
+            why = "a profile needs at least 8 heights, each with its position"
+            remedy = "Measure more points, and give one position for each height"
+            raise InputError(what, "argument height", why, remedy)
         bad = np.flatnonzero(~np.isfinite(height))
         if bad.size:
-            raise InputError(
-                f"height[{bad[0]}] = {height[bad[0]]}",
-                where="argument height",
-                why="every height must be a finite number of metres",
-                remedy="Cut out the points that the instrument could not measure",
-            )
+            why = "every height must be a finite number of metres"
+            remedy = "Cut out the points that the instrument could not measure"
+            raise InputError(f"height[{bad[0]}] = {height[bad[0]]}", "argument height", why, remedy)
         steps = np.diff(position)
         spacing = (position[-1] - position[0]) / (position.size - 1)
         if not spacing > 0.0 or np.max(np.abs(steps - spacing)) > 1e-3 * spacing:
@@ -343,12 +338,8 @@ class RoughnessProfile:
 def _fault(path: str | PathLike[str], line: int, what: str) -> InputError:
     place = f"{Path(path).name}, line {line}" if line else Path(path).name
     why = "A profile has the columns position and height, their units below, for example mm,um"
-    return InputError(
-        f"{what} ({place})",
-        Argument("roughness_profile"),
-        why,
-        remedy="Give a profile, or the path of a file with the columns position and height",
-    )
+    remedy = "Give a profile, or the path of a file with the columns position and height"
+    return InputError(f"{what} ({place})", Argument("roughness_profile"), why, remedy)
 
 
 #: Grid points that a wavelength needs, and the share of the mean square that may lie below.

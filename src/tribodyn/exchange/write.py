@@ -67,12 +67,9 @@ def write_rexs(case: Case, path: str | PathLike[str], *, force: bool = False) ->
     target = Path(path)
     writer = _WRITERS.get(target.suffix.lower())
     if writer is None:
-        raise InputError(
-            f'the name ends in "{target.suffix}"',
-            str(path),
-            "The ending says how the model is written",
-            f"Let it end in {', '.join(_WRITERS)}",
-        )
+        why = "The ending says how the model is written"
+        remedy = f"Let it end in {', '.join(_WRITERS)}"
+        raise InputError(f'the name ends in "{target.suffix}"', str(path), why, remedy)
     if case.gears.kind != "spur":
         what = f'gears of the kind "{case.gears.kind}" are no cylindrical stage'
         raise InputError(what, "gears.kind", "", "Write a case of spur gears")

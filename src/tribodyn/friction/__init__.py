@@ -1,16 +1,16 @@
-"""Friction coefficients of the tooth contact: one law per file, picked by name from ``LAWS``.
+"""Friction coefficients of the tooth contact: laws picked by name from ``LAWS``.
 
 | module | what it answers |
 | --- | --- |
-| `base` | what a law is given and what a law is |
+| `base` | what a law is given and what a law is, and the warning of its range |
 | `constant` | no friction, or the same everywhere |
-| `benedict_kelly`, `drozdov`, `misharin`, `odonoghue_cameron` | friction of discs, by formula |
+| `benedict_kelly` | friction of discs, by formula |
+| `discs` | the same: Misharin, Drozdov and Gavrikov, O'Donoghue and Cameron |
 | `xu`, `ehl` | friction of an oil film, by regression or from the solved film |
 | `mixed_ehl`, `matsumoto` | film and asperities share the load, by a fit |
 | `mixed` | film and asperities share the load, by the gap at which both carry it |
 | `exponential` | sliding and roughness, with numbers to be fitted |
 | `mesh_means` | one mean value for a whole mesh: Schlenk, ISO, Niemann, measured points |
-| `validity` | the warning of quantities out of the range of a law |
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tribodyn.friction.base import (
 )
 from tribodyn.friction.benedict_kelly import benedict_kelly
 from tribodyn.friction.constant import constant, none
-from tribodyn.friction.drozdov import drozdov
+from tribodyn.friction.discs import drozdov, misharin, odonoghue_cameron
 from tribodyn.friction.ehl import ehl
 from tribodyn.friction.exponential import exponential
 from tribodyn.friction.matsumoto import matsumoto
@@ -35,10 +35,8 @@ from tribodyn.friction.mesh_means.measured import measured
 from tribodyn.friction.mesh_means.niemann import niemann
 from tribodyn.friction.mesh_means.pitch_point import PitchPoint, pitch_point
 from tribodyn.friction.mesh_means.schlenk import schlenk
-from tribodyn.friction.misharin import misharin
 from tribodyn.friction.mixed import mixed, mixed_solved
 from tribodyn.friction.mixed_ehl import mixed_ehl
-from tribodyn.friction.odonoghue_cameron import odonoghue_cameron
 from tribodyn.friction.xu import xu_2007
 
 __all__ = [

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
-from tribodyn.errors import InputError, Problem, require_between, require_positive, shortened
+from tribodyn.errors import InputError, Problem, require_between, require_positive, shortened, warn
 from tribodyn.model import Model, Registry
 from tribodyn.types import Array
 
@@ -107,12 +107,8 @@ class TribologicalContact:
         shapes = {name: np.shape(getattr(self, name)) for name in names}
         if len(set(shapes.values())) > 1:
             listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
-            raise InputError(
-                f"shapes differ: {listed}",
-                where="TribologicalContact",
-                why="element i of every array belongs to contact i",
-                remedy="Broadcast the arrays first",
-            )
+            what, why = f"shapes differ: {listed}", "element i of every array belongs to contact i"
+            raise InputError(what, "TribologicalContact", why, "Broadcast the arrays first")
         if self.size == 0:
             raise InputError(
                 "no contact", "TribologicalContact", "All arrays are empty", "Give one"
@@ -128,12 +124,10 @@ class TribologicalContact:
             require_between(name, getattr(self, name), 0.0, np.inf, "m")
         self._require_consistent_sliding()
         if self.film is not None and self.film.size != self.size:
-            raise InputError(
-                f"{self.film.size} films for {self.size} contacts",
-                where="TribologicalContact",
-                why="film i belongs to contact i, in flat order",
-                remedy="Give the index of the film of each contact",
-            )
+            what = f"{self.film.size} films for {self.size} contacts"
+            why = "film i belongs to contact i, in flat order"
+            remedy = "Give the index of the film of each contact"
+            raise InputError(what, "TribologicalContact", why, remedy)
 
     def _require_consistent_sliding(self) -> None:
         """Refuse a slide-to-roll ratio that was formed with the sum of the speeds, say."""
@@ -193,12 +187,8 @@ class TribologicalContact:
         value = getattr(self, name)
         if value is not None:
             return value
-        raise InputError(
-            f"{name} is not known",
-            where="TribologicalContact",
-            why="The friction law needs it",
-            remedy=_REMEDIES[name],
-        )
+        what = f"{name} is not known"
+        raise InputError(what, "TribologicalContact", "The friction law needs it", _REMEDIES[name])
 
 
 #: Where the fields come from that not every law needs.
@@ -341,12 +331,9 @@ class FrictionLaw(Model):
         {'coefficient': 0.05}
         """
         if not isinstance(options, Mapping):
-            raise InputError(
-                f"options = {shortened(repr(options))}",
-                where=f'friction law "{self.name}"',
-                why="They are names with values",
-                remedy=f"Known here: {', '.join(self.options) or 'none'}",
-            )
+            what, why = f"options = {shortened(repr(options))}", "They are names with values"
+            remedy = f"Known here: {', '.join(self.options) or 'none'}"
+            raise InputError(what, f'friction law "{self.name}"', why, remedy)
         problems = [self._unknown(name) for name in options if name not in self.options]
         complete = {**self.options, **options}
         problems += [
@@ -375,3 +362,36 @@ class FrictionLaw(Model):
 
 #: The friction laws by name, open to third parties through the entry points of this group.
 LAWS: Registry[FrictionLaw] = Registry("friction law", "tribodyn.friction", FrictionLaw)
+
+
+class Range(NamedTuple):
+    """A quantity with the range in which a law was fitted."""
+
+    name: str  #: name of the quantity
+    value: Array  #: value in any unit, named below
+    low: float
+    high: float
+    unit: str = ""  #: unit of value and limits
+
+
+def warn_outside(law: str, ranges: Iterable[Range], remedy: str) -> None:
+    """Warn once, naming every quantity outside of its range with all that it runs through."""
+    faults = [_told(quantity) for quantity in ranges if _leaves(quantity)]
+    if faults:
+        warn("friction-range", f"{law}: {'; '.join(faults)}. {remedy}", stacklevel=3)
+
+
+def _leaves(quantity: Range) -> bool:
+    low, high = float(np.min(quantity.value)), float(np.max(quantity.value))
+    return not quantity.low <= low <= high <= quantity.high
+
+
+def _told(quantity: Range) -> str:
+    """Write the whole range of a quantity and the one of the law."""
+    low, high = f"{np.min(quantity.value):.4g}", f"{np.max(quantity.value):.4g}"
+    values = low if low == high else f"{low} to {high}"
+    limits = f"{quantity.low:g} to {quantity.high:g}"
+    if quantity.high == np.inf:
+        limits = f"{quantity.low:g} or more"
+    unit = f" {quantity.unit}" if quantity.unit else ""
+    return f"{quantity.name} {values}{unit}, fitted for {limits}{unit}"

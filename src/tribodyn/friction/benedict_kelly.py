@@ -118,12 +118,9 @@ def _roughness_factor(roughness: ArrayLike) -> Array:
     micrometres = np.asarray(roughness, dtype=float) * 1e6
     roughest = float(np.max(micrometres))
     if roughest >= _LIMIT:
-        raise InputError(
-            f"roughness = {roughest:.4g} um",
-            where="argument roughness",
-            why=f"the Benedict-Kelly formula diverges at {_LIMIT:g} um",
-            remedy="Check the unit (m), or choose another friction law",
-        )
+        why = f"the Benedict-Kelly formula diverges at {_LIMIT:g} um"
+        remedy = "Check the unit (m), or choose another friction law"
+        raise InputError(f"roughness = {roughest:.4g} um", "argument roughness", why, remedy)
     factor = np.asarray(_LIMIT / (_LIMIT - micrometres))
     if roughest > _TRUSTED:
         warn(

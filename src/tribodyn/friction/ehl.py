@@ -6,16 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribodyn.ehl.traction.carreau import THINNING
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import (
     film_temperature_rise,
     film_thermal_resistance,
+    inlet_heating_factor,
     thermal_oil,
 )
-from tribodyn.ehl.traction.inlet_heating import inlet_heating_factor
-from tribodyn.ehl.traction.ree_eyring import EYRING, EYRING_STRESS
-from tribodyn.ehl.traction.shear_models import LIMIT, SHEAR_MODELS
+from tribodyn.ehl.traction.shear_models import EYRING, EYRING_STRESS, LIMIT, SHEAR_MODELS, THINNING
 from tribodyn.ehl.traction.traction import FilmShear
 from tribodyn.errors import warn
 from tribodyn.friction.base import LAWS, TribologicalContact

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive
-from tribodyn.friction.base import LAWS, TribologicalContact
-from tribodyn.friction.validity import Range, warn_outside
+from tribodyn.friction.base import LAWS, Range, TribologicalContact, warn_outside
 from tribodyn.model import number
 from tribodyn.types import Array
 

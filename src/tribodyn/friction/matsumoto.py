@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive
-from tribodyn.friction.base import LAWS, FrictionParts, TribologicalContact
+from tribodyn.friction.base import LAWS, FrictionParts, Range, TribologicalContact, warn_outside
 from tribodyn.friction.mixed_ehl import BOUNDARY, FILM, friction_of_film
-from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.model import number
 from tribodyn.types import Array
 

@@ -7,8 +7,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.ehl import film_load_share
 from tribodyn.errors import require_between
-from tribodyn.friction.base import LAWS, FrictionParts, TribologicalContact
-from tribodyn.friction.validity import Range, warn_outside
+from tribodyn.friction.base import LAWS, FrictionParts, Range, TribologicalContact, warn_outside
 from tribodyn.friction.xu import xu_2007
 from tribodyn.model import number
 from tribodyn.types import Array

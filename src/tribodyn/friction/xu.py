@@ -7,8 +7,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import positive
 from tribodyn.errors import InputError, require_between
-from tribodyn.friction.base import LAWS, TribologicalContact
-from tribodyn.friction.validity import Range, warn_outside
+from tribodyn.friction.base import LAWS, Range, TribologicalContact, warn_outside
 from tribodyn.types import Array
 
 #: Constants b1 to b9 of the regression.

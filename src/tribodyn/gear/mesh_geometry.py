@@ -98,12 +98,10 @@ def zero_backlash_center_distance(
     value = involute(angle) + 2.0 * shift_sum * math.tan(angle) / teeth_sum
     if value < 0.0:
         least = -involute(angle) * teeth_sum / (2.0 * math.tan(angle))
-        raise InputError(
-            f"sum of the profile shift coefficients = {shift_sum:.6g}",
-            where=Argument("profile_shift_coefficient"),
-            why=f"No centre distance without play exists below a sum of {least:.6g}",
-            remedy="Increase a shift, or give the centre distance",
-        )
+        what = f"sum of the profile shift coefficients = {shift_sum:.6g}"
+        why = f"No centre distance without play exists below a sum of {least:.6g}"
+        remedy = "Increase a shift, or give the centre distance"
+        raise InputError(what, Argument("profile_shift_coefficient"), why, remedy)
     reference = 0.5 * teeth_sum * normal_module
     return reference * math.cos(angle) / math.cos(inverse_involute(value))
 

@@ -106,14 +106,10 @@ def shape_problems(gear: GearData) -> list[Problem]:
     """Find the faults that make a gear impossible."""
     problems = [*_tip_problems(gear), *_waist_problems(gear)]
     if gear.bore_diameter >= 2.0 * gear.root_radius:
-        problems.append(
-            Problem(
-                what=f"bore diameter {gear.bore_diameter * 1e3:.6g} mm",
-                where=Argument("bore_diameter"),
-                why=f"The root circle has {2e3 * gear.root_radius:.6g} mm",
-                remedy="Reduce the bore below the root diameter",
-            )
-        )
+        what = f"bore diameter {gear.bore_diameter * 1e3:.6g} mm"
+        why = f"The root circle has {2e3 * gear.root_radius:.6g} mm"
+        remedy = "Reduce the bore below the root diameter"
+        problems.append(Problem(what, Argument("bore_diameter"), why, remedy))
     return problems
 
 
@@ -142,14 +138,10 @@ def _waist_problems(form: ToothForm) -> list[Problem]:
     along = np.linspace(form.form_normal_angle, math.pi / 2.0, 129)
     if float(form.trochoid.half_tooth_angle(along).min()) > 0.0:
         return []
-    return [
-        Problem(
-            what=f"profile_shift_coefficient = {form.profile_shift_coefficient:.6g}",
-            where=Argument("profile_shift_coefficient"),
-            why=f"The undercut of a gear of {form.teeth} teeth meets in the middle of the tooth",
-            remedy="Shift the gear outwards or use more teeth",
-        )
-    ]
+    what = f"profile_shift_coefficient = {form.profile_shift_coefficient:.6g}"
+    why = f"The undercut of a gear of {form.teeth} teeth meets in the middle of the tooth"
+    remedy = "Shift the gear outwards or use more teeth"
+    return [Problem(what, Argument("profile_shift_coefficient"), why, remedy)]
 
 
 def _warn_of_limits(form: ToothForm) -> None:

@@ -150,14 +150,10 @@ def match_problems(pinion: ToothForm, wheel: ToothForm, driver: str) -> list[Pro
     """Find what makes two gears no pair at all."""
     problems = []
     if pinion.teeth > wheel.teeth:
-        problems.append(
-            Problem(
-                what=f"the pinion has {pinion.teeth} teeth, the wheel {wheel.teeth}",
-                where=Argument("teeth", "pinion"),
-                why="The pinion is the gear with fewer teeth, whichever drives",
-                remedy='Exchange the two gears and set driver to "wheel" if the larger one drives',
-            )
-        )
+        what = f"the pinion has {pinion.teeth} teeth, the wheel {wheel.teeth}"
+        why = "The pinion is the gear with fewer teeth, whichever drives"
+        remedy = 'Exchange the two gears and set driver to "wheel" if the larger one drives'
+        problems.append(Problem(what, Argument("teeth", "pinion"), why, remedy))
     for name, unit, factor in (
         ("normal_module", "mm", 1e3),
         ("normal_pressure_angle", "deg", math.degrees(1.0)),
@@ -174,14 +170,8 @@ def match_problems(pinion: ToothForm, wheel: ToothForm, driver: str) -> list[Pro
                 )
             )
     if driver not in ("pinion", "wheel"):
-        problems.append(
-            Problem(
-                what=f'driver = "{driver}"',
-                where=Argument("driver"),
-                why='One of the two gears drives: "pinion" or "wheel"',
-                remedy='Write "pinion" or "wheel"',
-            )
-        )
+        what, why = f'driver = "{driver}"', 'One of the two gears drives: "pinion" or "wheel"'
+        problems.append(Problem(what, Argument("driver"), why, 'Write "pinion" or "wheel"'))
     return problems
 
 
@@ -246,13 +236,9 @@ def _contact_ratio(mesh: MeshGeometry) -> list[Problem]:
     ratio = mesh.transverse_contact_ratio
     if ratio >= 1.0:
         return []
-    return [
-        Problem(
-            what=f"transverse contact ratio {ratio:.6g}",
-            why="Below 1 the contact is lost between two tooth pairs",
-            remedy="Increase the tip diameters or reduce the centre distance",
-        )
-    ]
+    what = f"transverse contact ratio {ratio:.6g}"
+    remedy = "Increase the tip diameters or reduce the centre distance"
+    return [Problem(what, why="Below 1 the contact is lost between two tooth pairs", remedy=remedy)]
 
 
 def fitting_center_distance(mesh: MeshGeometry) -> float | None:

@@ -123,14 +123,10 @@ class BasicRack:
         """
         if self.tip_half_width_coefficient(pressure_angle) <= 0.0:
             limit = math.pi / 4.0 / math.tan(pressure_angle)
-            return [
-                Problem(
-                    what=f"dedendum_coefficient = {self.dedendum_coefficient:.6g}",
-                    where=Argument("rack"),
-                    why=f"The flanks of the rack meet at a depth of {limit:.6g} modules",
-                    remedy="Reduce the dedendum or the pressure angle",
-                )
-            ]
+            what = f"dedendum_coefficient = {self.dedendum_coefficient:.6g}"
+            why = f"The flanks of the rack meet at a depth of {limit:.6g} modules"
+            remedy = "Reduce the dedendum or the pressure angle"
+            return [Problem(what, Argument("rack"), why, remedy)]
         height = self.fitting_tip_radius_coefficient(pressure_angle) * (
             1.0 - math.sin(pressure_angle)
         )
@@ -178,14 +174,8 @@ def _teeth_problems(teeth: int) -> list[Problem]:
     problems = range_problems("teeth", teeth, 5, 500, unit=PURE)
     if problems or teeth == int(teeth):
         return problems
-    return [
-        Problem(
-            what=f"teeth = {teeth:g}",
-            where=Argument("teeth"),
-            why="A gear has a whole number of teeth",
-            remedy=f"Use {math.floor(teeth + 0.5)}",
-        )
-    ]
+    why = "A gear has a whole number of teeth"
+    return [Problem(f"teeth = {teeth:g}", Argument("teeth"), why, f"Use {math.floor(teeth + 0.5)}")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -349,12 +339,9 @@ class ToothForm:
         """
         base = self.base_radius
         if not radius >= base * (1.0 - 1e-12):
-            raise InputError(
-                f"radius = {radius * 1e3:.6g} mm",
-                where=Argument("radius"),
-                why=f"The involute begins at the base radius {base * 1e3:.6g} mm",
-                remedy="Use half_tooth for points of the fillet",
-            )
+            why = f"The involute begins at the base radius {base * 1e3:.6g} mm"
+            remedy = "Use half_tooth for points of the fillet"
+            raise InputError(f"radius = {radius * 1e3:.6g} mm", Argument("radius"), why, remedy)
         return math.sqrt(max((radius - base) * (radius + base), 0.0)) / base
 
     def half_tooth_angle(self, radius: float) -> float:

@@ -2,10 +2,9 @@
 
 | module | what it answers |
 | --- | --- |
-| `gear_loss` | sliding work over transmitted work, by integration and by Ohlendorf |
 | `bearings` | frictional moment of rolling bearings by the model of SKF; bearings of an FZG rig |
 | `no_load` | radial shaft seals, churning in an oil bath, windage |
-| `gearbox` | all losses of a gear stage over torque and speed |
+| `gearbox` | gear loss factor; all losses of a gear stage over torque and speed |
 | `rig` | power flow of a back-to-back rig |
 | `loss_table` | measured torque losses, read from a file or printed in a paper |
 | `measured_loss` | friction coefficient and its uncertainty from measured torque losses |
@@ -13,8 +12,14 @@
 
 from tribodyn.arguments import guard
 from tribodyn.losses.bearings import BEARINGS, BearingMoments, RollingBearing, bearing_moments
-from tribodyn.losses.gear_loss import gear_loss_factor, ohlendorf_loss_factor
-from tribodyn.losses.gearbox import Gearbox, GearboxLosses, ShaftParts, gearbox_losses
+from tribodyn.losses.gearbox import (
+    Gearbox,
+    GearboxLosses,
+    ShaftParts,
+    gear_loss_factor,
+    gearbox_losses,
+    ohlendorf_loss_factor,
+)
 from tribodyn.losses.loss_table import PowerLossTable, power_loss_table, read_power_loss_table
 from tribodyn.losses.measured_loss import FrictionFromLoss, friction_from_power_loss
 from tribodyn.losses.no_load import churning_loss, seal_loss, windage_loss

@@ -79,12 +79,8 @@ class RollingBearing:
     def __post_init__(self) -> None:
         """Refuse what is no bearing."""
         if self.family not in FAMILIES:
-            raise InputError(
-                f'no bearing series is called "{self.family}"',
-                where="RollingBearing",
-                why=f"Known: {', '.join(FAMILIES)}",
-                remedy="Choose one of these",
-            )
+            what, remedy = f'no bearing series is called "{self.family}"', "Choose one of these"
+            raise InputError(what, "RollingBearing", f"Known: {', '.join(FAMILIES)}", remedy)
         require_positive("bore_diameter", self.bore_diameter, "m", remedy="30 mm is 0.030 m")
         require_positive("width", self.width, "m")
         least = 1.05 * self.bore_diameter

@@ -24,7 +24,7 @@ from tribodyn.errors import (
     warn,
 )
 from tribodyn.friction.mesh_means.measured import FZG_POINTS
-from tribodyn.losses.gear_loss import gear_loss_factor
+from tribodyn.losses.gearbox import gear_loss_factor
 from tribodyn.stored import plain_number, read_bytes
 from tribodyn.types import Array
 
@@ -230,12 +230,9 @@ def _columns(file: Path, head: Sequence[str]) -> Mapping[str, tuple[int, float]]
             try:
                 found[name] = (place, units.parse(f"1 {written}", known[name]))
             except units.UnitProblemError as error:
-                raise InputError(
-                    f'column "{cell.strip()}"',
-                    f"{file}:1",
-                    str(error),
-                    remedy='Name the column as "speed [rpm]", with a unit that is known',
-                ) from None
+                what = f'column "{cell.strip()}"'
+                remedy = 'Name the column as "speed [rpm]", with a unit that is known'
+                raise InputError(what, f"{file}:1", str(error), remedy) from None
     missing = [name for name in COLUMNS if name not in found]
     if missing:
         remedy = f"Name the columns: {', '.join(_NAMED[name] for name in COLUMNS)}"

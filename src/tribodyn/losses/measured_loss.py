@@ -135,12 +135,10 @@ def friction_from_power_loss(
     points = [_point(table, rows) for rows in _runs(table, np.flatnonzero(~idle))]
     idles = [_point(table, rows) for rows in _runs(table, np.flatnonzero(idle))]
     if not points:
-        raise InputError(
-            f"no row has more than {table.no_load_torque:g} N*m",
-            where="PowerLossTable",
-            why="Rows up to no_load_torque count as without load",
-            remedy="Lower no_load_torque, or add rows under load",
-        )
+        what = f"no row has more than {table.no_load_torque:g} N*m"
+        why = "Rows up to no_load_torque count as without load"
+        remedy = "Lower no_load_torque, or add rows under load"
+        raise InputError(what, "PowerLossTable", why, remedy)
     pairs = _matched(table, points, idles)
     torque = np.array([table.torque[point.rows].mean() for point in points])
     other = np.array([table.other_loss[point.rows].mean() for point in points])
@@ -191,12 +189,9 @@ def _point(table: PowerLossTable, rows: list[int]) -> _Point:
     if count > 1:
         variance = float(readings.var(ddof=1)) / count
         return _Point(rows, float(readings.mean()), variance, count - 1.0)
-    raise InputError(
-        f"one reading at {table.torque[rows[0]]:g} N*m and {table.speed[rows[0]] / _RPM:.4g} rpm",
-        where=table.place(rows[0]),
-        why="One reading tells no scatter",
-        remedy="Repeat it, or give torque_loss_uncertainty",
-    )
+    what = f"one reading at {table.torque[rows[0]]:g} N*m and {table.speed[rows[0]] / _RPM:.4g} rpm"
+    why = "One reading tells no scatter"
+    raise InputError(what, table.place(rows[0]), why, "Repeat it, or give torque_loss_uncertainty")
 
 
 def _matched(
@@ -214,14 +209,10 @@ def _matched(
         where = table.place(point.rows[0])
         if not rest:
             known = sorted({round(table.speed[idle.rows[0]] / _RPM, 1) for idle in idles})
-            problems.append(
-                Problem(
-                    f"no run without load at {speed / _RPM:.4g} rpm",
-                    where,
-                    f"Without load there are {', '.join(f'{k:g} rpm' for k in known) or 'no rows'}",
-                    f"Measure one there, with at most {table.no_load_torque:g} N*m",
-                )
-            )
+            what = f"no run without load at {speed / _RPM:.4g} rpm"
+            why = f"Without load there are {', '.join(f'{k:g} rpm' for k in known) or 'no rows'}"
+            remedy = f"Measure one there, with at most {table.no_load_torque:g} N*m"
+            problems.append(Problem(what, where, why, remedy))
             continue
         scatter = math.sqrt(point.variance + rest[0].variance)
         if point.mean < rest[0].mean - _SCATTER * scatter:

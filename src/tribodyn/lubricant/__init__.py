@@ -5,22 +5,25 @@
 | `oil` | a lubricating oil at its working temperature |
 | `library` | named oils, each number with its source |
 | `astm_d341` | viscosity over temperature from two measured points |
-| `barus` | viscosity under pressure, exponential |
-| `roelands` | viscosity under pressure by Roelands |
-| `agma_925` | pressure-viscosity coefficient estimated from the base oil |
+| `pressure_viscosity` | viscosity under pressure: Barus, Roelands; the coefficient of an oil |
 | `density` | density over temperature and under pressure |
 """
 
 from __future__ import annotations
 
 from tribodyn.arguments import guard
-from tribodyn.lubricant.agma_925 import BASE_OILS, agma_925_coefficient
 from tribodyn.lubricant.astm_d341 import walther_slope, walther_viscosity
-from tribodyn.lubricant.barus import barus_viscosity
 from tribodyn.lubricant.density import density_at_temperature, dowson_higginson_density
 from tribodyn.lubricant.library import from_library, library, temperature_range
 from tribodyn.lubricant.oil import VISCOSITY_LAWS, Lubricant
-from tribodyn.lubricant.roelands import ROELANDS_PRESSURE, roelands_index, roelands_viscosity
+from tribodyn.lubricant.pressure_viscosity import (
+    BASE_OILS,
+    ROELANDS_PRESSURE,
+    agma_925_coefficient,
+    barus_viscosity,
+    roelands_index,
+    roelands_viscosity,
+)
 
 __all__ = [
     "BASE_OILS",

@@ -8,15 +8,18 @@ from dataclasses import KW_ONLY, dataclass, field
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, require_between, require_positive
-from tribodyn.lubricant.agma_925 import agma_925_coefficient
 from tribodyn.lubricant.astm_d341 import TemperaturePoint, walther_slope, walther_viscosity
-from tribodyn.lubricant.barus import barus_viscosity
 from tribodyn.lubricant.density import (
     DENSITY_FALL,
     density_at_temperature,
     dowson_higginson_density,
 )
-from tribodyn.lubricant.roelands import roelands_index, roelands_viscosity
+from tribodyn.lubricant.pressure_viscosity import (
+    agma_925_coefficient,
+    barus_viscosity,
+    roelands_index,
+    roelands_viscosity,
+)
 from tribodyn.model import Registry
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
@@ -250,9 +253,7 @@ def _coefficient(
             f"viscosity, taking the base oil as {base_oil}; a measured value is better."
         )
         return estimate, (remark,)
-    raise InputError(
-        f"pressure_viscosity_coefficient = {given} and base_oil = {base_oil}",
-        where="arguments pressure_viscosity_coefficient and base_oil",
-        why="exactly one of the two determines how the viscosity rises with pressure",
-        remedy="Give a measured coefficient, or the base oil for an estimate",
-    )
+    what = f"pressure_viscosity_coefficient = {given} and base_oil = {base_oil}"
+    why = "exactly one of the two determines how the viscosity rises with pressure"
+    remedy = "Give a measured coefficient, or the base oil for an estimate"
+    raise InputError(what, "arguments pressure_viscosity_coefficient and base_oil", why, remedy)

@@ -188,19 +188,12 @@ def compare(
 
 def _refuse(measured: Any, channels: Any) -> None:
     if not isinstance(measured, Recording):
-        raise InputError(
-            f"measured = {shortened(repr(measured))}",
-            Argument("measured"),
-            "Wanted: a Recording",
-            "Read it with tribodyn.measurement.read",
-        )
+        what, why = f"measured = {shortened(repr(measured))}", "Wanted: a Recording"
+        raise InputError(what, Argument("measured"), why, "Read it with tribodyn.measurement.read")
     if not isinstance(channels, Mapping) or not channels:
-        raise InputError(
-            "no channels are compared",
-            Argument("channels"),
-            "A comparison lays channels beside computed signals",
-            'Write {"acc": "acceleration_loa_pinion"}',
-        )
+        why = "A comparison lays channels beside computed signals"
+        remedy = 'Write {"acc": "acceleration_loa_pinion"}'
+        raise InputError("no channels are compared", Argument("channels"), why, remedy)
 
 
 def _rms(amplitudes: Array) -> float:
@@ -212,12 +205,8 @@ def _frequency(data: Any) -> float:
     try:
         return float(data.attrs["mesh_frequency"])
     except (AttributeError, KeyError, TypeError, ValueError):
-        raise InputError(
-            "it has no mesh frequency",
-            Argument("computed"),
-            "Wanted: the result of tribodyn.run, or its data set",
-            "Give the result",
-        ) from None
+        why, remedy = "Wanted: the result of tribodyn.run, or its data set", "Give the result"
+        raise InputError("it has no mesh frequency", Argument("computed"), why, remedy) from None
 
 
 def _computed(data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
@@ -234,12 +223,8 @@ def _computed(data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
         )
     order = np.asarray(data["order"].values, dtype=float)
     if order.max() < count:
-        raise InputError(
-            f"harmonics = {count}",
-            where=Argument("harmonics"),
-            why=f"The computed motion holds {order.max():.0f}",
-            remedy="Ask for fewer",
-        )
+        why = f"The computed motion holds {order.max():.0f}"
+        raise InputError(f"harmonics = {count}", Argument("harmonics"), why, "Ask for fewer")
     return order, np.asarray(data[name].values, dtype=float), str(data[name].attrs.get("units", ""))
 
 
@@ -248,12 +233,9 @@ def _same_unit(given: str, wanted: str, name: str) -> float:
     try:
         return float(convert(1.0, given, wanted)) if given else 1.0
     except UnitProblemError as error:
-        raise InputError(
-            f'channel {name} is in "{given}", the computed signal in "{wanted}"',
-            Argument("channels"),
-            str(error),
-            "Give units or sensitivity when reading it",
-        ) from None
+        what = f'channel {name} is in "{given}", the computed signal in "{wanted}"'
+        remedy = "Give units or sensitivity when reading it"
+        raise InputError(what, Argument("channels"), str(error), remedy) from None
 
 
 def _measured(
@@ -270,19 +252,13 @@ def _measured(
         places, size = plain.frequency / frequency, plain.amplitude
     numbers = np.arange(1, count + 1)
     if places[-1] < count * (1.0 + tolerance):
-        raise InputError(
-            f"mesh harmonic {count} is beyond the record",
-            where=Argument("harmonics"),
-            why=f"Sampled with {recording.sample_rate:g} Hz it reaches harmonic {places[-1]:.3g}",
-            remedy="Ask for fewer, or sample faster",
-        )
+        what = f"mesh harmonic {count} is beyond the record"
+        why = f"Sampled with {recording.sample_rate:g} Hz it reaches harmonic {places[-1]:.3g}"
+        raise InputError(what, Argument("harmonics"), why, "Ask for fewer, or sample faster")
     if places[1] > 0.05:
-        raise InputError(
-            f"the record lasts {recording.duration:g} s",
-            where=Argument("measured"),
-            why="Mesh harmonics are parted from what lies beside them over 20 mesh cycles or more",
-            remedy="Record longer",
-        )
+        what = f"the record lasts {recording.duration:g} s"
+        why = "Mesh harmonics are parted from what lies beside them over 20 mesh cycles or more"
+        raise InputError(what, Argument("measured"), why, "Record longer")
     found = [
         size[np.abs(places - number) <= max(tolerance * number, 0.51 * places[1])].max()
         for number in numbers
@@ -297,12 +273,8 @@ def _gain(given: Any, name: str, computed: Array, measured: Array) -> float:
         square = float(computed @ computed)
         if square == 0.0:
             what = f"the computed harmonics for {name} are all zero"
-            raise InputError(
-                what,
-                where=Argument("gain"),
-                remedy="Give the gain as a number",
-                why="It scales one signal to the other",
-            )
+            why = "It scales one signal to the other"
+            raise InputError(what, Argument("gain"), why, "Give the gain as a number")
         return float(computed @ measured) / square
     value = given.get(name, 1.0) if isinstance(given, Mapping) else given
     require_positive("gain", value)

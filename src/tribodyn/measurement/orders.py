@@ -222,21 +222,16 @@ def _checked(signal: Any, angle: Any, max_order: float) -> tuple[Array, Array]:
     require_positive("max_order", max_order)
     where = Argument("angle")
     if turned.size != values.size:
-        raise InputError(
-            f"angle has {turned.size} samples, the signal has {values.size}",
-            where=where,
-            why="Each sample of the signal has its own angle",
-            remedy="Give the angle of the shaft at each sample",
-        )
+        what = f"angle has {turned.size} samples, the signal has {values.size}"
+        why = "Each sample of the signal has its own angle"
+        raise InputError(what, where, why, "Give the angle of the shaft at each sample")
     steps = np.diff(turned)
     if steps.min() < 0.0:
         at = int(np.argmin(steps))
-        raise InputError(
-            f"angle falls from {turned[at]:.6g} to {turned[at + 1]:.6g} rad at sample {at + 1}",
-            where=where,
-            why="It counts on, without going back to zero after a revolution",
-            remedy="Unwrap it (numpy.unwrap), or take its negative if the shaft turns backwards",
-        )
+        what = f"angle falls from {turned[at]:.6g} to {turned[at + 1]:.6g} rad at sample {at + 1}"
+        why = "It counts on, without going back to zero after a revolution"
+        remedy = "Unwrap it (numpy.unwrap), or take its negative if the shaft turns backwards"
+        raise InputError(what, where, why, remedy)
     if max_order * steps.max() > np.pi:
         per = 2.0 * np.pi / steps.max()
         raise InputError(
@@ -251,12 +246,8 @@ def _checked(signal: Any, angle: Any, max_order: float) -> tuple[Array, Array]:
 
 def _too_short(turned: Array, least: float) -> InputError:
     made = (turned[-1] - turned[0]) / (2.0 * np.pi)
-    return InputError(
-        f"the shaft turns {made:.4g} times",
-        where=Argument("angle"),
-        why=f"At least {least:g} revolutions are needed",
-        remedy="Record longer, or take shorter blocks",
-    )
+    what, why = f"the shaft turns {made:.4g} times", f"At least {least:g} revolutions are needed"
+    return InputError(what, Argument("angle"), why, "Record longer, or take shorter blocks")
 
 
 def _lines(

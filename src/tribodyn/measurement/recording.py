@@ -60,22 +60,18 @@ class Recording(Record):
         require_positive("sample_rate", self.sample_rate, "Hz")
         named = isinstance(self.channels, Mapping) and isinstance(self.units, Mapping)
         if not named or not self.channels or not all(isinstance(n, str) for n in self.channels):
-            raise InputError(
-                f"channels = {shortened(repr(self.channels))}",
-                where=Argument("channels"),
-                why="A recording is a mapping of names to samples, and one of names to units",
-                remedy='Write Recording({"acc": samples}, 51200.0, {"acc": "m/s^2"})',
-            )
+            what = f"channels = {shortened(repr(self.channels))}"
+            why = "A recording is a mapping of names to samples, and one of names to units"
+            remedy = 'Write Recording({"acc": samples}, 51200.0, {"acc": "m/s^2"})'
+            raise InputError(what, Argument("channels"), why, remedy)
         read = {n: checked_signal(v, 1, f"channel {n}") for n, v in self.channels.items()}
         sizes = {values.size for values in read.values()}
         if len(sizes) > 1:
             told = ", ".join(f"{name} {values.size}" for name, values in read.items())
-            raise InputError(
-                "the channels have different numbers of samples",
-                where=Argument("channels"),
-                why=f"All were sampled together: {told}",
-                remedy="Take channels of one length, as with channels=[...] of read",
-            )
+            what = "the channels have different numbers of samples"
+            why = f"All were sampled together: {told}"
+            remedy = "Take channels of one length, as with channels=[...] of read"
+            raise InputError(what, Argument("channels"), why, remedy)
         units = {name: str(self.units.get(name, "")) for name in read}
         object.__setattr__(self, "channels", MappingProxyType(read))
         object.__setattr__(self, "units", MappingProxyType(units))
@@ -117,12 +113,9 @@ class Recording(Record):
             If the times are not within the recording, one after the other.
         """
         if not 0.0 <= start < end <= self.duration * (1.0 + 1e-12):
-            raise InputError(
-                f"from {start:g} to {end:g} s",
-                where="arguments start and end",
-                why=f"The recording lasts {self.duration:g} s",
-                remedy="Give two times within it, the earlier first",
-            )
+            why = f"The recording lasts {self.duration:g} s"
+            remedy = "Give two times within it, the earlier first"
+            raise InputError(f"from {start:g} to {end:g} s", "arguments start and end", why, remedy)
         kept = slice(*(int(np.ceil(at * self.sample_rate - 1e-9)) for at in (start, end)))
         parts = {name: values[kept] for name, values in self.channels.items()}
         return Recording(parts, self.sample_rate, self.units)
@@ -207,12 +200,8 @@ def read(
 def _chosen(channels: Iterable[str]) -> list[str]:
     names = [channels] if isinstance(channels, str) else list(channels)
     if not names:
-        raise InputError(
-            "no channel is asked for",
-            where=Argument("channels"),
-            remedy="Leave it out for all",
-            why="A recording without channels has nothing to compare",
-        )
+        what, why = "no channel is asked for", "A recording without channels has nothing to compare"
+        raise InputError(what, Argument("channels"), why, "Leave it out for all")
     return names
 
 
@@ -231,21 +220,13 @@ def _rate(found: Content, names: list[str], given: float | None, path: Any) -> f
             raise InputError(what, str(path), why, remedy)
         rates[f"times of {name}"] = rate_of(time, path, given)
     if not rates:
-        raise InputError(
-            f"{path} tells no sampling rate",
-            where=Argument("sample_rate"),
-            why="It has neither a column named time nor a rate",
-            remedy="Give sample_rate in hertz",
-        )
+        why, remedy = "It has neither a column named time nor a rate", "Give sample_rate in hertz"
+        raise InputError(f"{path} tells no sampling rate", Argument("sample_rate"), why, remedy)
     first = next(iter(rates.values()))
     if any(abs(rate - first) > 1e-5 * first for rate in rates.values()):
         told = ", ".join(f"{name} {rate:.7g} Hz" for name, rate in rates.items())
-        raise InputError(
-            "the sampling rates differ",
-            where=str(path),
-            why=told,
-            remedy="Read channels of one rate with channels=[...], or leave sample_rate out",
-        )
+        remedy = "Read channels of one rate with channels=[...], or leave sample_rate out"
+        raise InputError("the sampling rates differ", str(path), told, remedy)
     return first
 
 
@@ -282,9 +263,6 @@ def _no_channel(name: object, known: Iterable[str]) -> InputError:
     names = list(known)
     near = get_close_matches(str(name), names, 1)
     meant = f' Did you mean "{near[0]}"?' if near else ""
-    return InputError(
-        f"there is no channel {shortened(repr(name))}",
-        Argument("channels"),
-        f"It has {', '.join(names[:20])}{meant}",
-        "Write the name as it stands there",
-    )
+    what = f"there is no channel {shortened(repr(name))}"
+    why = f"It has {', '.join(names[:20])}{meant}"
+    return InputError(what, Argument("channels"), why, "Write the name as it stands there")

@@ -83,12 +83,9 @@ def synthetic_run_up(
     angle = _angle(speeds, duration, time)
     top = max(map(float, orders), default=0.0) * float(speeds.max()) / (2.0 * np.pi)
     if not top < 0.5 * sample_rate:
-        raise InputError(
-            f"the highest order reaches {top:.6g} Hz",
-            where=Argument("orders"),
-            why=f"Only frequencies below half of {sample_rate:g} Hz can be recorded",
-            remedy="Sample faster, or leave it out",
-        )
+        what = f"the highest order reaches {top:.6g} Hz"
+        why = f"Only frequencies below half of {sample_rate:g} Hz can be recorded"
+        raise InputError(what, Argument("orders"), why, "Sample faster, or leave it out")
     random = np.random.default_rng(require_whole("seed", seed, 0))
     signal = mains * np.cos(2.0 * np.pi * 50.0 * time) + noise * random.standard_normal(size)
     for order, amplitude in orders.items():
@@ -118,12 +115,10 @@ def _pulses(
     turned = angle / each
     moments = np.interp(np.arange(1, int(turned[-1]) + 1), turned, time)
     if moments.size < 8 + 4 * (missing + double):
-        raise InputError(
-            f"the shaft gives {moments.size} pulses",
-            where=Argument("duration"),
-            why="At least eight are needed, and four more for each that is missing or double",
-            remedy="Turn longer or faster, or take more pulses per revolution",
-        )
+        what = f"the shaft gives {moments.size} pulses"
+        why = "At least eight are needed, and four more for each that is missing or double"
+        remedy = "Turn longer or faster, or take more pulses per revolution"
+        raise InputError(what, Argument("duration"), why, remedy)
     apart = np.diff(moments)
     gaps = np.minimum(np.append(apart, apart[-1]), np.append(apart[0], apart))
     moments = moments + jitter * gaps * random.standard_normal(moments.size)
@@ -131,12 +126,10 @@ def _pulses(
     keep[random.choice(np.arange(3, moments.size - 3, 3), missing, replace=False)] = False
     moments, gaps = moments[keep], gaps[keep]
     if not 0.2 * gaps.min() > time[1]:
-        raise InputError(
-            f"pulses follow each other within {gaps.min() / time[1]:.3g} samples",
-            where=Argument("pulses_per_revolution"),
-            why="Each needs at least five",
-            remedy="Sample faster, or take fewer pulses per revolution",
-        )
+        what = f"pulses follow each other within {gaps.min() / time[1]:.3g} samples"
+        why = "Each needs at least five"
+        remedy = "Sample faster, or take fewer pulses per revolution"
+        raise InputError(what, Argument("pulses_per_revolution"), why, remedy)
     again = random.choice(np.arange(3, moments.size - 3, 3), double, replace=False)
     starts = np.concatenate((moments, moments[again] + 0.4 * gaps[again]))
     width = 0.4 * gaps

@@ -147,12 +147,9 @@ def _levels(values: Array) -> tuple[float, float]:
     for _ in range(20):
         above = values > level
         if above.all() or not above.any():
-            raise InputError(
-                "the signal is constant",
-                where=Argument("tacho"),
-                why="No pulse can be told from it",
-                remedy="Look at the channel: is the tachometer connected?",
-            )
+            what = "the signal is constant"
+            remedy = "Look at the channel: is the tachometer connected?"
+            raise InputError(what, Argument("tacho"), "No pulse can be told from it", remedy)
         low, high = float(values[~above].mean()), float(values[above].mean())
         if abs(0.5 * (low + high) - level) < 1e-6 * (high - low):
             break

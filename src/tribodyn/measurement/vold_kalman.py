@@ -73,12 +73,8 @@ class TrackedOrders(Record):
         found = np.flatnonzero(np.abs(self.order - order) < 1e-9)
         if not found.size:
             known = ", ".join(f"{each:g}" for each in self.order)
-            raise InputError(
-                f"order {order:g} asked for",
-                where=Argument("order"),
-                why=f"Tracked: {known}",
-                remedy="Track it",
-            )
+            what = f"order {order:g} asked for"
+            raise InputError(what, Argument("order"), f"Tracked: {known}", "Track it")
         row = int(found[0])
         return np.asarray(self.amplitude[row] * np.cos(order * self.angle + self.phase[row]))
 
@@ -152,12 +148,10 @@ def track_orders(
     try:
         envelope = solveh_banded(upper, right.ravel(), overwrite_ab=True, check_finite=False)
     except LinAlgError:
-        raise ComputationError(
-            f"bandwidth = {bandwidth:g} Hz cannot be resolved",
-            where=Argument("bandwidth"),
-            why=f"At {sample_rate:g} Hz the equations are singular to working precision",
-            remedy="Widen it, or sample the record more coarsely first",
-        ) from None
+        what = f"bandwidth = {bandwidth:g} Hz cannot be resolved"
+        why = f"At {sample_rate:g} Hz the equations are singular to working precision"
+        remedy = "Widen it, or sample the record more coarsely first"
+        raise ComputationError(what, Argument("bandwidth"), why, remedy) from None
     found: ComplexArray = envelope.reshape(count, width).T
     time = np.arange(count) / float(sample_rate)
     size, phase = np.abs(found), np.angle(found)
@@ -166,34 +160,22 @@ def track_orders(
 
 def _refuse(values: Array, turned: Array, wanted: Array) -> None:
     if wanted.ndim != 1 or np.unique(wanted).size != wanted.size:
-        raise InputError(
-            f"orders = {wanted.tolist()}",
-            where=Argument("orders"),
-            why="Each order is followed once",
-            remedy="Give a list of different orders",
-        )
+        what, why = f"orders = {wanted.tolist()}", "Each order is followed once"
+        raise InputError(what, Argument("orders"), why, "Give a list of different orders")
     if turned.size != values.size:
-        raise InputError(
-            f"angle has {turned.size} samples, the signal has {values.size}",
-            where=Argument("angle"),
-            why="Each sample of the signal has its own angle",
-            remedy="Give the angle of the shaft at each sample",
-        )
+        what = f"angle has {turned.size} samples, the signal has {values.size}"
+        why = "Each sample of the signal has its own angle"
+        raise InputError(what, Argument("angle"), why, "Give the angle of the shaft at each sample")
     if values.size * wanted.size > _MOST:
-        raise InputError(
-            f"{wanted.size} orders over {values.size} samples",
-            where=Argument("orders"),
-            why=f"At most {_MOST} unknowns are solved at once",
-            remedy="Follow fewer orders together, or cut the record in parts",
-        )
+        what = f"{wanted.size} orders over {values.size} samples"
+        why = f"At most {_MOST} unknowns are solved at once"
+        remedy = "Follow fewer orders together, or cut the record in parts"
+        raise InputError(what, Argument("orders"), why, remedy)
     top = float(wanted.max() * np.abs(np.diff(turned)).max())
     if top > np.pi:
-        raise InputError(
-            f"order {wanted.max():g} asked for",
-            where=Argument("orders"),
-            why=f"At the highest speed it has {2 * np.pi / top:.3g} samples in a period, not two",
-            remedy="Leave it out, or sample faster",
-        )
+        what = f"order {wanted.max():g} asked for"
+        why = f"At the highest speed it has {2 * np.pi / top:.3g} samples in a period, not two"
+        raise InputError(what, Argument("orders"), why, "Leave it out, or sample faster")
 
 
 def _equations(waves: ComplexArray, weight: float) -> ComplexArray:

@@ -240,19 +240,14 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
 
 def _check(tables: Sequence[MeshColumns], nominal: MeshColumns, ratio: Array) -> None:
     if np.unique(ratio).size <= _TERMS:
-        raise InputError(
-            f"{np.unique(ratio).size} different loads",
-            where="argument tables",
-            why=f"A polynomial with {_TERMS} terms goes through more than {_TERMS} loads",
-            remedy="Build the mesh at the loads in tribodyn.mesh.LOADS",
-        )
+        why = f"A polynomial with {_TERMS} terms goes through more than {_TERMS} loads"
+        remedy = "Build the mesh at the loads in tribodyn.mesh.LOADS"
+        raise InputError(f"{np.unique(ratio).size} different loads", "argument tables", why, remedy)
     require_between("load over the nominal load", ratio, 0.0, np.inf, "")
     for number, table in enumerate(tables):
         same = np.array_equal(table.phase, nominal.phase)
         if not (same and np.isclose(table.pinion_speed, nominal.pinion_speed)):
-            raise InputError(
-                f"table {number} is of another mesh or another speed",
-                where="argument tables",
-                why="Friction is joined over the load alone",
-                remedy="Change nothing but pinion_torque between the tables",
-            )
+            what = f"table {number} is of another mesh or another speed"
+            why = "Friction is joined over the load alone"
+            remedy = "Change nothing but pinion_torque between the tables"
+            raise InputError(what, "argument tables", why, remedy)

@@ -36,12 +36,9 @@ class NoGears:
         """Answer every question about the gears with one sentence."""
         if name.startswith("__"):
             raise AttributeError(name)
-        raise InputError(
-            "this mesh table has no gear pair",
-            where="MeshTable.gear_pair",
-            why="Another program made it, and such a table knows contacts, not gears",
-            remedy="Ask for what is a column of the table",
-        )
+        what = "this mesh table has no gear pair"
+        why = "Another program made it, and such a table knows contacts, not gears"
+        raise InputError(what, "MeshTable.gear_pair", why, "Ask for what is a column of the table")
 
     def __repr__(self) -> str:
         """One line."""

@@ -198,19 +198,13 @@ def phase_grid(event_phases: tuple[float, ...], steps: int = 512) -> PhaseGrid:
     """
     edges = np.array((*event_phases, 1.0))
     if edges[0] != 0.0 or np.any(np.diff(edges) <= 0.0):
-        raise InputError(
-            f"event phases {', '.join(f'{edge:g}' for edge in event_phases)}",
-            where="argument event_phases",
-            why="They start with 0, increase and stay below 1",
-            remedy="Sort the phases and remove repeated ones",
-        )
+        what = f"event phases {', '.join(f'{edge:g}' for edge in event_phases)}"
+        why = "They start with 0, increase and stay below 1"
+        remedy = "Sort the phases and remove repeated ones"
+        raise InputError(what, "argument event_phases", why, remedy)
     if steps < 16:
-        raise InputError(
-            f"steps = {steps}",
-            where="argument steps",
-            why="A mesh cycle needs at least 16 intervals",
-            remedy="Give for example steps = 512",
-        )
+        why = "A mesh cycle needs at least 16 intervals"
+        raise InputError(f"steps = {steps}", "argument steps", why, "Give for example steps = 512")
     halves = np.rint(0.5 * steps * np.diff(edges)).astype(int)
     intervals = tuple(max(_LEAST_INTERVALS, 2 * int(half)) for half in halves)
     return PhaseGrid(tuple(float(event) for event in event_phases), intervals)

@@ -298,9 +298,6 @@ def _extrapolated(earlier: list[Array], in_contact: Mask) -> Array:
 
 
 def _unsettled(what: str) -> ComputationError:
-    return ComputationError(
-        what,
-        where="film stiffness in series with the teeth",
-        why="The film of a lightly loaded pair is softer than its teeth",
-        remedy='Set film.stiffness = "none", or "approach" where it is another one',
-    )
+    why = "The film of a lightly loaded pair is softer than its teeth"
+    remedy = 'Set film.stiffness = "none", or "approach" where it is another one'
+    return ComputationError(what, "film stiffness in series with the teeth", why, remedy)

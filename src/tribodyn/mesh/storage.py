@@ -170,12 +170,8 @@ def _plain(value: Any) -> Any:
 
 
 def _unreadable(path: str | PathLike[str], reason: str) -> InputError:
-    return InputError(
-        f"{path} is no mesh table",
-        where="argument path",
-        why=reason,
-        remedy="Give a file that MeshTable.save wrote",
-    )
+    what = f"{path} is no mesh table"
+    return InputError(what, "argument path", reason, "Give a file that MeshTable.save wrote")
 
 
 #: Columns of a text file that stand once, for each ramp, for each contact, for each coordinate.
@@ -212,12 +208,8 @@ def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
     place = Path(path)
     if place.exists():
         why = "An existing file is never overwritten"
-        raise OutputExistsError(
-            f"{path} exists already",
-            "argument path",
-            why,
-            remedy="Give another path, or overwrite=True",
-        )
+        what = f"{path} exists already"
+        raise OutputExistsError(what, "argument path", why, "Give another path, or overwrite=True")
     facts = {name: float(getattr(table, name)) for name in FACTS}
     columns: dict[str, Array] = {"phase": table.phase}
     for name, unit in UNITS.items():

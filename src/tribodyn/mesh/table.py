@@ -107,12 +107,9 @@ class MeshTable(MeshColumns):
         """
         values = getattr(self, column, None)
         if not isinstance(values, np.ndarray):
-            raise InputError(
-                f'the mesh table has no column "{column}"',
-                where="argument column",
-                why=f"Its columns are: {', '.join(self._columns())}",
-                remedy="Name one of them",
-            )
+            what = f'the mesh table has no column "{column}"'
+            why = f"Its columns are: {', '.join(self._columns())}"
+            raise InputError(what, "argument column", why, "Name one of them")
         if values.dtype == np.bool_:
             return np.asarray(PhaseFunction(self.grid, values.astype(float))(phase) > 0.5)
         return PhaseFunction(self.grid, values)(phase)

@@ -170,12 +170,10 @@ class TableFile:
         stated = self.facts.get("pinion_torque")
         if stated is None or self.has_force_law or abs(torque - stated) <= _SAME_TORQUE * stated:
             return
-        raise InputError(
-            f"pinion_torque = {torque:.6g} N*m, and the mesh table belongs to {stated:.6g} N*m",
-            "argument pinion_torque",
-            "Its stiffness holds for that load alone: it has no force law",
-            f"Keep {stated:.6g} N*m, or add ramp_deflection and ramp_stiffness to the table",
-        )
+        what = f"pinion_torque = {torque:.6g} N*m, and the mesh table belongs to {stated:.6g} N*m"
+        why = "Its stiffness holds for that load alone: it has no force law"
+        remedy = f"Keep {stated:.6g} N*m, or add ramp_deflection and ramp_stiffness to the table"
+        raise InputError(what, "argument pinion_torque", why, remedy)
 
     def _need_friction_columns(self) -> None:
         missing = [name for name in _FRICTION if name not in self.columns]

@@ -223,12 +223,8 @@ def _renumbered(label: Index, rank: Index) -> Index:
 def _columns(system: System, names: tuple[str, str]) -> tuple[int, int]:
     known = [*system.names, *(name + _VELOCITY for name in system.names)]
     if len(names) != 2 or names[0] == names[1] or not set(names) <= set(known):
-        raise InputError(
-            f"coordinates = {names!r}",
-            where="argument coordinates",
-            why=f"Two different ones of {', '.join(known)}",
-            remedy="Choose two of these",
-        )
+        what, why = f"coordinates = {names!r}", f"Two different ones of {', '.join(known)}"
+        raise InputError(what, "argument coordinates", why, "Choose two of these")
     return known.index(names[0]), known.index(names[1])
 
 
@@ -239,12 +235,10 @@ def _axes(
     counts = np.asarray(points)
     wrong = ends.shape != (2, 2) or counts.shape != (2,)
     if wrong or not np.all(np.isfinite(ends)) or np.any(counts < 2) or cycles < 1:
-        raise InputError(
-            f"between = {between}, points = {points}, cycles = {cycles}",
-            where="argument between",
-            why="A plane has two ranges of at least two values, and needs a mesh cycle",
-            remedy="Write, for example, between=((-1e-4, 1e-4), (-0.1, 0.1))",
-        )
+        what = f"between = {between}, points = {points}, cycles = {cycles}"
+        why = "A plane has two ranges of at least two values, and needs a mesh cycle"
+        remedy = "Write, for example, between=((-1e-4, 1e-4), (-0.1, 0.1))"
+        raise InputError(what, "argument between", why, remedy)
     first, second = (
         np.linspace(float(low), float(high), int(n))
         for (low, high), n in zip(ends, counts, strict=True)

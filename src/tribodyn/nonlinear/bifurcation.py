@@ -223,12 +223,8 @@ def _read_parameter(parameter: ArrayLike | None, values: Points) -> Array:
     given = values.mesh_frequency if parameter is None else np.asarray(parameter, dtype=float)
     if given.shape not in ((), (values.count,)):
         what = f"parameter has the shape {given.shape}, and there are {values.count} values"
-        raise InputError(
-            what,
-            where="argument parameter",
-            why="Each value of the parameter has a place on the axis",
-            remedy="Give one finite value for each system",
-        )
+        why = "Each value of the parameter has a place on the axis"
+        raise InputError(what, "argument parameter", why, "Give one finite value for each system")
     return np.broadcast_to(given, (values.count,)).copy()
 
 
@@ -250,12 +246,9 @@ def _read_values(
         ) from error
     if not given or np.any(np.asarray(steps) < 1):
         what = "no system" if not given else f"steps = {np.min(np.asarray(steps))}"
-        raise InputError(
-            what,
-            where="argument systems" if not given else "argument steps",
-            why="There is one time grid for each value",
-            remedy="Give one number of steps, or one for each value",
-        )
+        why = "There is one time grid for each value"
+        remedy = "Give one number of steps, or one for each value"
+        raise InputError(what, "argument systems" if not given else "argument steps", why, remedy)
     frequency = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (count,)).copy()
     whole = np.broadcast_to(np.asarray(steps).astype(np.int64), (count,)).copy()
     return Points(given * count if len(given) == 1 else given, frequency, whole)
@@ -263,12 +256,9 @@ def _read_values(
 
 def _read_survey(survey: Survey) -> Survey:
     if not 2 <= survey.keep <= survey.cycles or survey.transient < 0:
-        raise InputError(
-            f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}",
-            where="argument keep",
-            why="At least two points are kept, of as many mesh cycles or more",
-            remedy="Lower keep, or raise cycles",
-        )
+        what = f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}"
+        why = "At least two points are kept, of as many mesh cycles or more"
+        raise InputError(what, "argument keep", why, "Lower keep, or raise cycles")
     return survey
 
 

@@ -197,12 +197,9 @@ def lyapunov_exponents(
     compiled = compile_for(system, mesh_frequency, steps)
     tables = TangentTables(compiled, mesh_frequency)
     if tables.size == 0:
-        raise InputError(
-            "no coordinate is held by a spring, a damper or a contact",
-            where="System.stiffness",
-            why="Nothing vibrates, so that every exponent is zero",
-            remedy="Hold at least one coordinate",
-        )
+        what = "no coordinate is held by a spring, a damper or a contact"
+        why = "Nothing vibrates, so that every exponent is zero"
+        raise InputError(what, "System.stiffness", why, "Hold at least one coordinate")
     extra = read_force(system, extra_force)
     state = static_start(compiled) if start is None else read_start(system, start)
     carrier = _Carrier(tables, state, np.broadcast_to(extra, (system.size,)))

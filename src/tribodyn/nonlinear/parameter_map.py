@@ -135,12 +135,8 @@ def parameter_map(
     axes = _read_axes(system, over, mesh_frequency, units)
     if transient < 0 or cycles < 2 or (steps is not None and steps < 1):
         what = f"transient = {transient}, cycles = {cycles}, steps = {steps}"
-        raise InputError(
-            what,
-            where="argument cycles",
-            why="At least two mesh cycles are looked at",
-            remedy="Give cycles=2 or more",
-        )
+        why = "At least two mesh cycles are looked at"
+        raise InputError(what, "argument cycles", why, "Give cycles=2 or more")
     systems = [system] if isinstance(system, System) else [system(float(v)) for v in axes.first]
     name = signal_name(systems[0], signal)
     begin = None if start is None else read_start(systems[0], start)
@@ -260,12 +256,10 @@ def _steps(number: Array, steps: int | None) -> Index:
         return np.asarray(2 ** np.ceil(np.log2(needed)).astype(np.int64))
     worst = float(number.max()) / steps
     if worst > LIMIT:
-        raise InputError(
-            f"omega_max*dt = {worst:.3f} with {steps} steps per mesh cycle",
-            where="argument steps",
-            why=f"The limit is {LIMIT}; beyond it the result is not physics",
-            remedy=f"Use at least {math.ceil(float(number.max()) / LIMIT)}, or leave it out",
-        )
+        what = f"omega_max*dt = {worst:.3f} with {steps} steps per mesh cycle"
+        why = f"The limit is {LIMIT}; beyond it the result is not physics"
+        remedy = f"Use at least {math.ceil(float(number.max()) / LIMIT)}, or leave it out"
+        raise InputError(what, "argument steps", why, remedy)
     return np.full(number.shape, int(steps))
 
 
@@ -290,35 +284,20 @@ def _read_axes(
         remedy = "A system that depends on another value is given as a function of the first one"
         raise InputError(f"over {one} and {two}", where="argument over", why=why, remedy=remedy)
     if own and one in known:
-        raise InputError(
-            f"{one} with a function",
-            where="argument over",
-            why="The function takes that value",
-            remedy="Give a system and a name, or a function alone",
-        )
+        what, remedy = f"{one} with a function", "Give a system and a name, or a function alone"
+        raise InputError(what, "argument over", "The function takes that value", remedy)
     if own and units is None:
-        raise InputError(
-            f"{one} without its unit",
-            where="argument units",
-            why="Axes show values with their units",
-            remedy="Give one unit for each parameter",
-        )
+        what, why = f"{one} without its unit", "Axes show values with their units"
+        raise InputError(what, "argument units", why, "Give one unit for each parameter")
     if any(each.ndim != 1 or not np.all(np.isfinite(each)) for each in values):
-        raise InputError(
-            "values that are no list of numbers",
-            where="argument over",
-            why="Each axis of the map has its values",
-            remedy="Give (name, values) for each of the two axes",
-        )
+        what, why = "values that are no list of numbers", "Each axis of the map has its values"
+        raise InputError(what, "argument over", why, "Give (name, values) for each of the two axes")
     if "mesh_frequency" in (one, two):
         require_positive("mesh_frequency", values[(one, two).index("mesh_frequency")], "Hz")
     elif mesh_frequency is None:
-        raise InputError(
-            "no mesh frequency",
-            where="argument mesh_frequency",
-            why="The time of one mesh cycle follows from it",
-            remedy="Give mesh_frequency in Hz, or return it beside the system",
-        )
+        why = "The time of one mesh cycle follows from it"
+        remedy = "Give mesh_frequency in Hz, or return it beside the system"
+        raise InputError("no mesh frequency", "argument mesh_frequency", why, remedy)
     else:
         require_positive("mesh_frequency", mesh_frequency, "Hz")
     return _Axes((one, two), values[0], values[1])

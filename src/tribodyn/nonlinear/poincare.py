@@ -139,12 +139,8 @@ def poincare(
     if mesh_frequency is None or cycles < 1 or transient < 0:
         what = f"mesh_frequency = {mesh_frequency}, cycles = {cycles}, transient = {transient}"
         why = "A system needs a mesh frequency, at least one mesh cycle and no negative transient"
-        raise InputError(
-            what,
-            where="argument mesh_frequency",
-            why=why,
-            remedy="Give the mesh frequency of each system in Hz",
-        )
+        remedy = "Give the mesh frequency of each system in Hz"
+        raise InputError(what, "argument mesh_frequency", why, remedy)
     compiled = compile_for(motion, mesh_frequency, steps)
     state = static_start(compiled) if start is None else read_start(motion, start)
     force = read_force(motion, extra_force)

@@ -94,12 +94,8 @@ def signal_name(system: System, signal: int | str) -> str:
         return f"contact {signal}"
     if signal == 0 and not system.contacts:
         return names[0]
-    raise InputError(
-        f"signal = {signal!r}",
-        where="argument signal",
-        why=f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}",
-        remedy="Choose one of these",
-    )
+    why = f"The number of one of {len(system.contacts)} contacts, or one of {', '.join(names)}"
+    raise InputError(f"signal = {signal!r}", "argument signal", why, "Choose one of these")
 
 
 @dataclass(frozen=True)

@@ -10,20 +10,16 @@ from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.dynamics import film_response, film_transient
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
-from tribodyn.plot.film.lubrication import lubrication
-from tribodyn.plot.film.operation import film_over_operation, lubrication_map
+from tribodyn.plot.film.lubrication import film_over_operation, lubrication, lubrication_map
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
-from tribodyn.plot.gear.hypoid_blank import hypoid_blank
-from tribodyn.plot.gear.hypoid_contact import hypoid_contact
-from tribodyn.plot.gear.hypoid_flanks import ease_off, hypoid_pair
+from tribodyn.plot.gear.hypoid import ease_off, hypoid_blank, hypoid_contact, hypoid_pair
 from tribodyn.plot.gear.hypoid_loaded import hypoid_friction, hypoid_load, hypoid_pressure
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
-from tribodyn.plot.mesh.coupling import coupling
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
-from tribodyn.plot.mesh.studies import comprehensive_stiffness, harris_map, tip_relief_map
+from tribodyn.plot.mesh.studies import comprehensive_stiffness, coupling, harris_map, tip_relief_map
 from tribodyn.plot.mesh.table import (
     force_law,
     load_sharing,
@@ -31,7 +27,6 @@ from tribodyn.plot.mesh.table import (
     static_stiffness,
     static_transmission_error,
 )
-from tribodyn.plot.motion.beside import result_comparison
 from tribodyn.plot.motion.courses import (
     acceleration,
     bearing_force,
@@ -42,6 +37,7 @@ from tribodyn.plot.motion.courses import (
 )
 from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
 from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
+from tribodyn.plot.motion.motion import result_comparison
 from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
 from tribodyn.plot.motion.sweeps import speed_sweep, sweep
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation

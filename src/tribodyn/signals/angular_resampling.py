@@ -16,35 +16,22 @@ def checked_signal(signal: Any, least: int = 8, name: str = "signal") -> Array:
     where = f"argument {name}"
     given = np.asarray(signal if hasattr(signal, "dtype") else real_numbers(where, signal))
     if given.dtype.kind not in "biuf":
-        raise InputError(
-            f"{name} holds {given.dtype} values",
-            where=where,
-            why="A recorded signal holds real numbers",
-            remedy="Pass real and imaginary parts one by one, and text as numbers",
-        )
+        what = f"{name} holds {given.dtype} values"
+        remedy = "Pass real and imaginary parts one by one, and text as numbers"
+        raise InputError(what, where, "A recorded signal holds real numbers", remedy)
     values = given.astype(float)
     if values.ndim != 1:
-        raise InputError(
-            f"{name} has the shape {values.shape}",
-            where=where,
-            why="One recorded signal is a row of numbers, (n,)",
-            remedy="Pass the columns of a record one by one",
-        )
+        what = f"{name} has the shape {values.shape}"
+        why = "One recorded signal is a row of numbers, (n,)"
+        raise InputError(what, where, why, "Pass the columns of a record one by one")
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
-        raise InputError(
-            f"{name} is {values[bad[0]]} at sample {bad[0]} ({bad.size} such samples)",
-            where=where,
-            why="A spectrum needs every sample",
-            remedy="Cut the record there, or fill short gaps by interpolation",
-        )
+        what = f"{name} is {values[bad[0]]} at sample {bad[0]} ({bad.size} such samples)"
+        remedy = "Cut the record there, or fill short gaps by interpolation"
+        raise InputError(what, where, "A spectrum needs every sample", remedy)
     if values.size < least:
-        raise InputError(
-            f"{name} has {values.size} samples",
-            where=where,
-            why=f"At least {least} are needed",
-            remedy="Record longer",
-        )
+        what = f"{name} has {values.size} samples"
+        raise InputError(what, where, f"At least {least} are needed", "Record longer")
     return values
 
 
@@ -52,12 +39,9 @@ def checked_rising(values: Any, size: int, name: str, unit: str) -> Array:
     """Return times or rotation angles that rise from sample to sample."""
     rising = checked_signal(values, 2, name)
     if rising.size != size:
-        raise InputError(
-            f"{name} has {rising.size} samples, the signal has {size}",
-            where=f"argument {name}",
-            why="Each sample of the signal has its own value",
-            remedy=f"Give {size} values",
-        )
+        what = f"{name} has {rising.size} samples, the signal has {size}"
+        why = "Each sample of the signal has its own value"
+        raise InputError(what, f"argument {name}", why, f"Give {size} values")
     falls = np.flatnonzero(np.diff(rising) <= 0.0)
     if falls.size:
         first = int(falls[0])
@@ -91,12 +75,9 @@ def window_values(window: str, length: int) -> Array:
     try:
         return np.asarray(get_window(window, length, fftbins=True), dtype=float)
     except (ValueError, TypeError) as error:
-        raise InputError(
-            f"there is no window {window!r}",
-            where="argument window",
-            why=str(error),
-            remedy='Take "flattop" for amplitudes, "hann" for noise, "boxcar" for none',
-        ) from error
+        what = f"there is no window {window!r}"
+        remedy = 'Take "flattop" for amplitudes, "hann" for noise, "boxcar" for none'
+        raise InputError(what, "argument window", str(error), remedy) from error
 
 
 #: Most samples over the rotation before the filter, and samples per period for cubic pieces.
@@ -132,12 +113,10 @@ class AngularSignal:
 def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
     """Rotation of a shaft, given as it is or by its speed."""
     if (rotation is None) == (speed is None):
-        raise InputError(
-            "neither or both of rotation and speed are given",
-            where="arguments rotation and speed",
-            why="One of them is needed to follow the shaft",
-            remedy="Give the angle of the shaft at each sample, or its speed",
-        )
+        what = "neither or both of rotation and speed are given"
+        why = "One of them is needed to follow the shaft"
+        remedy = "Give the angle of the shaft at each sample, or its speed"
+        raise InputError(what, "arguments rotation and speed", why, remedy)
     if rotation is not None:
         return checked_rising(rotation, time.size, "rotation", "rad")
     from scipy.interpolate import CubicSpline
@@ -148,12 +127,10 @@ def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
     values = checked_signal(values, 2, "speed")
     require_positive("speed", values, "rad/s", remedy="Cut the standstill off the record")
     if values.size != time.size:
-        raise InputError(
-            f"speed has {values.size} samples, time has {time.size}",
-            where="argument speed",
-            why="Each sample of the signal has its own speed",
-            remedy="Give one speed for all, or one for each sample",
-        )
+        what = f"speed has {values.size} samples, time has {time.size}"
+        why = "Each sample of the signal has its own speed"
+        remedy = "Give one speed for all, or one for each sample"
+        raise InputError(what, "argument speed", why, remedy)
     return np.asarray(CubicSpline(time, values).antiderivative()(time))
 
 

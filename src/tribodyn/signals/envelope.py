@@ -61,12 +61,8 @@ def envelope(
     low, high = band
     refuse_above_half(high, sampling_rate, "The upper end of the band", "argument band")
     if not 0.0 < low < high:
-        raise InputError(
-            f"a band from {low:g} to {high:g} Hz",
-            where="argument band",
-            why="It must rise, from above zero",
-            remedy="Give (low, high) in Hz",
-        )
+        what, why = f"a band from {low:g} to {high:g} Hz", "It must rise, from above zero"
+        raise InputError(what, "argument band", why, "Give (low, high) in Hz")
     sections = butter(4, (low, high), btype="bandpass", fs=sampling_rate, output="sos")
     return np.asarray(np.abs(hilbert(sosfiltfilt(sections, values))))
 

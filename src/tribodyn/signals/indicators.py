@@ -342,12 +342,9 @@ def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
     span = round(float(fine.phase[-1]))
     if orders.size and orders[-1] * 8.0 > fine.phase.size / 3.0 / max(span, 1):
         limit = fine.phase.size / 3.0 / max(span, 1) / 8.0
-        raise InputError(
-            f"mesh harmonic {orders[-1]:g} asked for",
-            where="argument count",
-            why=f"With this step it is resolved up to harmonic {limit:.0f}, eight steps each",
-            remedy="Use more steps per mesh cycle",
-        )
+        what = f"mesh harmonic {orders[-1]:g} asked for"
+        why = f"With this step it is resolved up to harmonic {limit:.0f}, eight steps each"
+        raise InputError(what, "argument count", why, "Use more steps per mesh cycle")
     _on(fine.phase.size, signal)
     make = _turns if orders.size * fine.phase.size < _KEPT else _turns.__wrapped__
     turns = make(orders.tobytes(), fine.phase.tobytes(), fine.weight.tobytes())
@@ -427,12 +424,9 @@ def amplitude_spectrum(
     """
     fine = response.fine
     if signal.shape != fine.phase.shape:
-        raise InputError(
-            f"signal has the shape {signal.shape}",
-            where="argument signal",
-            why=f"It must be one signal on the fine samples, {fine.phase.shape}",
-            remedy="Give one signal of this shape",
-        )
+        what = f"signal has the shape {signal.shape}"
+        why = f"It must be one signal on the fine samples, {fine.phase.shape}"
+        raise InputError(what, "argument signal", why, "Give one signal of this shape")
     steps = fine.phase.size // 3 // response.periods
     top = min(50, steps // 8) if highest is None else highest
     orders = np.arange(1, top * response.periods + 1) / response.periods

@@ -233,12 +233,9 @@ def order_map(
     )
     length = revolutions * per_turn
     if made.signal.size < length:
-        raise InputError(
-            f"the record holds {made.signal.size / per_turn:.3g} revolutions",
-            where="argument revolutions",
-            why=f"One block takes {revolutions}",
-            remedy="Take shorter blocks, or record longer",
-        )
+        what = f"the record holds {made.signal.size / per_turn:.3g} revolutions"
+        why = f"One block takes {revolutions}"
+        raise InputError(what, "argument revolutions", why, "Take shorter blocks, or record longer")
     hop = max(length - round(overlap * length), 1)
     starts = np.arange(0, made.signal.size - length + 1, hop)
     weights = window_values(window, length)
@@ -365,12 +362,9 @@ class OrderMap(Record):
             If the map does not reach that order.
         """
         if not self.order[0] <= order <= self.order[-1]:
-            raise InputError(
-                f"order {order:g} asked for",
-                where="argument order",
-                why=f"The map reaches from order {self.order[0]:g} to {self.order[-1]:g}",
-                remedy="Make the map with a larger highest_order",
-            )
+            why = f"The map reaches from order {self.order[0]:g} to {self.order[-1]:g}"
+            remedy = "Make the map with a larger highest_order"
+            raise InputError(f"order {order:g} asked for", "argument order", why, remedy)
         line = int(np.argmin(np.abs(self.order - order)))
         away = (order - float(self.order[line])) * self.revolutions
         offset, gain = window_gain(self.window, 2048)

@@ -64,12 +64,9 @@ def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:
     count = np.append(0, np.cumsum(inside))
     found = count[starts + cycles] - count[starts] == cycles
     if not found.any():
-        raise InputError(
-            f"the speed never goes {part} for {cycles} mesh cycles",
-            where="argument part",
-            remedy='Take part="all", or a profile that does',
-            why="An order map needs a record of this length",
-        )
+        what = f"the speed never goes {part} for {cycles} mesh cycles"
+        why = "An order map needs a record of this length"
+        raise InputError(what, "argument part", why, 'Take part="all", or a profile that does')
     return np.asarray(found)
 
 
@@ -77,12 +74,8 @@ def _starts(run: RunUp, cycles: int, hop: int, part: Part) -> tuple[Index, Index
     """First mesh cycle of each block, and the sample in its middle."""
     total = run.cycles.time.size
     if total < cycles:
-        raise InputError(
-            f"the run has {total} mesh cycles",
-            where="argument cycles",
-            why=f"One block takes {cycles}",
-            remedy="Take shorter blocks, or a longer run",
-        )
+        what, why = f"the run has {total} mesh cycles", f"One block takes {cycles}"
+        raise InputError(what, "argument cycles", why, "Take shorter blocks, or a longer run")
     starts: Index = np.arange(0, total - cycles + 1, hop, dtype=np.int64)
     starts = starts[_wholly(run, starts, cycles, part)]
     return starts, starts * run.samples + cycles * run.samples // 2
@@ -219,12 +212,10 @@ def order_cut(
     require_positive("order", order)
     mesh = order / source.teeth if of == "shaft" else order
     if mesh >= source.samples / 2:
-        raise InputError(
-            f"mesh order {mesh:g} with {source.samples} samples per mesh cycle",
-            where="argument order",
-            why="Orders up to half of the samples can be told",
-            remedy=f"Run with samples = {4 * int(np.ceil(mesh))} or more",
-        )
+        what = f"mesh order {mesh:g} with {source.samples} samples per mesh cycle"
+        why = "Orders up to half of the samples can be told"
+        remedy = f"Run with samples = {4 * int(np.ceil(mesh))} or more"
+        raise InputError(what, "argument order", why, remedy)
     values, unit = source.signal(signal)
     count = cycles or _whole(mesh)
     starts, middle = _starts(source, count, max(count // 4, 1), part)
@@ -408,12 +399,8 @@ def resonances(
 
     lines = [float(order) for order in orders]
     if not lines:
-        raise InputError(
-            "no order is asked for",
-            where="argument orders",
-            why="Each curve belongs to one order",
-            remedy="Give orders=(1, 2, 3), say",
-        )
+        what, why = "no order is asked for", "Each curve belongs to one order"
+        raise InputError(what, "argument orders", why, "Give orders=(1, 2, 3), say")
     require_between("prominence", prominence, 0.0, 1.0)
     known = modes if modes is not None else run.modes
     cuts = [order_cut(run, order, signal, part=part) for order in lines]

@@ -82,12 +82,9 @@ def spectrum(
     values = checked_signal(signal)
     require_positive("sampling_rate", sampling_rate, "Hz")
     if scaling not in _SCALINGS:
-        raise InputError(
-            f"there is no scaling {scaling!r}",
-            where="argument scaling",
-            remedy=f"Take one of {', '.join(_SCALINGS)}",
-            why="Spectra of different scaling are not compared",
-        )
+        what = f"there is no scaling {scaling!r}"
+        why = "Spectra of different scaling are not compared"
+        raise InputError(what, "argument scaling", why, f"Take one of {', '.join(_SCALINGS)}")
     length = values.size if block_length is None else block_length
     require_between("block_length", length, 8, values.size, "samples")
     require_between("overlap", overlap, 0.0, 0.95)
@@ -296,12 +293,10 @@ class SignalSpectrum(Record):
         """
         require_positive("count", count)
         if self.scaling != "amplitude" or not self.window_length:
-            raise InputError(
-                f"peaks of a spectrum with the scaling {self.scaling}",
-                where="SignalSpectrum.peaks",
-                why="They are interpolated on amplitudes over the lines of a whole block",
-                remedy='Use scaling="amplitude" of tribodyn.analysis.spectrum',
-            )
+            what = f"peaks of a spectrum with the scaling {self.scaling}"
+            why = "They are interpolated on amplitudes over the lines of a whole block"
+            remedy = 'Use scaling="amplitude" of tribodyn.analysis.spectrum'
+            raise InputError(what, "SignalSpectrum.peaks", why, remedy)
         return interpolated_peaks(
             self.frequency, self.amplitude, self.phase, self.window, self.window_length, count
         )
@@ -355,12 +350,10 @@ def zoom_spectrum(
     values = checked_signal(signal)
     refuse_above_half(highest, sampling_rate, "The upper end of the band", "argument highest")
     if not 0.0 < lowest < highest or points < 2:
-        raise InputError(
-            f"a band from {lowest:g} to {highest:g} Hz on {points} lines",
-            where="arguments lowest, highest and points",
-            why="It must rise from above zero and have two lines or more",
-            remedy="Give a rising band and at least two points",
-        )
+        what = f"a band from {lowest:g} to {highest:g} Hz on {points} lines"
+        why = "It must rise from above zero and have two lines or more"
+        remedy = "Give a rising band and at least two points"
+        raise InputError(what, "arguments lowest, highest and points", why, remedy)
     weights = window_values(window, values.size)
     lines = zoom_fft(weights * values, [lowest, highest], m=points, fs=sampling_rate, endpoint=True)
     lines = 2.0 * np.asarray(lines) / weights.sum()

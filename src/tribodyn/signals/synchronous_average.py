@@ -180,12 +180,9 @@ def time_synchronous_average(
     )
     count = made.signal.size // per_turn
     if count < 2:
-        raise InputError(
-            f"the record holds {made.signal.size / per_turn:.3g} revolutions",
-            where="argument rotation",
-            why="An average needs two whole ones",
-            remedy="Record longer",
-        )
+        what = f"the record holds {made.signal.size / per_turn:.3g} revolutions"
+        why = "An average needs two whole ones"
+        raise InputError(what, "argument rotation", why, "Record longer")
     turns = made.signal[: count * per_turn].reshape(count, per_turn)
     return SynchronousAverage(
         2.0 * np.pi * np.arange(per_turn) / per_turn,
@@ -257,11 +254,9 @@ def kurtosis(signal: Any) -> float:
     away = values - values.mean()
     second = float(np.mean(away**2))
     if second <= (1e-14 * float(np.abs(values).max())) ** 2:
-        raise ComputationError(
-            "the kurtosis of a signal that does not change",
-            why="It is a moment over the variance, which is zero",
-            remedy="Give a signal that changes",
-        )
+        what = "the kurtosis of a signal that does not change"
+        why = "It is a moment over the variance, which is zero"
+        raise ComputationError(what, why=why, remedy="Give a signal that changes")
     return float(np.mean(away**4)) / second**2
 
 

@@ -18,7 +18,11 @@ from tribodyn.stiffness.loaded import (
     mesh_problem,
 )
 from tribodyn.stiffness.model import MODELS, StiffnessModel
-from tribodyn.stiffness.models.fourier import fourier_mesh_stiffness
+from tribodyn.stiffness.models.given import (
+    fourier_mesh_stiffness,
+    rectangular_stiffness,
+    tabulated_stiffness,
+)
 from tribodyn.stiffness.models.iso6336 import (
     iso6336_mesh_stiffness,
     iso6336_pair_stiffness,
@@ -29,8 +33,6 @@ from tribodyn.stiffness.models.potential_energy import (
     potential_energy_stiffness,
     single_pair_stiffness,
 )
-from tribodyn.stiffness.models.rectangular import rectangular_stiffness
-from tribodyn.stiffness.models.table import tabulated_stiffness
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.tooth_bending import (
     LoadPoint,

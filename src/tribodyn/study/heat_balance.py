@@ -68,12 +68,10 @@ def balanced(
     transfer, ambient = oil.heat_transfer, oil.ambient_temperature or _ROOM
     coldest, hottest = temperature_range(oil.name)
     if ambient < coldest:
-        raise ComputationError(
-            f"ambient_temperature = {ambient - 273.15:.4g} degC",
-            where="lubricant.ambient_temperature",
-            why=f"{oil.name} is known from {coldest - 273.15:.4g} degC on",
-            remedy="Give warmer surroundings, or another oil",
-        )
+        what = f"ambient_temperature = {ambient - 273.15:.4g} degC"
+        why = f"{oil.name} is known from {coldest - 273.15:.4g} degC on"
+        remedy = "Give warmer surroundings, or another oil"
+        raise ComputationError(what, "lubricant.ambient_temperature", why, remedy)
     low, high = 0.0, hottest - ambient
     rise = float(np.clip((oil.temperature or ambient) - ambient, 0.0, high))
     rows: list[tuple[float, float]] = []

@@ -2,21 +2,17 @@
 
 | module | what it answers |
 |---|---|
-| ``network`` | what a network computes, and its derivatives |
-| ``levenberg_marquardt`` | least squares, stopped by other data |
+| ``network`` | what a network computes, and how it learns: Levenberg and Marquardt |
 | ``preparation`` | gaps, outliers, scaling and split of a table |
 | ``training`` | a model from a table, and the size of its networks |
 | ``model`` | predictions with bands, stored and read |
-| ``measures`` | errors of predictions |
-| ``baselines`` | what simpler models make of the same table |
+| ``baselines`` | errors of predictions; what simpler models make of the same table |
 """
 
 from tribodyn.arguments import guard
-from tribodyn.surrogate.baselines import BASELINES, baselines
-from tribodyn.surrogate.levenberg_marquardt import Fit, Squares, levenberg_marquardt
-from tribodyn.surrogate.measures import ErrorMeasures
+from tribodyn.surrogate.baselines import BASELINES, ErrorMeasures, baselines
 from tribodyn.surrogate.model import Surrogate, load
-from tribodyn.surrogate.network import Network
+from tribodyn.surrogate.network import Fit, Network, Squares, levenberg_marquardt
 from tribodyn.surrogate.preparation import prepare, split_rows
 from tribodyn.surrogate.training import BPNN_PL, Training, bpnn_pl, train
 

@@ -101,12 +101,8 @@ def columns_of(data: Any, names: Sequence[str], argument: str) -> Array:
         if name not in known:
             near = difflib.get_close_matches(str(name), known, n=1)
             remedy = f'Did you mean "{near[0]}"?' if near else f"It has {', '.join(known)}"
-            raise InputError(
-                f'no column "{name}"',
-                Argument(argument),
-                "Names are those of the columns",
-                remedy,
-            )
+            what = f'no column "{name}"'
+            raise InputError(what, Argument(argument), "Names are those of the columns", remedy)
     return np.stack([_column(table[name], str(name), rows) for name in listed], axis=1)
 
 

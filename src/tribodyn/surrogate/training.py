@@ -7,14 +7,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, require_between
 from tribodyn.progress import SILENT, Progress
-from tribodyn.surrogate.levenberg_marquardt import Fit, Squares, levenberg_marquardt
 from tribodyn.surrogate.model import Surrogate
-from tribodyn.surrogate.network import Network
+from tribodyn.surrogate.network import Fit, Network, Squares, levenberg_marquardt
 from tribodyn.surrogate.preparation import Prepared, prepare
 from tribodyn.types import Array
 
@@ -237,6 +235,8 @@ def _fitted(
     ready: Prepared, column: int, seed: int, training: Training
 ) -> tuple[Network, Fit, float, float]:
     """Best network of one target, with its validation errors in the unit of the target."""
+    from threadpoolctl import threadpool_limits
+
     network = Network(ready.features.shape[1], tuple(training.hidden), tuple(training.activations))
     inputs = ready.feature_scaling.scaled(ready.features)
     target = ready.target_scaling.scaled(ready.targets)[:, column]

@@ -93,12 +93,10 @@ def bootstrap_band(
     count = require_whole("resamples", resamples, 100)
     whole = require_flag("simultaneous", simultaneous)
     if given.ndim < 1 or given.shape[0] < 3 or not given.size or not np.all(np.isfinite(given)):
-        raise InputError(
-            f"samples have the shape {given.shape}, or are not all finite",
-            Argument("samples"),
-            "At least three repeats of finite values are needed, the repeats first",
-            "Repeat the measurement, or leave out what is missing",
-        )
+        what = f"samples have the shape {given.shape}, or are not all finite"
+        why = "At least three repeats of finite values are needed, the repeats first"
+        remedy = "Repeat the measurement, or leave out what is missing"
+        raise InputError(what, Argument("samples"), why, remedy)
     repeats, shape = given.shape[0], given.shape[1:]
     flat = given.reshape(repeats, -1)
     mean, error = flat.mean(axis=0), flat.std(axis=0, ddof=1) / np.sqrt(repeats)

@@ -1,16 +1,140 @@
-"""Samples of several quantities, spread at random or evenly."""
+"""How a quantity is spread, from a text, and the values to compute with."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any, Literal
 
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import Argument, ComputationError, InputError, require_one_of, warn
+from tribodyn.errors import Argument, ComputationError, InputError, require_one_of, shortened, warn
+from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
-from tribodyn.uncertainty.distribution import distribution
+from tribodyn.units import UnitProblemError, parse, split
+
+#: Half width of the truncated normal distribution in standard deviations.
+_CUT = 3.0
+_SPREAD = re.compile(r"(normal|lognormal)?\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+)", re.IGNORECASE)
+_RANGE = re.compile(r"(?:uniform)?\s*(.+?)\s*\.\.\s*(.+)", re.IGNORECASE)
+
+
+def distribution(name: str, text: Any, unit: str | None = None) -> Any:
+    """Distribution of a quantity.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity or dotted key of a case; where its last part is a quantity of the
+        nomenclature, its values carry a unit and come back in SI.
+    text : str, float, (n,) array or SciPy distribution
+        ``"0.05 +- 0.83 %"`` or ``"90 N*m +- 2 N*m"``: mean and standard deviation of a normal
+        distribution that is cut at three of them; ``"normal ..."`` the same without the cut;
+        ``"lognormal 0.05 +- 20 %"`` mean and standard deviation of the quantity itself;
+        ``"0.4 um .. 0.6 um"``: every value between is equally likely; a number or a quantity: that
+        value; an array: measured values, in SI, drawn from their empirical distribution with
+        straight lines between them.
+    unit : str, optional
+        Unit of the quantity; by default that of the nomenclature.
+
+    Returns
+    -------
+    distribution
+        With ``ppf``, the quantile function; of SciPy, or one value, or data.
+
+    Raises
+    ------
+    InputError
+        If the text is none of these, a unit is wrong, or a spread is not positive.
+
+    Examples
+    --------
+    >>> made = distribution("operation.torque", "90 N*m +- 2 %")
+    >>> [round(float(made.ppf(u)), 3) for u in (0.0, 0.5, 1.0)]
+    [84.6, 90.0, 95.4]
+    """
+    if hasattr(text, "ppf"):
+        return text
+    if isinstance(text, bool) or text is None:
+        raise _wrong(name, text)
+    if isinstance(text, str):
+        return _from_text(name, text.strip(), unit)
+    try:
+        values = np.sort(np.asarray(text, dtype=float).reshape(-1))
+    except (TypeError, ValueError, OverflowError):
+        raise _wrong(name, text) from None
+    if not values.size or not np.all(np.isfinite(values)):
+        raise _wrong(name, text)
+    return _Data(values)
+
+
+def _from_text(name: str, text: str, unit: str | None) -> Any:
+    from scipy import stats
+
+    if unit is None:
+        known = QUANTITIES.get(name.rpartition(".")[2])
+        unit = known.unit if known is not None else ""
+    kind = text.lower().split()[0] if text else ""
+    try:
+        if match := _SPREAD.fullmatch(text):
+            mean = parse(match[2].strip(), unit)
+            spread = _spread(match[3].strip(), mean, unit)
+            if kind == "lognormal":
+                if not mean > 0.0:
+                    raise _wrong(name, text, "The mean of a lognormal distribution is positive")
+                square = float(np.log1p((spread / mean) ** 2))
+                return stats.lognorm(np.sqrt(square), scale=mean * np.exp(-0.5 * square))
+            if kind == "normal":
+                return stats.norm(mean, spread)
+            return stats.truncnorm(-_CUT, _CUT, mean, spread)
+        if match := _RANGE.fullmatch(text):
+            low, high = parse(match[1].strip(), unit), parse(match[2].strip(), unit)
+            if not low < high:
+                raise _wrong(name, text, "The first value is the smaller one")
+            return stats.uniform(low, high - low)
+        return _Data(np.array([parse(text, unit)]))
+    except UnitProblemError as error:
+        bare = re.fullmatch(r"([\d.]+)\s*(?:\+-|±)\s*([\d.]+)\s*([^\s\d%].*)", text)
+        both = f'"{bare[1]} {bare[3]} +- {bare[2]} {bare[3]}", or ' if bare else ""
+        raise _wrong(name, text, str(error), both) from None
+
+
+def _spread(text: str, mean: float, unit: str) -> float:
+    """Standard deviation in the unit, or in percent of the mean."""
+    if text.endswith("%"):
+        share, rest = split(text[:-1].strip())
+        spread = abs(mean) * share / 100.0 if not rest else np.nan
+    elif unit == "K":  # a difference of temperatures has no zero of its own
+        number, written = split(text)
+        spread = parse(f"{number} {written}", "K") - parse(f"0 {written}", "K")
+    else:
+        spread = parse(text, unit)
+    if not (np.isfinite(spread) and spread > 0.0):
+        raise UnitProblemError(f"a standard deviation of {text} is not positive")
+    return float(spread)
+
+
+def _wrong(name: str, given: Any, why: str = "", meant: str = "") -> InputError:
+    what = f"{shortened(repr(given))} is no distribution"
+    remedy = (
+        f'Write {meant}"0.05 +- 0.83 %", "uniform 0.4 um .. 0.6 um", "lognormal 0.05 +- 20 %", '
+        "or give data or a SciPy distribution"
+    )
+    return InputError(what, name, why or "It is none of the kinds that are known", remedy)
+
+
+class _Data:
+    """Empirical distribution of sorted values, with straight lines between them."""
+
+    def __init__(self, values: Array) -> None:
+        self.values = values
+
+    def ppf(self, share: Any) -> Array:
+        """Value below which a share of the distribution lies."""
+        places = np.linspace(0.0, 1.0, self.values.size) if self.values.size > 1 else np.zeros(1)
+        return np.asarray(np.interp(share, places, self.values))
+
 
 Method = Literal["monte-carlo", "latin-hypercube", "sobol"]
 #: Most numbers of one sample.
@@ -69,12 +193,8 @@ def sample(
     (0.05, 0.0082)
     """
     if not isinstance(distributions, Mapping) or not distributions:
-        raise InputError(
-            "no quantity is spread",
-            Argument("distributions"),
-            "Wanted: a mapping of names",
-            'Write {"friction.coefficient": "0.05 +- 0.83 %"}',
-        )
+        what, remedy = "no quantity is spread", 'Write {"friction.coefficient": "0.05 +- 0.83 %"}'
+        raise InputError(what, Argument("distributions"), "Wanted: a mapping of names", remedy)
     made = {str(name): distribution(str(name), text) for name, text in distributions.items()}
     count = require_whole("size", size)
     if count * len(made) > _MOST:

@@ -11,7 +11,7 @@ from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, ComputationError, InputError, Problem
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
-from tribodyn.uncertainty.distribution import distribution
+from tribodyn.uncertainty.sampling import distribution
 
 
 @record
@@ -96,12 +96,9 @@ def sobol_indices(
         total += columns.shape[1]
         found = np.asarray(function(dict(zip(made, columns, strict=True))))
         if found.shape != (columns.shape[1],) or found.dtype.kind not in "biuf":
-            raise InputError(
-                f"the function returns {found.dtype} values of the shape {found.shape}",
-                Argument("function"),
-                f"It was given {columns.shape[1]} values of each input",
-                "Return one number for each",
-            )
+            what = f"the function returns {found.dtype} values of the shape {found.shape}"
+            why = f"It was given {columns.shape[1]} values of each input"
+            raise InputError(what, Argument("function"), why, "Return one number for each")
         if not np.all(np.isfinite(found)):
             raise ComputationError(
                 "the function returns values that are not finite",
@@ -109,11 +106,8 @@ def sobol_indices(
                 remedy="Look for the sample at which the function fails",
             )
         if np.ptp(found) == 0.0:
-            raise ComputationError(
-                "the output does not vary",
-                remedy="Widen the inputs",
-                why="Shares of a variance need one above zero",
-            )
+            why = "Shares of a variance need one above zero"
+            raise ComputationError("the output does not vary", why=why, remedy="Widen the inputs")
         return found.astype(float)
 
     random = np.random.default_rng(require_whole("seed", seed, 0))

@@ -10,8 +10,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
-from tribodyn.cases.papers.printed import PrintedRow, papers, printed_rows
-from tribodyn.cases.papers.verdict import deviation, series_of, verdicts
+from tribodyn.cases.papers.printed import (
+    PrintedRow,
+    deviation,
+    papers,
+    printed_rows,
+    series_of,
+    verdicts,
+)
 from tribodyn.drawing import write_report_of
 from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress

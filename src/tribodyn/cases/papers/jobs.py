@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.cases.load import load_case
 from tribodyn.cases.papers.computations import Figures, Meshes, figures_of, loads_of
-from tribodyn.cases.papers.printed import PrintedRow
-from tribodyn.cases.papers.verdict import course
+from tribodyn.cases.papers.printed import PrintedRow, course
 from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress

@@ -150,12 +150,9 @@ def _refuse_different(systems: list[System]) -> None:
         }
 
     if not systems or not all(isinstance(one, System) for one in systems):
-        raise InputError(
-            "systems is neither a System nor a sequence of one System for each lane",
-            where="argument systems",
-            why="Every lane has a system of its own",
-            remedy="Give one System, or a list of them",
-        )
+        what = "systems is neither a System nor a sequence of one System for each lane"
+        why = "Every lane has a system of its own"
+        raise InputError(what, "argument systems", why, "Give one System, or a list of them")
     known = {id(systems[0]): facts(systems[0])}
     first = known[id(systems[0])]
     for lane, system in enumerate(systems):

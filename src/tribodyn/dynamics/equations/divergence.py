@@ -286,12 +286,9 @@ def adaptive_failure(
     if not np.isfinite(state[worst]) or size[worst] > 1e9:
         steps = max(_SAMPLE, 2 * len(system_events(system)))
         cause, remedy = probable_cause(system, sampled(system, steps)[1], 0.0, factors)
-        return ComputationError(
-            f"the motion grew beyond all bounds: the {kind} of {name} is {state[worst]:.3g}",
-            where=where,
-            why=f"{cause}. Steps are as short as accuracy needs, so it is not they",
-            remedy=remedy,
-        )
+        what = f"the motion grew beyond all bounds: the {kind} of {name} is {state[worst]:.3g}"
+        why = f"{cause}. Steps are as short as accuracy needs, so it is not they"
+        return ComputationError(what, where, why, remedy)
     return ComputationError(
         f"no step meets the tolerance: {name} moves fastest, its {kind} is {state[worst]:.3g}",
         where=where,

@@ -27,12 +27,9 @@ def read_events(given: Any, where: str) -> tuple[float, ...]:
     events = tuple(real_numbers(where, given, "mesh phases").reshape(-1).tolist())
     bad = [event for event in events if not 0.0 <= event < 1.0]
     if bad:
-        raise InputError(
-            f"events holds {bad[0]:g}",
-            where=where,
-            why="Events are mesh phases and lie in [0, 1)",
-            remedy="Take the fraction of the mesh cycle, for example phase % 1.0",
-        )
+        what = f"events holds {bad[0]:g}"
+        remedy = "Take the fraction of the mesh cycle, for example phase % 1.0"
+        raise InputError(what, where, "Events are mesh phases and lie in [0, 1)", remedy)
     return events
 
 
@@ -53,21 +50,15 @@ def entry_values(where: str, entry: Any, phases: Array, size: int) -> Array:
     else:
         value = real_numbers(where, entry, "a number, numbers or a function of the mesh phase")
         if value.ndim > 1 or (value.ndim == 1 and value.size != size):
-            raise InputError(
-                f"{where} has the shape {value.shape}",
-                where=where,
-                why=f"It must be a number or have the shape ({size},)",
-                remedy="Give a number, or one for each coordinate",
-            )
+            what = f"{where} has the shape {value.shape}"
+            why = f"It must be a number or have the shape ({size},)"
+            raise InputError(what, where, why, "Give a number, or one for each coordinate")
         values = np.broadcast_to(value, (phases.size, size)).astype(float)
     if not np.all(np.isfinite(values)):
         at = phases[np.flatnonzero(~np.isfinite(values).all(axis=1))[0]]
-        raise InputError(
-            f"{where} is NaN or infinite at the mesh phase {at:.6g}",
-            where=where,
-            remedy="Check the table or function there; declare jumps as events",
-            why="The equations of motion need a finite number there",
-        )
+        what = f"{where} is NaN or infinite at the mesh phase {at:.6g}"
+        remedy = "Check the table or function there; declare jumps as events"
+        raise InputError(what, where, "The equations of motion need a finite number there", remedy)
     return values
 
 
@@ -123,12 +114,9 @@ def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
 
 def _shaped(where: str, values: Array, count: int, size: int) -> Array:
     if values.shape != (count, size):
-        raise InputError(
-            f"{where} gives the shape {values.shape}",
-            where=where,
-            why=f"It must be ({count}, {size}) for {count} mesh phases",
-            remedy="Return one row of values for each phase that the function is given",
-        )
+        why = f"It must be ({count}, {size}) for {count} mesh phases"
+        remedy = "Return one row of values for each phase that the function is given"
+        raise InputError(f"{where} gives the shape {values.shape}", where, why, remedy)
     return values
 
 
@@ -139,12 +127,10 @@ def _oriented(where: str, function: Callable[[Array], Any], phases: Array, size:
     try:
         given = function(probe)
     except (TypeError, ValueError) as error:
-        raise InputError(
-            f"{where} is not a vectorized function of the mesh phase: {error}",
-            where=where,
-            why="It is called with an array of phases and returns an array",
-            remedy="Use numpy.where instead of if, and functions that take arrays",
-        ) from error
+        what = f"{where} is not a vectorized function of the mesh phase: {error}"
+        why = "It is called with an array of phases and returns an array"
+        remedy = "Use numpy.where instead of if, and functions that take arrays"
+        raise InputError(what, where, why, remedy) from error
     values = real_numbers(where, given, "real numbers, whatever the mesh phase")
     if values.ndim == 0:
         values = np.full((probe.size, 1), float(values))

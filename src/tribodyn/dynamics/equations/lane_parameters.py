@@ -66,23 +66,18 @@ class LaneParameters:
                 )
             if name in _NOT_NEGATIVE and np.any(values < 0.0):
                 worst = int(np.argmin(values))
-                raise InputError(
-                    f"{name} = {values.reshape(-1)[worst]:g} in lane {worst}",
-                    where=f"LaneParameters.{name}",
-                    why="The factor cannot be negative",
-                    remedy="Give zero or more; 1 leaves it as it is",
-                )
+                what = f"{name} = {values.reshape(-1)[worst]:g} in lane {worst}"
+                why = "The factor cannot be negative"
+                remedy = "Give zero or more; 1 leaves it as it is"
+                raise InputError(what, f"LaneParameters.{name}", why, remedy)
             if values.ndim:
                 lengths[values.size] = name
             object.__setattr__(self, name, values)
         if len(lengths) > 1:
             (one, first), (two, second), *_ = lengths.items()
-            raise InputError(
-                f"{first} holds {one} factors and {second} holds {two}",
-                where="LaneParameters",
-                why="Every array has one factor for each lane",
-                remedy="Give as many factors to each",
-            )
+            what = f"{first} holds {one} factors and {second} holds {two}"
+            why = "Every array has one factor for each lane"
+            raise InputError(what, "LaneParameters", why, "Give as many factors to each")
 
     def __repr__(self) -> str:
         """One line."""
@@ -133,12 +128,10 @@ class LaneParameters:
         for name in _NAMES:
             values = np.asarray(getattr(self, name))
             if values.ndim and values.size != lanes:
-                raise InputError(
-                    f"{name} holds {values.size} factors for {lanes} lanes",
-                    where=f"LaneParameters.{name}",
-                    why="One number, or one for each lane",
-                    remedy="Give one number for all lanes, or one for each",
-                )
+                what = f"{name} holds {values.size} factors for {lanes} lanes"
+                why = "One number, or one for each lane"
+                remedy = "Give one number for all lanes, or one for each"
+                raise InputError(what, f"LaneParameters.{name}", why, remedy)
             columns.append(np.broadcast_to(values, (lanes,)))
         return np.stack(columns, axis=1)
 

@@ -31,12 +31,9 @@ def coefficient_count(where: str, friction: LoadFriction) -> int:
     if callable(given) and _PROBE in shape:
         shape = tuple(np.delete(shape, shape.index(_PROBE)).tolist())
     if len(shape) > 1 or 0 in shape:
-        raise InputError(
-            f"{where} gives the shape {values.shape}",
-            where=where,
-            why=f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases",
-            remedy="Return a row of numbers for each phase that the function is given",
-        )
+        why = f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases"
+        remedy = "Return a row of numbers for each phase that the function is given"
+        raise InputError(f"{where} gives the shape {values.shape}", where, why, remedy)
     return int(shape[0]) if shape else 1
 
 
@@ -164,12 +161,9 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         raise no_direction(f"contacts[{j}].direction")
     gap = scalar("gap", rows.values)
     if np.any(gap < 0.0):
-        raise InputError(
-            f"gap = {gap.min():.6g} m",
-            where="Contact.gap",
-            why="The gap is half the dead zone and cannot be negative",
-            remedy="Use `error` for an interference",
-        )
+        what = f"gap = {gap.min():.6g} m"
+        why = "The gap is half the dead zone and cannot be negative"
+        raise InputError(what, "Contact.gap", why, "Use `error` for an interference")
     nodes = Nodes(
         phase=grid.left[:, None] + grid.width[:, None] * np.array([0.0, 0.5, 1.0]),
         stiffness=scalar("stiffness", rows.values),

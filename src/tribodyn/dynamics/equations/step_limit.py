@@ -151,10 +151,9 @@ def refuse_unstable_step(
         raise InputError(
             f"omega_max*dt = {number:.3f} with {grid.steps} steps per mesh cycle at "
             f"{mesh_frequency:g} Hz and a fastest motion of {rate:.4g} rad/s{lane}",
-            where="argument steps",
-            why=f"The limit is {LIMIT}; above 2.83 the Runge-Kutta scheme is unstable and "
-            "its result is not physics",
-            remedy=f"Use at least {needed} steps per mesh cycle",
+            "argument steps",
+            f"The limit is {LIMIT}; above 2.83 the scheme is unstable and its result not physics",
+            f"Use at least {needed} steps per mesh cycle",
         )
     return number
 
@@ -194,9 +193,7 @@ def _every_lane(
 ) -> tuple[Array, Array]:
     """Factors (m, 3) and mesh frequency (m,) of the lanes concerned."""
     beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
-    count = beat.size
-    if count == 1 and parameters is not None:
-        count = parameters.count
-        beat = np.broadcast_to(beat, (count,))
-    table = np.ones((count, 3)) if parameters is None else parameters.table(count)[:, :3]
+    if beat.size == 1 and parameters is not None:
+        beat = np.broadcast_to(beat, (parameters.count,))
+    table = np.ones((beat.size, 3)) if parameters is None else parameters.table(beat.size)[:, :3]
     return (table, beat) if lanes is None else (table[lanes], beat[lanes])

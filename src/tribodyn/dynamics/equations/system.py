@@ -138,12 +138,9 @@ class LoadFriction:
         listed = real_numbers("LoadFriction.contacts", contacts, "whole numbers").reshape(-1)
         numbers = tuple(require_whole("contacts", contact, 0) for contact in listed)
         if not numbers or min(numbers) < 0:
-            raise InputError(
-                f"contacts = {numbers}",
-                where="LoadFriction.contacts",
-                why="The friction follows the force of one contact or of several",
-                remedy="Name them by their place in System.contacts, counted from 0",
-            )
+            why = "The friction follows the force of one contact or of several"
+            remedy = "Name them by their place in System.contacts, counted from 0"
+            raise InputError(f"contacts = {numbers}", "LoadFriction.contacts", why, remedy)
         object.__setattr__(self, "contacts", numbers)
 
     def __repr__(self) -> str:
@@ -153,30 +150,20 @@ class LoadFriction:
 
 def no_direction(where: str) -> InputError:
     """Error of a contact that no motion compresses."""
-    return InputError(
-        "the direction is zero",
-        where=where,
-        why="No coordinate compresses the contact, so that it could never carry",
-        remedy="Give the derivative of the compression with respect to each coordinate",
-    )
+    why = "No coordinate compresses the contact, so that it could never carry"
+    remedy = "Give the derivative of the compression with respect to each coordinate"
+    return InputError("the direction is zero", where, why, remedy)
 
 
 def _matrix(name: str, value: ArrayLike) -> Array:
     matrix = np.array(real_numbers(f"System.{name}", value), ndmin=2)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
-        raise InputError(
-            f"{name} has the shape {matrix.shape}",
-            where=f"System.{name}",
-            why="It must be a square (n, n) matrix",
-            remedy="Give a list of rows, as many as there are coordinates",
-        )
+        what = f"{name} has the shape {matrix.shape}"
+        remedy = "Give a list of rows, as many as there are coordinates"
+        raise InputError(what, f"System.{name}", "It must be a square (n, n) matrix", remedy)
     if not np.all(np.isfinite(matrix)):
-        raise InputError(
-            f"{name} holds NaN or infinity",
-            where=f"System.{name}",
-            why="The equations of motion need finite numbers",
-            remedy="Look for the entry that is not finite",
-        )
+        what, why = f"{name} holds NaN or infinity", "The equations of motion need finite numbers"
+        raise InputError(what, f"System.{name}", why, "Look for the entry that is not finite")
     return matrix
 
 
@@ -231,12 +218,10 @@ class System:
         size = matrices["mass"].shape[0]
         for name, matrix in matrices.items():
             if matrix.shape != (size, size):
-                raise InputError(
-                    f"{name} has the shape {matrix.shape}, mass has {(size, size)}",
-                    where=f"System.{name}",
-                    why="All three matrices belong to the same coordinates",
-                    remedy="Give it the shape of the mass matrix",
-                )
+                what = f"{name} has the shape {matrix.shape}, mass has {(size, size)}"
+                why = "All three matrices belong to the same coordinates"
+                remedy = "Give it the shape of the mass matrix"
+                raise InputError(what, f"System.{name}", why, remedy)
             object.__setattr__(self, name, matrix)
         contacts = (self.contacts,) if isinstance(self.contacts, Contact) else self.contacts
         one = isinstance(self.frictions, LoadFriction)
@@ -247,34 +232,24 @@ class System:
             ("names", self.names, str),
         ):
             if not isinstance(parts, list | tuple) or not all(isinstance(p, kind) for p in parts):
-                raise InputError(
-                    f"{name} is no sequence of {kind.__name__}",
-                    where=f"System.{name}",
-                    remedy="Give a list or a tuple",
-                    why="A system has several of them",
-                )
+                what, remedy = f"{name} is no sequence of {kind.__name__}", "Give a list or a tuple"
+                raise InputError(what, f"System.{name}", "A system has several of them", remedy)
         object.__setattr__(self, "frictions", tuple(frictions))
         object.__setattr__(self, "contacts", tuple(contacts))
         names = tuple(self.names) or tuple(f"q{i}" for i in range(size))
         if len(names) != size:
-            raise InputError(
-                f"{len(names)} names for {size} coordinates",
-                where="System.names",
-                why="Every coordinate has one name",
-                remedy="Give as many names as coordinates, or none",
-            )
+            what = f"{len(names)} names for {size} coordinates"
+            remedy = "Give as many names as coordinates, or none"
+            raise InputError(what, "System.names", "Every coordinate has one name", remedy)
         object.__setattr__(self, "names", names)
         _refuse_singular(matrices["mass"], names)
         _refuse_missing_contacts(self)
         if self.balance is not None:
             balance = real_numbers("System.balance", self.balance)
             if balance.shape != (size,):
-                raise InputError(
-                    f"balance has the shape {balance.shape}, not ({size},)",
-                    where="System.balance",
-                    why="It holds the torque of each coordinate back",
-                    remedy="Give one number for each coordinate",
-                )
+                what = f"balance has the shape {balance.shape}, not ({size},)"
+                why = "It holds the torque of each coordinate back"
+                raise InputError(what, "System.balance", why, "Give one number for each coordinate")
             object.__setattr__(self, "balance", balance)
 
     @cached_property

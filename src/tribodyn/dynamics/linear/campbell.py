@@ -158,12 +158,8 @@ def campbell(
     """
     lines = tuple(int(order) for order in orders)
     if not lines:
-        raise InputError(
-            "no order is asked for",
-            where="argument orders",
-            why="Each line of the diagram belongs to one order",
-            remedy="Give orders=(1, 2, 3), say",
-        )
+        what, why = "no order is asked for", "Each line of the diagram belongs to one order"
+        raise InputError(what, "argument orders", why, "Give orders=(1, 2, 3), say")
     require_positive("teeth", teeth, "")
     require_positive("orders", np.asarray(lines), "")
     speeds = _rising(speed)

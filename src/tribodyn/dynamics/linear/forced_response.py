@@ -136,12 +136,9 @@ def forced_response(
     linear = linear_system(system, phase)
     count = linear.spring.size
     if not 0 <= contact < count:
-        raise InputError(
-            f"contact = {contact}",
-            where="argument contact",
-            why=f"The system has {count} contact{'s' if count != 1 else ''}, counted from 0",
-            remedy="Give the number of one of its contacts",
-        )
+        what = f"contact = {contact}"
+        why = f"The system has {count} contact{'s' if count != 1 else ''}, counted from 0"
+        raise InputError(what, "argument contact", why, "Give the number of one of its contacts")
     members = np.flatnonzero(linear.bundle == linear.bundle[contact])
     given = np.where(np.isin(np.arange(count), members), float(error), 0.0)
     position = _solve(linear, 2.0 * np.pi * hertz, given, friction)
@@ -174,10 +171,8 @@ def _solve(linear: LinearSystem, omega: Array, given: Array, friction: bool) -> 
     try:
         solved = np.linalg.solve(scaled, (scale * force)[:, :, None])[:, :, 0]
     except np.linalg.LinAlgError as error:
-        raise InputError(
-            "an undamped mode lies exactly at one of the frequencies",
-            where="argument frequency",
-            why="Its motion grows without end",
-            remedy="Give the structure or the contact some damping",
-        ) from error
+        what = "an undamped mode lies exactly at one of the frequencies"
+        why = "Its motion grows without end"
+        remedy = "Give the structure or the contact some damping"
+        raise InputError(what, "argument frequency", why, remedy) from error
     return np.asarray(scale * solved)

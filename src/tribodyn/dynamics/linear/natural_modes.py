@@ -90,12 +90,8 @@ def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
         _, nodes = sampled(system, max(_STEPS, 4 * len(system_events(system))))
         return nodes, nodes.weight
     if isinstance(phase, str):
-        raise InputError(
-            f'phase = "{phase}"',
-            where="argument phase",
-            why='"mean" or a mesh phase in [0, 1)',
-            remedy="Choose one of the two",
-        )
+        why = '"mean" or a mesh phase in [0, 1)'
+        raise InputError(f'phase = "{phase}"', "argument phase", why, "Choose one of the two")
     at = float(phase)
     require_between("phase", at, 0.0, np.nextafter(1.0, 0.0), "")
     contacts = tuple(replace(contact, events=(*contact.events, at)) for contact in system.contacts)
@@ -332,12 +328,10 @@ def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     squares, columns = np.linalg.eigh(0.5 * (matrix + matrix.T))
     rigid = np.abs(squares) <= _RIGID * np.abs(squares).max(initial=0.0)
     if np.any(squares[~rigid] < 0.0):
-        raise InputError(
-            "the system falls over at rest: a stiffness is negative",
-            where="System.stiffness",
-            why="A motion runs away from the static load without oscillating",
-            remedy="Look for a wrong sign in the stiffness matrix or of a contact",
-        )
+        what = "the system falls over at rest: a stiffness is negative"
+        why = "A motion runs away from the static load without oscillating"
+        remedy = "Look for a wrong sign in the stiffness matrix or of a contact"
+        raise InputError(what, "System.stiffness", why, remedy)
     frequency = np.sqrt(np.where(rigid, 0.0, squares)) / (2.0 * np.pi)
     shape = (inverse.T @ columns).T
     largest = np.take_along_axis(shape, np.abs(shape).argmax(axis=1)[:, None], axis=1)
@@ -394,24 +388,18 @@ def structure_elements(
     matrix = np.asarray(system.stiffness)
     size = float(np.abs(matrix).max(initial=0.0))
     if np.abs(matrix - matrix.T).max(initial=0.0) > 1e-9 * size:
-        raise InputError(
-            "the stiffness matrix is not symmetric",
-            where="System.stiffness",
-            why="Only a symmetric matrix stores energy",
-            remedy="Give friction as the friction of a contact",
-        )
+        why = "Only a symmetric matrix stores energy"
+        remedy = "Give friction as the friction of a contact"
+        raise InputError("the stiffness matrix is not symmetric", "System.stiffness", why, remedy)
     if elements is None:
         return _springs(matrix, tuple(system.names))
     given = {name: np.asarray(element, dtype=float) for name, element in elements.items()}
     wrong = [name for name, element in given.items() if element.shape != matrix.shape]
     if wrong or np.abs(sum(given.values()) - matrix).max() > 1e-9 * size:
         what = f'"{wrong[0]}" is no {matrix.shape} matrix' if wrong else "they do not add up"
-        raise InputError(
-            what,
-            where="argument elements",
-            why="The springs together are the stiffness matrix of the structure",
-            remedy="Give all springs of the structure, those to the ground too",
-        )
+        why = "The springs together are the stiffness matrix of the structure"
+        remedy = "Give all springs of the structure, those to the ground too"
+        raise InputError(what, "argument elements", why, remedy)
     return given
 
 

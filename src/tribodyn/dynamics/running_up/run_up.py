@@ -180,12 +180,10 @@ def read_outputs(outputs: Mapping[str, ArrayLike] | None, system: System) -> Arr
     rows = [np.asarray(row, dtype=float) for row in (outputs or {}).values()]
     for name, row in zip(outputs or {}, rows, strict=True):
         if row.shape != (2 * system.size,):
-            raise InputError(
-                f"the output {name} has the shape {row.shape}",
-                where="argument outputs",
-                why=f"It is a row over positions and velocities, ({2 * system.size},)",
-                remedy="Give one factor for each position, then one for each velocity",
-            )
+            what = f"the output {name} has the shape {row.shape}"
+            why = f"It is a row over positions and velocities, ({2 * system.size},)"
+            remedy = "Give one factor for each position, then one for each velocity"
+            raise InputError(what, "argument outputs", why, remedy)
     return np.array(rows) if rows else np.zeros((0, 2 * system.size))
 
 
@@ -195,12 +193,9 @@ def _inertia(system: System, rotation: ArrayLike | None, teeth: int) -> Array:
         return np.zeros(system.size)
     turning = np.asarray(rotation, dtype=float)
     if turning.shape != (system.size,):
-        raise InputError(
-            f"rotation has the shape {turning.shape}, not ({system.size},)",
-            where="argument rotation",
-            why="It says how fast each coordinate turns with the shaft",
-            remedy="Give one number for each coordinate",
-        )
+        what = f"rotation has the shape {turning.shape}, not ({system.size},)"
+        why = "It says how fast each coordinate turns with the shaft"
+        raise InputError(what, "argument rotation", why, "Give one number for each coordinate")
     return np.asarray(-np.asarray(system.mass) @ turning * (2.0 * np.pi / teeth))
 
 

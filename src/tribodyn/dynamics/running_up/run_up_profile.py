@@ -63,12 +63,10 @@ class SpeedProfile:
         remedy = "A standing gear makes no mesh cycles: begin and end at a low speed"
         require_positive("mesh_frequency", frequency, "Hz", remedy=remedy)
         if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
-            raise InputError(
-                "the times of the profile do not rise",
-                where="argument profile",
-                why="Each corner comes after the one before",
-                remedy="Give a sudden change of the speed a short time of its own",
-            )
+            what = "the times of the profile do not rise"
+            why = "Each corner comes after the one before"
+            remedy = "Give a sudden change of the speed a short time of its own"
+            raise InputError(what, "argument profile", why, remedy)
         time = time - time[0]
         mean = 0.5 * (frequency[1:] + frequency[:-1])
         object.__setattr__(self, "time", time)
@@ -193,12 +191,8 @@ def speed_ramp(
     """
     require_positive("duration", duration, "s")
     if hold < 0.0:
-        raise InputError(
-            f"hold = {hold:g} s",
-            where="argument hold",
-            why="A time is not negative",
-            remedy="Give zero or more seconds",
-        )
+        why = "A time is not negative"
+        raise InputError(f"hold = {hold:g} s", "argument hold", why, "Give zero or more seconds")
     corners = [(0.0, low), (duration, high)]
     if hold > 0.0:
         corners.append((duration + hold, high))
@@ -217,22 +211,16 @@ def read_profile(
         return profile
     if callable(profile):
         if duration is None:
-            raise InputError(
-                "a function of time without its length",
-                where="argument duration",
-                why="A function does not tell when the run ends",
-                remedy="Give duration in seconds",
-            )
+            what = "a function of time without its length"
+            why = "A function does not tell when the run ends"
+            raise InputError(what, "argument duration", why, "Give duration in seconds")
         require_positive("duration", duration, "s")
         time = np.linspace(0.0, duration, _PIECES + 1)
         return SpeedProfile(time, np.broadcast_to(np.asarray(profile(time), float), time.shape))
     try:
         corners, frequency = profile
     except (TypeError, ValueError) as error:
-        raise InputError(
-            "the profile is not a pair (time, mesh_frequency)",
-            where="argument profile",
-            remedy="Give ([0.0, 10.0], [100.0, 800.0]) or speed_ramp(100.0, 800.0, 10.0)",
-            why="A speed over time is needed",
-        ) from error
+        what = "the profile is not a pair (time, mesh_frequency)"
+        remedy = "Give ([0.0, 10.0], [100.0, 800.0]) or speed_ramp(100.0, 800.0, 10.0)"
+        raise InputError(what, "argument profile", "A speed over time is needed", remedy) from error
     return SpeedProfile(np.asarray(corners, float), np.asarray(frequency, float))

@@ -132,12 +132,8 @@ class RunUp(Record):
         if name in self.output_names:
             return self.output[:, self.output_names.index(name)], self.output_unit
         known = ("deflection", "contact_force", *self.names, *self.output_names)
-        raise InputError(
-            f'no signal "{name}"',
-            where="argument signal",
-            why=f"There are {', '.join(known)}",
-            remedy="Choose one of these",
-        )
+        why = f"There are {', '.join(known)}"
+        raise InputError(f'no signal "{name}"', "argument signal", why, "Choose one of these")
 
     def __repr__(self) -> str:
         """One line."""

@@ -46,12 +46,9 @@ def systems_by_frequency(
     if isinstance(system, System):
         return np.zeros(1), (system,)
     if not system:
-        raise InputError(
-            "no system",
-            where="argument system",
-            why="The equations of motion belong to a system",
-            remedy="Give a System, or several by mesh frequency",
-        )
+        why = "The equations of motion belong to a system"
+        remedy = "Give a System, or several by mesh frequency"
+        raise InputError("no system", "argument system", why, remedy)
     frequency = np.array(sorted(system), dtype=float)
     require_positive("mesh_frequency", frequency, "Hz")
     found = tuple(system[each] for each in sorted(system))

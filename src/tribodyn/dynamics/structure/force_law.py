@@ -38,22 +38,15 @@ def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ..
         return (replace(one, stiffness=0.0), replace(spring, damping=0.0))
     if mesh_force == "force-law":
         return law_contacts(one, _needed(getattr(mesh, "force_law", None), "force law"))
-    raise InputError(
-        f'mesh_force = "{mesh_force}"',
-        where="argument mesh_force",
-        why='"stiffness", "tangent" or "force-law"',
-        remedy="Choose one of these",
-    )
+    what, why = f'mesh_force = "{mesh_force}"', '"stiffness", "tangent" or "force-law"'
+    raise InputError(what, "argument mesh_force", why, "Choose one of these")
 
 
 def _needed(value: T | None, name: str) -> T:
     if value is None:
-        raise InputError(
-            f"this mesh has no {name}",
-            where="argument mesh_force",
-            why="It comes from a loaded tooth contact",
-            remedy='Take such a stiffness model, or mesh_force = "stiffness"',
-        )
+        why = "It comes from a loaded tooth contact"
+        remedy = 'Take such a stiffness model, or mesh_force = "stiffness"'
+        raise InputError(f"this mesh has no {name}", "argument mesh_force", why, remedy)
     return value
 
 
@@ -102,12 +95,9 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     [900.0, 0.0]
     """
     if callable(contact.gap) or np.ndim(contact.gap):
-        raise InputError(
-            "gap is no constant",
-            where="argument contact",
-            why="It is half of the play; the law says where each ramp begins",
-            remedy="Put what varies into the law",
-        )
+        what = "gap is no constant"
+        why = "It is half of the play; the law says where each ramp begins"
+        raise InputError(what, "argument contact", why, "Put what varies into the law")
     half = float(np.asarray(contact.gap))
     first = float(law.knot_first_touch.min())
     if half + first < 0.0:
@@ -209,12 +199,9 @@ def _directions(names: tuple[str, ...]) -> dict[str, Array]:
     """How each friction sum of the mesh acts on the coordinates."""
     missing = [name for name in ("pinion_theta", "wheel_theta") if name not in names]
     if missing:
-        raise InputError(
-            f"no coordinate is named {missing[0]}",
-            where="argument system",
-            why=f"Friction has to find the gears among {', '.join(names)}",
-            remedy="Name the coordinates, or give LoadFriction to the system yourself",
-        )
+        why = f"Friction has to find the gears among {', '.join(names)}"
+        remedy = "Name the coordinates, or give LoadFriction to the system yourself"
+        raise InputError(f"no coordinate is named {missing[0]}", "argument system", why, remedy)
     unit = dict(zip(names, np.eye(len(names)), strict=True))
     nothing = np.zeros(len(names))
     across = nothing

@@ -270,9 +270,6 @@ def _shafts(**values: ArrayLike) -> list[Body]:
 def _refuse_directions(mesh: Any) -> None:
     """Refuse a mesh whose contacts have directions of their own."""
     if getattr(mesh, "direction", None) is not None or getattr(mesh, "friction", None) is not None:
-        raise InputError(
-            "the mesh has contact directions of its own",
-            where="argument mesh",
-            why="The shafts of this structure move in one plane, with levers of base circles",
-            remedy="Take spur6, or a mesh with base radii",
-        )
+        what = "the mesh has contact directions of its own"
+        why = "The shafts of this structure move in one plane, with levers of base circles"
+        raise InputError(what, "argument mesh", why, "Take spur6, or a mesh with base radii")

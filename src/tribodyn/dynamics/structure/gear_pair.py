@@ -100,12 +100,9 @@ def _kept(direction: Callable[[Array], Array], supports: bool) -> slice | list[i
     """Columns of a direction that a structure has: all of a plane, or the turns of both gears."""
     in_space = np.shape(direction(np.zeros(1)))[-1] == 12
     if in_space and supports:
-        raise InputError(
-            "the mesh has directions in space",
-            where="argument mesh",
-            why="The gears of this structure move in one plane",
-            remedy="Take hypoid14, or torsional, which has turning gears alone",
-        )
+        why = "The gears of this structure move in one plane"
+        remedy = "Take hypoid14, or torsional, which has turning gears alone"
+        raise InputError("the mesh has directions in space", "argument mesh", why, remedy)
     if supports:
         return slice(None)
     return [4, 10] if in_space else [2, 5]
@@ -145,12 +142,9 @@ def balance_direction(torque_balance: TorqueBalance, driver: Driver) -> Array | 
         return drives - 1.0
     if torque_balance == "load":
         return drives
-    raise InputError(
-        f'torque_balance = "{torque_balance}"',
-        where="argument torque_balance",
-        why='"drive" holds the driving torque, "load" the load torque, "both" both',
-        remedy="Choose one of these",
-    )
+    what = f'torque_balance = "{torque_balance}"'
+    why = '"drive" holds the driving torque, "load" the load torque, "both" both'
+    raise InputError(what, "argument torque_balance", why, "Choose one of these")
 
 
 #: Coordinates of a gear pair with 6 degrees of freedom, in their order.

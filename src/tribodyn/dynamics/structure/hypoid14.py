@@ -182,12 +182,9 @@ def in_space(mesh: Any) -> tuple[Entry, Entry | None]:
         elif function is None and entries:
             entries.append(None)
         else:
-            raise InputError(
-                "the mesh has no directions in space",
-                where="argument mesh",
-                why="Gears whose axes cross need six components for each of them",
-                remedy="Take the mesh table of a hypoid pair, or another structure",
-            )
+            why = "Gears whose axes cross need six components for each of them"
+            remedy = "Take the mesh table of a hypoid pair, or another structure"
+            raise InputError("the mesh has no directions in space", "argument mesh", why, remedy)
     return entries[0], entries[1]  # type: ignore[return-value]
 
 

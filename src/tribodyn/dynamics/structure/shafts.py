@@ -245,12 +245,8 @@ def assemble(
     names = tuple(name for body in bodies for name in body.names)
     doubled = sorted({name for name in names if names.count(name) > 1})
     if doubled:
-        raise InputError(
-            f'two bodies have a coordinate "{doubled[0]}"',
-            where="argument bodies",
-            why="Each disc needs a name of its own",
-            remedy="Rename one of them",
-        )
+        what, remedy = f'two bodies have a coordinate "{doubled[0]}"', "Rename one of them"
+        raise InputError(what, "argument bodies", "Each disc needs a name of its own", remedy)
     force = np.zeros(len(names))
     for disc, value in torque.items():
         force[_column(names, disc, "argument torque")] = value
@@ -281,12 +277,8 @@ def _diagonal(blocks: Sequence[Array]) -> Array:
 def _column(names: tuple[str, ...], disc: str, where: str) -> int:
     if f"{disc}_theta" not in names:
         known = ", ".join(name.removesuffix("_theta") for name in names if name.endswith("_theta"))
-        raise InputError(
-            f'there is no disc "{disc}"',
-            where=where,
-            remedy=f"Known: {known}",
-            why="Springs and meshes name the discs of the shafts",
-        )
+        why = "Springs and meshes name the discs of the shafts"
+        raise InputError(f'there is no disc "{disc}"', where, why, f"Known: {known}")
     return names.index(f"{disc}_theta")
 
 
@@ -305,12 +297,8 @@ def _contact(names: tuple[str, ...], mesh: GearMesh) -> Contact:
     require_between("backlash", mesh.backlash, 0.0, np.inf, "m")
     require_between("lag", mesh.lag, 0.0, 1.0, "")
     if int(mesh.cycles) != mesh.cycles or mesh.cycles < 1:
-        raise InputError(
-            f"cycles = {mesh.cycles}",
-            where="GearMesh.cycles",
-            why="A whole number",
-            remedy="Give cycles=1 for a pair of its own",
-        )
+        remedy = "Give cycles=1 for a pair of its own"
+        raise InputError(f"cycles = {mesh.cycles}", "GearMesh.cycles", "A whole number", remedy)
     require_one_of("GearMesh.driver", mesh.driver, ("pinion", "wheel"))
     radii = row_of("base_radius", mesh.base_radius, 2, "m")
     along = np.array([np.cos(mesh.line_angle), np.sin(mesh.line_angle)])

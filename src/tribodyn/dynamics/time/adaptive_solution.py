@@ -98,12 +98,9 @@ class AdaptiveSolution(Record):
         given = np.asarray(time, dtype=float)
         outside = ~((given >= -1e-12 * self.time[-1]) & (given <= (1.0 + 1e-12) * self.time[-1]))
         if np.any(outside):
-            raise InputError(
-                f"time = {given[outside].flat[0]:.6g} s",
-                where="argument time",
-                why=f"The motion goes from 0 to {self.time[-1]:.6g} s",
-                remedy="Ask for a time within the motion",
-            )
+            what = f"time = {given[outside].flat[0]:.6g} s"
+            why = f"The motion goes from 0 to {self.time[-1]:.6g} s"
+            raise InputError(what, "argument time", why, "Ask for a time within the motion")
         phase = given.reshape(-1) * self.mesh_frequency
         step = np.clip(np.searchsorted(self.phase, phase, side="right") - 1, 0, self.steps - 1)
         part = self._trail[step]

@@ -191,12 +191,8 @@ def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
     known = isinstance(method, str)
     name = ENGINES[method].method if known and method in ENGINES else method
     if not known or name not in _BEGIN:
-        raise InputError(
-            f'method = "{method}"',
-            where="argument method",
-            why="It is one of " + ", ".join(f'"{each}"' for each in _BEGIN),
-            remedy="Choose one of these",
-        )
+        why = "It is one of " + ", ".join(f'"{each}"' for each in _BEGIN)
+        raise InputError(f'method = "{method}"', "argument method", why, "Choose one of these")
     begin, own = _BEGIN[name]
     given = {option: value for option, value in options.items() if value is not None}
     for option in [each for each in given if each not in own]:
@@ -204,12 +200,9 @@ def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
             del given[option]  # where all engines march
             continue
         owner = next(each for each, (_, others) in _BEGIN.items() if option in others)
-        raise InputError(
-            f'{option} = {given[option]} with method = "{method}"',
-            where=f"argument {option}",
-            why=f'It belongs to "{owner}"',
-            remedy=f'Leave it out, or give method = "{owner}"',
-        )
+        what = f'{option} = {given[option]} with method = "{method}"'
+        remedy = f'Leave it out, or give method = "{owner}"'
+        raise InputError(what, f"argument {option}", f'It belongs to "{owner}"', remedy)
     return begin(setting, **given)
 
 

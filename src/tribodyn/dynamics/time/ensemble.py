@@ -163,12 +163,9 @@ def simulate_ensemble(
     """
     frequency = _frequencies(system, mesh_frequency, parameters)
     if not 0 <= averaged <= cycles:
-        raise InputError(
-            f"averaged = {averaged} with cycles = {cycles}",
-            where="argument averaged",
-            why="Statistics cover some of the last mesh cycles",
-            remedy="Give 1 to cycles",
-        )
+        what = f"averaged = {averaged} with cycles = {cycles}"
+        why = "Statistics cover some of the last mesh cycles"
+        raise InputError(what, "argument averaged", why, "Give 1 to cycles")
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
     options |= {"backend": backend}
     lanes, size = frequency.size, (system if isinstance(system, System) else system[0]).size
@@ -210,12 +207,9 @@ def _frequencies(
     odd = [name for name, count in counts.items() if count not in (1, lanes)]
     if frequency.ndim != 1 or odd:
         name = odd[0] if odd else "mesh_frequency"
-        raise InputError(
-            f"{name} is for {counts[name]} lanes, others are for {lanes}",
-            where=f"argument {name}",
-            why="One for each lane, or one for all",
-            remedy="Give one value, or one for each lane",
-        )
+        what = f"{name} is for {counts[name]} lanes, others are for {lanes}"
+        why = "One for each lane, or one for all"
+        raise InputError(what, f"argument {name}", why, "Give one value, or one for each lane")
     return np.array(np.broadcast_to(frequency, (lanes,)))
 
 

@@ -83,12 +83,10 @@ def refuse_newmark(
 ) -> None:
     """Refuse parameters, or a step that is beyond the limit of a conditionally stable scheme."""
     if not (np.isfinite(gamma) and np.isfinite(beta) and gamma >= 0.5 and beta >= 0.0):
-        raise InputError(
-            f"gamma = {gamma:g}, beta = {beta:g}",
-            where="arguments gamma, beta",
-            why="With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no meaning",
-            remedy="Average acceleration is gamma = 0.5, beta = 0.25",
-        )
+        what = f"gamma = {gamma:g}, beta = {beta:g}"
+        why = "With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no meaning"
+        remedy = "Average acceleration is gamma = 0.5, beta = 0.25"
+        raise InputError(what, "arguments gamma, beta", why, remedy)
     if 2.0 * beta >= gamma:
         return
     scales = np.ones((period.size, 6)) if parameters is None else parameters.table(period.size)

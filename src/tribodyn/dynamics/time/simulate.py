@@ -30,12 +30,9 @@ def read_start(
     except (TypeError, ValueError):
         state = np.zeros((0, 0))
     if state.shape != (lanes or 1, 2 * size) or not np.all(np.isfinite(state)):
-        raise InputError(
-            "start holds NaN or infinity, or is not a pair (position, velocity)",
-            where="argument start",
-            why=f"Each of the two has the shape ({size},){several}",
-            remedy="Give (position, velocity), both finite",
-        )
+        what = "start holds NaN or infinity, or is not a pair (position, velocity)"
+        why = f"Each of the two has the shape ({size},){several}"
+        raise InputError(what, "argument start", why, "Give (position, velocity), both finite")
     return state if lanes else state[0]
 
 
@@ -45,12 +42,10 @@ def read_force(system: System, extra_force: ArrayLike | None) -> Array:
         return np.zeros(system.size)
     force = real_numbers(Argument("extra_force"), extra_force)
     if force.shape != (system.size,) or not np.all(np.isfinite(force)):
-        raise InputError(
-            f"extra_force has the shape {force.shape}, or holds NaN or infinity",
-            where=Argument("extra_force"),
-            why=f"One finite force for each coordinate: ({system.size},)",
-            remedy="Give one finite force for each coordinate",
-        )
+        what = f"extra_force has the shape {force.shape}, or holds NaN or infinity"
+        why = f"One finite force for each coordinate: ({system.size},)"
+        remedy = "Give one finite force for each coordinate"
+        raise InputError(what, Argument("extra_force"), why, remedy)
     return force
 
 

@@ -3,7 +3,6 @@
 | module | what it answers |
 |---|---|
 | ``dimensionless_groups`` | which numbers describe a contact, and its regime after Moes |
-| ``elliptical`` | film of elliptical contacts: Hamrock and Dowson |
-| ``power_laws`` | film in the elastic-piezoviscous regime: Dowson, Dowson-Toyoda, Pan-Hamrock |
+| ``power_laws`` | Dowson, Dowson-Toyoda, Pan-Hamrock; Hamrock-Dowson for ellipses |
 | ``moes`` | central film in all regimes, and how it follows the load |
 """

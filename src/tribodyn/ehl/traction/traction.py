@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import heated_log_viscosity
-from tribodyn.ehl.traction.ree_eyring import EYRING_STRESS
-from tribodyn.ehl.traction.shear_models import SHEAR_MODELS, ShearModel
+from tribodyn.ehl.traction.shear_models import EYRING_STRESS, SHEAR_MODELS, ShearModel
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
@@ -205,10 +204,6 @@ def _spread(name: str, value: ArrayLike, contacts: int) -> Array:
     """Broadcast one value, or one of each contact."""
     array = np.asarray(value, dtype=float)
     if array.shape not in {(), (1,), (contacts,)}:
-        raise InputError(
-            f"{name} has the shape {array.shape}",
-            where=f"argument {name}",
-            why=f"there are {contacts} contacts",
-            remedy="Give one value, or one of each contact",
-        )
+        what, why = f"{name} has the shape {array.shape}", f"there are {contacts} contacts"
+        raise InputError(what, f"argument {name}", why, "Give one value, or one of each contact")
     return np.broadcast_to(array, (contacts,))

@@ -79,20 +79,14 @@ def _time(time: ArrayLike) -> Array:
 def _series(name: str, given: Series, t: Array) -> Array:
     values = np.asarray(given(t) if callable(given) else given, dtype=float)
     if values.ndim > 0 and values.shape != t.shape:
-        raise InputError(
-            f"{name} has the shape {values.shape}",
-            where=f"argument {name}",
-            why=f"time has the shape {t.shape}",
-            remedy="Give a number, one value per instant, or a function of time",
-        )
+        what = f"{name} has the shape {values.shape}"
+        remedy = "Give a number, one value per instant, or a function of time"
+        raise InputError(what, f"argument {name}", f"time has the shape {t.shape}", remedy)
     bad = np.flatnonzero(~np.isfinite(np.atleast_1d(values)))
     if bad.size:
-        raise InputError(
-            f"{name} is {np.atleast_1d(values)[bad[0]]} at instant {bad[0]}",
-            where=f"argument {name}",
-            why="all values must be finite",
-            remedy="Look for the instant that has no value",
-        )
+        what = f"{name} is {np.atleast_1d(values)[bad[0]]} at instant {bad[0]}"
+        why = "all values must be finite"
+        raise InputError(what, f"argument {name}", why, "Look for the instant that has no value")
     return np.ascontiguousarray(np.broadcast_to(values, t.shape))
 
 
@@ -129,12 +123,10 @@ def _travel(
     """Distances that the surfaces have travelled, by the trapezoidal rule."""
     if surface_speeds is None:
         if any(profile is not None for profile in roughness):
-            raise InputError(
-                "a roughness profile without surface speeds",
-                where="argument surface_speeds",
-                why="each surface carries its roughness at its own speed",
-                remedy="Give (u_1, u_2); both are entrainment_speed in pure rolling",
-            )
+            what = "a roughness profile without surface speeds"
+            why = "each surface carries its roughness at its own speed"
+            remedy = "Give (u_1, u_2); both are entrainment_speed in pure rolling"
+            raise InputError(what, "argument surface_speeds", why, remedy)
         return np.zeros((2, t.size))
     speeds = np.array([_series("surface_speeds", item, t) for item in surface_speeds])
     mean = 0.5 * (speeds[0] + speeds[1])
@@ -377,12 +369,9 @@ class MovingContact:
         from tribodyn.ehl._kernel.transient import Instant
 
         if self.inputs.approach is None:
-            raise InputError(
-                'start = "unloaded" with an imposed load',
-                where="argument start",
-                why="an unloaded film carries no load",
-                remedy='Take start = "steady", or impose the approach',
-            )
+            what = 'start = "unloaded" with an imposed load'
+            remedy = 'Take start = "steady", or impose the approach'
+            raise InputError(what, "argument start", "an unloaded film carries no load", remedy)
         n, row = self.nodes - 1, self.table()[0]
         X = np.linspace(*self.domain, n + 1)
         H = row[1] + 0.5 * row[3] * X**2

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_positive
-from tribodyn.friction.base import LAWS, TribologicalContact
+from tribodyn.friction.base import LAWS, Range, TribologicalContact, warn_outside
 from tribodyn.friction.mesh_means.pitch_point import PitchPoint
-from tribodyn.friction.validity import Range, warn_outside
 from tribodyn.model import number
 from tribodyn.types import Array
 

@@ -5,15 +5,13 @@
 | `pitch_cones` | the cones that touch in the calculation point |
 | `dimensions` | all dimensions of both blanks that follow from them |
 | `blank` | a pair of blanks from the figures of a drawing |
-| `envelope` | the conjugate of any wheel flank, its curvature and its undercut |
-| `formate` | the flank that a face-mill cutter leaves on the wheel |
 | `ease_off` | what the pinion has less than its conjugate |
+| `formate` | the flank that a face-mill cutter leaves on the wheel |
+| `envelope` | the conjugate of any wheel flank, its curvature and its undercut |
 | `conjugate` | one side of a pair: both surfaces and the ends of the flanks |
 | `flank` | both flanks as grids of points, for export |
+| `tooth_contact` | path of contact, transmission error, pattern, with axes that are misplaced |
 | `contact_lines` | contact lines of conjugate flanks, with exact ends |
-| `misalignment` | axes that are not where they should be |
-| `exact_contact` | both surfaces brought into touch |
-| `tooth_contact` | path of contact, transmission error, contact pattern |
 | `kinematics` | how the flanks roll and slide in every cell |
 """
 
@@ -21,8 +19,7 @@ from tribodyn.gear.hypoid.blank import HypoidBlank, hypoid_blank
 from tribodyn.gear.hypoid.ease_off import EaseOff
 from tribodyn.gear.hypoid.flank import HypoidFlanks, hypoid_flanks
 from tribodyn.gear.hypoid.kinematics import HypoidKinematics, hypoid_kinematics
-from tribodyn.gear.hypoid.misalignment import Misalignment
-from tribodyn.gear.hypoid.tooth_contact import ToothContact, tooth_contact
+from tribodyn.gear.hypoid.tooth_contact import Misalignment, ToothContact, tooth_contact
 
 __all__ = [
     "EaseOff",

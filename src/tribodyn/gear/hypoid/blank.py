@@ -311,9 +311,7 @@ def _require_room(given: PitchInput) -> None:
     most = 0.45 * given.outer_pitch_diameter_wheel
     if given.face_width_wheel <= most:
         return
-    raise InputError(
-        f"face_width_wheel = {given.face_width_wheel * 1e3:.6g} mm",
-        Argument("face_width_wheel"),
-        f"A wheel of this diameter has room for {most * 1e3:.6g} mm",
-        "Reduce the face width; usual is up to a third of the outer cone distance",
-    )
+    what = f"face_width_wheel = {given.face_width_wheel * 1e3:.6g} mm"
+    why = f"A wheel of this diameter has room for {most * 1e3:.6g} mm"
+    remedy = "Reduce the face width; usual is up to a third of the outer cone distance"
+    raise InputError(what, Argument("face_width_wheel"), why, remedy)

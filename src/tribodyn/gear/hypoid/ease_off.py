@@ -91,12 +91,8 @@ class EaseOff:
             return
         if not isinstance(self.center, list | tuple | np.ndarray) or len(self.center) != 2:
             why = "It is two places: along and across the pitch cone"
-            raise InputError(
-                f"center = {self.center!r}",
-                Argument("center"),
-                why,
-                remedy="Give (along the profile, along the face) as fractions",
-            )
+            remedy = "Give (along the profile, along the face) as fractions"
+            raise InputError(f"center = {self.center!r}", Argument("center"), why, remedy)
         along, across = (require_number("center", value) for value in self.center)
         require_between("center", [along, across], -1.0, 1.0, "m", remedy="2 mm is 2e-3")
         object.__setattr__(self, "center", (along, across))

@@ -184,12 +184,8 @@ def _numbers(vector: Array) -> str:
 def _written(path: str | os.PathLike[str], text: str) -> Path:
     if not isinstance(path, str | os.PathLike):
         what = f"path = {shortened(repr(path))}"
-        raise InputError(
-            what,
-            Argument("path"),
-            "Wanted: the name of a file",
-            remedy="Give it as a text or a Path",
-        )
+        why = "Wanted: the name of a file"
+        raise InputError(what, Argument("path"), why, "Give it as a text or a Path")
     with whole(Path(path)) as partial:
         partial.write_text(text, "utf-8")
     return Path(path)
@@ -241,12 +237,8 @@ def hypoid_flanks(
     side = require_one_of("side", side, SIDES)
     count = require_whole("points", points, 5)
     if count > 1000:
-        raise InputError(
-            f"points = {count}",
-            Argument("points"),
-            "At most 1000 are made",
-            remedy="Give 1000 at most",
-        )
+        what = f"points = {count}"
+        raise InputError(what, Argument("points"), "At most 1000 are made", "Give 1000 at most")
     flanks = ConjugateFlanks(blank, side, ease_off or EaseOff())
     mean = blank.mean_cone_distance_wheel
     along = np.linspace(

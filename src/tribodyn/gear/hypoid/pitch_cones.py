@@ -173,9 +173,7 @@ def _no_cones(given: PitchInput, curvature: Array) -> InputError:
     low, high = float(np.min(curvature)), float(np.max(curvature))
     limits = f"from {1e3 / high:.4g} mm" if high > 0.0 else "no positive radius"
     limits += f" to {1e3 / low:.4g} mm" if low > 0.0 else " up" if high > 0.0 else ""
-    return InputError(
-        f"cutter_radius = {given.cutter_radius * 1e3:.6g} mm",
-        Argument("cutter_radius"),
-        f"With {design} the limit curvature of the teeth allows {limits} (ISO 23509, Method 1)",
-        "Choose a cutter in this range, or change offset or spiral angle",
-    )
+    what = f"cutter_radius = {given.cutter_radius * 1e3:.6g} mm"
+    why = f"With {design} the limit curvature of the teeth allows {limits} (ISO 23509, Method 1)"
+    remedy = "Choose a cutter in this range, or change offset or spiral angle"
+    return InputError(what, Argument("cutter_radius"), why, remedy)

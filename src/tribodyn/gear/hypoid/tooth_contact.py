@@ -1,23 +1,157 @@
-"""Tooth contact analysis: path of contact, transmission error, contact lines and pattern."""
+"""Tooth contact analysis of a hypoid pair: contact path, transmission error, lines and pattern."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field, fields
+from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.checks import require_flag, require_whole
-from tribodyn.errors import require_between, require_positive
+from tribodyn.checks import require_flag, require_number, require_whole
+from tribodyn.errors import ComputationError, require_between, require_positive
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
 from tribodyn.gear.hypoid.contact_lines import ContactLines
 from tribodyn.gear.hypoid.ease_off import eased_gap
-from tribodyn.gear.hypoid.exact_contact import exact_contact
+from tribodyn.gear.hypoid.envelope import turned
 from tribodyn.gear.hypoid.flank import HypoidFlanks
 from tribodyn.gear.hypoid.formate import hand_sense
-from tribodyn.gear.hypoid.misalignment import Misalignment, displaced_gap
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
+
+
+@dataclass(frozen=True, kw_only=True)
+class Misalignment:
+    """Displacements of both gears from their nominal places; none by default.
+
+    Parameters
+    ----------
+    offset : float [m]
+        By how much the offset is too large.
+    pinion_axial : float [m]
+        Displacement of the pinion along its axis, away from the crossing point.
+    wheel_axial : float [m]
+        Displacement of the wheel along its axis, away from the crossing point.
+    shaft_angle : float [rad]
+        By how much the shaft angle is too large.
+
+    Raises
+    ------
+    InputError
+        If a displacement is not finite or beyond 2 mm, or the angle beyond 0.02 rad.
+
+    Notes
+    -----
+    The four values E, P, G and alpha of the usual E-P-G checks of bevel gears.
+
+    Examples
+    --------
+    >>> Misalignment(pinion_axial=0.1e-3).wheel_axial
+    0.0
+    """
+
+    offset: float = 0.0
+    pinion_axial: float = 0.0
+    wheel_axial: float = 0.0
+    shaft_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = require_number(each.name, getattr(self, each.name))
+            angle = each.name == "shaft_angle"
+            most, unit = (0.02, "rad") if angle else (2e-3, "m")
+            require_between(each.name, value, -most, most, unit, remedy="0.1 mm is 0.1e-3")
+            object.__setattr__(self, each.name, value)
+
+
+def pinion_motion(given: Misalignment, sense: float) -> tuple[Array, Array]:
+    """Rotation of the pinion about the crossing point and its displacement; sense of its hand."""
+    cosine, sine = math.cos(given.shaft_angle), math.sin(given.shaft_angle)
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
+    return turn, np.array([-sense * given.offset, given.pinion_axial, 0.0])
+
+
+def displaced_gap(given: Misalignment, position: Array, normal: Array, sense: float) -> Array:
+    """Gap that the displacements leave where conjugate flanks would touch, to first order."""
+    turn, shift = pinion_motion(given, sense)
+    pinion = position @ (turn - np.eye(3)).T + shift
+    wheel = np.array([0.0, 0.0, given.wheel_axial])
+    return np.asarray(np.einsum("...i,...i->...", wheel - pinion, normal))
+
+
+#: Steps of Newton's method; units of a length [m] and of a rotation [rad]; step of differences.
+_ROUNDS, _LENGTH, _ROTATION, _DIFFERENCE = 40, 1e-3, 1e-3, 1e-4
+#: Error of position and normal that counts as none, and the one that is refused, over the unit.
+_NONE, _REFUSED = 2e-12, 1e-9
+#: Singular values below this share are those of flanks that touch along a line.
+_LINE = 1e-10
+
+
+class ExactContact(NamedTuple):
+    """Contacts of two flanks."""
+
+    wheel_rotation: Array  #: (n,)
+    position: Array  #: (n, 3) in the fixed frame
+    normal: Array  #: (n, 3)
+    places: Array  #: (n, 2) along and across the wheel's pitch cone
+    residual: Array  #: (n,) greatest error of position [m]
+
+
+def exact_contact(
+    flanks: ConjugateFlanks, rotation: Array, guess: Array, misalignment: Misalignment
+) -> ExactContact:
+    """Solve five equations for each rotation of the pinion, from a guess (n, 5).
+
+    Unknowns are the parameters of the pinion's and of the wheel's flank, and the wheel's rotation.
+    """
+    swing = flanks.blank.cutter_radius
+    unit = np.array([_LENGTH, _LENGTH / swing, _LENGTH, _LENGTH / swing, _ROTATION])
+    turn, shift = pinion_motion(misalignment, hand_sense(flanks.blank))
+    axes, wheel_axis = flanks.axes, np.array([0.0, 0.0, 1.0])
+
+    def bodies(unknown: Array) -> tuple[Array, Array, Array, Array]:
+        position, normal = flanks.pinion_at(unknown[..., :2])
+        angle = np.broadcast_to(rotation, unknown.shape[:-1])
+        place = (turned(position, axes.axis, angle) + axes.origin) @ turn.T + shift
+        facing = turned(normal, axes.axis, angle) @ turn.T
+        surface = flanks.wheel.at(unknown[..., 2:4])
+        mate, mate_normal = (turned(each, wheel_axis, -unknown[..., 4]) for each in surface[:2])
+        mate = mate + misalignment.wheel_axial * wheel_axis
+        return place, facing, mate, mate_normal
+
+    first = bodies(guess)[3]
+    helper = np.where(np.abs(first[:, :1]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
+    one = np.cross(first, helper)
+    basis = np.stack([one, np.cross(first, one)], axis=-2)
+
+    def error(unknown: Array) -> Array:
+        place, facing, mate, mate_normal = bodies(unknown)
+        turns = np.einsum("nij,...nj->...ni", basis, facing - mate_normal)
+        return np.concatenate([(place - mate) / _LENGTH, turns], axis=-1)
+
+    found = guess.copy()
+    steps = _DIFFERENCE * unit * np.eye(5)
+    for _ in range(_ROUNDS):
+        fault = error(found)
+        slope = error(found + steps[:, None]) - error(found - steps[:, None])
+        matrix = np.moveaxis(slope, 0, -1) / (2.0 * _DIFFERENCE)
+        change = np.einsum("nij,nj->ni", np.linalg.pinv(matrix, rcond=_LINE), fault)
+        found = found - unit * change
+        if np.max(np.abs(fault), initial=0.0) < _NONE:
+            break
+    left = np.max(np.abs(error(found)), axis=-1)
+    if not np.all(left < _REFUSED):
+        worst = int(np.argmax(np.where(np.isfinite(left), left, np.inf)))
+        raise ComputationError(
+            f"at a rotation of the pinion of {rotation[worst]:.4g} rad the flanks stay "
+            f"{left[worst] * _LENGTH * 1e6:.3g} um apart",
+            why="The misalignment or the ease-off moves the contact off the surfaces",
+            remedy="Give less of it, or take the analysis by the ease-off",
+        )
+    _, _, mate, normal = bodies(found)
+    places, _ = flanks.wheel.projected(flanks.wheel.at(found[:, 2:4]))
+    return ExactContact(found[:, 4], mate, normal, places, left * _LENGTH)
+
 
 #: Golden section: its ratio, and steps that leave a nanometre.
 _GOLDEN, _STEPS = 0.5 * (math.sqrt(5.0) - 1.0), 30

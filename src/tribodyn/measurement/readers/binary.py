@@ -90,12 +90,8 @@ def uff(path: Path) -> Content:
                 else "no complete dataset"
             )
         )
-        raise InputError(
-            "holds no time history",
-            where=str(path),
-            why=f"It has {found}",
-            remedy="Export the time histories as dataset 58, and look whether the file is whole",
-        )
+        remedy = "Export the time histories as dataset 58, and look whether the file is whole"
+        raise InputError("holds no time history", str(path), f"It has {found}", remedy)
     return Content(channels, units, rates)
 
 
@@ -117,11 +113,8 @@ def tdms(path: Path) -> Content:
     held = library.TdmsFile.read(path)
     status = getattr(held, "file_status", None)
     if status is not None and status.incomplete_final_segment:
-        raise InputError(
-            "its last segment is incomplete",
-            where=str(path),
-            why="The file is cut short, or was still being written",
-        )
+        what = "its last segment is incomplete"
+        raise InputError(what, str(path), "The file is cut short, or was still being written")
     groups = held.groups()
     named: dict[str, Any] = _properties("", held)
     for group in groups:
@@ -191,12 +184,8 @@ def _library(name: str, path: Path) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError:
-        raise InputError(
-            f"{name} is needed to read this file",
-            str(path),
-            "It is not installed",
-            'Run: pip install "tribodyn[io]"',
-        ) from None
+        what, why = f"{name} is needed to read this file", "It is not installed"
+        raise InputError(what, str(path), why, 'Run: pip install "tribodyn[io]"') from None
 
 
 def mat(path: Path) -> Content:

@@ -67,12 +67,9 @@ def rate_of(time: Array, path: Any, given: float | None = None) -> float:
     """Sampling rate of evenly spaced times [Hz]; the given one where rounded times agree to it."""
     where = str(path)
     if time.size < 2 or not np.all(np.isfinite(time)) or not time[-1] > time[0]:
-        raise InputError(
-            "its times are not finite, do not rise, or are fewer than two",
-            where=where,
-            why="The sampling rate is read off them",
-            remedy="Look at the column of times, or leave it out and give sample_rate",
-        )
+        what = "its times are not finite, do not rise, or are fewer than two"
+        remedy = "Look at the column of times, or leave it out and give sample_rate"
+        raise InputError(what, where, "The sampling rate is read off them", remedy)
     step, number = (time[-1] - time[0]) / (time.size - 1), np.arange(time.size)
     if np.abs(time - time[0] - step * number).max() <= _UNEVEN * step:
         return float(1.0 / step)
@@ -81,12 +78,9 @@ def rate_of(time: Array, path: Any, given: float | None = None) -> float:
     if given is not None and np.abs(time - time[0] - number / given).max() <= 1.01 * grain:
         return float(given)
     if gaps.min() == 0.0 and np.abs(gaps - step).max() <= 1.01 * grain:
-        raise InputError(
-            f"its times are rounded to {grain:.3g} s, so that neighbours are equal",
-            where=where,
-            why=f"About {1.0 / step:.4g} samples lie in a second; the exact rate is lost",
-            remedy="Export times with more digits, or give sample_rate",
-        )
+        what = f"its times are rounded to {grain:.3g} s, so that neighbours are equal"
+        why = f"About {1.0 / step:.4g} samples lie in a second; the exact rate is lost"
+        raise InputError(what, where, why, "Export times with more digits, or give sample_rate")
     row = int(np.argmax(np.abs(gaps - np.median(gaps))))
     raise InputError(
         f"its times are not evenly spaced: a step of {gaps[row]:.6g} s at sample {row + 1}, "
@@ -140,12 +134,9 @@ def from_arrays(named: Mapping[str, Any], path: Path) -> Content:
             tall = array if array.shape[0] >= array.shape[1] else array.T
             channels |= {f"{name} {1 + n}": each for n, each in enumerate(tall.T.astype(float))}
     if not channels:
-        raise InputError(
-            "holds no vector of numbers",
-            where=str(path),
-            why=f"It holds {', '.join(left_out[:20]) or 'nothing'}",
-            remedy="Save each channel as a vector, and the rate as fs",
-        )
+        what = "holds no vector of numbers"
+        why = f"It holds {', '.join(left_out[:20]) or 'nothing'}"
+        raise InputError(what, str(path), why, "Save each channel as a vector, and the rate as fs")
     times = {at: in_seconds(v, labels.get(name, ""), path) for at, (name, v) in clocks.items()}
     alone = [_parted(name)[0] for name in channels]
     units = {
@@ -208,9 +199,6 @@ def refuse_table(kind: Any, path: Path) -> None:
     told = kind.decode("ascii", "replace") if isinstance(kind, bytes) else str(kind)
     if told not in _TABLES:
         return
-    raise InputError(
-        "holds a table, timetable or other object of MATLAB",
-        str(path),
-        "MATLAB keeps how these are written to itself",
-        'In MATLAB: s = table2struct(T, "ToScalar", true); save("s.mat", "-struct", "s")',
-    )
+    what = "holds a table, timetable or other object of MATLAB"
+    remedy = 'In MATLAB: s = table2struct(T, "ToScalar", true); save("s.mat", "-struct", "s")'
+    raise InputError(what, str(path), "MATLAB keeps how these are written to itself", remedy)

@@ -47,12 +47,8 @@ def content_of(path: str | os.PathLike[str]) -> Content:
     try:
         place = Path(path)
     except TypeError:
-        raise InputError(
-            f"path = {path!r}",
-            where=Argument("path"),
-            why="Wanted: the place of a file",
-            remedy="Give it as a text or a Path",
-        ) from None
+        what, why = f"path = {path!r}", "Wanted: the place of a file"
+        raise InputError(what, Argument("path"), why, "Give it as a text or a Path") from None
     found = _format(place, _head(place))
     try:
         return found.read(place)
@@ -62,12 +58,8 @@ def content_of(path: str | os.PathLike[str]) -> Content:
     except Exception as error:
         told = f"{error}" if " " in f"{error}" else f"{type(error).__name__} {error}".strip()
         reason = getattr(error, "strerror", None) or told
-        raise InputError(
-            f"cannot be read as {found.name}",
-            str(path),
-            reason,
-            "The file is damaged or cut short: take it from the measuring system again",
-        ) from None
+        remedy = "The file is damaged or cut short: take it from the measuring system again"
+        raise InputError(f"cannot be read as {found.name}", str(path), reason, remedy) from None
 
 
 def _head(place: Path) -> bytes:
@@ -83,12 +75,8 @@ def _head(place: Path) -> bytes:
             head = file.read(1024)
     except OSError as error:
         reason = os.strerror(error.errno or errno.EIO)
-        raise InputError(
-            "cannot be read",
-            str(place),
-            reason,
-            remedy="Check that the file is whole, and what wrote it",
-        ) from None
+        remedy = "Check that the file is whole, and what wrote it"
+        raise InputError("cannot be read", str(place), reason, remedy) from None
     if not head.strip():
         raise InputError("is empty", str(place), "", "Take it from the system again")
     return head

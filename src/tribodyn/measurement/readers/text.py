@@ -128,12 +128,9 @@ def _layout(lines: Sequence[str], path: Path) -> _Layout:
         after_text = False
     if found:
         return found[-1]
-    raise InputError(
-        "holds no line of numbers",
-        where=str(path),
-        why=f"Looked at the first {min(len(lines), _HEAD)} lines, parted by ; tab , or blanks",
-        remedy="Export the channels as columns of numbers",
-    )
+    what = "holds no line of numbers"
+    why = f"Looked at the first {min(len(lines), _HEAD)} lines, parted by ; tab , or blanks"
+    raise InputError(what, str(path), why, "Export the channels as columns of numbers")
 
 
 def _named(head: Sequence[str], layout: _Layout, path: Path) -> tuple[list[str], list[str]]:
@@ -141,12 +138,10 @@ def _named(head: Sequence[str], layout: _Layout, path: Path) -> tuple[list[str],
     width = layout.width
     rows = [layout.cells(line.lstrip("#%").strip()) for line in head]
     if rows and 2 * len(rows[-1]) == width and layout.delimiter == ",":
-        raise InputError(
-            f"has {len(rows[-1])} names and {width} columns of numbers",
-            where=str(path),
-            why="A comma parts its columns, and seems to be the decimal sign as well",
-            remedy="Export it with semicolons between the columns, or with decimal points",
-        )
+        what = f"has {len(rows[-1])} names and {width} columns of numbers"
+        why = "A comma parts its columns, and seems to be the decimal sign as well"
+        remedy = "Export it with semicolons between the columns, or with decimal points"
+        raise InputError(what, str(path), why, remedy)
     rows = [cells for cells in rows if len(cells) == width]
     units = [""] * width
     if len(rows) > 1 and _are_units(rows[-1], rows[-2]):
@@ -242,9 +237,7 @@ def _refuse_cut(rows: Sequence[str], layout: _Layout, path: Path) -> None:
     ]
     shorter = np.mean(np.array(places[:-1]) <= places[-1]) if len(places) > 20 else 1.0
     if shorter == 0.0 or (shorter < 0.05 and places[-1] < 0.5 * np.median(places)):
-        raise InputError(
-            f"seems to be cut short in its last row: {rows[-1][:80]!r}",
-            str(path),
-            "The number there has fewer digits than those above, and no line ends after it",
-            "Take the file from the measuring system again, or end its last line",
-        )
+        what = f"seems to be cut short in its last row: {rows[-1][:80]!r}"
+        why = "The number there has fewer digits than those above, and no line ends after it"
+        remedy = "Take the file from the measuring system again, or end its last line"
+        raise InputError(what, str(path), why, remedy)

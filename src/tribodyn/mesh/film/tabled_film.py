@@ -32,7 +32,7 @@ from tribodyn.mesh.film.film_refinement import (
     places_of,
 )
 from tribodyn.mesh.film.film_table import FilmTable
-from tribodyn.mesh.film.loaded_films import LoadedFilms
+from tribodyn.mesh.film.path_film import LoadedFilms
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import SILENT
 from tribodyn.types import Array, Index, Mask

@@ -2,7 +2,6 @@
 
 | module | what it answers |
 | --- | --- |
-| `cells` | contact lines of all pairs over a mesh cycle, cut into cells |
 | `loaded_contact` | load of every cell, stiffness, transmission error, pressure |
 | `friction` | film and friction of every cell, and what they sum up to |
 | `table` | the same as a mesh table for the dynamics |

@@ -22,8 +22,12 @@ from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS, CellMotion, cell_motio
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.gears import NoGears
-from tribodyn.mesh.hypoid.cells import ContactCells
-from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, wheel_torque_at, wrench
+from tribodyn.mesh.hypoid.loaded_contact import (
+    ContactCells,
+    HypoidLoadedContact,
+    wheel_torque_at,
+    wrench,
+)
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Record, drawn, fact, quantity, record

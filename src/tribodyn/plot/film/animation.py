@@ -202,21 +202,16 @@ def _checked(contacts: Any, path: ArrayLike) -> tuple[list[Any], Array]:
     """Solutions in order, and the position of each."""
     kept = getattr(contacts, "solutions", contacts)
     if kept is not contacts and np.size(kept) == 0:
-        raise InputError(
-            "the batch holds no pressure and film",
-            where="argument contacts",
-            why="A batch keeps the solutions on request only",
-            remedy="Call solve_line_contacts with keep_solutions=True",
-        )
+        why = "A batch keeps the solutions on request only"
+        remedy = "Call solve_line_contacts with keep_solutions=True"
+        raise InputError("the batch holds no pressure and film", "argument contacts", why, remedy)
     solutions = list(np.ravel(np.asarray(kept, dtype=object)))
     positions = np.ravel(np.asarray(path, dtype=float))
     if len(solutions) != len(positions) or len(solutions) < 2:
-        raise InputError(
-            f"{len(solutions)} contacts and {len(positions)} positions",
-            where="argument path",
-            why="Each contact has one position, and a way needs two of them at least",
-            remedy="Give as many positions as contacts, from where the pair enters",
-        )
+        what = f"{len(solutions)} contacts and {len(positions)} positions"
+        why = "Each contact has one position, and a way needs two of them at least"
+        remedy = "Give as many positions as contacts, from where the pair enters"
+        raise InputError(what, "argument path", why, remedy)
     return solutions, positions
 
 
@@ -284,12 +279,10 @@ class _Snapshot:
 def _snapshots(transient: TransientLineContact) -> tuple[list[_Snapshot], Array]:
     """Kept instants, at most as many as there are frames, and their times [s]."""
     if len(transient.kept) < 2:
-        raise InputError(
-            f"{len(transient.kept)} instants have a pressure and a film",
-            where="argument transient",
-            why="An animation needs two of them at least",
-            remedy="Solve with keep_every = 1, or with a larger number for long series",
-        )
+        what = f"{len(transient.kept)} instants have a pressure and a film"
+        why = "An animation needs two of them at least"
+        remedy = "Solve with keep_every = 1, or with a larger number for long series"
+        raise InputError(what, "argument transient", why, remedy)
     # Width and pressure of the dry contact follow the square root of load times radius.
     strength = transient.load_per_width * transient.equivalent_radius
     widths = transient.half_width * np.sqrt(strength / strength.max())

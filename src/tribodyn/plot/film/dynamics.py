@@ -30,12 +30,10 @@ def transit_frequency(solution: LineContactSolution) -> float:
 
 def _frequencies(solution: LineContactSolution, asked: ArrayLike | None) -> Array:
     if solution.lubricant is None:
-        raise InputError(
-            "a contact without units has no frequencies",
-            where="argument solution",
-            why="The numbers of Moes leave speed and size open",
-            remedy="Solve the contact with solve_line_contact",
-        )
+        what = "a contact without units has no frequencies"
+        why = "The numbers of Moes leave speed and size open"
+        remedy = "Solve the contact with solve_line_contact"
+        raise InputError(what, "argument solution", why, remedy)
     if asked is None:
         spread = np.geomspace(_LOWEST, _HIGHEST, _POINTS)
         return np.asarray(transit_frequency(solution) * spread)
@@ -127,12 +125,10 @@ def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None)
     if steady is not None:
         films = np.asarray(steady, dtype=float)
         if films.shape != transient.time.shape:
-            raise InputError(
-                f"{films.size} steady films and {transient.time.size} instants",
-                where="argument steady",
-                why="Each instant has one steady film to be compared with",
-                remedy="Give the central films of solve_line_contacts at the same instants",
-            )
+            what = f"{films.size} steady films and {transient.time.size} instants"
+            why = "Each instant has one steady film to be compared with"
+            remedy = "Give the central films of solve_line_contacts at the same instants"
+            raise InputError(what, "argument steady", why, remedy)
         rows.append(("in the centre, steady", films, MUTED, "dash"))
     return [
         line(time, displayed("film_thickness", films), name, color, unit=unit, dash=dash)

@@ -80,24 +80,17 @@ def _metric() -> Scales:
 def contact_scales(solutions: Sequence[Any], dimensionless: bool) -> list[Scales]:
     """Choose the units for contacts that share their axes."""
     if not solutions:
-        raise InputError(
-            "there is no contact to draw",
-            where="argument solutions",
-            why="The sequence is empty",
-            remedy="Give at least one solution of solve_line_contact",
-        )
+        why, remedy = "The sequence is empty", "Give at least one solution of solve_line_contact"
+        raise InputError("there is no contact to draw", "argument solutions", why, remedy)
     if not all(hasattr(solution, "lubricant") for solution in solutions):
         why = "Solutions of line contacts have pressure, film and lubricant"
         remedy = "Give what solve_line_contact returns"
         raise InputError("not every entry is a contact", "argument solutions", why, remedy)
     bare = [solution.lubricant is None for solution in solutions]
     if any(bare) and not all(bare) and not dimensionless:
-        raise InputError(
-            f"{sum(bare)} of {len(bare)} contacts have no unit, the others have",
-            where="argument solutions",
-            why="solve_line_contact_moes gives numbers without unit, which fit no common axis",
-            remedy="Set dimensionless=True",
-        )
+        what = f"{sum(bare)} of {len(bare)} contacts have no unit, the others have"
+        why = "solve_line_contact_moes gives numbers without unit, which fit no common axis"
+        raise InputError(what, "argument solutions", why, "Set dimensionless=True")
     if dimensionless or all(bare):
         return [_unitless(solution) for solution in solutions]
     return [_metric()] * len(solutions)
@@ -282,12 +275,9 @@ def _look(number: int) -> dict[str, Any]:
 def _checked(solutions: Iterable[Any], labels: Iterable[str]) -> tuple[list[Any], list[str]]:
     contacts, names = list(solutions), [str(label) for label in labels]
     if len(contacts) != len(names):
-        raise InputError(
-            f"{len(contacts)} contacts and {len(names)} labels",
-            where="argument labels",
-            why="Each contact has one name in the legend",
-            remedy="Give as many labels as solutions",
-        )
+        what = f"{len(contacts)} contacts and {len(names)} labels"
+        why = "Each contact has one name in the legend"
+        raise InputError(what, "argument labels", why, "Give as many labels as solutions")
     return contacts, names
 
 

@@ -5,9 +5,7 @@ module                  what it draws
 ======================  ===============================================================
 ``gear_pair``           both gears to scale, and the mesh zone enlarged
 ``flank_modification``  what flanks have that involutes have not
-``hypoid_blank``        sections of the blanks of a hypoid pair
-``hypoid_contact``      contact pattern, path and transmission error of a hypoid pair
-``hypoid_flanks``       a hypoid pair in space, and its ease-off
+``hypoid``              a hypoid pair: blanks, in space, ease-off, contact pattern
 ``mesh_deformation``    teeth in mesh, bent by their loads
 ``outlines``            outlines of both gears in one plane, at rest and bent
 ``path``                positions A to E of a tooth pair, how many pairs share the load

@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.plot.look.labels import axis_label, displayed, significant
-from tribodyn.plot.look.panels import event_lines
-from tribodyn.plot.look.style import button_row
+from tribodyn.drawing import drawing
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.look.panels import Panel, event_lines, stack
+from tribodyn.plot.look.style import PAIR_COLORS, PINION, TOTAL, WHEEL, button_row, line
 from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
 from tribodyn.study.pipeline import series
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.study import Result
+    from tribodyn.study import Result, ResultComparison
+
 
 #: Samples that each part of a transient curve keeps; more would not be seen but fill the file.
 _KEPT = 2000
@@ -150,3 +152,50 @@ class Motion:
         end = float(time[-1])
         buttons = [(words, {"xaxis.range": [start, end]}) for words, start in views]
         return {"updatemenus": [button_row(buttons)], "xaxis": {"range": [views[0][1], end]}}
+
+
+_COLORS = (TOTAL, PINION, WHEEL, *PAIR_COLORS)
+_DASHES = ("solid", "dash", "dot")
+
+
+def _unlike(found: ResultComparison) -> str:
+    """Say why the motions share no axis."""
+    if len({Motion(each).label for each in found.results}) == 1:
+        return ""
+    return "Steady motions and motions over time share no axis: compare those of one kind"
+
+
+@drawing(
+    "result_comparison",
+    heading="Results beside each other",
+    caption="Transmission error and mesh force of each result; what differs in their cases stands "
+    "in the table of the comparison.",
+    missing=_unlike,
+    of="ResultComparison",
+    made_by="tribodyn.compare_results",
+)
+def result_comparison(found: ResultComparison) -> Any:
+    """Draw transmission error and mesh force of all results over each other."""
+    motions = [Motion(each) for each in found.results]
+    panels: list[Panel] = []
+    names = {"dynamic_transmission_error": "transmission_error", "mesh_force": "mesh_force"}
+    for quantity, name in names.items():
+        traces = [
+            line(
+                *motion.curve(quantity, getattr(motion, name)),
+                title,
+                _COLORS[i % len(_COLORS)],
+                unit=display_unit(quantity),
+                width=1.8,
+                dash=_DASHES[i // len(_COLORS)],
+            )
+            for i, (motion, title) in enumerate(zip(motions, found.names, strict=True))
+        ]
+        shown = [{**trace, "showlegend": not panels} for trace in traces]
+        panels.append(Panel(axis_label(quantity), shown))
+    changed = ", ".join(found.values) or "nothing"
+    layout = motions[0].layout()
+    if any(each.case.gears != found.results[0].case.gears for each in found.results):
+        # Pairs of other gears enter and leave elsewhere.
+        layout = {k: v for k, v in layout.items() if k not in ("shapes", "annotations")}
+    return stack(f"What changes: {changed}", motions[0].label, panels, layout)

@@ -100,22 +100,16 @@ def _split(
     gear: SpurGear, loads: Sequence[tuple[int, float, float]]
 ) -> tuple[list[int], Array, Array]:
     if not loads:
-        raise InputError(
-            "no load",
-            where=Argument("loads"),
-            why="There is nothing to deform the gear",
-            remedy="Give (tooth, radius of curvature, load per width) for each contact",
-        )
+        what = "no load"
+        remedy = "Give (tooth, radius of curvature, load per width) for each contact"
+        raise InputError(what, Argument("loads"), "There is nothing to deform the gear", remedy)
     teeth = [int(tooth) for tooth, _, _ in loads]
     radii = np.array([radius for _, radius, _ in loads], dtype=float)
     tip = gear.roll_angle(gear.tip_radius) * gear.base_radius
     if not np.all((radii > 0.0) & (radii <= tip * (1.0 + 1e-9))):
-        raise InputError(
-            f"radii of curvature {radii.min() * 1e3:.6g} to {radii.max() * 1e3:.6g} mm",
-            where=Argument("loads"),
-            why=f"The flank ends at the tip with {tip * 1e3:.6g} mm",
-            remedy="Load the tooth on its involute",
-        )
+        what = f"radii of curvature {radii.min() * 1e3:.6g} to {radii.max() * 1e3:.6g} mm"
+        why = f"The flank ends at the tip with {tip * 1e3:.6g} mm"
+        raise InputError(what, Argument("loads"), why, "Load the tooth on its involute")
     return teeth, radii, np.array([load for _, _, load in loads], dtype=float)
 
 

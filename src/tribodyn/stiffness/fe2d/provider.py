@@ -169,12 +169,8 @@ def fe2d_influence(
     """
     wind_up = wind_up_to_take_off(gear, material, reference)
     if neighbours < 1:
-        raise InputError(
-            f"neighbours = {neighbours}",
-            where=Argument("neighbours"),
-            why="Teeth in contact at the same time move one another",
-            remedy="Give 1 or more",
-        )
+        why, remedy = "Teeth in contact at the same time move one another", "Give 1 or more"
+        raise InputError(f"neighbours = {neighbours}", Argument("neighbours"), why, remedy)
     known = max(min(neighbours, (gear.teeth - 1) // 2), 1)
     unit = _looked_up(gear, material.poissons_ratio, known, size or MeshSize(), cache)
     self_compliance = unit.self_compliance / material.youngs_modulus - wind_up

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import Argument, InputError, require_positive
+from tribodyn.errors import Argument, InputError, collected, require_positive
 from tribodyn.gear import Material, SpurPair
 from tribodyn.model import NO_OPTIONS
 from tribodyn.stiffness.loaded.problem import (
@@ -190,12 +192,8 @@ def phases_of(phases: int | Array, mesh_cycles: int) -> Array:
     if not isinstance(phases, int | np.integer):
         return np.atleast_1d(np.asarray(phases, dtype=float))
     if phases < 8:
-        raise InputError(
-            f"phases = {phases}",
-            where=Argument("phases"),
-            why="A mesh cycle needs at least 8 phases",
-            remedy="Give for example phases=64",
-        )
+        what, why = f"phases = {phases}", "A mesh cycle needs at least 8 phases"
+        raise InputError(what, Argument("phases"), why, "Give for example phases=64")
     return np.arange(int(phases) * mesh_cycles) / int(phases)
 
 
@@ -319,3 +317,43 @@ def _solved(
             for parts in zip(*(equilibrium for _, equilibrium in each), strict=True)
         )
     )
+
+
+#: Phases of a mesh cycle over which the share of the gear bodies is averaged.
+_PHASES = 32
+#: What makes the teeth of a gear differ from each other, left out.
+_EVEN: dict[str, Any] = {
+    "run_out": 0.0,
+    "single_pitch_deviation": (),
+    "cumulative_pitch_deviation": (),
+}
+
+
+def body_share(
+    pair: SpurPair, torque: float, *, options: Mapping[str, Any], **settings: Any
+) -> float:
+    """Part of the mean deflection under a torque that lies between the rim and the bore."""
+    given = (pair, torque, tuple(settings.items()), tuple(sorted(options.items())))
+    try:
+        hash(given)
+    except TypeError:  # an option is an array
+        return _known_share.__wrapped__(*given, MODELS.version)
+    return _known_share(*given, MODELS.version)
+
+
+@lru_cache(maxsize=256)
+def _known_share(
+    pair: SpurPair, torque: float, settings: Any, options: Any, _version: int
+) -> float:
+    pinion, wheel = (
+        replace(gear, modification=replace(gear.modification, **_EVEN))
+        for gear in (pair.pinion, pair.wheel)
+    )
+    even = replace(pair, pinion=pinion, wheel=wheel)
+
+    def deflection(reference: str) -> float:
+        known = {**dict(settings), "options": {**dict(options), "reference": reference}}
+        return float(loaded_contact(even, torque, phases=_PHASES, **known).deflection.mean())
+
+    with collected():
+        return 1.0 - deflection("rim") / deflection("bore")

@@ -122,12 +122,9 @@ def slice_widths(contact: PathOfContact, slices: int | None) -> Array:
     pair = contact.pair
     count = (_SLICES if pair.has_lead_modification else 1) if slices is None else slices
     if not 1 <= count <= _MOST_SLICES:
-        raise InputError(
-            f"slices = {count}",
-            where=Argument("slices"),
-            why=f"The face width is cut into 1 to {_MOST_SLICES} slices",
-            remedy="Leave it out: 21 are taken where flanks vary over the face width",
-        )
+        why = f"The face width is cut into 1 to {_MOST_SLICES} slices"
+        remedy = "Leave it out: 21 are taken where flanks vary over the face width"
+        raise InputError(f"slices = {count}", Argument("slices"), why, remedy)
     return np.full(count, pair.common_face_width / count)
 
 

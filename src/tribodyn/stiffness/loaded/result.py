@@ -61,12 +61,9 @@ def harmonic_amplitudes(phase: Array, values: Array, mesh_cycles: int, count: in
     """Peak amplitudes of the orders 1, 2, ... of the mesh frequency."""
     even = np.arange(phase.size) * (mesh_cycles / phase.size) + phase[0]
     if not np.allclose(phase, even, rtol=0.0, atol=1e-9):
-        raise InputError(
-            "mesh phases that are not evenly spaced",
-            where=Argument("phases"),
-            why="Harmonics need evenly spaced phases over whole mesh cycles",
-            remedy="Give the number of phases of a mesh cycle instead",
-        )
+        why = "Harmonics need evenly spaced phases over whole mesh cycles"
+        remedy = "Give the number of phases of a mesh cycle instead"
+        raise InputError("mesh phases that are not evenly spaced", Argument("phases"), why, remedy)
     if not 1 <= count < phase.size / (2 * mesh_cycles):
         raise InputError(
             f"count = {count}",

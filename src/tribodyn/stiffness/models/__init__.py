@@ -1,10 +1,8 @@
-"""Stiffness models of the literature: each file is one model and registers itself.
+"""Stiffness models of the literature: each registers itself.
 
 | module | what it answers |
 | --- | --- |
-| `table` | pair stiffness read from a table |
-| `fourier` | mesh stiffness as a Fourier series over the mesh phase |
-| `rectangular` | constant stiffness of each zone, with jumps between them |
+| `given` | stiffness that is given: constant in each zone, a Fourier series, a table |
 | `iso6336` | single and mesh stiffness of the standard, as a parabola over the path |
 | `potential_energy` | energy method with true fillets, foundation and local compression |
 """

@@ -44,12 +44,9 @@ class _PairContacts(NamedTuple):
         load = force / self.face_width
         brackets = self.terms - 0.5 * np.log(load)
         if np.any(brackets <= 0.0):
-            raise ComputationError(
-                f"under {np.max(load):.4g} N/m the contact is as wide as the teeth are thick",
-                where="Weber-Banaschek compression",
-                why="The formula holds for a half width much smaller than the depth",
-                remedy="Lower the load",
-            )
+            what = f"under {np.max(load):.4g} N/m the contact is as wide as the teeth are thick"
+            why = "The formula holds for a half width much smaller than the depth"
+            raise ComputationError(what, "Weber-Banaschek compression", why, "Lower the load")
         local = self.scale * load * brackets.sum(axis=0)
         return np.asarray(force / (force * self.structure + local))
 
@@ -225,12 +222,10 @@ def potential_energy_stiffness(
         share = settled
         if change < _TOLERANCE:
             return stiffness
-    raise ComputationError(
-        f"the load share still changes by {change:.2g} after {_PASSES} passes",
-        where=ModelOption("stiffness", "potential-energy"),
-        why=f"It must settle to {_TOLERANCE:g}",
-        remedy="Check the load; the local compression formula may be outside its range",
-    )
+    what = f"the load share still changes by {change:.2g} after {_PASSES} passes"
+    why = f"It must settle to {_TOLERANCE:g}"
+    remedy = "Check the load; the local compression formula may be outside its range"
+    raise ComputationError(what, ModelOption("stiffness", "potential-energy"), why, remedy)
 
 
 @MODELS.define(

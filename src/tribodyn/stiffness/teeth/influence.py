@@ -137,12 +137,9 @@ class GearInfluence:
             If a place lies beyond the nodes, or the neighbour is the loaded tooth.
         """
         if neighbour == 0:
-            raise InputError(
-                "neighbour = 0",
-                where=Argument("neighbour"),
-                why="The displacement of the loaded tooth has a local part",
-                remedy="Use the self compliance, and add the compression of the contact",
-            )
+            why = "The displacement of the loaded tooth has a local part"
+            remedy = "Use the self compliance, and add the compression of the contact"
+            raise InputError("neighbour = 0", Argument("neighbour"), why, remedy)
         first, second = self._inside(loaded_radius), self._inside(seen_radius)
         if abs(neighbour) > self.neighbours:
             return np.zeros(np.broadcast_shapes(first.shape, second.shape))

@@ -260,20 +260,15 @@ def _checked(
     knots, thickness = (np.asarray(coordinate, dtype=float) for coordinate in outline)
     require_positive("half thickness of the outline", thickness[:-1], "m")
     if np.any(np.diff(knots) <= 0.0):
-        raise InputError(
-            "the height of the tooth outline does not increase",
-            where=Argument("outline"),
-            why="The beam runs from the foot to the tip",
-            remedy="Give the outline from the foot upwards without repeated points",
-        )
+        what = "the height of the tooth outline does not increase"
+        why = "The beam runs from the foot to the tip"
+        remedy = "Give the outline from the foot upwards without repeated points"
+        raise InputError(what, Argument("outline"), why, remedy)
     tolerance = 1e-9 * (knots[-1] - knots[0])
     if np.min(height) < knots[0] - tolerance or np.max(height) > knots[-1] + tolerance:
-        raise InputError(
-            f"load at heights {np.min(height) * 1e3:.6g} to {np.max(height) * 1e3:.6g} mm",
-            where=Argument("height"),
-            why=f"The tooth reaches from {knots[0] * 1e3:.6g} to {knots[-1] * 1e3:.6g} mm",
-            remedy="Load the tooth on its flank",
-        )
+        what = f"load at heights {np.min(height) * 1e3:.6g} to {np.max(height) * 1e3:.6g} mm"
+        why = f"The tooth reaches from {knots[0] * 1e3:.6g} to {knots[-1] * 1e3:.6g} mm"
+        raise InputError(what, Argument("height"), why, "Load the tooth on its flank")
     return knots, thickness
 
 

@@ -199,12 +199,9 @@ def wind_up_compliance(
             "of the body out",
         )
     if bore_radius >= root_radius:
-        raise InputError(
-            f"bore diameter {2e3 * bore_radius:.4g} mm, root diameter {2e3 * root_radius:.4g} mm",
-            where="bore_diameter",
-            why="The body is the ring between the two",
-            remedy="Give a bore smaller than the root circle",
-        )
+        what = f"bore diameter {2e3 * bore_radius:.4g} mm, root diameter {2e3 * root_radius:.4g} mm"
+        why = "The body is the ring between the two"
+        raise InputError(what, "bore_diameter", why, "Give a bore smaller than the root circle")
     ring = 1.0 / bore_radius**2 - 1.0 / root_radius**2
     return base_radius**2 / (4.0 * np.pi * material.shear_modulus * face_width) * ring
 
@@ -241,12 +238,8 @@ class ToothCompliance(NamedTuple):
 def check_choice(name: str, value: str, known: tuple[str, ...], why: str) -> None:
     """Refuse a word that an option of the models does not know."""
     if value not in known:
-        raise InputError(
-            f'{name} = "{value}"',
-            where=ModelOption("stiffness", name=name),
-            why=why,
-            remedy="Write " + " or ".join(f'"{word}"' for word in known),
-        )
+        remedy = "Write " + " or ".join(f'"{word}"' for word in known)
+        raise InputError(f'{name} = "{value}"', ModelOption("stiffness", name=name), why, remedy)
 
 
 def check_reference(reference: str) -> None:

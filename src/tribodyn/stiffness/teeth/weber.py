@@ -154,12 +154,9 @@ def weber_influence(
     """
     check_reference(reference)
     if reference != "rim":
-        raise InputError(
-            f'reference = "{reference}"',
-            where="stiffness model weber",
-            why="Its tooth stands on a half plane, which has no bore",
-            remedy='Choose reference = "rim", or a model with a gear body: "fe2d", "analytic"',
-        )
+        why = "Its tooth stands on a half plane, which has no bore"
+        remedy = 'Choose reference = "rim", or a model with a gear body: "fe2d", "analytic"'
+        raise InputError(f'reference = "{reference}"', "stiffness model weber", why, remedy)
     require_between("nodes", nodes, 4, 1000)
     section = tooth_section(gear)
     foot_height, foot_half_width = section.foot

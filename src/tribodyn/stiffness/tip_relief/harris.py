@@ -207,10 +207,7 @@ def _orders(harmonics: int | None, phases: int) -> int:
     if harmonics is None:
         return max(1, min(_HARMONICS, most))
     if not 1 <= harmonics <= most:
-        raise InputError(
-            f"harmonics = {harmonics}",
-            where=Argument("harmonics"),
-            why=f"{phases} phases of a mesh cycle show 1 to {most} harmonics",
-            remedy="Give more phases, for example phases=64",
-        )
+        why = f"{phases} phases of a mesh cycle show 1 to {most} harmonics"
+        remedy = "Give more phases, for example phases=64"
+        raise InputError(f"harmonics = {harmonics}", Argument("harmonics"), why, remedy)
     return harmonics

@@ -160,12 +160,9 @@ def torques_and_weights(torque: ArrayLike, weight: ArrayLike | None) -> tuple[Ar
     weights = np.atleast_1d(np.asarray(weight, dtype=float))
     fits = weights.shape == given.shape == ordered.shape and np.all(weights >= 0.0)
     if not (fits and 0.0 < weights.sum() < np.inf):
-        raise InputError(
-            f"weight = {weights.tolist()}",
-            where=Argument("weight"),
-            why="There is one weight for each torque, none negative and not all zero",
-            remedy=f"Give {given.size} weights for {given.size} different torques",
-        )
+        why = "There is one weight for each torque, none negative and not all zero"
+        remedy = f"Give {given.size} weights for {given.size} different torques"
+        raise InputError(f"weight = {weights.tolist()}", Argument("weight"), why, remedy)
     spread = np.interp(torques, ordered, weights[np.argsort(given)])
     return torques, spread / spread.sum()
 

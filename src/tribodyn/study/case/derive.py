@@ -239,13 +239,15 @@ def _argument_keys() -> dict[str, str]:
     return {o.argument: key for key, o in options_of(Section.whole, "") if o.argument}
 
 
-def options_of(section: type[Section], prefix: str) -> Iterator[tuple[str, Option]]:
+def options_of(section: type[Section], prefix: str) -> list[tuple[str, Option]]:
     """Options of a table and of the tables in it, by their keys; those of models are left out."""
+    found: list[tuple[str, Option]] = []
     for name, field in section.fields.items():
         if isinstance(field, Table):
-            yield from options_of(field.kind, f"{prefix}{name}.")
+            found += options_of(field.kind, f"{prefix}{name}.")
         else:
-            yield f"{prefix}{name}", field
+            found.append((f"{prefix}{name}", field))
+    return found
 
 
 def _key(problem: Problem, section: str) -> str:
@@ -329,12 +331,9 @@ _NO_PAIR = {
 
 def no_gear_pair(kind: str) -> Problem:
     """What is said where something asks for the spur gears of a case that has none."""
-    return Problem(
-        f'a case with gears.kind = "{kind}" has no gear pair',
-        "gears.kind",
-        _NO_PAIR[kind],
-        'Give the gears with kind = "spur" for what follows from their shape',
-    )
+    what = f'a case with gears.kind = "{kind}" has no gear pair'
+    remedy = 'Give the gears with kind = "spur" for what follows from their shape'
+    return Problem(what, "gears.kind", _NO_PAIR[kind], remedy)
 
 
 def backlash(case: CaseData) -> float:

@@ -159,12 +159,8 @@ def read_text(path: Path) -> str:
         raise InputError(what, f"{path}:{line}", why, "Save it as UTF-8") from None
     except OSError as error:
         reason = error.strerror or str(error)
-        raise InputError(
-            f"the file cannot be read: {reason}",
-            str(path),
-            why="A case is a text file in UTF-8",
-            remedy="Give the path of a case file",
-        ) from None
+        what, why = f"the file cannot be read: {reason}", "A case is a text file in UTF-8"
+        raise InputError(what, str(path), why, "Give the path of a case file") from None
 
 
 def read_case(text: str, name: str = "") -> Case:
@@ -204,7 +200,7 @@ Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
 @contextmanager
 def unchanged_files(case: Case) -> Iterator[None]:
     """Refuse what was computed while a file that the case names was replaced or deleted."""
-    files = case.files()
+    files = case._named_files()
     before = {key: _state(path) for key, path in files.items()}
     yield
     why = "A part of what was computed may belong to the file before, a part to the one after"

@@ -343,11 +343,8 @@ def _missing_table(kind: type[Section], path: str) -> Problem:
         if (field.required if isinstance(field, Option) else field.default == "required")
     ]
     remedy = f"Add it with {', '.join(needed)}" if needed else "Add it"
-    return Problem(
-        f"the table [{path}] is missing",
-        remedy=remedy,
-        why="The case cannot be computed without it",
-    )
+    what = f"the table [{path}] is missing"
+    return Problem(what, why="The case cannot be computed without it", remedy=remedy)
 
 
 def _homes(name: str, path: tuple[str, ...] = ()) -> list[str]:

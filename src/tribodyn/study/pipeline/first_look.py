@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +14,6 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.gear import SpurPair
     from tribodyn.losses import GearboxLosses
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
@@ -25,8 +22,6 @@ if TYPE_CHECKING:
 _MODES = 12
 #: Systems whose natural frequencies are kept.
 _KEPT = 256
-#: Phases of a mesh cycle over which the share of the gear bodies is averaged.
-_PHASES = 32
 
 
 def operating_figures(case: Case) -> dict[str, float]:
@@ -104,6 +99,7 @@ def gearbox_figures(case: Case, lost: float) -> dict[str, float]:
 def standard_figures(case: Case) -> dict[str, float]:
     """``b c_gamma_alpha`` of ISO 6336-1, and what of the computed deflection the bodies make."""
     from tribodyn.stiffness import iso6336_mesh_stiffness, iso6336_single_stiffness
+    from tribodyn.stiffness.loaded.contact import body_share
 
     pair, force = case.gear_pair, case.pinion_torque / case.gear_pair.pinion.base_radius
     figures = {}
@@ -113,50 +109,9 @@ def standard_figures(case: Case) -> dict[str, float]:
         mean = iso6336_mesh_stiffness(single, pair.transverse_contact_ratio)
         figures["iso_mesh_stiffness"] = pair.common_face_width * mean
     if chosen_options(case, "stiffness").get("reference") == "bore":
-        figures["gear_body_share"] = _body_share(case, force)
+        torque = case.pinion_torque
+        figures["gear_body_share"] = body_share(case.gear_pair, torque, **loaded_settings(case))
     return figures
-
-
-def _body_share(case: Case, force: float) -> float:
-    from tribodyn.stiffness import MODELS
-
-    settings = loaded_settings(case)
-    options = tuple(sorted(settings.pop("options").items()))
-    given = case.gear_pair, tuple(settings.items()), options, force, MODELS.version
-    try:
-        hash(given)
-    except TypeError:  # an option is an array
-        return _share.__wrapped__(*given)
-    return _share(*given)
-
-
-@lru_cache(maxsize=256)
-def _share(pair: SpurPair, settings: Any, options: Any, force: float, _version: int) -> float:
-    from tribodyn.stiffness import loaded_contact
-
-    even: dict[str, Any] = {  # without what makes the teeth differ from each other
-        "run_out": 0.0,
-        "single_pitch_deviation": (),
-        "cumulative_pitch_deviation": (),
-    }
-    pinion, wheel = (
-        replace(gear, modification=replace(gear.modification, **even))
-        for gear in (pair.pinion, pair.wheel)
-    )
-    pair = replace(pair, pinion=pinion, wheel=wheel)
-    torque = force * pair.pinion.base_radius
-    with collected():
-        whole, teeth = (
-            loaded_contact(
-                pair,
-                torque,
-                phases=_PHASES,
-                **dict(settings),
-                options={**dict(options), "reference": reference},
-            ).deflection.mean()
-            for reference in ("bore", "rim")
-        )
-    return float(1.0 - teeth / whole)
 
 
 def mode_figures(system: System, mesh_frequency: float, speed: float) -> dict[str, float]:
