@@ -174,13 +174,13 @@ class Case(CaseData, whole=True):
             vars(found)[table] = section
         if derive.case_problems(found):
             return None
-        found._files = self.files()
+        found._files = self._named_files()
         found._effective, found._changed = self._effective | numbers, None
         found._given = self._given.with_numbers(changes)
         found._source = self._source.with_replaced(changes, "replace:")
         return found
 
-    def files(self) -> dict[str, Path]:
+    def _named_files(self) -> dict[str, Path]:
         """Files that the case names, by dotted key."""
         if self._files is None:
             values = dict(self.values())

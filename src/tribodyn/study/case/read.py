@@ -200,7 +200,7 @@ Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
 @contextmanager
 def unchanged_files(case: Case) -> Iterator[None]:
     """Refuse what was computed while a file that the case names was replaced or deleted."""
-    files = case.files()
+    files = case._named_files()
     before = {key: _state(path) for key, path in files.items()}
     yield
     why = "A part of what was computed may belong to the file before, a part to the one after"
