@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import Argument, ComputationError, InputError, Problem
+from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 from tribodyn.uncertainty.sampling import distribution
@@ -79,8 +79,8 @@ def sobol_indices(
     from scipy.stats import sobol_indices as indices
 
     if not isinstance(distributions, Mapping) or not distributions:
-        what = Problem("no input is spread", Argument("distributions"), "", "Give one or more")
-        raise InputError(what)
+        why = "A mapping of names to distributions tells how each input is spread"
+        raise InputError("no input is spread", Argument("distributions"), why, "Give one or more")
     if not callable(function):
         raise InputError("it cannot be called", Argument("function"), "", "Give a function")
     count = require_whole("size", size, 2)

@@ -42,6 +42,15 @@ def test_it_grows_less_than_in_proportion_to_the_load():
     assert two / one == pytest.approx(2.0 * (bracket - 0.5 * np.log(2.0)) / bracket, rel=1e-12)
 
 
+def test_the_thinnest_line_of_contact_is_compressed_by_its_logarithm():
+    thin, thinner = (
+        weber_banaschek_compression(1e5, a, 4e-3, Material()) for a in (1e-300, 1e-320)
+    )
+    nu = Material().poissons_ratio
+    factor = 2.0 * 1e5 * (1.0 - nu**2) / (np.pi * Material().youngs_modulus)
+    assert thinner - thin == pytest.approx(factor * 20.0 * np.log(10.0), rel=1e-4)
+
+
 def test_a_contact_as_wide_as_the_tooth_is_refused():
     with pytest.raises(ComputationError, match="half width much smaller"):
         weber_banaschek_compression(1e8, 8e-3, 4e-3, Material())

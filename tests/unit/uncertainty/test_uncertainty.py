@@ -146,6 +146,8 @@ def test_refusals() -> None:
         sample({"a": stats.norm(np.nan, 1.0)}, 4, seed=0)
     with pytest.raises(InputError, match="three repeats"):
         bootstrap_band([1.0, 2.0], seed=0)
+    with pytest.raises(InputError, match="names to distributions"):
+        sobol_indices(lambda x: x["a"], ["a"], 4, seed=0)
     with pytest.raises(InputError, match="power"):
         sobol_indices(lambda x: x["a"], {"a": "0 .. 1"}, 100, seed=0)
     with pytest.raises(InputError, match="shape"):

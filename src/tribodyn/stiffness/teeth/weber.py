@@ -72,7 +72,7 @@ def weber_banaschek_compression(
     ):
         require_positive(name, value, unit)
     nu = material.poissons_ratio
-    bracket = np.log(2.0 * depth / half_width) - nu / (2.0 * (1.0 - nu))
+    bracket = np.log(2.0) + np.log(depth) - np.log(half_width) - nu / (2.0 * (1.0 - nu))
     if np.any(bracket <= 0.0):
         raise ComputationError(
             f"contact half width {np.max(half_width) * 1e3:.4g} mm against a depth of "
