@@ -217,11 +217,8 @@ def _unknown(symbol: str) -> Problem:
     known = dict.fromkeys([*QUANTITIES, *symbols, *SUMMARY, *names, *listed()])
     near = difflib.get_close_matches(symbol, known, n=3)
     remedy = f"Did you mean {' or '.join(near)}?" if near else "See: tribodyn units"
-    return Problem(
-        f'nothing is known of "{symbol}"',
-        remedy=remedy,
-        why="No quantity, law or key has this name",
-    )
+    what = f'nothing is known of "{symbol}"'
+    return Problem(what, why="No quantity, law or key has this name", remedy=remedy)
 
 
 def units(*, json: Flag = False) -> None:

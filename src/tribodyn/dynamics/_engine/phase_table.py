@@ -148,12 +148,10 @@ def build_table(system: System, *, scaled: bool = False, split: bool = False) ->
             rows.columns = columns
             rows.scale = np.abs(rows.program.rows.reshape(-1, columns)).max(axis=0)
             rows.noise = _noise(system, rows.nodes, rows.program)
-    raise InputError(
-        "entries of the system are zero at most mesh phases and not at some",
-        where="argument system",
-        why="No sample of the mesh cycle shows which terms there are",
-        remedy="Declare the phases where an entry begins and ends as events",
-    )
+    what = "entries of the system are zero at most mesh phases and not at some"
+    why = "No sample of the mesh cycle shows which terms there are"
+    remedy = "Declare the phases where an entry begins and ends as events"
+    raise InputError(what, "argument system", why, remedy)
 
 
 class _Level:

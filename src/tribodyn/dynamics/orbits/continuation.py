@@ -165,12 +165,8 @@ def _check(between: tuple[float, float], periods: int, longest: float, points: i
         problem, where = f"points = {points}", "a whole number >= 2"
     if problem:
         name = problem.partition(" ")[0]
-        raise InputError(
-            problem,
-            where=f"argument {name}",
-            why=f"It is {where}",
-            remedy="Give a value of this range",
-        )
+        why = f"It is {where}"
+        raise InputError(problem, f"argument {name}", why, "Give a value of this range")
 
 
 def _first(
@@ -217,12 +213,9 @@ def _motion(mapping: OrbitMap, y: Array) -> float:
 def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> BranchPoint:
     """First point of the branch of twice the period, beside the point where it begins."""
     if not 0.0 <= (start.parameter - function.origin) / function.range <= 1.0:
-        raise InputError(
-            f"start lies at {start.parameter:.8g}",
-            where="argument start",
-            why=f"The range is {function.origin:g} to {function.origin + function.range:g}",
-            remedy="Start within the range, or widen it",
-        )
+        what = f"start lies at {start.parameter:.8g}"
+        why = f"The range is {function.origin:g} to {function.origin + function.range:g}"
+        raise InputError(what, "argument start", why, "Start within the range, or widen it")
     mapping = function.at(start.parameter)
     y = mapping.start(np.concatenate((start.position, start.velocity)))
     function.size = _motion(mapping, y)
@@ -351,12 +344,8 @@ def signal_names(system: System, wanted: Sequence[str] | None) -> tuple[str, ...
         return known[:1] or tuple(system.names)
     for name in wanted:
         if name not in (*known, *system.names):
-            raise InputError(
-                f'no signal is called "{name}"',
-                where="argument signals",
-                why=f"Known: {', '.join((*known, *system.names))}",
-                remedy="Choose one of these",
-            )
+            why, remedy = f"Known: {', '.join((*known, *system.names))}", "Choose one of these"
+            raise InputError(f'no signal is called "{name}"', "argument signals", why, remedy)
     return tuple(wanted)
 
 

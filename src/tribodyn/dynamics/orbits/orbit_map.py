@@ -50,12 +50,9 @@ class Balance(NamedTuple):
         push = coordinates.free.T @ np.linalg.solve(coordinates.lower, force)
         strength = float(np.linalg.norm(push))
         if strength < 1e-12 * float(np.linalg.norm(np.linalg.solve(coordinates.lower, force))):
-            raise InputError(
-                "balance does not drive any free motion",
-                where="System.balance",
-                why="The structure holds the drive in place, so no torque needs balancing",
-                remedy="Leave balance out",
-            )
+            what = "balance does not drive any free motion"
+            why = "The structure holds the drive in place, so no torque needs balancing"
+            raise InputError(what, "System.balance", why, "Leave balance out")
         return cls(push / strength, force / strength, strength)
 
     def torque(self, gain: Array, span: Array) -> Array:
@@ -115,12 +112,9 @@ class OrbitMap:
         """Reduced vector of a state, without a balancing torque."""
         y = self.coordinates.reduce(state)
         if y.size == 0:
-            raise InputError(
-                "no coordinate is held by a spring, a damper or a contact",
-                where="System.stiffness",
-                why="Nothing vibrates, so that no periodic orbit exists",
-                remedy="Use simulate for a free motion",
-            )
+            what = "no coordinate is held by a spring, a damper or a contact"
+            why = "Nothing vibrates, so that no periodic orbit exists"
+            raise InputError(what, "System.stiffness", why, "Use simulate for a free motion")
         return y if self.balance is None else np.append(y, 0.0)
 
     def split(self, y: Array) -> tuple[Array, Array]:

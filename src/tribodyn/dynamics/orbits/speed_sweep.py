@@ -102,19 +102,12 @@ def speed_sweep(
     frequency = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
     require_positive("mesh_frequency", frequency, "Hz")
     if frequency.ndim != 1 or np.any(np.diff(frequency) <= 0.0):
-        raise InputError(
-            "the mesh frequencies do not rise",
-            where="argument mesh_frequency",
-            remedy="Sort them; the direction is the matter of directions",
-            why="A sweep goes through them in order",
-        )
+        why = "A sweep goes through them in order"
+        remedy = "Sort them; the direction is the matter of directions"
+        raise InputError("the mesh frequencies do not rise", "argument mesh_frequency", why, remedy)
     if not directions or any(each not in ("up", "down") for each in directions):
-        raise InputError(
-            f"directions = {directions}",
-            where="argument directions",
-            why='"up", "down" or both',
-            remedy="Choose one or two of these",
-        )
+        what, why = f"directions = {directions}", '"up", "down" or both'
+        raise InputError(what, "argument directions", why, "Choose one or two of these")
     require_positive("teeth", teeth)
     require_positive("patience", patience)
     known, systems = systems_by_frequency(system)
@@ -374,12 +367,8 @@ class SpeedSweep(Record):
             If there is no such signal.
         """
         if signal not in self.signals:
-            raise InputError(
-                f'no signal "{signal}"',
-                where="argument signal",
-                why=f"There are {', '.join(self.signals)}",
-                remedy="Choose one of these",
-            )
+            why = f"There are {', '.join(self.signals)}"
+            raise InputError(f'no signal "{signal}"', "argument signal", why, "Choose one of these")
         return self.signals.index(signal)
 
     def __repr__(self) -> str:

@@ -118,12 +118,8 @@ def _scalar(name: str, value: Any, unit: str) -> float:
     """One finite number, or a message that names the field."""
     number = real_numbers(Argument(name), value, f"a number {unit}".rstrip())
     if number.ndim:
-        raise InputError(
-            f"{name} has the shape {number.shape}",
-            where=f"argument {name}",
-            why="one contact takes single numbers",
-            remedy="Use solve_line_contacts for arrays",
-        )
+        what, why = f"{name} has the shape {number.shape}", "one contact takes single numbers"
+        raise InputError(what, f"argument {name}", why, "Use solve_line_contacts for arrays")
     return float(number)
 
 

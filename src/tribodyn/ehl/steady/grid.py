@@ -130,12 +130,9 @@ def _pair(domain: Any) -> tuple[float, float]:
     try:
         start, end = (float(edge) for edge in domain)
     except (TypeError, ValueError) as error:
-        raise InputError(
-            f"domain = {domain!r}",
-            where="argument domain",
-            why='it is "auto" or a pair (first position, last position) in half widths b',
-            remedy="For example domain = (-4.5, 1.5)",
-        ) from error
+        why = 'it is "auto" or a pair (first position, last position) in half widths b'
+        remedy = "For example domain = (-4.5, 1.5)"
+        raise InputError(f"domain = {domain!r}", "argument domain", why, remedy) from error
     if not (-1e5 <= start <= -1.05 and 1.05 <= end <= 1e5):
         raise InputError(
             f"domain = ({start:g}, {end:g})",
@@ -189,29 +186,19 @@ def choose_nodes(nodes: Any) -> tuple[int, bool]:
         or not -_ENDLESS < cast(float, nodes) < _ENDLESS
         or not float(nodes).is_integer()
     ):
-        raise InputError(
-            f"nodes = {nodes!r}",
-            where="argument nodes",
-            why=f'it is "auto" or a whole number from {FEWEST} to {MOST}',
-            remedy='Leave it at "auto", or give a number of this range',
-        )
+        why = f'it is "auto" or a whole number from {FEWEST} to {MOST}'
+        remedy = 'Leave it at "auto", or give a number of this range'
+        raise InputError(f"nodes = {nodes!r}", "argument nodes", why, remedy)
     count = int(float(nodes))
     near = 2 ** min(14, max(6, round(math.log2(max(count - 1, 1))))) + 1
     if not FEWEST <= count <= MOST:
-        raise InputError(
-            f"nodes = {count}",
-            where="argument nodes",
-            why=f"a grid has {FEWEST} to {MOST} nodes",
-            remedy=f"Take nodes = {near}",
-        )
+        why = f"a grid has {FEWEST} to {MOST} nodes"
+        raise InputError(f"nodes = {count}", "argument nodes", why, f"Take nodes = {near}")
     intervals = count - 1
     while intervals % 2 == 0 and intervals > _COARSEST:
         intervals //= 2
     if intervals > _COARSEST:
-        raise InputError(
-            f"nodes = {count}, hence {count - 1} intervals",
-            where="argument nodes",
-            why=f"halving the intervals must lead to {_COARSEST} or fewer, and ends at {intervals}",
-            remedy=f"Take nodes = {near}, or another 2^k + 1",
-        )
+        what = f"nodes = {count}, hence {count - 1} intervals"
+        why = f"halving the intervals must lead to {_COARSEST} or fewer, and ends at {intervals}"
+        raise InputError(what, "argument nodes", why, f"Take nodes = {near}, or another 2^k + 1")
     return count, False

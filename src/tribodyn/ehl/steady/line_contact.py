@@ -264,12 +264,10 @@ def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
     start, end = problem.domain
     position = np.linspace(start, end, problem.nodes) * case.half_width
     if not callable(profile):
-        raise InputError(
-            f"profile is of the type {type(profile).__name__}",
-            where="argument profile",
-            why="it must give the heights over the position",
-            remedy="Make it by tribodyn.ehl.RoughnessProfile, or give a function",
-        )
+        what = f"profile is of the type {type(profile).__name__}"
+        why = "it must give the heights over the position"
+        remedy = "Make it by tribodyn.ehl.RoughnessProfile, or give a function"
+        raise InputError(what, "argument profile", why, remedy)
     heights = real_numbers("argument profile", profile(position), "heights [m]")
     if heights.shape != position.shape or not np.all(np.isfinite(heights)):
         raise InputError(
@@ -284,12 +282,10 @@ def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
 
 def _start(start: Any) -> Any:
     if not isinstance(start, LineContactSolution):
-        raise InputError(
-            f"start is of the type {type(start).__name__}",
-            where="argument start",
-            why="it must be a solution of a similar contact",
-            remedy="Give what this solver returned before, or None",
-        )
+        what = f"start is of the type {type(start).__name__}"
+        why = "it must be a solution of a similar contact"
+        remedy = "Give what this solver returned before, or None"
+        raise InputError(what, "argument start", why, remedy)
     return start._grid
 
 

@@ -85,12 +85,8 @@ def member_value(case: Case, key: str, value: Any, by: str) -> Any:
         raise InputError(f"{key} is a table", _place(by), "", remedy)
     if spec is None:
         case.replace({key: value}, by=by or "over")  # tells which keys there are
-        raise InputError(
-            f'there is no key "{key}"',
-            _place(by),
-            why="Axes of a study are keys of the case",
-            remedy="Choose a key that tribodyn explain lists",
-        )
+        what, why = f'there is no key "{key}"', "Axes of a study are keys of the case"
+        raise InputError(what, _place(by), why, "Choose a key that tribodyn explain lists")
     try:
         return read_value(spec, key.rpartition(".")[2], value if by else Plain(value))
     except FaultError as fault:

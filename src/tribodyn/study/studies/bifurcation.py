@@ -136,12 +136,9 @@ def _steps(case: Case, system: System, mesh_frequency: float) -> int:
 def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int, by: str) -> Any:
     """Values of the key in SI; the two ends are checked like the key of the case."""
     if between is None or len(between) != 2 or int(points) != points or points < 2:
-        raise InputError(
-            f"between = {between}, points = {points}",
-            "argument between",
-            "A diagram goes from one value to another in at least two points",
-            'Write, for example, between=("400 rpm", "3500 rpm")',
-        )
+        why = "A diagram goes from one value to another in at least two points"
+        remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
+        raise InputError(f"between = {between}, points = {points}", "argument between", why, remedy)
     first, last = ends_of(case, over, between, by=by)
     return np.linspace(first, last, int(points))
 

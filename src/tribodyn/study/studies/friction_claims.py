@@ -229,11 +229,9 @@ def _of(found: FrictionExperiment, figure: str, place: int) -> Array:
     """A figure of one friction by driving gear and held torque, all of which have to be there."""
     values = found[figure][:, :, place]
     if not np.isfinite(values).all():
-        raise InputError(
-            f"{found.rubbing[place].name} was not computed in every setting",
-            why="Claims compare settings at one place",
-            remedy="Run the experiment again with all settings",
-        )
+        what = f"{found.rubbing[place].name} was not computed in every setting"
+        why = "Claims compare settings at one place"
+        raise InputError(what, why=why, remedy="Run the experiment again with all settings")
     return np.asarray(values)
 
 
@@ -244,11 +242,9 @@ def _ends(found: FrictionExperiment, law: str, *wanted: float) -> tuple[int, int
     heights = np.array([found.rubbing[k].roughness for k in places])
     first, last = (places[int(np.argmin(np.abs(heights - height)))] for height in wanted)
     if first == last:
-        raise InputError(
-            f"{law} needs roughnesses next to two that were printed",
-            why="A claim between two printed roughnesses is judged next to them",
-            remedy="Run the experiment with the printed roughnesses",
-        )
+        what = f"{law} needs roughnesses next to two that were printed"
+        why = "A claim between two printed roughnesses is judged next to them"
+        raise InputError(what, why=why, remedy="Run the experiment with the printed roughnesses")
     return first, last
 
 
@@ -347,11 +343,8 @@ def _constant_instead(found: FrictionExperiment) -> _Judged:
         if one.as_mixed
     ]
     if not pairs:
-        raise InputError(
-            "mixed-ehl and constant were not compared",
-            why="The claim compares the two laws",
-            remedy="Run the experiment with both laws",
-        )
+        what, why = "mixed-ehl and constant were not compared", "The claim compares the two laws"
+        raise InputError(what, why=why, remedy="Run the experiment with both laws")
     apart = np.array([[_change(found, name, ends) for ends in pairs] for name in (_RMS, _SWING)])
     effect = np.array(
         [[_by_friction(found, name, ends[1]) for ends in pairs] for name in (_RMS, _SWING)]

@@ -81,12 +81,8 @@ def run_up(
     low, high = _ends(case, between)
     count = int(tables)
     if count != tables or count < 1:
-        raise InputError(
-            f"tables = {tables}",
-            "argument tables",
-            "A whole number >= 1",
-            remedy="Give 1 or more",
-        )
+        what = f"tables = {tables}"
+        raise InputError(what, "argument tables", "A whole number >= 1", "Give 1 or more")
     speeds = np.geomspace(low, high, count) if count > 1 else np.array([np.sqrt(low * high)])
     with placed(case), collected():
         systems, per_speed = speed_systems(case, speeds, progress)
@@ -116,21 +112,14 @@ def speed_systems(
 def _ends(case: Case, between: tuple[Any, Any] | None) -> tuple[float, float]:
     """Both speeds in SI, checked like the key of the case."""
     if between is None or len(between) != 2:
-        raise InputError(
-            f"between = {between}",
-            "argument between",
-            "A run-up goes from one speed to another",
-            'Write, for example, between=("400 rpm", "3500 rpm")',
-        )
+        why = "A run-up goes from one speed to another"
+        remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
+        raise InputError(f"between = {between}", "argument between", why, remedy)
     found = [effective(case.replace({_SPEED: end})).get(_SPEED) for end in between]
     low, high = cast("float", found[0]), cast("float", found[1])
     if not low < high:
-        raise InputError(
-            f"between = {between}",
-            "argument between",
-            "The first speed is the lowest",
-            "Turn them round; down=True adds the way back",
-        )
+        what, remedy = f"between = {between}", "Turn them round; down=True adds the way back"
+        raise InputError(what, "argument between", "The first speed is the lowest", remedy)
     return low, high
 
 

@@ -103,11 +103,8 @@ class Sweep(Record):
 
             near = difflib.get_close_matches(name, self.figures, n=1)
             remedy = f'Did you mean "{near[0]}"?' if near else f"It has: {', '.join(self.figures)}"
-            raise InputError(
-                f'there is no figure "{name}" in this sweep',
-                remedy=remedy,
-                why="A sweep shows the figures that its points have",
-            )
+            why = "A sweep shows the figures that its points have"
+            raise InputError(f'there is no figure "{name}" in this sweep', why=why, remedy=remedy)
         values = np.full(prod(self.shape), np.nan)
         values[: len(self.points)] = [p.figures.get(name, np.nan) for p in self.points]
         return values.reshape(self.shape)
@@ -203,11 +200,8 @@ class Sweep(Record):
             import pandas
         except ImportError:
             remedy = "Install it: pip install pandas, or use to_csv() or to_xarray()"
-            raise InputError(
-                "pandas is not installed",
-                remedy=remedy,
-                why="A table of this kind is an object of pandas",
-            ) from None
+            why = "A table of this kind is an object of pandas"
+            raise InputError("pandas is not installed", why=why, remedy=remedy) from None
         return pandas.DataFrame(list(self.rows()))
 
     def _repr_html_(self) -> str:

@@ -108,12 +108,10 @@ def march_on_gpu(
         except Exception as error:
             if not type(error).__module__.startswith(("numba", "cuda")):
                 raise
-            raise ComputationError(
-                f"the graphics processor gave up: {str(error).strip()}",
-                Argument("backend"),
-                f"It was to march {len(given[0])} lanes and record {kept.nbytes / 2**20:.0f} MiB",
-                'March fewer at a time, update the driver, or take backend = "cpu"',
-            ) from error
+            what = f"the graphics processor gave up: {str(error).strip()}"
+            why = f"It was to march {len(given[0])} lanes and record {kept.nbytes / 2**20:.0f} MiB"
+            remedy = 'March fewer at a time, update the driver, or take backend = "cpu"'
+            raise ComputationError(what, Argument("backend"), why, remedy) from error
         if record is not None:
             record[:, :, lanes] = kept
         if statistics is not None:
