@@ -79,7 +79,7 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(tmp_path: Path) 
                                stdout=subprocess.PIPE, start_new_session=True)  # fmt: skip
     members = tmp_path / ".part.members" / "members.jsonl"
     for _ in range(1200):
-        if members.exists() and members.read_text().count("\n") > 12:
+        if members.exists() and members.read_text().count("\n") > 28:  # groups of eight
             break
         assert process.poll() is None
         time.sleep(0.1)

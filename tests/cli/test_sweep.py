@@ -186,13 +186,13 @@ _HOOKS = {
     "sweep": """
 import pathlib, time
 import tribodyn.study.studies.sweep as module
-original = module._point
-def point(*words):
+original = module._figures
+def figures(*words):
     found = original(*words)
     with pathlib.Path(__file__).with_name("done").open("a") as file:
         file.write("x")
     return found
-module._point = point
+module._figures = figures
 """,
     "bifurcation": """
 import contextlib, pathlib, time

@@ -152,7 +152,7 @@ def refuse_unstable_step(
             f"omega_max*dt = {number:.3f} with {grid.steps} steps per mesh cycle at "
             f"{mesh_frequency:g} Hz and a fastest motion of {rate:.4g} rad/s{lane}",
             "argument steps",
-            f"The limit is {LIMIT}; above 2.83 the scheme is unstable and its result not physics",
+            f"The limit is {LIMIT}; above 2.83 Runge-Kutta is unstable, its result not physics",
             f"Use at least {needed} steps per mesh cycle",
         )
     return number
