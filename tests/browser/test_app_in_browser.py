@@ -14,7 +14,7 @@ pytest.importorskip("dash", reason="the page needs Dash")
 import tribodyn
 from tribodyn.app.server import Page
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 #: A case with long cycles, for a run that is still going on when it is stopped.
 LONG = {"solver.method": "transient", "solver.cycles": 100000}

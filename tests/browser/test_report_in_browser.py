@@ -15,7 +15,7 @@ from tribodyn.errors import ModelWarning
 from tribodyn.report import write_report
 from tribodyn.report.blocks import SECTIONS
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 
 @dataclass

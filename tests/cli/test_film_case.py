@@ -33,6 +33,7 @@ def figures(capsys: pytest.CaptureFixture[str], case: str, *sets: str, out: str 
     return json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_run_adds_the_figures_of_the_film(capsys: pytest.CaptureFixture[str]) -> None:
     found = figures(capsys, "fzg-film")
     assert all(type(found[name]) is float for name in NAMED)

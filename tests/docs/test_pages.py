@@ -14,7 +14,7 @@ from registries import as_before
 
 README = (ROOT / "README.md").read_text("utf-8")
 # Their examples solve films and compile what few others need.
-SLOW = {"film.md", "stiffness.md", "dynamics.md"}
+SLOW = {"film.md", "stiffness.md", "dynamics.md", "hypoid.md"}
 WITH_PYTHON = [path for path in PAGES if blocks(path.read_text("utf-8"), "python")]
 
 

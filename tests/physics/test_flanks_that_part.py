@@ -94,6 +94,7 @@ def relief(chance: random.Random) -> dict[str, Any]:
     }
 
 
+@pytest.mark.slow
 def test_random_pairs_near_resonance_end(draws: Draws) -> None:
     told: list[str] = []
     for chance in draws(6):

@@ -194,6 +194,7 @@ def test_a_load_too_light_for_the_film_in_series_names_the_place() -> None:
             table("wheel drives", pinion_torque=10.0, film_options={"stiffness": "tangent"})
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings(r"ignore:\[film-stiffness\]")
 def test_a_nearly_unloaded_entry_is_solved() -> None:
     # a given pair stiffness that rises from next to nothing at A and E

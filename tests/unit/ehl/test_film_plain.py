@@ -154,6 +154,7 @@ def test_plain_solution_does_not_depend_on_the_start():
     np.testing.assert_allclose(first.P, second.P, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_plain_solver_says_that_it_fails():
     with pytest.raises(ComputationError, match="plain solver stopped"):
         solve_plain(make(128, 20.0, 10.0), flux_tolerance=0.0)

@@ -106,6 +106,7 @@ def test_the_exact_ratio_is_that_of_the_moment_arms():
     assert slope == pytest.approx(pinion / wheel, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_conjugate_flanks_have_no_transmission_error():
     for blank in random_blanks(3):
         for side in SIDES:
@@ -200,6 +201,7 @@ def test_misaligned_contact_agrees_with_the_surfaces(change):
     assert change < 0.02 * moved[inner].max()
 
 
+@pytest.mark.slow
 def test_a_pair_of_the_other_hand_and_the_coast_side():
     for side in SIDES:
         left, right = (

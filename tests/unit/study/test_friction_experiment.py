@@ -57,6 +57,7 @@ def test_every_state_is_that_of_a_run_of_its_own(
         assert found[name][place] == pytest.approx(alone[name], rel=1e-10)
 
 
+@pytest.mark.slow
 def test_a_solved_film_is_shared_by_all_laws(case: Any) -> None:
     solved = case.replace({"film.model": "newton", "film.positions": 8})
     found = friction_experiment(solved, laws=["ehl"], roughness=["0.4 um", "0.8 um"])
@@ -162,6 +163,7 @@ def test_what_was_not_computed_is_told(case: Any) -> None:
         found.index("constant")
 
 
+@pytest.mark.slow
 def test_an_experiment_that_ended_early_tells_what_it_has(
     case: Any, found: Any, tmp_path: Any
 ) -> None:
@@ -207,6 +209,7 @@ def test_wrong_arguments_are_refused(case: Any, options: dict[str, Any], told: s
         friction_experiment(case, **options)
 
 
+@pytest.mark.slow
 def test_it_is_stored_and_goes_on(found: Any, case: Any, tmp_path: Any) -> None:
     import xarray
 

@@ -203,6 +203,7 @@ def test_the_report_draws_gears_contact_and_forces_in_space(result):
     assert all(not FIGURES[name].missing(result) for name in HYPOID_SECTIONS)
 
 
+@pytest.mark.slow
 def test_tables_and_those_figures_that_its_gears_have_are_exported(result, tmp_path):
     place = write_tables(result, tmp_path / "all")
     written = {path.stem for path in place.glob("figure_*.json")}

@@ -112,6 +112,7 @@ def test_baselines_are_judged_by_the_same_rows():
     assert found["linear"]["z"].determination < 0.97
 
 
+@pytest.mark.slow
 def test_baselines_of_scikit_learn():
     kinds = ["gaussian-process", "boosted-trees"]
     try:
