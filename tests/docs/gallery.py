@@ -24,11 +24,13 @@ def _laws(names: dict[str, Any]) -> Any:
     import plotly.graph_objects as go
 
     rows = [line.split() for line in names["printed"].splitlines()[1:]]
-    figure = go.Figure(
-        [go.Scatter(x=names["sliding"], y=[float(x) for x in r[1:]], name=r[0]) for r in rows]
-    )
+    figure = go.Figure()
+    for number, (name, *values) in enumerate(rows):  # colours come again after ten laws
+        line, y = {"dash": "dash" if number > 9 else "solid"}, [float(x) for x in values]
+        figure.add_scatter(x=names["sliding"], y=y, name=name, line=line)
     return figure.update_layout(
         template="plotly_white",
+        margin={"t": 30},
         xaxis_title="sliding speed [m/s]",
         yaxis_title="friction coefficient",
     )
