@@ -45,6 +45,8 @@ def test_strange_hosts_are_found() -> None:
 def test_files_of_the_repository_are_found() -> None:
     names = {name for name, _ in contents()}
     assert {"README.md", "pyproject.toml", ".ci/run", "src/tribodyn/units.py"} <= names
+    # What a merge or an editor leaves beside a file is no part of the project.
+    assert not [name for name in names if name.endswith((".orig", ".rej", ".bak", "~"))]
 
 
 def test_version_is_the_same_everywhere() -> None:

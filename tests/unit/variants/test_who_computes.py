@@ -50,7 +50,7 @@ def test_chunks_of_a_study_share_their_solved_films(monkeypatch: pytest.MonkeyPa
     study = read_study(_STUDY)
     for speed in (100.0, 110.0):
         Job("summary", study.case, (), {"operation.speed": [speed]}).compute()
-    assert tables[0] is not None
+    assert isinstance(tables[0], tabled_film._Shared)
     assert tables[0] is tables[1]
     with tabled_film.shared_films():
         assert tabled_film._shared.get() not in (None, tables[0])
