@@ -45,8 +45,12 @@ def test_strange_hosts_are_found() -> None:
 def test_files_of_the_repository_are_found() -> None:
     names = {name for name, _ in contents()}
     assert {"README.md", "pyproject.toml", ".ci/run", "src/tribodyn/units.py"} <= names
-    # What a merge or an editor leaves beside a file is no part of the project.
-    assert not [name for name in names if name.endswith((".orig", ".rej", ".bak", "~"))]
+
+
+def test_nothing_lies_about_that_a_merge_or_an_editor_left() -> None:
+    left = (".orig", ".rej", ".bak", "~")
+    every = (path for place in ("src", "tests", "docs") for path in (ROOT / place).rglob("*"))
+    assert not [path.name for path in every if path.name.endswith(left)]
 
 
 def test_version_is_the_same_everywhere() -> None:
