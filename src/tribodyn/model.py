@@ -236,6 +236,14 @@ class Model:
         return f'Did you mean "{near[0]}"?' if near else ""
 
 
+_registries: list[Registry[Any]] = []
+
+
+def known_elsewhere() -> bool:
+    """Whether another process that loads this package knows all models that this one knows."""
+    return not any(registry.of_this_process() for registry in _registries)
+
+
 class Registry(Generic[T]):
     """Named things of one kind, extended by the entry-point group of the same name.
 
@@ -273,7 +281,9 @@ class Registry(Generic[T]):
         self.part = part
         self._items: dict[str, T] = {}
         self._searched = group is None
+        self._entered: set[str] = set()
         self.version = 0  #: rises with everything that is registered
+        _registries.append(self)
 
     def register(self, name: str) -> Callable[[T], T]:
         """Decorate a thing to make it known as ``name``."""
@@ -302,7 +312,14 @@ class Registry(Generic[T]):
             self._searched = True
             for entry in entry_points(group=self.group):
                 self._items.setdefault(entry.name, entry.load())
+                self._entered.add(entry.name)
             self.version += 1
+
+    def of_this_process(self) -> bool:
+        """Whether it holds a function that neither this package nor an entry point brought."""
+        made = ((n, getattr(i, self.part, i)) for n, i in self._items.items())
+        modules = [getattr(m, "__module__", "tribodyn.") for n, m in made if n not in self._entered]
+        return not all(module.startswith("tribodyn.") for module in modules)
 
     def names(self) -> list[str]:
         """All names, in order of registration."""

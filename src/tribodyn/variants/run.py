@@ -12,6 +12,7 @@ from typing import Any
 import tribodyn
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import alone
+from tribodyn.processes import helpers
 from tribodyn.progress import SILENT, Progress
 from tribodyn.variants.compute import Job, Part
 from tribodyn.variants.members import Chunk
@@ -97,11 +98,12 @@ def _give_up(missing: dict[str, str], none_done: bool) -> None:
 
 def _here(jobs: Jobs, progress: Progress) -> Results:
     """Compute one chunk after the other, each with all processors."""
-    for chunk, job in jobs:
-        try:
-            yield chunk, job.compute(_Within(progress))
-        except (ImportError, MemoryError, OSError) as error:
-            yield chunk, error
+    with helpers():
+        for chunk, job in jobs:
+            try:
+                yield chunk, job.compute(_Within(progress))
+            except (ImportError, MemoryError, OSError) as error:
+                yield chunk, error
 
 
 class _Within:

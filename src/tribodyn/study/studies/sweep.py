@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import os
+import pickle
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext, suppress
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tribodyn.errors import ComputationError, InputError, quiet
-from tribodyn.interrupt import in_threads
+from tribodyn.interrupt import STOPPED, in_threads, refuse_stopped, stop_flag
 from tribodyn.members import Members
 from tribodyn.mesh.film.tabled_film import shared_films
+from tribodyn.model import known_elsewhere
+from tribodyn.processes import helpers
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.run import Begun, begin, move_together
 from tribodyn.study.studies.axes import Axis, read_axes
@@ -76,8 +80,10 @@ def sweep(
 
     Notes
     -----
-    Several values are computed at a time, one by each processor. An interrupted sweep keeps those
-    that are finished, up to the first that is not.
+    Several values are computed at a time; many of them by processes beside this one, which load
+    no script and so need no ``if __name__ == "__main__"``. Where a script registers a model of its
+    own they are computed in threads. An interrupted sweep keeps the values that are finished, up
+    to the first that is not.
 
     Examples
     --------
@@ -90,11 +96,12 @@ def sweep(
     axes = read_axes(case, _asked(over, between, points), by=by)
     study = identity("sweep", case, [(axis.key, axis.values) for axis in axes])
 
-    def begun(*values: Any) -> Begun:
-        changes = {axis.key: value for axis, value in zip(axes, values, strict=True)}
-        return begin(case.replace(changes))
-
+    begun = functools.partial(_begun, case, tuple(axis.key for axis in axes))
     return Sweep(case, axes, points_of(axes, begun, study, partial, progress, members))
+
+
+def _begun(case: Case, keys: Sequence[str], *values: Any) -> Begun:
+    return begin(case.replace(dict(zip(keys, values, strict=True))))
 
 
 def points_of(
@@ -135,11 +142,7 @@ def points_under(
 ) -> list[SweepPoint]:
     """Compute a case under some changes of the same keys, in their order; what fails is told."""
     done: dict[int, SweepPoint] = {}
-    keys = [tuple(change) for change in changes]
-
-    def begun(*values: Any) -> Begun:
-        return begin(case.replace(dict(zip(keys[0], values, strict=True))))
-
+    begun = partial(_begun, case, tuple(changes[0]) if changes else ())
     _over_points(begun, [tuple(change.values()) for change in changes], done, progress)
     return [done[index] for index in range(len(changes))]
 
@@ -158,6 +161,8 @@ def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[
 
 #: Points at most whose motions are found side by side, and groups of them for each processor.
 _TOGETHER, _GROUPS = 8, 4
+#: Points for which it pays to begin a process.
+_WORTH = 50
 
 
 def _over_points(
@@ -171,34 +176,57 @@ def _over_points(
     left = [index for index in range(len(grid)) if index not in done]
     count = os.cpu_count() or 1
     size = min(_TOGETHER, max(1, len(left) // (_GROUPS * count)))
+    groups = [left[first : first + size] for first in range(0, len(left), size)]
+    places = [[grid[index] for index in members] for members in groups]
     lock = threading.Lock()
     progress.advance(len(done))
 
-    def group(first: int) -> None:
-        members = left[first : first + size]
-        for index, point in zip(members, _points(begun, [grid[i] for i in members]), strict=True):
+    def keep_group(number: int, points: Sequence[SweepPoint]) -> None:
+        for index, point in zip(groups[number], points, strict=True):
             keep(index, point)
             with lock:
                 done[index] = point
                 progress.advance()
 
-    in_threads(group, range(0, len(left), size), count)
+    abroad = _abroad(begun)
+    with helpers(len(left) // _WORTH if abroad else 0) as others:
+        if abroad and others.count:
+            others.each(partial(_points, begun), abroad, places, keep_group)
+        else:
+            numbers = range(len(groups))
+            in_threads(lambda i: keep_group(i, _points(begun, places[i])), numbers, count)
 
 
-def _points(begun: Callable[..., Begun], places: Sequence[tuple[Any, ...]]) -> Iterator[SweepPoint]:
+def _abroad(begun: Callable[..., Begun]) -> bytes:
+    """What another process calls; nothing where it could not."""
+    if known_elsewhere():
+        with suppress(pickle.PicklingError, AttributeError, TypeError):
+            return pickle.dumps(partial(_points_abroad, begun))
+    return b""
+
+
+def _points_abroad(
+    begun: Callable[..., Begun], places: Sequence[tuple[Any, ...]]
+) -> list[SweepPoint]:
+    with shared_films(lasting=True):
+        return _points(begun, places)
+
+
+def _points(begun: Callable[..., Begun], places: Sequence[tuple[Any, ...]]) -> list[SweepPoint]:
     """Run the case at some places; what fails is told, and the sweep goes on."""
     with quiet():  # what the models say is kept in the results
         points = [_tried(partial(begun, *values)) for values in places]
         move_together([point for point in points if isinstance(point, Begun)])
-    for values, point in zip(places, points, strict=True):
-        with quiet():
-            found = _tried(partial(_figures, point)) if isinstance(point, Begun) else point
-        if isinstance(found, Exception):
-            first = found.problems[0]
-            place = str(first.where).removeprefix("replace: ")  # the sweep is what replaces
-            yield SweepPoint(values, {}, str(dataclasses.replace(first, where=place)))
-        else:
-            yield SweepPoint(values, *found)
+        return [_point(values, point) for values, point in zip(places, points, strict=True)]
+
+
+def _point(values: tuple[Any, ...], point: Begun | InputError | ComputationError) -> SweepPoint:
+    found = _tried(partial(_figures, point)) if isinstance(point, Begun) else point
+    if isinstance(found, Exception):
+        first = found.problems[0]
+        place = str(first.where).removeprefix("replace: ")  # the sweep is what replaces
+        return SweepPoint(values, {}, str(dataclasses.replace(first, where=place)))
+    return SweepPoint(values, *found)
 
 
 def _figures(point: Begun) -> tuple[dict[str, float], str, tuple[str, ...]]:
@@ -207,6 +235,7 @@ def _figures(point: Begun) -> tuple[dict[str, float], str, tuple[str, ...]]:
 
 
 def _tried(compute: Callable[[], Value]) -> Value | InputError | ComputationError:
+    refuse_stopped(STOPPED * int(stop_flag()[0]))
     try:
         return compute()
     except (InputError, ComputationError) as error:
