@@ -22,8 +22,6 @@ from typing import IO, Any, TypeVar
 
 from tribodyn.interrupt import STOPPED, alone, in_threads, processors, refuse_stopped, stop_flag
 
-__all__ = ["Helpers", "helpers", "serve"]
-
 Item = TypeVar("Item")
 Value = TypeVar("Value")
 
