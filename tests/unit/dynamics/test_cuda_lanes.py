@@ -22,6 +22,7 @@ from tribodyn.dynamics import (
     simulate,
     simulate_ensemble,
 )
+from tribodyn.dynamics._engine.generated import cuda as gpu
 from tribodyn.errors import ComputationError, InputError
 
 _SIGNALS = ("deflection", "contact_force", "acceleration", "output")
@@ -133,6 +134,22 @@ def test_a_missing_package_or_processor_is_told_with_the_remedy(monkeypatch) -> 
     assert 'It belongs to "rk4"' in ask(method="newmark")
     with pytest.raises(InputError, match='"cpu", or "cuda"'):
         simulate(free, 1.0, 1, ([1.0], [0.0]), backend="gpu")
+
+
+def test_packages_that_do_not_go_together_are_told_as_such(monkeypatch) -> None:
+    from numba import cuda
+
+    # What numba-cuda 0.30 meets with NumPy 2.5, before it compiles anything.
+    code = compile("def to_device(array): raise AttributeError('no row_stack')", "numba", "exec")
+    exec(code, broken := {"__name__": "numba.cuda.np.arrayobj"})
+    monkeypatch.setattr(cuda, "to_device", broken["to_device"])
+    monkeypatch.setattr(gpu, "require_gpu", lambda: None)
+    monkeypatch.setattr(gpu, "version", lambda name: "0.1")
+    monkeypatch.setattr(gpu, "_kernel", lambda *sizes: None)
+    free = System([[1.0]], [[0.0]], [[4.0]], [0.0])
+    with pytest.raises(ComputationError) as told:
+        simulate_ensemble(free, [1.0, 2.0], 1, ([1.0], [0.0]), backend="cuda")
+    assert "no row_stack. These versions do not go together: numba-cuda 0.1" in str(told.value)
 
 
 if __name__ == "__main__":

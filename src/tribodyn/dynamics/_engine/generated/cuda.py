@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import importlib.util
 from functools import lru_cache
+from importlib.metadata import version
+from traceback import walk_tb
 from types import FunctionType
 from typing import Any
 
@@ -106,17 +108,27 @@ def march_on_gpu(
         try:
             new[lanes], codes[lanes] = _march(programs, given, cycles, kept, statistics, sums)
         except Exception as error:
-            if not type(error).__module__.startswith(("numba", "cuda")):
+            if not any(where.startswith(("numba.cuda", "cuda")) for where in _modules(error)):
                 raise
             what = f"the graphics processor gave up: {str(error).strip()}"
             why = f"It was to march {len(given[0])} lanes and record {kept.nbytes / 2**20:.0f} MiB"
             remedy = 'March fewer at a time, update the driver, or take backend = "cpu"'
+            if not type(error).__module__.startswith(("numba", "cuda")):
+                found = [f"{name} {version(name)}" for name in ("numba-cuda", "numba", "numpy")]
+                why = f"These versions do not go together: {', '.join(found)}"
+                remedy = 'Install ones that do: pip install --upgrade "tribodyn[cuda]"'
             raise ComputationError(what, Argument("backend"), why, remedy) from error
         if record is not None:
             record[:, :, lanes] = kept
         if statistics is not None:
             statistics.moments[:, lanes] = sums
     return new, codes
+
+
+def _modules(error: Exception) -> list[str]:
+    """Modules that an error passed through, and its own."""
+    frames = [frame.f_globals.get("__name__", "") for frame, _ in walk_tb(error.__traceback__)]
+    return [*frames, type(error).__module__]
 
 
 def _march(
@@ -162,4 +174,4 @@ def _march(
             refuse_stopped(STOPPED)
     if sums is not None:
         moments_there.copy_to_host(sums)
-    return kept.copy_to_host()[:double].T, ended.copy_to_host()
+    return kept[:double].copy_to_host().T, ended.copy_to_host()

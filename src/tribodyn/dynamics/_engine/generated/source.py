@@ -25,7 +25,6 @@ class _Writer:
         self.at, self.read, self.row, self.depth = 4, 0, 0, 0
         self.add(f"def {head}:")
         self.depth = 1
-        self.add("rows = law.rows")
 
     def add(self, *lines: str) -> None:
         """Write lines."""
@@ -35,7 +34,7 @@ class _Writer:
         """Factors and slots of the next terms."""
         first, self.row, self.read = self.row, self.row + count, self.read + count
         reads = self.all_reads[self.read - count : self.read]
-        return [(f"rows[r + {first + item}]", reads[item]) for item in range(count)]
+        return [(f"row[{first + item}]", reads[item]) for item in range(count)]
 
     def value(self, slot: int) -> str:
         """The number in a slot: states and forces are variables."""
@@ -50,9 +49,9 @@ class _Writer:
         s, row = self.s, self.row
         along, turn, dead, kind = self.code[self.at : self.at + 4]
         self.at, self.row = self.at + 4, self.row + 5
-        self.add(f"d = rows[r + {row + 2}] * error")
+        self.add(f"d = row[{row + 2}] * error")
         if rate:
-            self.add(f"rate = rows[r + {row + 3}] * (error * beat)")
+            self.add(f"rate = row[{row + 3}] * (error * beat)")
         for factor, slot in self.take(along):
             self.add(f"d = d + {factor} * {self.value(slot)}")
             if rate:
@@ -60,7 +59,7 @@ class _Writer:
         for factor, slot in self.take(turn):
             if rate:
                 self.add(f"rate = rate + {factor} * {self.value(slot)} * beat")
-        factors = [f"rows[r + {row + item}]" for item in (0, 1, 4)]
+        factors = [f"row[{row + item}]" for item in (0, 1, 4)]
         if kind >= 2:
             scales = (s.stiffness, s.damping, s.gap)
             factors = [
@@ -91,11 +90,11 @@ class _Writer:
         self.read += contacts
         last = self.row + 1 + terms
         self.add(f"carried = {' + '.join(self.value(slot) for slot in reads)}")
-        self.add(f"value = rows[r + {last}]")
+        self.add(f"value = row[{last}]")
         if terms > 1:
-            self.add(f"x = min(rows[r + {self.row}] * abs(carried), rows[r + {self.row + 1}])")
+            self.add(f"x = min(row[{self.row}] * abs(carried), row[{self.row + 1}])")
         for item in range(1, terms):
-            self.add(f"value = value * x + rows[r + {last - item}]")
+            self.add(f"value = value * x + row[{last - item}]")
         self.add(f"t{f} = (1.0 + w[{self.s.rub}]) * carried * value")
         self.row = last + 1
 
@@ -112,14 +111,15 @@ def write_source(program: Program) -> str:
     out, s, columns = _Writer(program), program.slots, int(program.code[2])
     n, once = s.n, f"beat, error = w[{s.beat}], w[{s.error}] - 1.0"
     out.begin("acceleration(lanes, law, r, buffer, out, w)")
-    out.add(once, f"q = {2 * n} * buffer", *(f"x{i} = w[q + {i}]" for i in range(2 * n)))
+    out.add("row = law.rows[r:]", once, f"state = w[{2 * n} * buffer :]")
+    out.add(*(f"x{i} = state[{i}]" for i in range(2 * n)))
     out.forces()
     out.accelerations()
     out.add(*(f"w[{s.force + j}] = f{j}" for j in range(s.contacts)))
     out.add(*(f"w[out + {i}] = a{i}" for i in range(n)))
 
     out.begin("left_side(lanes, law, r, w)")
-    out.add(f"error, gone = w[{s.error}] - 1.0, False")
+    out.add("row = law.rows[r:]", f"error, gone = w[{s.error}] - 1.0, False")
     out.add(*(f"x{i} = w[{4 * n + i}]" for i in range(n)))
     for j in range(s.contacts):
         (_, _, gap), (dead, _) = out.compression(rate=False)
@@ -135,7 +135,8 @@ def write_source(program: Program) -> str:
     out.add(*(f"first{i} = inner{i} = a{i} = 0.0" for i in range(n)))
     out.add("for stage in range(4):")
     out.depth = 2
-    out.add("part = 0.5 * h if stage < 2 else h", f"r = base + ((stage + 1) // 2) * {columns}")
+    out.add("part = 0.5 * h if stage < 2 else h")
+    out.add(f"row = law.rows[base + ((stage + 1) // 2) * {columns} :]")
     out.forces()
     out.accelerations()
     out.add("if stage == 3:", "    break")
