@@ -27,7 +27,7 @@ _REMEDIES = {
 
 
 def positive(**quantities: ArrayLike) -> list[Array]:
-    """Arrays of quantities, to be read: each called by its name, refused unless finite, positive."""
+    """Arrays of quantities to be read, each called by its name; refused unless finite, positive."""
     arrays = [floats(Argument(name), value) for name, value in quantities.items()]
     for name, array in zip(quantities, arrays, strict=True):
         if not np.all((array > 0.0) & (array < np.inf)):
