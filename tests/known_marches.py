@@ -40,11 +40,12 @@ def march_adaptive(
 def march_one(system, frequency, state, cycles, *, rtol=1e-6, points=None, record=None):
     """March one lane in adaptive steps; returns steps, rejections and crossings."""
     engine = adaptive_engine(system, frequency, cycles, rtol=rtol)
-    lane = AdaptiveLanes(engine, np.array([1.0 / frequency]), np.zeros((1, system.size)))
+    force, place = np.zeros((1, system.size)), np.arange(1)
+    lane = AdaptiveLanes([(engine, place)], np.array([1.0 / frequency]), force)
     grid, trail = np.zeros(1) if points is None else np.ascontiguousarray(points), np.zeros((0, 2))
 
-    def run(place):
-        return lane.march_block(place, state[None].copy(), cycles, grid, record, trail, 0)
+    def run(block):
+        return lane.march_block(block, state[None].copy(), cycles, grid, record, trail, 0)
 
-    (report,) = in_threads(run, [0], 1)
+    (report,) = in_threads(run, lane.blocks, 1)
     return report[:3]

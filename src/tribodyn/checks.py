@@ -7,7 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import Argument, InputError, real_numbers, require_positive, shortened
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    floats,
+    real_numbers,
+    require_positive,
+    shortened,
+)
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
 
@@ -20,8 +27,8 @@ _REMEDIES = {
 
 
 def positive(**quantities: ArrayLike) -> list[Array]:
-    """Arrays of quantities, each called by its name; refused unless finite and positive."""
-    arrays = [real_numbers(Argument(name), value) for name, value in quantities.items()]
+    """Arrays of quantities to be read, each called by its name; refused unless finite, positive."""
+    arrays = [floats(Argument(name), value) for name, value in quantities.items()]
     for name, array in zip(quantities, arrays, strict=True):
         if not np.all((array > 0.0) & (array < np.inf)):
             unit = QUANTITIES[name].unit if name in QUANTITIES else ""
@@ -42,7 +49,7 @@ def require_one_shape(**arrays: Array) -> None:
 
 def one_or_more(**quantities: ArrayLike) -> list[Array]:
     """Lists of quantities of which one value or several are given, all of them positive."""
-    lists = [np.atleast_1d(positive(**{name: value})[0]) for name, value in quantities.items()]
+    lists = [np.array(positive(**{n: v})[0], ndmin=1) for n, v in quantities.items()]
     for name, values in zip(quantities, lists, strict=True):
         if values.ndim != 1 or values.size == 0:
             what = f"{name} has the shape {values.shape}"

@@ -316,6 +316,13 @@ def real_numbers(
     >>> float(real_numbers("nodes", 3))
     3.0
     """
+    return floats(where, value, wanted).copy()
+
+
+def floats(
+    where: Argument | ModelOption | str, value: Any, wanted: str = "real numbers"
+) -> NDArray[np.float64]:
+    """The same to look at: an array of floats is handed back as it is."""
     try:
         array = np.asarray(value)
         if array.dtype.kind == "O" and all(isinstance(one, int) for one in array.flat):
@@ -325,7 +332,7 @@ def real_numbers(
     if array.dtype.kind not in "fiub":
         remedy = "Give numbers in SI units, in rows of one length where there are several"
         raise InputError(f"{_brief(value)} is not real", where, f"Wanted: {wanted}", remedy)
-    return array.astype(float)
+    return array.astype(float, copy=False)
 
 
 def _brief(value: Any) -> str:
@@ -359,7 +366,7 @@ ENDLESS = 1e60
 def _check(
     name: str, value: Any, unit: str, holds: Callable[[Any], Any], limit: str, remedy: str
 ) -> None:
-    array = real_numbers(Argument(name), value)
+    array = floats(Argument(name), value)
     if not array.size:
         raise InputError(f"{name} is empty", Argument(name), "Wanted: numbers", "Give one at least")
     bad = ~((np.abs(array) < ENDLESS) & holds(array))

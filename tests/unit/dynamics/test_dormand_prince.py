@@ -312,7 +312,7 @@ def test_an_unstable_motion_is_reported_with_time_and_body():
     unstable = System(
         np.eye(2), np.diag([0.0, -900.0]), np.eye(2), [1.0, 1.0], names=("wheel", "rim")
     )
-    with pytest.raises(ComputationError, match=r"time .* s, mesh cycle 1.*velocity of rim"):
+    with pytest.raises(ComputationError, match=r"rim, first.* at the time .* s"):
         solve_adaptive(unstable, 1.0, 3, ([0.0, 0.0], [0.0, 0.0]))
 
 
@@ -321,5 +321,5 @@ def test_a_failing_lane_is_named():
     system = System([[1.0]], [[0.0]], [[0.0]], [0.0], [push])
     state = np.zeros((40, 2))
     state[33] = [0.5, 2.0]
-    with pytest.raises(ComputationError, match="trajectory 33"):
+    with pytest.raises(ComputationError, match="lane 33"):
         march_adaptive(compile_for(system, 1.0, 64), np.ones(40), state, 60)

@@ -5,6 +5,7 @@ import pytest
 
 from known_marches import march_adaptive, march_newmark
 from known_systems import hysteresis_system, reference_system
+from plain.moments import add_record
 from tribodyn.dynamics import (
     Contact,
     LaneParameters,
@@ -13,9 +14,10 @@ from tribodyn.dynamics import (
     simulate,
     simulate_ensemble,
 )
-from tribodyn.dynamics._engine.blocks import march
-from tribodyn.dynamics._engine.statistics import RecordedLanes, Statistics
-from tribodyn.dynamics.equations.compiled import Member, compile_for, compile_lanes
+from tribodyn.dynamics._engine.blocks import LaneBlock, Run, march
+from tribodyn.dynamics._engine.method import RungeKutta4
+from tribodyn.dynamics._engine.statistics import Statistics
+from tribodyn.dynamics.equations.compiled import compile_for, compile_lanes
 from tribodyn.errors import ComputationError, InputError
 
 FREQUENCY = 0.4
@@ -102,12 +104,13 @@ def test_statistics_of_a_record_are_those_of_the_kernel():
         state, period = np.concatenate(START)[None], np.array([1.0 / FREQUENCY])
         march(own, period, state, 1, extra_force=extra[lane : lane + 1], parameters=single,
               record=record)  # fmt: skip
-        gathered = Statistics.of(own, outputs, 1, 3)
-        lanes = RecordedLanes(
-            Member(member.system, own.nodes, np.arange(1)), own.grid, period,
-            extra[lane : lane + 1], single.table(1), record,
-        )  # fmt: skip
-        gathered.add(lanes, 1.0)
+        gathered, plain = (Statistics.of(own, outputs, 1, 3) for _ in range(2))
+        run = Run(own, RungeKutta4(), single, period, state, extra[lane : lane + 1])
+        run.gather(LaneBlock(np.arange(1), 1), record, gathered, 1)
+        (same,) = own.each(1)
+        add_record(plain, same, own.grid, period, extra[lane : lane + 1], single.table(1), record)
+        size = np.abs(plain.moments).max()
+        assert gathered.moments == pytest.approx(plain.moments, rel=1e-11, abs=1e-14 * size)
         rows = gathered.of_contacts[:, :, 0]
         for name, part in (("deflection", rows[:3]), ("contact_force", rows[3:])):
             found = getattr(many, name)
@@ -230,8 +233,8 @@ def test_wrong_options_and_failures_name_the_lane():
     damping = np.ones(40)
     damping[33] = -300.0
     parameters = LaneParameters(damping_scale=damping)
-    for method, name in (("newmark", "lane 33"), ("dormand-prince", "trajectory 33")):
-        with pytest.raises(ComputationError, match=name):
+    for method in ("newmark", "dormand-prince"):
+        with pytest.raises(ComputationError, match="lane 33"):
             simulate_ensemble(system, 1.0, 60, start, steps=64, method=method,
                               parameters=parameters)  # fmt: skip
 

@@ -22,12 +22,8 @@ from tribodyn.errors import ComputationError
 NAMES = ("pinion_x", "wheel_x")
 FREQUENCY = 2.0
 START = ([0.0, 0.2], [0.0, 0.0])
-#: Engine, and how its report tells the time.
-TIMES = {
-    "rk4": r"at the time ([0-9.]+) s",
-    "dormand-prince": r"time ([0-9.]+) s",
-    "newmark": r"at about ([0-9.]+) s",
-}
+TIME = r"at the time ([0-9.]+) s"
+METHODS = ("rk4", "dormand-prince", "newmark")
 
 
 def runs_away(stiffness=-900.0, damping=0.2):
@@ -45,12 +41,12 @@ def _growth(stiffness=-900.0, damping=0.2):
     return -0.5 * (damping + 0.5) + np.sqrt(0.25 * (damping + 0.5) ** 2 - held)
 
 
-@pytest.mark.parametrize("method", TIMES)
+@pytest.mark.parametrize("method", METHODS)
 def test_time_body_and_cause_of_every_engine(method):
     with pytest.raises(ComputationError) as caught:
         simulate(runs_away(), FREQUENCY, 2000, START, steps=256, method=method)
     text = str(caught.value)
-    found = float(re.search(TIMES[method], text).group(1))
+    found = float(re.search(TIME, text).group(1))
     # From about one to the largest number: the reports count from the start of the motion.
     assert found == pytest.approx(709.0 / _growth(), rel=0.03)
     assert "wheel_x" in text
@@ -58,7 +54,7 @@ def test_time_body_and_cause_of_every_engine(method):
     with pytest.raises(ComputationError) as caught:
         simulate_ensemble(runs_away(), np.linspace(2.0, 3.0, 18), 2000, START, steps=256,
                           method=method)  # fmt: skip
-    assert re.search(r"(in lane|trajectory) \d+", str(caught.value))
+    assert re.search(r"in lane \d+", str(caught.value))
     assert "System.stiffness" in str(caught.value)
 
 
@@ -99,7 +95,7 @@ def test_times_of_sections_and_exponents_count_from_the_start():
     for answer in (_section, _exponents):
         with pytest.raises(ComputationError) as caught:
             answer(runs_away())
-        found = float(re.search(TIMES["rk4"], str(caught.value)).group(1))
+        found = float(re.search(TIME, str(caught.value)).group(1))
         assert found == pytest.approx(709.0 / _growth(), rel=0.03)
 
 

@@ -48,7 +48,10 @@ from tribodyn.dynamics._engine.dormand_prince import (
 from tribodyn.dynamics._engine.lanes import address, ahead
 from tribodyn.dynamics._engine.marching import has_dead_zones, put_lane, set_up, take_lane
 from tribodyn.dynamics._engine.method import INNER, JIT, ONCE, kernel_digest
+from tribodyn.dynamics._engine.moments import Gathered, gather
 from tribodyn.dynamics._engine.phase_table import PhaseTable
+from tribodyn.dynamics._engine.runge_kutta import take_over
+from tribodyn.dynamics.equations.program import Program
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
@@ -234,8 +237,7 @@ def _change_sides(law: Law, start: float, target: float, room: Array, w: Array) 
 def _accept(lanes: Any, law: Law, w: Array) -> None:
     """Let the end of the step be the beginning of the next."""
     n, o, width = law.code[0], adaptive_slots(law.code), len(lanes)
-    for item in range(2 * n * width):
-        w[item] = w[4 * n * width + item]
+    take_over(lanes, n, w)
     for item in range(n * width):
         w[o.stage * width + item] = w[o.last * width + item]
 
@@ -434,3 +436,43 @@ def _build(digest: str) -> Any:
 
 
 march_adaptive_block = announced(_build(kernel_digest()), "the adaptive engine", "half a minute")
+
+
+def _build_gather(digest: str) -> Any:
+    @nb.njit(cache=True, **JIT)
+    def gather_record(
+        lanes: Any,
+        program: Program,
+        period: Array,
+        load: Array,
+        record: Array,
+        cycles: int,
+        gathered: Gathered,
+    ) -> None:
+        """Add a mesh cycle of a block, recorded at the ends of the grid's steps, to its moments."""
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        share, width, waves = program.width, len(lanes), gathered.harmonics
+        law = Law(address(program.code), address(program.reads), address(program.rows))
+        s, n, columns = slots_of(law.code), law.code[0], law.code[2]
+        work = np.zeros(s.end * width)
+        w, states = address(work), address(record)
+        set_up(width, law.code, period, load, record[0].T, w)
+        moments = address(gathered.moments)
+        sums = Gathered(gathered.outputs, address(gathered.waves), waves, moments)
+        switching = has_dead_zones(law)
+        for r in range(share.size):
+            for lane in range(width):
+                w[s.h * width + lane] = period[lane] * share[r]
+                w[s.inverse * width + lane] = 1.0 / w[s.h * width + lane]
+            for item in range(2 * n * width):
+                w[item] = states[2 * n * width * r + item]
+                w[4 * n * width + item] = states[2 * n * width * (r + 1) + item]
+            weight = share[r] / cycles
+            gather(lanes, law, 3 * columns * r, switching, weight, 6 * waves * r, sums, w)
+        # Addresses hold only as long as their owner is in use.
+        work[0] = 0.0
+
+    return gather_record
+
+
+gather_record = announced(_build_gather(kernel_digest()), "statistics of adaptive steps", "")

@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics._engine.blocks import LaneBlock, lane_blocks
 from tribodyn.dynamics._engine.phase_table import PhaseTable, build_table
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.divergence import adaptive_failure
+from tribodyn.dynamics.equations.divergence import Failed, adaptive_failure, unparted_step
+from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.nodes import sampled
 from tribodyn.dynamics.equations.program import compile_system, lane_load
 from tribodyn.dynamics.equations.step_limit import largest_rate, state_roots
 from tribodyn.dynamics.equations.system import System
@@ -105,33 +107,42 @@ class AdaptiveEngine:
     safety: float  #: error of a step over the tolerance [-]
 
 
+@dataclass(frozen=True)
+class AdaptiveBlock(LaneBlock):
+    """Lanes of one system that share their steps."""
+
+    engine: AdaptiveEngine
+    memory: Array  #: next step, last error, and largest size so far of every state
+
+
 class AdaptiveLanes:
-    """Lanes of one system that march on from call to call, block by block."""
+    """Lanes that march on from call to call, in blocks of lanes of one engine."""
 
     def __init__(
         self,
-        engine: AdaptiveEngine,
+        engines: Sequence[tuple[AdaptiveEngine, Index]],
         period: Array,
         extra_force: Array,
         scales: Array | None = None,
-        numbers: Index | None = None,
     ) -> None:
-        lanes, n = period.size, engine.system.size
-        factors = np.ones((lanes, 6)) if scales is None else scales
-        steady = lane_load(engine.table.program, engine.system, extra_force, factors[:, 5])
-        self.engine, self.period = engine, np.asarray(period, dtype=float)
-        self.load, self.numbers = np.hstack((steady, factors)), numbers
-        self.blocks = lane_blocks(lanes)
-        width = self.blocks[0].index.size
-        #: Next step and last error of each block, and largest sizes of all states so far.
-        self.memory = np.zeros((len(self.blocks), 2 + 2 * n * width))
-        rate = max(engine.rate * float(np.max(period)), 1e-9)
-        self.memory[:, 0] = min(0.1 * engine.rtol**0.2 / rate, 0.1)
-        self.memory[:, 1] = 1.0
+        lanes, n = extra_force.shape
+        self.period = np.asarray(period, dtype=float)
+        self.factors = np.ones((lanes, 6)) if scales is None else scales
+        steady, self.blocks = np.empty((lanes, n)), []
+        for engine, own in engines:
+            force = self.factors[own, 5]
+            steady[own] = lane_load(engine.table.program, engine.system, extra_force[own], force)
+            rate = max(engine.rate * float(np.max(self.period[own])), 1e-9)
+            for block in lane_blocks(own.size):
+                memory = np.zeros(2 + 2 * n * block.index.size)
+                memory[:2] = min(0.1 * engine.rtol**0.2 / rate, 0.1), 1.0
+                one = AdaptiveBlock(own[block.index], block.count, engine, memory)
+                self.blocks.append(one)
+        self.load = np.hstack((steady, self.factors))
 
     def march_block(
         self,
-        place: int,
+        block: AdaptiveBlock,
         state: Array,
         cycles: int,
         points: Array,
@@ -142,31 +153,33 @@ class AdaptiveLanes:
         """March one block, whose states are overwritten; returns its report."""
         from tribodyn.dynamics._engine.adaptive import Kept, march_adaptive_block
 
-        engine, block = self.engine, self.blocks[place]
-        width, double = state.shape
+        engine, (width, double) = block.engine, state.shape
         kept = np.zeros((0, double, width)) if record is None else record
         report = np.zeros(10)
         lanes = (0.0,) * width, engine.table, self.period[block.index], self.load[block.index]
         tolerances = engine.safety * engine.rtol, engine.safety * engine.atol
         left = Kept(points, kept, trail, report)
         slots = march_adaptive_block(
-            *lanes, state, self.memory[place], *tolerances, cycles, left, stop_flag()
+            *lanes, state, block.memory, *tolerances, cycles, left, stop_flag()
         )
         refuse_stopped(int(report[4]))
         if report[4]:
             self._report(block, report, slots[:double], elapsed)
         return report
 
-    def _report(self, block: LaneBlock, report: Array, state: Array, elapsed: int) -> None:
-        engine, lane = self.engine, int(block.index[int(report[6])])
-        number = lane if self.period.size > 1 else None
-        if self.numbers is not None:
-            number = int(self.numbers[lane])
-        report[9] += elapsed
-        # The state at the failed step, and its largest sizes before.
-        scale, factors = engine.atol / (SMALL * engine.rtol), self.load[lane, engine.system.size :]
-        period = float(self.period[lane])
-        raise adaptive_failure(report, period, state, scale, engine.system, factors, number)
+    def _report(self, block: AdaptiveBlock, report: Array, state: Array, elapsed: int) -> None:
+        """Tell why a block ended early; ``state`` is that of its lane at the failed step."""
+        system, lane = block.engine.system, int(block.index[int(report[6])])
+        phase, period = elapsed + report[9] + report[5], float(self.period[lane])
+        who = lane if self.period.size > 1 else None
+        if report[4] == 2.0:
+            place = int(report[7]), len(system.contacts), phase, phase * period, who
+            raise unparted_step(*place, adaptive=True)
+        nodes = sampled(system, max(_SAMPLE, 2 * len(system_events(system))))[1]
+        scale = block.engine.atol / (SMALL * block.engine.rtol)
+        facts = period, who, self.factors[lane], 0.0
+        failed = Failed(system, nodes, state[None], np.array([phase]), *facts)
+        raise adaptive_failure(failed, scale)
 
 
 def adaptive_engine(

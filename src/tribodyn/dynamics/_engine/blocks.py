@@ -1,13 +1,13 @@
-"""Lanes in blocks, blocks in threads: marching with fixed steps, and what is said of a failure."""
+"""Lanes in blocks, blocks in threads; marching with fixed steps, and what is said of a failure."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,12 @@ from tribodyn.dynamics.equations.program import lane_load
 from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics._engine.moments import Gathered
+
+Value = TypeVar("Value")
+Block = TypeVar("Block", bound="LaneBlock")
 
 #: Lanes of one block. A single lane keeps everything in scalar registers; the state of many has to
 #: stay in the first cache, which 64 lanes of a pair of gears overflow.
@@ -96,6 +102,50 @@ class BlockRecord:
             self._all[:, :, self._lanes] = self.states[:, :, : self._lanes.size]
 
 
+class BlockMoments:
+    """The lanes of one block in the statistics of all."""
+
+    def __init__(self, statistics: Statistics | None, block: LaneBlock) -> None:
+        self._all, self._block = statistics, block
+        self.gathered: Gathered | None = None
+        if statistics is not None:
+            from tribodyn.dynamics._engine.moments import Gathered
+
+            waves = np.ascontiguousarray(statistics.waves).reshape(-1)
+            moments = np.ascontiguousarray(statistics.moments[:, block.index]).reshape(-1)
+            harmonics = statistics.waves.shape[2]
+            self.gathered = Gathered(statistics.outputs, waves, harmonics, moments)
+
+    def put(self) -> None:
+        """Put the moments in their places."""
+        if self._all is not None and self.gathered is not None:
+            numbers = self.gathered.moments.reshape(-1, self._block.index.size)
+            self._all.moments[:, self._block.lanes] = numbers[:, : self._block.count]
+
+
+def march_blocks(
+    blocks: Sequence[Block],
+    state: Array,
+    record: Array | None,
+    march_block: Callable[[Block, Array, Array | None], Value],
+    threads: int | None,
+    *,
+    brief: bool = False,
+) -> tuple[Array, list[Value]]:
+    """Let every block march its lanes; returns their new states, and what each march returned."""
+    new = np.empty_like(state)
+
+    def march_lanes(block: Block) -> Value:
+        part = np.ascontiguousarray(state[block.index])
+        kept = BlockRecord(record, block.lanes, block.index.size)
+        value = march_block(block, part, kept.states)
+        kept.put()
+        new[block.lanes] = part[: block.count]
+        return value
+
+    return new, in_threads(march_lanes, blocks, threads or os.cpu_count() or 1, brief=brief)
+
+
 def is_brief(compiled: Compiled, lanes: int, cycles: int) -> bool:
     """Tell whether a march is over before an interruption is missed."""
     size = compiled.system.size + len(compiled.system.contacts)
@@ -120,7 +170,7 @@ def march(
     """March lanes by whole mesh cycles, after ``elapsed`` others; returns their new state."""
     # Whoever gives parameters has looked whether the steps are short enough for them.
     lanes = state.shape[0]
-    run = _Run(compiled, method, parameters, period, state, extra_force)
+    run = Run(compiled, method, parameters, period, state, extra_force)
     if on_gpu():
         from tribodyn.dynamics._engine.generated.cuda import march_on_gpu
 
@@ -131,25 +181,19 @@ def march(
             lane = int(np.argmax(ended))
             run.report(LaneBlock(np.array([lane]), 1), int(ended[lane]), elapsed)
         return new
-    new = np.empty_like(state)
-
-    def march_lanes(block: LaneBlock) -> int:
-        part = np.ascontiguousarray(state[block.index])
-        kept = BlockRecord(record, block.lanes, block.index.size)
-        code = run.march(block, part, cycles, kept.states, statistics)
-        kept.put()
-        new[block.lanes] = part[: block.count]
-        return code
-
     blocks = lane_blocks(lanes, width, own_rows=bool(compiled.members))
     brief = is_brief(compiled, lanes, cycles)
-    codes = in_threads(march_lanes, blocks, threads or os.cpu_count() or 1, brief=brief)
+
+    def march_lanes(block: LaneBlock, part: Array, kept: Array | None) -> int:
+        return run.march(block, part, cycles, kept, statistics)
+
+    new, codes = march_blocks(blocks, state, record, march_lanes, threads, brief=brief)
     if max(codes) >= 0:
         run.report(blocks[int(np.argmax(codes))], max(codes), elapsed)
     return new
 
 
-class _Run:
+class Run:
     """Lanes with everything that the kernel wants to know about each of them."""
 
     def __init__(
@@ -188,7 +232,6 @@ class _Run:
     ) -> int:
         """March the lanes of one block; returns what :func:`march_block` does."""
         from tribodyn.dynamics._engine.marching import march_block
-        from tribodyn.dynamics._engine.moments import Gathered
 
         index = block.index
         program = self.programs[self.member[index[0]]]
@@ -196,19 +239,22 @@ class _Run:
         width, double = state.shape
         if self.compiled.members and width > 1:
             rows = np.stack([self.programs[number].rows for number in self.member[index]], axis=-1)
-        gathered = None
         states = np.zeros((0, double, width)) if record is None else record
-        if statistics is not None:
-            waves = np.ascontiguousarray(statistics.waves).reshape(-1)
-            moments = np.ascontiguousarray(statistics.moments[:, index]).reshape(-1)
-            harmonics = statistics.waves.shape[2]
-            gathered = Gathered(statistics.outputs, waves, harmonics, moments)
+        sums = BlockMoments(statistics, block)
         lanes = (0.0,) * width, self.method, program, rows, self.period[index], self.load[index]
-        code = march_block(*lanes, state, cycles, states, gathered, stop_flag())
-        if statistics is not None and gathered is not None:
-            numbers = gathered.moments.reshape(-1, width)
-            statistics.moments[:, block.lanes] = numbers[:, : block.count]
+        code = march_block(*lanes, state, cycles, states, sums.gathered, stop_flag())
+        sums.put()
         return refuse_stopped(int(code))
+
+    def gather(self, block: LaneBlock, record: Array, statistics: Statistics, cycles: int) -> None:
+        """Add a recorded mesh cycle of a block, whose lanes have one system, to the statistics."""
+        from tribodyn.dynamics._engine.adaptive import gather_record
+
+        sums, index = BlockMoments(statistics, block), block.index
+        program = self.programs[self.member[index[0]]]
+        lanes = (0.0,) * index.size, program, self.period[index], self.load[index]
+        gather_record(*lanes, record, cycles, sums.gathered)
+        sums.put()
 
     def report(self, block: LaneBlock, code: int, elapsed: int) -> None:
         """Tell why a block ended early."""
@@ -220,18 +266,18 @@ class _Run:
             contacts = len(self.compiled.system.contacts)
             cycle, number = divmod(place // contacts, grid.steps)
             lane = int(block.index[item])
-            phase = elapsed + cycle + float(grid.left[number])
-            time, who = phase * float(self.period[lane]), lane if several else None
-            raise unparted_step(place % contacts, contacts, phase, time, who)
+            at = elapsed + cycle + float(grid.left[number])
+            time, who = at * float(self.period[lane]), lane if several else None
+            raise unparted_step(place % contacts, contacts, at, time, who)
         lane, before, record, last = self._again(block, code % UNPARTED)
-        member = self.members[self.member[lane]]
-        cycles, period, who = before + elapsed, float(self.period[lane]), lane if several else None
-        facts = cycles, period, who, self.scales[lane], self.compiled.step_number
-        failed = Failed(member.system, member.nodes, grid, record, *facts)
+        done = last % UNPARTED if last >= 0 else grid.steps
+        member, rate = self.members[self.member[lane]], self.compiled.step_number
+        phase = before + elapsed + np.append(grid.left, 1.0)
+        facts = float(self.period[lane]), lane if several else None, self.scales[lane], rate
+        failed = Failed(member.system, member.nodes, record[:done, :, 0], phase, *facts)
         if isinstance(self.method, Newmark):
-            done = last % UNPARTED if last >= 0 else grid.steps
-            raise newmark_failure(failed, done, last >= UNFOUND, self.method[:3])
-        raise runaway(failed)
+            raise newmark_failure(failed, last >= UNFOUND, self.method[:3])
+        raise runaway(failed, f"omega_max*dt = {rate:.3g}, limit 2.7 of the integrator")
 
     def _again(self, block: LaneBlock, step: int) -> tuple[int, int, Array, int]:
         """March the lane that failed once more: its number, cycles before, last cycle, code."""

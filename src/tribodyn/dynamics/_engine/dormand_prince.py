@@ -27,7 +27,11 @@ from tribodyn.dynamics._engine.contact_forces import (
 )
 from tribodyn.dynamics._engine.lanes import any_negative, greatest, keep_apart, load, store
 from tribodyn.dynamics._engine.method import INNER
+from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array, Index
+
+quintic_place = nb.njit(**INNER)(motion.quintic_place)
+quintic_speed = nb.njit(**INNER)(motion.quintic_speed)
 
 #: Places of the stages, their weights (the last row is the step itself) and those of the error.
 NODES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
@@ -197,18 +201,8 @@ def between(lanes: Any, law: Law, theta: float, speed: bool, w: Array) -> None:
     """State at the fraction ``theta`` of the step, into buffer 1; without ``speed`` positions."""
     slots, o = slots_of(law.code), adaptive_slots(law.code)
     n, h = slots.n, load(lanes, w, slots.h)
-    s = theta
-    s2, s3 = s * s, s * s * s
-    b5 = s3 * (10.0 - s * (15.0 - 6.0 * s))
-    b1 = s - s3 * (6.0 - s * (8.0 - 3.0 * s))
-    b4 = -s3 * (4.0 - s * (7.0 - 3.0 * s))
-    b2 = 0.5 * s2 - s3 * (1.5 - s * (1.5 - 0.5 * s))
-    b3 = s3 * (0.5 - s * (1.0 - 0.5 * s))
-    d5 = s2 * (30.0 - s * (60.0 - 30.0 * s))
-    d1 = 1.0 - s2 * (18.0 - s * (32.0 - 15.0 * s))
-    d4 = -s2 * (12.0 - s * (28.0 - 15.0 * s))
-    d2 = s - s2 * (4.5 - s * (6.0 - 2.5 * s))
-    d3 = s2 * (1.5 - s * (4.0 - 2.5 * s))
+    b5, b1, b4, b2, b3 = quintic_place(theta)
+    d5, d1, d4, d2, d3 = quintic_speed(theta)
     for i in range(n):
         v0, v1 = load(lanes, w, n + i), load(lanes, w, 5 * n + i)
         a0, a1 = load(lanes, w, o.stage + i), load(lanes, w, o.last + i)

@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.grid import Grid, system_events
-from tribodyn.dynamics.equations.nodes import Nodes, friction_tangent, push_with_friction, sampled
+from tribodyn.dynamics.equations.nodes import Nodes, friction_tangent, push_with_friction
 from tribodyn.dynamics.equations.step_limit import state_roots
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import ComputationError
@@ -15,78 +14,67 @@ from tribodyn.types import Array
 
 #: ``omega_max * dt`` above which the step itself is a suspect.
 _SUSPECT_STEP = 2.0
-#: Steps of the grid on which an adaptive system is looked at.
-_SAMPLE = 64
 #: Negative eigenvalues smaller than this share of the largest are rounding.
 _ROUNDING = 1e-9
 #: Friction over contact force, both as accelerations, above which it is the first suspect.
 _STRONG = 0.4
 #: A state above this has grown beyond all bounds; contact forces are then not to blame.
 _HUGE = 1e100
+#: The same over its usual size, of adaptive steps: these become too narrow before it is infinite.
+_BEYOND = 1e9
 
 
 class Failed(NamedTuple):
-    """A trajectory that failed, and its last mesh cycle."""
+    """A trajectory that failed, and its last states."""
 
     system: System
     nodes: Nodes
-    grid: Grid
-    states: Array  #: before every step and at the end (steps + 1, 2 n, 1)
-    cycles: int  #: mesh cycles before
+    states: Array  #: before every step that was tried (steps, 2 n)
+    phase: Array  #: mesh phase of each of them, and perhaps of later ones, from the start [1]
     period: float  #: [s]
     lane: int | None  #: its number among several
     factors: Array  #: of stiffness, damping, friction, error, gap and force [1]
-    step_number: float  #: ``omega_max * dt`` [-]
+    step_number: float  #: ``omega_max * dt``; 0 of a method that is stable with any [-]
 
     @property
     def who(self) -> str:
         """Name of the lane."""
-        return "" if self.lane is None else f" in lane {self.lane}"
+        return "" if self.lane is None else f", in lane {self.lane}"
 
     def fastest(self, step: int) -> str:
         """Coordinate with most of the kinetic energy; one that went first has it too."""
         with np.errstate(all="ignore"):
-            speed = np.abs(self.states[step, self.system.size :, 0])
+            speed = np.abs(self.states[step, self.system.size :])
             energy = np.diag(np.asarray(self.system.mass)) * speed**2
         return self.system.names[int(np.argmax(np.nan_to_num(energy, nan=np.inf)))]
 
-    def left(self, step: int) -> float:
-        """Mesh phase before a step."""
-        return float(np.append(self.grid.left, 1.0)[step])
 
-
-def runaway(failed: Failed) -> ComputationError:
-    """Error that tells when and where a motion ran away, and why that may be."""
-    finite = np.all(np.isfinite(failed.states[:, :, 0]), axis=1)
-    last = int(np.argmin(finite)) - 1 if not finite.all() else len(finite) - 2
-    last = max(last, 0)
-    phase = failed.cycles + failed.left(min(last, failed.grid.steps - 1))
-    name = failed.fastest(last)
+def runaway(failed: Failed, steps: str) -> ComputationError:
+    """Error that tells when and where a motion ran away, and why; ``steps`` says if they did it."""
+    finite = np.append(np.isfinite(failed.states).all(axis=1), False)
+    last = max(int(np.argmin(finite)) - 1, 0)
+    phase, name = float(failed.phase[last]), failed.fastest(last)
     body = name.rpartition("_")[0]
     causes, remedy = probable_cause(failed.system, failed.nodes, failed.step_number, failed.factors)
     return ComputationError(
         f"the motion grew beyond all bounds after {phase:.4g} mesh cycles, at the time "
-        f"{phase * failed.period:.6g} s" + (f",{failed.who}" if failed.who else ""),
+        f"{phase * failed.period:.6g} s{failed.who}",
         where=f"coordinate {name}" + (f" of the body {body}" if body else "") + ", first of all"
         if failed.system.size > 1
         else f"coordinate {name}",
-        why=f"{causes}. omega_max*dt = {failed.step_number:.3g}, limit 2.7 of the integrator",
+        why=f"{causes}. {steps}",
         remedy=remedy,
     )
 
 
 def newmark_failure(
-    failed: Failed, done: int, unfound: bool, law: tuple[float, float, float]
+    failed: Failed, unfound: bool, law: tuple[float, float, float]
 ) -> ComputationError:
     """Error of Newmark's scheme: it ran away, or contact forces were not found."""
-    states = failed.states[:done, :, 0]
-    finite = np.isfinite(states).all(axis=1)
-    step = done if finite.all() else int(np.argmin(finite))
-    small = bool(finite.all()) and float(np.abs(states).max()) < _HUGE
-    time = (failed.cycles + failed.left(step)) * failed.period
     reached = failed.step_number
     number = f" at omega_max*dt = {reached:.3g}" if np.isfinite(reached) else ""
-    if unfound and small:
+    if unfound and np.abs(failed.states).max() < _HUGE:
+        time = failed.phase[len(failed.states)] * failed.period
         return ComputationError(
             f"the contact forces of the step that ends at {time:.6g} s were not found{failed.who}",
             why="Newton's method did not come below the tolerance of "
@@ -95,14 +83,26 @@ def newmark_failure(
             "contact stiffness or damping below zero, which can make the equations of a step "
             "singular",
         )
-    cause, remedy = probable_cause(failed.system, failed.nodes, 0.0, failed.factors)
+    steps = f"gamma = {law[0]:g}, beta = {law[1]:g} are stable{number}, so the step is not to blame"
+    return runaway(failed._replace(step_number=0.0), steps)
+
+
+def adaptive_failure(failed: Failed, scale: Array) -> ComputationError:
+    """Error of adaptive steps that became too narrow; ``scale`` is the size of usual states."""
+    state, name = failed.states[-1], failed.fastest(-1)
+    if not np.abs(state / scale).max() <= _BEYOND:
+        return runaway(failed, "Steps are as short as accuracy needs, so it is not they")
+    phase = float(failed.phase[-1])
     return ComputationError(
-        f"the motion grew beyond all bounds at about {time:.6g} s{failed.who}, most of "
-        f"all {failed.fastest(max(step - 1, 0))}",
-        why=f"{cause}. gamma = {law[0]:g}, beta = {law[1]:g} are stable{number}, so "
-        "the step is not to blame",
-        remedy=remedy,
+        f"no step meets the tolerance: {name} moves fastest",
+        where=_place(phase, phase * failed.period, failed.who),
+        why="An entry is not smooth there, or rounding exceeds the tolerance",
+        remedy="Give the phase as an event, or a larger rtol or atol",
     )
+
+
+def _place(phase: float, time: float, who: str) -> str:
+    return f"mesh phase {phase % 1.0:.6g} of mesh cycle {int(phase) + 1}, time {time:.6g} s{who}"
 
 
 def most_splits(contacts: int) -> int:
@@ -111,18 +111,27 @@ def most_splits(contacts: int) -> int:
 
 
 def unparted_step(
-    contact: int, contacts: int, phase: float, time: float, lane: int | None
+    contact: int,
+    contacts: int,
+    phase: float,
+    time: float,
+    lane: int | None,
+    *,
+    adaptive: bool = False,
 ) -> ComputationError:
     """Error of a step that cannot be parted; ``phase`` counts mesh cycles [1], ``time`` is in s."""
+    often = f"{most_splits(contacts)} times within one step"
+    remedy = "Take more steps per mesh cycle, or damping that does not vanish in the gap"
+    if adaptive:
+        often = "64 times within a millionth of a mesh cycle"
+        remedy = "Look for negative damping, and for flanks far too hard or too near each other"
     who = "" if lane is None else f", in lane {lane}"
     return ComputationError(
-        f"the contacts open and close more than {most_splits(contacts)} times within one step",
-        where=f"contacts[{contact}], mesh phase {phase % 1.0:.6g} of mesh cycle "
-        f"{int(phase) + 1}, time {time:.6g} s{who}",
+        f"the contacts open and close more than {often}",
+        where=f"contacts[{contact}], {_place(phase, time, who)}",
         why="The flanks chatter at the boundary of the dead zone, where the damping force "
         "jumps: the step cannot be marched in parts with one force law each",
-        remedy="Take more steps per mesh cycle, or damping that does not vanish in the gap; "
-        "look for an error or a gap that changes fast at that mesh phase",
+        remedy=f"{remedy}; look for an error or a gap that changes fast at that mesh phase",
     )
 
 
@@ -253,45 +262,3 @@ def _growth(mass: Array, stiffness: Array, damping: Array) -> float:
     inverse = np.linalg.inv(mass)
     values = state_roots(inverse @ stiffness, inverse @ damping)
     return float(values.real.max() / max(np.abs(values).max(), 1e-300))
-
-
-def adaptive_failure(
-    report: Array,
-    period: float,
-    state: Array,
-    scale: Array,
-    system: System,
-    factors: Array,
-    lane: int | None,
-) -> ComputationError:
-    """Error of an adaptive march that ends early: when, which state, and why that may be."""
-    cycle, phase = int(report[9]), float(report[5])
-    n = system.size
-    where = f"time {(cycle + phase) * period:.6g} s, mesh cycle {cycle + 1}, phase {phase:.6g}"
-    where += f", trajectory {lane}" if lane is not None else ""
-    if report[4] == 2.0:
-        return ComputationError(
-            f"contact {int(report[7])} opens and closes more than 64 times within a "
-            "millionth of a mesh cycle",
-            where=where,
-            why="It chatters: its damping, error or direction throws it back at once, or its "
-            "flanks are far too hard or too near each other",
-            remedy="Look for negative damping, and for an error or a gap that jumps "
-            "at a phase that is not an event",
-        )
-    size = np.abs(state) / np.maximum(scale, 1e-300)
-    worst = int(np.argmax(np.where(np.isfinite(state), size, np.inf)))
-    name = system.names[worst % n]
-    kind = "position" if worst < n else "velocity"
-    if not np.isfinite(state[worst]) or size[worst] > 1e9:
-        steps = max(_SAMPLE, 2 * len(system_events(system)))
-        cause, remedy = probable_cause(system, sampled(system, steps)[1], 0.0, factors)
-        what = f"the motion grew beyond all bounds: the {kind} of {name} is {state[worst]:.3g}"
-        why = f"{cause}. Steps are as short as accuracy needs, so it is not they"
-        return ComputationError(what, where, why, remedy)
-    return ComputationError(
-        f"no step meets the tolerance: {name} moves fastest, its {kind} is {state[worst]:.3g}",
-        where=where,
-        why="An entry is not smooth there, or rounding exceeds the tolerance",
-        remedy="Give the phase as an event, or a larger rtol or atol",
-    )

@@ -112,6 +112,34 @@ def cubic_middle(h: Any, inverse: Any, q0: Any, v0: Any, q1: Any, v1: Any) -> tu
     return 0.5 * (q0 + q1) + 0.125 * h * (v0 - v1), 1.5 * inverse * (q1 - q0) - 0.25 * (v0 + v1)
 
 
+def quintic_place(s: Any) -> tuple[Any, Any, Any, Any, Any]:
+    """Weights of mean velocity, both velocities and both accelerations in the place at ``s``.
+
+    The quintic through position, velocity and acceleration at both ends of a step ``h`` is
+    ``q0 + h (b . (mean, v0, v1) + h (b . (a0, a1)))``.
+    """
+    s2, s3 = s * s, s * s * s
+    return (
+        s3 * (10.0 - s * (15.0 - 6.0 * s)),
+        s - s3 * (6.0 - s * (8.0 - 3.0 * s)),
+        -s3 * (4.0 - s * (7.0 - 3.0 * s)),
+        0.5 * s2 - s3 * (1.5 - s * (1.5 - 0.5 * s)),
+        s3 * (0.5 - s * (1.0 - 0.5 * s)),
+    )
+
+
+def quintic_speed(s: Any) -> tuple[Any, Any, Any, Any, Any]:
+    """The same weights in its velocity ``d . (mean, v0, v1) + h (d . (a0, a1))``."""
+    s2 = s * s
+    return (
+        s2 * (30.0 - s * (60.0 - 30.0 * s)),
+        1.0 - s2 * (18.0 - s * (32.0 - 15.0 * s)),
+        -s2 * (12.0 - s * (28.0 - 15.0 * s)),
+        s - s2 * (4.5 - s * (6.0 - 2.5 * s)),
+        s2 * (1.5 - s * (4.0 - 2.5 * s)),
+    )
+
+
 def with_middles(duration: Array, state: Array) -> tuple[Array, Array]:
     """Position and velocity at both ends and in the middle of steps, (..., steps, 3, n).
 

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, Tolerance, adaptive_engine
+from tribodyn.dynamics.equations.motion import quintic_place, quintic_speed
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import InputError, require_positive
@@ -128,19 +129,9 @@ def _hermite(parts: Array, h: Array, theta: Array) -> Array:
     """Quintic Hermite interpolant of steps ``h`` and its derivative at the fractions ``theta``."""
     q0, v0, a0, mean, v1, a1 = (parts[:, k] for k in range(6))
     s, h = theta[:, None], h[:, None]
-    position = q0 + h * (
-        s**3 * (10 - 15 * s + 6 * s**2) * mean
-        + (s - s**3 * (6 - 8 * s + 3 * s**2)) * v0
-        - s**3 * (4 - 7 * s + 3 * s**2) * v1
-        + h * s**2 * ((0.5 - s * (1.5 - 1.5 * s + 0.5 * s**2)) * a0 + s * (0.5 - s + s**2 / 2) * a1)
-    )
-    velocity = (
-        30 * s**2 * (1 - s) ** 2 * mean
-        + (1 - s**2 * (18 - 32 * s + 15 * s**2)) * v0
-        - s**2 * (12 - 28 * s + 15 * s**2) * v1
-        + h * (s - s**2 * (4.5 - 6 * s + 2.5 * s**2)) * a0
-        + h * s**2 * (1.5 - 4 * s + 2.5 * s**2) * a1
-    )
+    (b5, b1, b4, b2, b3), (d5, d1, d4, d2, d3) = quintic_place(s), quintic_speed(s)
+    position = q0 + h * (b5 * mean + b1 * v0 + b4 * v1 + h * (b2 * a0 + b3 * a1))
+    velocity = d5 * mean + d1 * v0 + d4 * v1 + h * (d2 * a0 + d3 * a1)
     return np.hstack((position, velocity))
 
 
@@ -195,15 +186,17 @@ def solve_adaptive(
     state = read_start(system, start)[None, :]
     extra = read_force(system, extra_force)
     n = system.size
-    lane = AdaptiveLanes(engine, np.array([1.0 / mesh_frequency]), extra[None, :])
+    period = np.array([1.0 / mesh_frequency])
+    lane = AdaptiveLanes([(engine, np.arange(1))], period, extra[None, :])
+    (block,) = lane.blocks
 
     def march(task: tuple[Array, Array, int]) -> Array:
         state, trail, elapsed = task
-        return lane.march_block(0, state, 1, np.zeros(1), None, trail, elapsed)
+        return lane.march_block(block, state, 1, np.zeros(1), None, trail, elapsed)
 
     trails, room, counts = [], _ROOM, np.zeros(2, dtype=np.int64)
     for cycle in range(cycles):
-        memory, begin = lane.memory.copy(), state
+        memory, begin = block.memory.copy(), state
         while True:
             trail, state = np.zeros((room, 2 + 6 * n)), begin.copy()
             # In a thread, so that an interruption ends it.
@@ -211,7 +204,7 @@ def solve_adaptive(
             steps = int(report[8])
             if steps <= room:
                 break
-            room, lane.memory = 2 * steps, memory.copy()
+            room, block.memory[:] = 2 * steps, memory
         trail[:, 0] += cycle
         trails.append(trail[:steps])
         counts += report[1:3].astype(np.int64)

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, Tolerance, adaptive_engine
-from tribodyn.dynamics._engine.blocks import Backend, BlockRecord, march, marching_on
+from tribodyn.dynamics._engine.adaptive_engine import (
+    AdaptiveBlock,
+    AdaptiveLanes,
+    Tolerance,
+    adaptive_engine,
+)
+from tribodyn.dynamics._engine.blocks import Backend, Run, march, march_blocks, marching_on
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
-from tribodyn.dynamics._engine.statistics import RecordedLanes, Statistics
-from tribodyn.dynamics.equations.compiled import Compiled, Member, compile_lanes
+from tribodyn.dynamics._engine.statistics import Statistics
+from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.newmark import newmark_law, newmark_method
 from tribodyn.errors import InputError
-from tribodyn.interrupt import in_threads
 from tribodyn.model import Model, Registry, choice, number
-from tribodyn.types import Array, Index
+from tribodyn.types import Array
 
 #: Ways to march over time.
 Method = Literal["rk4", "dormand-prince", "newmark"]
@@ -65,30 +68,25 @@ class AdaptiveMarcher:
     def __init__(
         self, setting: Setting, compiled: Compiled, rtol: float, atol: Tolerance | None
     ) -> None:
-        lanes = setting.frequency.size
+        lanes, parameters = setting.frequency.size, setting.parameters
         self.setting, self._compiled, self._widest = setting, compiled, 0.0
-        scales = np.ones((lanes, 6))
-        if setting.parameters is not None:
-            scales = setting.parameters.table(lanes)
-        self.scales = scales
-        self.groups: list[tuple[Member, AdaptiveLanes]] = []
-        for member in compiled.each(lanes):
-            own = member.lanes
-            beat, extra = setting.frequency[own], setting.extra_force[own]
-            tolerances: dict[str, Any] = {
-                "rtol": rtol,
-                "atol": atol,
-                "parameters": setting.parameters,
-            }
-            engine = adaptive_engine(member.system, beat, setting.cycles, **tolerances)
-            numbers = own if lanes > 1 else None
-            group = AdaptiveLanes(engine, 1.0 / beat, extra, scales[own], numbers)
-            self.groups.append((member, group))
+        options: dict[str, Any] = {"rtol": rtol, "atol": atol, "parameters": parameters}
+        engines = [
+            (
+                adaptive_engine(
+                    member.system, setting.frequency[member.lanes], setting.cycles, **options
+                ),
+                member.lanes,
+            )
+            for member in compiled.each(lanes)
+        ]
+        scales = None if parameters is None else parameters.table(lanes)
+        self.lanes = AdaptiveLanes(engines, 1.0 / setting.frequency, setting.extra_force, scales)
 
     @property
     def compiled(self) -> Compiled:
         """The systems on the grid of the samples, with the widest step so far."""
-        rate, slowest = self.groups[0][1].engine.rate, float(self.setting.frequency.min())
+        rate, slowest = self.lanes.blocks[0].engine.rate, float(self.setting.frequency.min())
         return replace(self._compiled, step_number=rate * self._widest / slowest)
 
     def march(
@@ -102,43 +100,25 @@ class AdaptiveMarcher:
         elapsed: int = 0,
     ) -> Array:
         """March by some mesh cycles; with statistics, cycle by cycle with records of each block."""
-        new, empty = np.empty_like(state), np.zeros((0, 2 + 3 * state.shape[1]))
-        points = self._compiled.grid.left
+        setting, points, lanes = self.setting, self._compiled.grid.left, self.lanes
+        facts = lanes.period, state, setting.extra_force
+        run = Run(self._compiled, RungeKutta4(), setting.parameters, *facts)
+        empty = np.zeros((0, 2 + 3 * state.shape[1]))
 
-        def march_lanes(task: tuple[Member, AdaptiveLanes, int]) -> float:
-            member, group, place = task
-            block = group.blocks[place]
-            lanes, part = member.lanes[block.lanes], state[member.lanes[block.index]]
+        def march_lanes(block: AdaptiveBlock, part: Array, kept: Array | None) -> float:
             if statistics is None:
-                kept = BlockRecord(record, lanes, block.index.size)
-                report = group.march_block(place, part, cycles, points, kept.states, empty, elapsed)
-                kept.put()
-            else:
-                cycle = np.empty((points.size + 1, state.shape[1], block.index.size))
-                for number in range(elapsed, elapsed + cycles):
-                    report = group.march_block(place, part, 1, points, cycle, empty, number)
-                    self._gather(member, lanes, cycle[:, :, : block.count], statistics, cycles)
-            new[lanes] = part[: block.count]
-            return float(report[3])
+                report = lanes.march_block(block, part, cycles, points, kept, empty, elapsed)
+                return float(report[3])
+            cycle, widest = np.empty((points.size + 1, state.shape[1], block.index.size)), 0.0
+            for before in range(elapsed, elapsed + cycles):
+                report = lanes.march_block(block, part, 1, points, cycle, empty, before)
+                run.gather(block, cycle, statistics, cycles)
+                widest = max(widest, float(report[3]))
+            return widest
 
-        tasks = [
-            (member, group, place)
-            for member, group in self.groups
-            for place in range(len(group.blocks))
-        ]
-        count = threads or os.cpu_count() or 1
-        self._widest = max([self._widest, *in_threads(march_lanes, tasks, count)])
+        new, widest = march_blocks(lanes.blocks, state, record, march_lanes, threads)
+        self._widest = max([self._widest, *widest])
         return new
-
-    def _gather(
-        self, member: Member, lanes: Index, record: Array, statistics: Statistics, cycles: int
-    ) -> None:
-        setting, moments = self.setting, np.ascontiguousarray(statistics.moments[:, lanes])
-        period, extra = 1.0 / setting.frequency[lanes], setting.extra_force[lanes]
-        scales, grid = self.scales[lanes], self._compiled.grid
-        recorded = RecordedLanes(member, grid, period, extra, scales, record)
-        statistics._replace(moments=moments).add(recorded, 1.0 / cycles)
-        statistics.moments[:, lanes] = moments
 
 
 #: Lanes that march on from call to call.
