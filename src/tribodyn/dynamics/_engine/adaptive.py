@@ -475,4 +475,6 @@ def _build_gather(digest: str) -> Any:
     return gather_record
 
 
-gather_record = announced(_build_gather(kernel_digest()), "statistics of adaptive steps", "")
+gather_record = announced(
+    _build_gather(kernel_digest()), "statistics of adaptive steps", "three seconds"
+)
