@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, partial
@@ -282,6 +283,7 @@ class Registry(Generic[T]):
         self._items: dict[str, T] = {}
         self._searched = group is None
         self._entered: set[str] = set()
+        self._added: set[str] = set()
         self.version = 0  #: rises with everything that is registered
         _registries.append(self)
 
@@ -291,6 +293,9 @@ class Registry(Generic[T]):
         def keep(item: T) -> T:
             self._items[name] = item
             self.version += 1
+            # A number or a table does not tell where it comes from, as a function does.
+            by = str(sys._getframe(1).f_globals.get("__name__", ""))
+            (self._added.discard if by.startswith("tribodyn.") else self._added.add)(name)
             return item
 
         return keep
@@ -316,10 +321,13 @@ class Registry(Generic[T]):
             self.version += 1
 
     def of_this_process(self) -> bool:
-        """Whether it holds a function that neither this package nor an entry point brought."""
-        made = ((n, getattr(i, self.part, i)) for n, i in self._items.items())
-        modules = [getattr(m, "__module__", "tribodyn.") for n, m in made if n not in self._entered]
-        return not all(module.startswith("tribodyn.") for module in modules)
+        """Whether it holds something that neither this package nor an entry point brought."""
+        own = {
+            n: getattr(i, self.part, i) for n, i in self._items.items() if n not in self._entered
+        }
+        modules = [getattr(made, "__module__", "tribodyn.") for made in own.values()]
+        foreign = any(not module.startswith("tribodyn.") for module in modules)
+        return foreign or any(name in self._added for name in own)
 
     def names(self) -> list[str]:
         """All names, in order of registration."""

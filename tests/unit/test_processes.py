@@ -16,6 +16,7 @@ import pytest
 import tribodyn as td
 from registries import as_before
 from tribodyn.friction import LAWS
+from tribodyn.friction.benedict_kelly import VARIANTS
 from tribodyn.model import known_elsewhere
 from tribodyn.processes import Helpers, helpers
 from tribodyn.study.studies import sweep as studied
@@ -131,4 +132,7 @@ def test_a_law_that_a_script_registers_stays_in_its_process() -> None:
         LAWS.define("of-a-script", source="a script")(lambda contact: contact.load_per_width)
         assert not known_elsewhere()
         assert not studied._abroad(begun)
+    with as_before():
+        VARIANTS.register("of-a-script")(0.01)  # a number, which has no module
+        assert not known_elsewhere()
     assert known_elsewhere()

@@ -18,7 +18,6 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.study import Result, ResultComparison
 
-
 #: Samples that each part of a transient curve keeps; more would not be seen but fill the file.
 _KEPT = 2000
 #: Relative change of the vibration from one quarter of a run to the next that is called settled.
