@@ -81,7 +81,7 @@ class _Kernel:
         self.march = cuda.jit(functions.pop("march_thread"))
         if not numba.config.ENABLE_CUDASIM:
             names |= {name: cuda.jit(device=True)(each) for name, each in functions.items()}
-            tell("compiling the engine for the graphics processor, about half a minute")
+            tell("compiling the engine for the graphics processor, about a quarter of a minute")
 
 
 _kernel = lru_cache(16)(_Kernel)
