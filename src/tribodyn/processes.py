@@ -20,6 +20,8 @@ from contextvars import ContextVar
 from queue import Empty, SimpleQueue
 from typing import IO, Any, TypeVar
 
+from threadpoolctl import threadpool_limits
+
 from tribodyn.interrupt import STOPPED, alone, in_threads, processors, refuse_stopped, stop_flag
 
 Item = TypeVar("Item")
@@ -46,6 +48,8 @@ class _Helper:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
+            # Matrices are small here: threads of several processes would wait for each other.
+            env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
             start_new_session=True,  # Ctrl-C is for this process, which ends the others.
         )
         threading.Thread(target=self._read, daemon=True).start()
@@ -156,7 +160,8 @@ class Helpers:
                 left.clear()
                 raise
 
-        in_threads(work, [None, *self._helpers], 1 + len(self._helpers))
+        with threadpool_limits(1, "blas"):
+            in_threads(work, [None, *self._helpers], 1 + len(self._helpers))
 
     def end(self) -> None:
         """End all of them."""
