@@ -20,8 +20,6 @@ from contextvars import ContextVar
 from queue import Empty, SimpleQueue
 from typing import IO, Any, TypeVar
 
-from threadpoolctl import threadpool_limits
-
 from tribodyn.interrupt import STOPPED, alone, in_threads, processors, refuse_stopped, stop_flag
 
 Item = TypeVar("Item")
@@ -159,6 +157,8 @@ class Helpers:
             except BaseException:
                 left.clear()
                 raise
+
+        from threadpoolctl import threadpool_limits
 
         with threadpool_limits(1, "blas"):
             in_threads(work, [None, *self._helpers], 1 + len(self._helpers))
