@@ -18,14 +18,14 @@ from registries import as_before
 from tribodyn.friction import LAWS
 from tribodyn.friction.benedict_kelly import VARIANTS
 from tribodyn.model import known_elsewhere
-from tribodyn.processes import Helpers, helpers
 from tribodyn.study.studies import sweep as studied
+from tribodyn.study.studies.processes import Helpers, helpers
 
 #: A script without a guard, as many are written: its first process would begin it again otherwise.
 _SCRIPT = """
 import pickle, time
 from concurrent.futures import Future
-from tribodyn.processes import Helpers
+from tribodyn.study.studies.processes import Helpers
 
 helper, pool = Future(), Helpers(1)
 pool.each(lambda item: helper.result(), pickle.dumps(eval), ["__import__('os').getpid()"] * 2,
@@ -47,7 +47,6 @@ def _gone(process: int) -> bool:
 @pytest.mark.parametrize("name", ["SIGINT", "SIGKILL"])
 def test_no_helper_outlives_who_began_it(name: str) -> None:
     with subprocess.Popen([sys.executable, "-c", _SCRIPT], stdout=subprocess.PIPE) as process:
-        assert process.stdout is not None
         helper = int(process.stdout.readline())
         time.sleep(0.1)
         assert not _gone(helper)
@@ -92,12 +91,14 @@ def test_points_of_a_sweep_are_the_same_in_another_process() -> None:
     here = partial(studied._points, begun)
     found = _each(pickle.loads(studied._abroad(begun)), places, here)
     assert found == [here(place) for place in places]
-    assert [bool(point.failed) for points in found for point in points] == [
-        False,
-        True,
-        False,
-        False,
-    ]
+    assert [bool(point.failed) for points in found for point in points] == [0, 1, 0, 0]
+
+
+def test_helpers_begin_no_threads_for_matrices(monkeypatch) -> None:
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    ask = "__import__('os').environ['OPENBLAS_NUM_THREADS']"
+    assert _each(eval, [ask] * 3, lambda item: "here").count("1") == 2
 
 
 @pytest.mark.parametrize("first", ["1", "__import__('os')._exit(3)"])
