@@ -14,8 +14,7 @@ from tribodyn.dynamics import System
 from tribodyn.dynamics._engine.dormand_prince import MATRIX, NODES, WEIGHT_ERROR
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.motion import forces
-from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import compile_on
+from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes
 from tribodyn.types import Array
 
 
@@ -29,7 +28,7 @@ class PlainStep(NamedTuple):
 
 def _acceleration(system: System, phase: float, beat: float, y: Array, side: Array) -> Array:
     point = Grid(np.array([phase]), np.zeros(1), np.zeros(1, dtype=bool), np.zeros(1), np.ones(1))
-    row = Nodes(*(values[0, 0] for values in compile_on(system, point)[0]))
+    row = Nodes(*(values[0, 0] for values in evaluate_nodes(system, point)))
     q, v = np.split(y, 2)
     return forces(system, row, beat, q, v, side=side).acceleration
 

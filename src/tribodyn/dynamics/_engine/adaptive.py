@@ -48,10 +48,8 @@ from tribodyn.dynamics._engine.dormand_prince import (
 from tribodyn.dynamics._engine.lanes import address, ahead
 from tribodyn.dynamics._engine.marching import has_dead_zones, put_lane, set_up, take_lane
 from tribodyn.dynamics._engine.method import INNER, JIT, ONCE, kernel_digest
-from tribodyn.dynamics._engine.moments import Gathered, gather
 from tribodyn.dynamics._engine.phase_table import PhaseTable
 from tribodyn.dynamics._engine.runge_kutta import take_over
-from tribodyn.dynamics.equations.program import Program
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
@@ -77,6 +75,12 @@ def _growth(error: float, before: float) -> float:
     """Factor for the next step from the errors of this step and the one before."""
     factor = 0.9 * max(error, 1e-10) ** -0.17 * max(before, 1e-4) ** 0.04
     return float(min(max(factor, 0.2), 5.0))
+
+
+@nb.njit(**INNER)
+def _shrink(error: float) -> float:
+    """Factor for the next step after one that was rejected."""
+    return max(0.2, 0.9 * error**-0.2) if np.isfinite(error) else 0.2
 
 
 @nb.njit(**INNER)
@@ -265,7 +269,7 @@ def _advance_lane(
             if width < NARROWEST:
                 report[4], report[5], report[6] = 1.0, phase, lane
                 return
-            width *= 0.2 if not np.isfinite(error) else max(0.2, 0.9 * error**-0.2)
+            width *= _shrink(error)
             continue
         if not cut and may_cross(one, law, cells, trial, w):
             low, theta = _first_crossing(law, cells, trial, room, w)
@@ -380,10 +384,7 @@ def _build(digest: str) -> Any:
                                     report[6] = lane
                             take_lane(I64(report[6]), block, slots, w, single)
                             return work[slots * block :]
-                        factor = 0.2
-                        if np.isfinite(error):
-                            factor = max(0.2, 0.9 * error**-0.2)
-                        plan = width * factor
+                        plan = width * _shrink(error)
                         continue
                     goal = end if width >= rest else phase + width
                     crossing = switching and may_cross(lanes, law, cells, trial, w)
@@ -436,45 +437,3 @@ def _build(digest: str) -> Any:
 
 
 march_adaptive_block = announced(_build(kernel_digest()), "the adaptive engine", "half a minute")
-
-
-def _build_gather(digest: str) -> Any:
-    @nb.njit(cache=True, **JIT)
-    def gather_record(
-        lanes: Any,
-        program: Program,
-        period: Array,
-        load: Array,
-        record: Array,
-        cycles: int,
-        gathered: Gathered,
-    ) -> None:
-        """Add a mesh cycle of a block, recorded at the ends of the grid's steps, to its moments."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        share, width, waves = program.width, len(lanes), gathered.harmonics
-        law = Law(address(program.code), address(program.reads), address(program.rows))
-        s, n, columns = slots_of(law.code), law.code[0], law.code[2]
-        work = np.zeros(s.end * width)
-        w, states = address(work), address(record)
-        set_up(width, law.code, period, load, record[0].T, w)
-        moments = address(gathered.moments)
-        sums = Gathered(gathered.outputs, address(gathered.waves), waves, moments)
-        switching = has_dead_zones(law)
-        for r in range(share.size):
-            for lane in range(width):
-                w[s.h * width + lane] = period[lane] * share[r]
-                w[s.inverse * width + lane] = 1.0 / w[s.h * width + lane]
-            for item in range(2 * n * width):
-                w[item] = states[2 * n * width * r + item]
-                w[4 * n * width + item] = states[2 * n * width * (r + 1) + item]
-            weight = share[r] / cycles
-            gather(lanes, law, 3 * columns * r, switching, weight, 6 * waves * r, sums, w)
-        # Addresses hold only as long as their owner is in use.
-        work[0] = 0.0
-
-    return gather_record
-
-
-gather_record = announced(
-    _build_gather(kernel_digest()), "statistics of adaptive steps", "three seconds"
-)

@@ -248,7 +248,7 @@ class Run:
 
     def gather(self, block: LaneBlock, record: Array, statistics: Statistics, cycles: int) -> None:
         """Add a recorded mesh cycle of a block, whose lanes have one system, to the statistics."""
-        from tribodyn.dynamics._engine.adaptive import gather_record
+        from tribodyn.dynamics._engine.marching import gather_record
 
         sums, index = BlockMoments(statistics, block), block.index
         program = self.programs[self.member[index[0]]]

@@ -252,3 +252,45 @@ def _build(digest: str) -> Any:
 
 
 march_block = announced(_build(kernel_digest()), "the engine", "a quarter of a minute")
+
+
+def _build_gather(digest: str) -> Any:
+    @nb.njit(cache=True, **JIT)
+    def gather_record(
+        lanes: Any,
+        program: Program,
+        period: Array,
+        load: Array,
+        record: Array,
+        cycles: int,
+        gathered: Gathered,
+    ) -> None:
+        """Add a mesh cycle of a block, recorded at the ends of the grid's steps, to its moments."""
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        share, width, waves = program.width, len(lanes), gathered.harmonics
+        law = Law(address(program.code), address(program.reads), address(program.rows))
+        s, n, columns = slots_of(law.code), law.code[0], law.code[2]
+        work = np.zeros(s.end * width)
+        w, states = address(work), address(record)
+        set_up(width, law.code, period, load, record[0].T, w)
+        moments = address(gathered.moments)
+        sums = Gathered(gathered.outputs, address(gathered.waves), waves, moments)
+        switching = has_dead_zones(law)
+        for r in range(share.size):
+            for lane in range(width):
+                w[s.h * width + lane] = period[lane] * share[r]
+                w[s.inverse * width + lane] = 1.0 / w[s.h * width + lane]
+            for item in range(2 * n * width):
+                w[item] = states[2 * n * width * r + item]
+                w[4 * n * width + item] = states[2 * n * width * (r + 1) + item]
+            weight = share[r] / cycles
+            gather(lanes, law, 3 * columns * r, switching, weight, 6 * waves * r, sums, w)
+        # Addresses hold only as long as their owner is in use.
+        work[0] = 0.0
+
+    return gather_record
+
+
+gather_record = announced(
+    _build_gather(kernel_digest()), "statistics of adaptive steps", "three seconds"
+)

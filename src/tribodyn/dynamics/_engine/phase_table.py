@@ -1,10 +1,11 @@
 """The row table at any mesh phase: piecewise polynomials between events.
 
-Rows are the factors that the kernel reads (:class:`~tribodyn.dynamics.program.Program`). Each
-segment between two events is divided into cells; in each cell every factor that varies is a
-polynomial through Chebyshev nodes. A cell is halved until the polynomial meets the entry between
-its nodes, so that an entry with kinks gets small cells there, and steps end at kinks. Linear
-interpolation will not do: each of its knots is a kink that an adaptive integrator stumbles over.
+Rows are the factors that the kernel reads
+(:class:`~tribodyn.dynamics.equations.program.Program`). Each segment between two events is divided
+into cells; in each cell every factor that varies is a polynomial through Chebyshev nodes. A cell is
+halved until the polynomial meets the entry between its nodes, so that an entry with kinks gets
+small cells there, and steps end at kinks. Linear interpolation will not do: each of its knots is a
+kink that an adaptive integrator stumbles over.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
-from tribodyn.dynamics.equations.nodes import Nodes
-from tribodyn.dynamics.equations.program import Program, build_program, compile_on
+from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes
+from tribodyn.dynamics.equations.program import Program, build_program
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index
@@ -63,19 +64,20 @@ class _Rows:
 
     def __init__(self, system: System, events: Array, scaled: bool, split: bool) -> None:
         self.system, self.scaled, self.split = system, scaled, split
-        self.sample = build_grid(tuple(events[:-1]), max(_SAMPLE, 8 * events.size))
-        self.nodes, self.program = self.compile(self.sample)
-        self.columns = int(self.program.code[2])
-        rows = self.program.rows.reshape(-1, self.columns)
-        self.scale = np.abs(rows).max(axis=0)
-        self.noise = _noise(system, self.nodes, self.program)
+        self._look(build_grid(tuple(events[:-1]), max(_SAMPLE, 8 * events.size)))
 
-    def compile(self, grid: Grid) -> tuple[Nodes, Program]:
-        """Program on a grid, with what lanes scale."""
-        nodes, program = compile_on(self.system, grid)
-        if self.scaled or self.split:
-            program = build_program(self.system, grid, nodes, scaled=self.scaled, split=self.split)
-        return nodes, program
+    def _look(self, sample: Grid) -> None:
+        """Take the terms, and the sizes of their factors, from a sample."""
+        self.sample = sample
+        nodes, self.program = self._compile(sample)
+        self.columns = int(self.program.code[2])
+        self.scale = np.abs(self.program.rows.reshape(-1, self.columns)).max(axis=0)
+        self.noise = _noise(self.system, nodes, self.program)
+
+    def _compile(self, grid: Grid) -> tuple[Nodes, Program]:
+        nodes = evaluate_nodes(self.system, grid)
+        scaled, split = self.scaled, self.split
+        return nodes, build_program(self.system, grid, nodes, scaled=scaled, split=split)
 
     def at(self, middle: Array, half: Array, low: Array, high: Array) -> Array:
         """Rows at ``middle - half``, ``middle`` and ``middle + half``: (points, 3, columns)."""
@@ -87,11 +89,10 @@ class _Rows:
             np.concatenate((first.segment_left, low)),
             np.concatenate((first.segment_right, high)),
         )
-        _, program = self.compile(grid)
+        _, program = self._compile(grid)
         if not np.array_equal(program.code, self.program.code):
             # A term that is zero on the sample is not zero elsewhere: the sample grows.
-            self.sample = grid
-            self.nodes, self.program = self.compile(grid)
+            self._look(grid)
             raise _MoreTermsError
         rows = program.rows.reshape(-1, 3, self.columns)[first.steps :]
         self.scale = np.maximum(self.scale, np.abs(rows).max(axis=(0, 1)))
@@ -144,10 +145,7 @@ def build_table(system: System, *, scaled: bool = False, split: bool = False) ->
         try:
             return _refine(rows, events)
         except _MoreTermsError:
-            columns = int(rows.program.code[2])
-            rows.columns = columns
-            rows.scale = np.abs(rows.program.rows.reshape(-1, columns)).max(axis=0)
-            rows.noise = _noise(system, rows.nodes, rows.program)
+            continue
     what = "entries of the system are zero at most mesh phases and not at some"
     why = "No sample of the mesh cycle shows which terms there are"
     remedy = "Declare the phases where an entry begins and ends as events"
@@ -280,17 +278,3 @@ def _with_kinks(events: Array, left: Array, right: Array, spectrum: Array) -> Ar
     found = np.concatenate((left[1:][kinked], right[least]))
     found = found[np.abs(found[:, None] - events).min(axis=1) > _NARROW]
     return np.union1d(events, found)
-
-
-def row_at(table: PhaseTable, phase: float, *, before: bool = False) -> Array:
-    """One row at one mesh phase, in plain NumPy."""
-    phase = phase % 1.0 if not before else (1.0 if phase % 1.0 == 0.0 else phase % 1.0)
-    cell = int(np.searchsorted(table.edge, phase, side="left" if before else "right")) - 1
-    cell = min(max(cell, 0), table.degree.size - 1)
-    low, high = table.edge[cell], table.edge[cell + 1]
-    x = (2.0 * phase - low - high) / (high - low)
-    count = int(table.degree[cell]) + 1
-    block = table.coefficients[table.start[cell] :][: count * table.varying.size]
-    row = table.constant.copy()
-    row[table.varying] = block.reshape(-1, count) @ x ** np.arange(count)
-    return np.asarray(row)

@@ -81,13 +81,8 @@ def compile_system(
 ) -> tuple[Grid, Nodes, Program]:
     """Evaluate a system on its event-aligned grid."""
     grid = build_grid(events or system_events(system), steps)
-    return grid, *compile_on(system, grid)
-
-
-def compile_on(system: System, grid: Grid) -> tuple[Nodes, Program]:
-    """Evaluate a system on any grid."""
     nodes = evaluate_nodes(system, grid)
-    return nodes, build_program(system, grid, nodes)
+    return grid, nodes, build_program(system, grid, nodes)
 
 
 #: Steps whose rows are written at a time, so that they stay in the memory near a core.
