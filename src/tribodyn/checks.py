@@ -7,14 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import (
-    Argument,
-    InputError,
-    floats,
-    real_numbers,
-    require_positive,
-    shortened,
-)
+from tribodyn.errors import Argument, InputError, floats, real_numbers, require_positive, shortened
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
 

@@ -207,10 +207,7 @@ def _layout() -> html.Div:
                     [
                         html.Div([html.P("tribodyn", className="brand"), html.H1(id="title")]),
                         html.Div(
-                            [
-                                results.button("Open or save", "view", "files"),
-                                run,
-                            ],
+                            [results.button("Open or save", "view", "files"), run],
                             className="actions",
                         ),
                     ],

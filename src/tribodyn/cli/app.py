@@ -22,11 +22,7 @@ COMMANDS = (
     ("cases", "case_commands:cases", "List the built-in cases."),
     ("app", "app_command:app", "Serve a page in the browser for the whole job."),
     ("run", "run_command:run", "Compute a case and write its report."),
-    (
-        "sweep",
-        "sweep_command:sweep",
-        "Compute a case at many values of its keys.",
-    ),
+    ("sweep", "sweep_command:sweep", "Compute a case at many values of its keys."),
     (
         "ensemble",
         "ensemble_command:ensemble",
@@ -42,26 +38,10 @@ COMMANDS = (
         "study_command:study",
         "Compute many members of a case into a store, here or on a cluster.",
     ),
-    (
-        "modes",
-        "study_commands:modes",
-        "Find natural frequencies and critical speeds of a case.",
-    ),
-    (
-        "harris",
-        "study_commands:harris",
-        "Find the static transmission error over the torque.",
-    ),
-    (
-        "relief",
-        "study_commands:relief",
-        "Find the best tip relief of a case.",
-    ),
-    (
-        "run-up",
-        "study_commands:run_up",
-        "March a case while its speed rises.",
-    ),
+    ("modes", "study_commands:modes", "Find natural frequencies and critical speeds of a case."),
+    ("harris", "study_commands:harris", "Find the static transmission error over the torque."),
+    ("relief", "study_commands:relief", "Find the best tip relief of a case."),
+    ("run-up", "study_commands:run_up", "March a case while its speed rises."),
     (
         "losses",
         "losses_commands:losses",
@@ -87,11 +67,7 @@ COMMANDS = (
         "experiment_command:paper",
         "Lay the printed tables of a source beside what is computed.",
     ),
-    (
-        "compare",
-        "compare_command:compare",
-        "Show what differs between two results.",
-    ),
+    ("compare", "compare_command:compare", "Show what differs between two results."),
     ("check", "case_commands:check", "Check a case and show its geometry."),
     (
         "import",
@@ -103,26 +79,10 @@ COMMANDS = (
         "exchange_commands:export",
         "Write a case for other gear programs (REXS), or the tables of a result.",
     ),
-    (
-        "new",
-        "case_commands:new",
-        "Write a commented case file to start from.",
-    ),
-    (
-        "explain",
-        "explain_commands:explain",
-        "Explain a symbol, key, model or warning.",
-    ),
-    (
-        "units",
-        "explain_commands:units",
-        "List the units and their spellings.",
-    ),
-    (
-        "warm-up",
-        "warm_up_command:warm_up",
-        "Compile what runs need, ahead of the first one.",
-    ),
+    ("new", "case_commands:new", "Write a commented case file to start from."),
+    ("explain", "explain_commands:explain", "Explain a symbol, key, model or warning."),
+    ("units", "explain_commands:units", "List the units and their spellings."),
+    ("warm-up", "warm_up_command:warm_up", "Compile what runs need, ahead of the first one."),
     ("cite", "explain_commands:cite", "Print the papers behind a result."),
 )
 

@@ -25,9 +25,7 @@ Force = Annotated[bool, Parameter(negative="", help="Replace an earlier result i
 Settings = Annotated[
     list[str] | None,
     Parameter(
-        name="--set",
-        negative="",
-        help='Values to change, for example "operation.torque=120 N*m".',
+        name="--set", negative="", help='Values to change, for example "operation.torque=120 N*m".'
     ),
 ]
 

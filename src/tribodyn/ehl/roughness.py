@@ -11,13 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import (
-    Argument,
-    InputError,
-    require_one_of,
-    require_positive,
-    warn,
-)
+from tribodyn.errors import Argument, InputError, require_one_of, require_positive, warn
 from tribodyn.stored import plain_number, read_bytes
 from tribodyn.types import Array
 from tribodyn.units import convert

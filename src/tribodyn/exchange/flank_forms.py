@@ -16,10 +16,7 @@ _READ = {
     "tip_relief": ("tip_relief_depth", "tip_relief_datum_length", "tip_relief_datum_diameter"),
     "root_relief": ("root_relief_depth", "root_relief_datum_length"),
     "profile_crowning": ("profile_crowning_at_root", "profile_crowning_at_tip"),
-    "helix_crowning": (
-        "helix_crowning_amount_datum_face",
-        "helix_crowning_amount_non_datum_face",
-    ),
+    "helix_crowning": ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
 }
 #: Forms that a case has not, or whose sign other programs do not agree upon.
 _NOT_READ = (

@@ -160,8 +160,5 @@ def exponential(
 )
 def _law(contact: TribologicalContact, **options: float) -> Array:
     return exponential(
-        contact.slide_to_roll_ratio,
-        contact.hertz_pressure,
-        contact.composite_roughness,
-        **options,
+        contact.slide_to_roll_ratio, contact.hertz_pressure, contact.composite_roughness, **options
     )

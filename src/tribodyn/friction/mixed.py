@@ -19,13 +19,7 @@ from tribodyn.types import Array
 #: Options of the asperities.
 _ASPERITIES: dict[str, Option] = {
     "boundary_friction_coefficient": BOUNDARY,
-    "rms_slope": number(
-        0.1,
-        0.005,
-        2.0,
-        "from lapped to turned flanks",
-        of="rms_slope",
-    ),
+    "rms_slope": number(0.1, 0.005, 2.0, "from lapped to turned flanks", of="rms_slope"),
     "summit_density": number(
         None,
         1e6,

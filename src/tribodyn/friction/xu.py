@@ -108,12 +108,7 @@ def xu_2007(
 
 
 def _regression(
-    ratio: Array,
-    pressure: Array,
-    viscosity: Array,
-    roughness: Array,
-    speed: Array,
-    radius: Array,
+    ratio: Array, pressure: Array, viscosity: Array, roughness: Array, speed: Array, radius: Array
 ) -> Array:
     """Evaluate the regression in its own units; an overflow becomes infinity."""
     b1, b2, b3, b4, b5, b6, b7, b8, b9 = CONSTANTS

@@ -245,10 +245,7 @@ def march_group(
 
 
 def march_points(
-    points: Points,
-    survey: Survey,
-    *rows: tuple[Outcomes, Mask | None],
-    progress: Progress = SILENT,
+    points: Points, survey: Survey, *rows: tuple[Outcomes, Mask | None], progress: Progress = SILENT
 ) -> None:
     """March all motions side by side, each from a start of its own; in ``rows``, those chosen."""
 

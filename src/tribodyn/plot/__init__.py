@@ -46,12 +46,7 @@ from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.signals.bands import bands
 from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
-from tribodyn.plot.signals.recorded import (
-    comparison,
-    order_spectrum,
-    recording,
-    tracked_orders,
-)
+from tribodyn.plot.signals.recorded import comparison, order_spectrum, recording, tracked_orders
 from tribodyn.plot.signals.run_up import run_up, run_up_map
 
 __all__ = [

@@ -11,12 +11,7 @@
 """
 
 from tribodyn.arguments import guard
-from tribodyn.stiffness.loaded import (
-    ContactProblem,
-    LoadedContact,
-    loaded_contact,
-    mesh_problem,
-)
+from tribodyn.stiffness.loaded import ContactProblem, LoadedContact, loaded_contact, mesh_problem
 from tribodyn.stiffness.model import MODELS, StiffnessModel
 from tribodyn.stiffness.models.given import (
     fourier_mesh_stiffness,

@@ -201,10 +201,7 @@ class Surrogate(Record):
             parts.variables[f"weights_{number}"] = (
                 f"weight_{number}",
                 weights,
-                {
-                    "hidden": list(network.hidden),
-                    "activations": " ".join(network.activations),
-                },
+                {"hidden": list(network.hidden), "activations": " ".join(network.activations)},
             )
         parts.attributes["kind"] = _KIND
         return parts

@@ -13,14 +13,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import (
-    Argument,
-    InputError,
-    real_numbers,
-    require_positive,
-    shortened,
-    warn,
-)
+from tribodyn.errors import Argument, InputError, real_numbers, require_positive, shortened, warn
 from tribodyn.record import Record
 from tribodyn.types import Array, Index, Mask
 
@@ -119,11 +112,7 @@ def _column(given: Any, name: str, rows: int) -> Array:
 
 
 def split_rows(
-    rows: int,
-    shares: Sequence[float] = (8.0, 1.0, 1.0),
-    *,
-    seed: int,
-    groups: Any = None,
+    rows: int, shares: Sequence[float] = (8.0, 1.0, 1.0), *, seed: int, groups: Any = None
 ) -> Split:
     """Draw which rows train, which stop the training, and which are kept to judge it.
 

@@ -142,11 +142,7 @@ _MOST = 10**8
 
 
 def sample(
-    distributions: Mapping[str, Any],
-    size: int,
-    *,
-    method: Method = "monte-carlo",
-    seed: int,
+    distributions: Mapping[str, Any], size: int, *, method: Method = "monte-carlo", seed: int
 ) -> dict[str, Array]:
     """Draw values of independent quantities.
 

@@ -135,10 +135,7 @@ def _text(value: Any) -> str:
 
 
 def compare_with_paper(
-    *names: str,
-    partial: bool = False,
-    progress: Progress = SILENT,
-    members: Members | None = None,
+    *names: str, partial: bool = False, progress: Progress = SILENT, members: Members | None = None
 ) -> PaperComparison:
     """Compute what the sources of built-in cases print, and lay it beside.
 

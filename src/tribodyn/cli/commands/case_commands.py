@@ -29,13 +29,7 @@ def cases(*, json: Flag = False) -> None:
         say(table([[name, title] for name, title in found.items()], indent=""))
 
 
-def check(
-    case: CaseName,
-    /,
-    *,
-    set_: Settings = None,
-    json: Flag = False,
-) -> None:
+def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> None:
     """Check a case, rehearse its run and show the geometry that follows from it.
 
     Parameters

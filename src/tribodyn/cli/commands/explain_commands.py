@@ -19,12 +19,7 @@ _MOST = 8
 Entries = list[dict[str, Any]]
 
 
-def explain(
-    symbol: str,
-    /,
-    *more: str,
-    json: Flag = False,
-) -> None:
+def explain(symbol: str, /, *more: str, json: Flag = False) -> None:
     """Explain a symbol, quantity, key, model, law, warning code or summary value.
 
     Parameters
@@ -246,13 +241,7 @@ def units(*, json: Flag = False) -> None:
     say(table([[spelling, meant] for spelling, meant in SPELLINGS.items() if spelling != meant]))
 
 
-def cite(
-    result: Path,
-    /,
-    *,
-    bibtex: Flag = False,
-    json: Flag = False,
-) -> None:
+def cite(result: Path, /, *, bibtex: Flag = False, json: Flag = False) -> None:
     """Print the papers behind a result.
 
     Parameters

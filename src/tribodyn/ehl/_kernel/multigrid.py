@@ -319,13 +319,7 @@ def _build(digest: str) -> Any:
             used += 1
             g -= 1
             grids.free[g] = refine(
-                m,
-                level.grid.dx,
-                level.P,
-                grids.free[g + 1],
-                load,
-                contact.tail,
-                _level(grids, g).P,
+                m, level.grid.dx, level.P, grids.free[g + 1], load, contact.tail, _level(grids, g).P
             )
         for i in range(m + 1):
             P[i], H[i], shape[i] = level.P[i], level.H[i], level.shape[i]

@@ -158,15 +158,7 @@ def fill_oil(n: int, lam: float, oil: Array, P: Array, H: Array, f: Fields) -> N
 
 @nb.njit(**INNER)
 def fill_tangent(
-    n: int,
-    dx: float,
-    u: float,
-    squeeze: float,
-    P: Array,
-    H: Array,
-    f: Fields,
-    cH: Array,
-    cP: Array,
+    n: int, dx: float, u: float, squeeze: float, P: Array, H: Array, f: Fields, cH: Array, cP: Array
 ) -> None:
     """Tangent about fields that are filled; see :func:`coefficients`."""
     coefficients(n, dx, u, squeeze, P, H, f.dlneta, f.rho, f.drho, f.eps, cH, cP)

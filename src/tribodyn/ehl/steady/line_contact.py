@@ -17,12 +17,7 @@ from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, cut_error, est
 from tribodyn.ehl.steady.grid_error import grid_error
 from tribodyn.ehl.steady.rescue import solve_problem
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
-from tribodyn.errors import (
-    InputError,
-    real_numbers,
-    require_between,
-    warn,
-)
+from tribodyn.errors import InputError, real_numbers, require_between, warn
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
 

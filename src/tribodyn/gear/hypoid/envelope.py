@@ -120,8 +120,7 @@ def envelope(surface: Surface, axes: Axes) -> Envelope:
     slope = np.stack(
         [
             -meshing(
-                cross(tangents[..., i], normal) + cross(position, turns[..., i]),
-                turns[..., i],
+                cross(tangents[..., i], normal) + cross(position, turns[..., i]), turns[..., i]
             )
             / rate
             for i in (0, 1)

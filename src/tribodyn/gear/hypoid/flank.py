@@ -192,11 +192,7 @@ def _written(path: str | os.PathLike[str], text: str) -> Path:
 
 
 def hypoid_flanks(
-    blank: HypoidBlank,
-    side: str = "drive",
-    ease_off: EaseOff | None = None,
-    *,
-    points: int = 41,
+    blank: HypoidBlank, side: str = "drive", ease_off: EaseOff | None = None, *, points: int = 41
 ) -> HypoidFlanks:
     """Flanks of a Formate wheel and of the pinion that it envelops.
 

@@ -11,13 +11,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.measurement.readers.content import (
-    Content,
-    from_arrays,
-    rate_of,
-    refuse_table,
-    tells,
-)
+from tribodyn.measurement.readers.content import Content, from_arrays, rate_of, refuse_table, tells
 from tribodyn.stored import read_dataset
 from tribodyn.types import Array
 

@@ -351,11 +351,6 @@ def ease_off(flanks: HypoidFlanks) -> Any:
     }
     most = float(np.max(gap[inside], initial=0.0))
     title = f"The pinion lacks up to {most:.3g} µm on the {flanks.side} flank"
-    scene = _scene(
-        (-1.65, -1.9, 1.15),
-        x="Along [mm]",
-        y="Across [mm]",
-        z="Gap [µm]",
-    )
+    scene = _scene((-1.65, -1.9, 1.15), x="Along [mm]", y="Across [mm]", z="Gap [µm]")
     scene |= {"aspectmode": "manual", "aspectratio": {"x": 1.5, "y": 0.9, "z": 0.6}}
     return figure(title, [surface, dots], {"scene": scene, "height": 620, "hovermode": "closest"})

@@ -131,10 +131,7 @@ def _spread(trace: Any, others: Sequence[Any]) -> list[Trace]:
         return []
     edge = {**plain, **axes, "x": x[inside], "line": {"width": 0}, "name": "variants"}
     color = _faint(trace.line.color)
-    return [
-        {**edge, "y": high},
-        {**edge, "y": low, "fill": "tonexty", "fillcolor": color},
-    ]
+    return [{**edge, "y": high}, {**edge, "y": low, "fill": "tonexty", "fillcolor": color}]
 
 
 def _points(trace: Any) -> tuple[Array, Array] | None:

@@ -94,11 +94,7 @@ def half_plane_displacement(
 
 
 def remainder_loads(
-    mesh: SectorMesh,
-    place: Array,
-    direction: Array,
-    depth: Array,
-    elasticity: Array,
+    mesh: SectorMesh, place: Array, direction: Array, depth: Array, elasticity: Array
 ) -> Array:
     """Nodal forces for the remainder under unit loads on the flank."""
     forces = np.zeros((len(mesh.nodes), 2, len(place)))
@@ -128,12 +124,7 @@ def _add_missed_tractions(forces: Array, mesh: SectorMesh, place: Array, directi
 
 
 def _add_jump(
-    forces: Array,
-    mesh: SectorMesh,
-    place: Array,
-    direction: Array,
-    depth: Array,
-    elasticity: Array,
+    forces: Array, mesh: SectorMesh, place: Array, direction: Array, depth: Array, elasticity: Array
 ) -> None:
     """Give the elements above the foot the displacement of the half plane there."""
     nu = float(elasticity[0, 1] / elasticity[0, 0])

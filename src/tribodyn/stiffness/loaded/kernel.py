@@ -23,11 +23,7 @@ from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
 #: NaN stays detectable: neither "nnan" nor "ninf".
-_JIT: dict[str, Any] = {
-    "nogil": True,
-    "fastmath": {"contract", "nsz"},
-    "error_model": "numpy",
-}
+_JIT: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
 _INNER: dict[str, Any] = {**_JIT, **INNER_OPTIONS}
 
 #: Residual of a pair over the approach that counts as zero.

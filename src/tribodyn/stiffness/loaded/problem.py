@@ -91,12 +91,7 @@ def on_path_places(
     )
 
 
-def _radii(
-    contact: PathOfContact,
-    pinion: Array,
-    wheel: Array,
-    possible: Mask,
-) -> dict[str, Array]:
+def _radii(contact: PathOfContact, pinion: Array, wheel: Array, possible: Mask) -> dict[str, Array]:
     """Radii of curvature, with those of the pitch point where flanks cannot meet."""
     limits = sorted((contact.A, contact.E))
     middle = 0.5 * sum(limits)

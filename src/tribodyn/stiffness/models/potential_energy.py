@@ -11,13 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import (
-    Argument,
-    ComputationError,
-    InputError,
-    ModelOption,
-    require_positive,
-)
+from tribodyn.errors import Argument, ComputationError, InputError, ModelOption, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.model import MODELS, MeshState, reference_option
 from tribodyn.stiffness.teeth.influence import GearInfluence
