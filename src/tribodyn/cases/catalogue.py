@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from importlib.metadata import entry_points
+from importlib.metadata import EntryPoints, entry_points
 from importlib.resources import files
 from pathlib import Path
 
@@ -35,10 +35,16 @@ def case_files() -> dict[str, Path]:
     """
     folder = Path(str(files("tribodyn.cases")))
     found = {path.stem: path for path in sorted(folder.glob("*.toml"), key=_name)}
-    for entry in entry_points(group="tribodyn.cases"):
+    for entry in _brought():
         if entry.name not in found:
             found[entry.name] = Path(str(entry.load()))
     return found
+
+
+@lru_cache(maxsize=1)
+def _brought() -> EntryPoints:
+    """Cases of other packages: what is installed takes a while to look through, so once."""
+    return entry_points(group="tribodyn.cases")
 
 
 def _name(path: Path) -> str:
