@@ -7,7 +7,7 @@ the fourth order of the integrator survives, and nothing is interpolated in the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -50,6 +50,10 @@ class Grid:
     def events(self) -> frozenset[float]:
         """Phases at which a value may jump [-]."""
         return frozenset(self.segment_left.tolist())
+
+    def rows(self, which: Index) -> Grid:
+        """Some of the steps."""
+        return Grid(*(getattr(self, field.name)[which] for field in fields(Grid)))
 
 
 def system_events(*systems: System) -> tuple[float, ...]:
@@ -105,6 +109,12 @@ def _shares(lengths: Array, steps: int) -> Index:
     return np.asarray(counts + 2)
 
 
+def once(values: Array, kept: int = 0) -> Array:
+    """What is repeated along an axis, as a constant is, taken once along it; not of the last."""
+    axes = values.strides[: values.ndim - kept]
+    return values[tuple(slice(None if stride else 1) for stride in axes)]
+
+
 class RowEvaluator:
     """Evaluates entries on the three nodes of every step, one-sidedly at events."""
 
@@ -122,12 +132,12 @@ class RowEvaluator:
             return np.broadcast_to(one, (*self.nodes.shape, size))
         flat = entry_values(where, entry, self.nodes.reshape(-1), size)
         values = flat.reshape(*self.nodes.shape, size)
-        if self.checks and not self._is_smooth(entry):
+        if self.checks and not self.is_smooth(entry):
             refuse_chance(where, entry, self.nodes.reshape(-1), flat)
             refuse_jumps(where, entry, self.nodes, values)
         return values
 
-    def _is_smooth(self, entry: Entry) -> bool:
+    def is_smooth(self, entry: Entry) -> bool:
         """Whether it is a table that jumps nowhere but at events of this grid."""
         events = getattr(entry, "event_phases", None)
         return events is not None and self.grid.events.issuperset(events)
@@ -135,7 +145,7 @@ class RowEvaluator:
     def derivatives(self, where: str, entry: Entry, size: int = 1) -> Array:
         """Derivatives with respect to phase on the nodes, from a five-point stencil."""
         if not varies(entry):
-            return np.zeros((*self.nodes.shape, size))
+            return np.broadcast_to(0.0, (*self.nodes.shape, size))
         span = self._high - self._low
         step = np.minimum(_STENCIL, span / 8.0)
         centre = np.clip(self.nodes, self._low + 2.0 * step, self._high - 2.0 * step)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, system_events
+from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, once, system_events
 from tribodyn.dynamics.equations.system import LoadFriction, System, no_direction
 from tribodyn.errors import InputError, real_numbers
 from tribodyn.types import Array, Index, Mask
@@ -144,6 +144,8 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
             take(f"contacts[{j}].{name}", getattr(contact, name))[..., 0]
             for j, contact in enumerate(contacts)
         ]
+        if len(columns) == 1:  # a constant stays one number
+            return columns[0][..., None]
         return np.stack(columns, axis=-1) if columns else np.zeros((grid.steps, 3, 0))
 
     def vector(name: str, take: Callable[..., Array]) -> Array:
@@ -157,13 +159,10 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         return out
 
     direction = vector("direction", rows.values)
-    for j in np.flatnonzero(~direction.any(axis=(0, 1, 3))):
+    for j in np.flatnonzero(~once(direction, 2).any(axis=(0, 1, 3))):
         raise no_direction(f"contacts[{j}].direction")
     gap = scalar("gap", rows.values)
-    if np.any(gap < 0.0):
-        what = f"gap = {gap.min():.6g} m"
-        why = "The gap is half the dead zone and cannot be negative"
-        raise InputError(what, "Contact.gap", why, "Use `error` for an interference")
+    refuse_negative_gap(gap)
     nodes = Nodes(
         phase=grid.left[:, None] + grid.width[:, None] * np.array([0.0, 0.5, 1.0]),
         stiffness=scalar("stiffness", rows.values),
@@ -183,6 +182,15 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     if grid.width.sum() > 0.99:
         object.__setattr__(system, "_checked", min(widest, system._checked))
     return nodes
+
+
+def refuse_negative_gap(gap: Array) -> None:
+    """Refuse a dead zone less than none."""
+    least = once(gap).min(initial=0.0)
+    if least < 0.0:
+        what = f"gap = {least:.6g} m"
+        why = "The gap is half the dead zone and cannot be negative"
+        raise InputError(what, "Contact.gap", why, "Use `error` for an interference")
 
 
 def halved_grid(grid: Grid) -> Grid:
@@ -227,8 +235,8 @@ def refuse_falling_force(
     phase: Array, stiffness: Array, gap: Array, direction: Array, error: Array
 ) -> None:
     """Refuse dead zones beyond which the force of a mesh falls with compression."""
-    dead = np.flatnonzero(np.any(gap > 0.0, axis=(0, 1)))
-    if not np.any(stiffness[:, :, dead] < 0.0):
+    dead = np.flatnonzero(np.any(once(gap, 1) > 0.0, axis=(0, 1)))
+    if not np.any(once(stiffness, 1)[:, :, dead] < 0.0):
         return
     floor = -_ROUNDING * float(np.abs(stiffness).max())
     for j in dead:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.entry import varies as depends_on_phase
-from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
+from tribodyn.dynamics.equations.grid import Grid, build_grid, once, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
@@ -111,7 +111,7 @@ class _Terms:
 
     def terms(self, values: Array, slot: int) -> int:
         """Append a term for each last item that is not zero throughout; returns how many."""
-        some = np.asarray(values.any(axis=tuple(range(values.ndim - 1))))
+        some = np.asarray(once(values, 1).any(axis=tuple(range(values.ndim - 1))))
         present = [item for item in range(some.size) if self.keeps(some[item])]
         for item in present:
             self.factor(values[..., item])
@@ -120,12 +120,18 @@ class _Terms:
 
     def rows(self) -> Array:
         """All factors of a row side by side."""
-        rows = np.empty((*self.shape, max(len(self.factors), 1)))
-        wide = [np.broadcast_to(values, self.shape) for values in self.factors]
-        for *lead, first in np.ndindex(*self.shape[:-2], -(-self.shape[-2] // _BLOCK)):
-            block = (*lead, slice(first * _BLOCK, (first + 1) * _BLOCK))
-            for item, values in enumerate(wide):
-                rows[block][..., item] = values[block]
+        wide = [np.broadcast_to(values, self.shape) for values in self.factors or [0.0]]
+        rows = np.empty((*self.shape, len(wide)))
+        varying = [item for item, values in enumerate(wide) if any(values.strides[-2:])]
+        for lead in np.ndindex(*self.shape[:-2]):
+            own, table = [values[lead] for values in wide], rows[lead]
+            same = np.tile([values[0, 0] for values in own], (min(_BLOCK, len(table)), 3, 1))
+            for first in range(0, len(table), _BLOCK):
+                block = slice(first, first + _BLOCK)
+                part = table[block]
+                part[...] = same[: len(part)]
+                for item in varying:
+                    part[..., item] = own[item][block]
         return rows.reshape(*self.shape[:-2], -1)
 
 
@@ -137,7 +143,7 @@ def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> 
             terms.factor(item[..., j])
         for part in (nodes.direction, nodes.direction_slope):
             code.append(terms.terms(part[..., j, :], 0))
-        code += [int(np.any(nodes.gap[..., j])), int(contact.damping_in_gap) + scaled]
+        code += [int(np.any(once(nodes.gap[..., j]))), int(contact.damping_in_gap) + scaled]
     return code
 
 
@@ -167,7 +173,7 @@ def _coordinate_terms(
 ) -> tuple[list[int], Mask]:
     """Number of terms of every coordinate, and whether its load varies."""
     inverse = system.inverse_mass
-    along = nodes.direction if split else nodes.force_direction
+    along = once(nodes.direction if split else nodes.force_direction, 2)
     rub = nodes.friction_direction
     if split:
         rub = np.concatenate((rub, nodes.force_direction - nodes.direction), axis=-2)
@@ -175,7 +181,7 @@ def _coordinate_terms(
         (part.reshape(-1, system.size) @ -inverse.T).reshape(part.shape) for part in (along, rub)
     )
     steps = slice(None if depends_on_phase(system.force) else 1)
-    load = np.einsum("ik,...k->...i", inverse, nodes.force[..., steps, :, :])
+    load = np.einsum("ik,...k->...i", inverse, once(nodes.force[..., steps, :, :], 1))
     state = -np.hstack([inverse @ np.asarray(part) for part in (system.stiffness, system.damping)])
     state[np.abs(state) <= 1e-15 * np.abs(state).max(axis=1, keepdims=True)] = 0.0
     code: list[int] = []

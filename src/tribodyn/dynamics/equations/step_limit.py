@@ -8,7 +8,6 @@ is nothing but this. Steps are refused above 2.7.
 from __future__ import annotations
 
 import math
-from dataclasses import fields
 
 import numpy as np
 
@@ -32,31 +31,37 @@ LIMIT = 2.7
 _SAMPLES, _LANES = 32, 256
 #: Factors of stiffness, damping and friction of a system as it stands.
 _PLAIN = (1.0, 1.0, 1.0)
+_AS_IT_STANDS = np.array([_PLAIN])
 #: ``omega_max * dt`` at which figures of a spur gear pair are good to about 1e-6.
 _ACCURATE = 0.2
 #: Range of the recommended steps; the limit of 2.7 still holds above it.
-_FEWEST, _MOST = 1024, 65536
+FEWEST, _MOST = 1024, 65536
 
 
 def largest_rate(system: System, nodes: Nodes, factors: tuple[float, ...] = _PLAIN) -> float:
     """Largest modulus of an eigenvalue of the motion with all contacts closed."""
-    rows, stages = _stiffest_rows(nodes.stiffness.sum(axis=-1))
-    return float(_rates(system, nodes, rows, stages, np.array([factors])).max())
+    places = look_at(nodes.stiffness.sum(axis=-1))
+    return float(rates_at(system, nodes, places, np.array([factors])).max())
 
 
-def _rates(system: System, nodes: Nodes, rows: Index, stages: Index, factors: Array) -> Array:
-    """Largest modulus of an eigenvalue for each row of ``factors`` (f, 3), f or 1 rows each."""
-    along, push = nodes.direction[rows, stages], nodes.force_direction[rows, stages]
+def rates_at(
+    system: System, nodes: Nodes, places: tuple[Index, ...], factors: Array = _AS_IT_STANDS
+) -> Array:
+    """Largest modulus of an eigenvalue at places, for each row of ``factors`` (f, 3).
+
+    Each row has all places, or one of its own; systems alike have theirs with a first axis more.
+    """
+    along, push = nodes.direction[places], nodes.force_direction[places]
     if system.frictions:
-        at = Nodes(*(part[rows, stages] for part in nodes))
+        at = Nodes(*(part[places] for part in nodes))
         nominal = np.array([one.load for one in system.frictions])
         push = push_with_friction(
             system, at, friction_tangent(system, at.friction_coefficients, nominal)
         )
     spring, damper, rub = (column[:, None, None, None] for column in factors.T)
-    outer = np.einsum("...mji,mjk->...mjik", along + rub * (push - along), along)
-    stiffness = np.einsum("mj,...mjik->...mik", nodes.stiffness[rows, stages], outer)
-    damping = np.einsum("mj,...mjik->...mik", nodes.damping[rows, stages], outer)
+    outer = np.einsum("...mji,...mjk->...mjik", along + rub * (push - along), along)
+    stiffness = np.einsum("...mj,...mjik->...mik", nodes.stiffness[places], outer)
+    damping = np.einsum("...mj,...mjik->...mik", nodes.damping[places], outer)
     inverse = system.inverse_mass
     elastic = inverse @ (spring * stiffness + np.asarray(system.stiffness))
     viscous = inverse @ (damper * damping + np.asarray(system.damping))
@@ -68,7 +73,8 @@ def state_roots(elastic: Array, viscous: Array) -> ComplexArray:
     size = elastic.shape[-1]
     # Displacements in units of velocity over the largest stiffness rate: without it the matrix
     # mixes entries of 1 and 1e12 and the eigenvalues lose digits.
-    scale = max(float(np.sqrt(np.abs(elastic).max())), 1e-30)
+    axes = tuple(range(-min(elastic.ndim, 3), 0))
+    scale = np.maximum(np.sqrt(np.abs(elastic).max(axis=axes, keepdims=True)), 1e-30)
     state = np.zeros((*elastic.shape[:-2], 2 * size, 2 * size))
     state[..., :size, size:] = scale * np.eye(size)
     state[..., size:, :size] = -elastic / scale
@@ -76,11 +82,13 @@ def state_roots(elastic: Array, viscous: Array) -> ComplexArray:
     return np.asarray(np.linalg.eigvals(state), dtype=complex)
 
 
-def _stiffest_rows(total: Array) -> tuple[Index, Index]:
-    """Rows of the table to examine, spread over the cycle, each where its step is stiffest."""
-    spread = np.linspace(0, total.shape[0] - 1, _SAMPLES).astype(np.int64)
-    rows = np.unique(np.append(spread, total.max(axis=1).argmax()))
-    return rows, total[rows].argmax(axis=1)
+def look_at(total: Array) -> tuple[Index, Index]:
+    """Rows of tables (..., steps, 3) to examine, and where in its step each is stiffest."""
+    spread = np.linspace(0, total.shape[-2] - 1, _SAMPLES).astype(np.int64)
+    stiffest = total.max(axis=-1).argmax(axis=-1)[..., None]
+    spread = np.broadcast_to(spread, (*stiffest.shape[:-1], _SAMPLES))
+    rows = np.sort(np.concatenate((spread, stiffest), axis=-1), axis=-1)
+    return rows, np.take_along_axis(total, rows[..., None], axis=-2).argmax(axis=-1)
 
 
 def recommended_steps(system: System, mesh_frequency: float) -> int:
@@ -112,7 +120,7 @@ def recommended_steps(system: System, mesh_frequency: float) -> int:
     return accurate_steps(rate_on_grid(system), mesh_frequency)
 
 
-def rate_on_grid(system: System, steps: int = _FEWEST) -> float:
+def rate_on_grid(system: System, steps: int = FEWEST) -> float:
     """Largest modulus of an eigenvalue, looked up on a grid of as many steps."""
     if steps in system._rates:
         return system._rates[steps]
@@ -121,17 +129,16 @@ def rate_on_grid(system: System, steps: int = _FEWEST) -> float:
     for j, contact in enumerate(system.contacts):
         total += evaluator.values(f"contacts[{j}].stiffness", contact.stiffness)[..., 0]
     # All else is needed on the rows alone that are examined.
-    rows, stages = _stiffest_rows(total)
-    some = Grid(*(getattr(grid, field.name)[rows] for field in fields(Grid)))
-    nodes, every = evaluate_nodes(system, some), np.arange(rows.size)
-    system._rates[steps] = float(_rates(system, nodes, every, stages, np.array([_PLAIN])).max())
+    rows, stages = look_at(total)
+    nodes, places = evaluate_nodes(system, grid.rows(rows)), (np.arange(rows.size), stages)
+    system._rates[steps] = float(rates_at(system, nodes, places)[0])
     return system._rates[steps]
 
 
 def accurate_steps(rate: float, mesh_frequency: float) -> int:
     """Steps per mesh cycle that follow a motion accurately."""
     needed = rate / (_ACCURATE * mesh_frequency)
-    return int(min(max(2 ** math.ceil(math.log2(max(needed, 1.0))), _FEWEST), _MOST))
+    return int(min(max(2 ** math.ceil(math.log2(max(needed, 1.0))), FEWEST), _MOST))
 
 
 def refuse_unstable_step(
@@ -175,9 +182,9 @@ def refuse_unstable_lanes(
         return least
     keys = (table[:, 0] / beat**2, table[:, 1] / beat)
     likely = np.unique(np.concatenate([np.argsort(-key)[:_LANES] for key in keys]))
-    rows, stages = _stiffest_rows(nodes.stiffness.sum(axis=-1))
+    rows, stages = look_at(nodes.stiffness.sum(axis=-1))
     stiffest = np.array([int(nodes.stiffness.sum(axis=-1)[rows, stages].argmax())])
-    rates = _rates(system, nodes, rows[stiffest], stages[stiffest], table[likely])
+    rates = rates_at(system, nodes, (rows[stiffest], stages[stiffest]), table[likely])
     worst = int(likely[np.argmax(rates / beat[likely])])
     names = ("stiffness_scale", "damping_scale", "friction_scale")
     factors = dict(zip(names, table[worst].tolist(), strict=True))

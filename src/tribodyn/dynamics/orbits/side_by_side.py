@@ -16,12 +16,19 @@ import numpy as np
 
 from tribodyn.dynamics._engine.blocks import WIDTH
 from tribodyn.dynamics._engine.method import RungeKutta4
+from tribodyn.dynamics.equations.alike import (
+    evaluate_alike,
+    every_other,
+    groups_alike,
+    rates_alike,
+    rows_of,
+    rows_of_every_other,
+)
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.entry import varies
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
-from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes, halved_grid, step_weights
+from tribodyn.dynamics.equations.nodes import Nodes, halved_grid
 from tribodyn.dynamics.equations.program import Program, build_program, lane_load
-from tribodyn.dynamics.equations.step_limit import refuse_unstable_step
+from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import (
     OrbitCoordinates,
@@ -45,12 +52,8 @@ def orbits_in_touch(
 ) -> list[Response | None]:
     """Steady motions of one mesh cycle in which no flanks part; None where there is none such."""
     found: list[Response | None] = [None] * len(systems)
-    groups: dict[object, list[int]] = {}
-    for number, system in enumerate(systems):
-        if (key := _structure(system)) is not None:
-            groups.setdefault(key, []).append(number)
-    size = max(1, _STEPS // steps)
-    parts = (g[first : first + size] for g in groups.values() for first in range(0, len(g), size))
+    size, groups = max(1, _STEPS // steps), groups_alike(systems)
+    parts = (group[at : at + size] for group in groups for at in range(0, len(group), size))
     for numbers in parts:
         with collected() as told:
             try:
@@ -62,45 +65,6 @@ def orbits_in_touch(
             for number, orbit in zip(numbers, orbits, strict=True):
                 found[number] = orbit
     return found
-
-
-def _structure(system: System) -> object:
-    """What systems have in common that march side by side; None of those that do not."""
-    contacts = system.contacts
-    if len(contacts) != 1 or system.frictions or varies(system.force):
-        return None
-    if varies(contacts[0].direction):
-        return None
-    parts = system.mass, system.damping, system.stiffness, system.balance, contacts[0].direction
-    numbers = tuple(None if part is None else np.asarray(part).tobytes() for part in parts)
-    return numbers, tuple(system.names), contacts[0].events, contacts[0].damping_in_gap
-
-
-#: Rows in which systems alike differ, and places of a step in the two that it is cut into.
-_OWN = "stiffness", "damping", "error", "error_slope", "gap", "force_direction"
-_PLACES = [0, 2, 5]
-
-
-def _stacked(every: Sequence[Nodes], grid: Grid, coarse: bool) -> Nodes:
-    """Rows of systems alike with a first axis more; or those of every other of their steps."""
-
-    def rows(values: Array, lead: int) -> Array:
-        if not coarse:
-            return values
-        shape = values.shape
-        cut = values.reshape(*shape[:lead], grid.steps, 6, *shape[lead + 2 :])
-        return cut.take(_PLACES, axis=lead + 1)
-
-    first = Nodes(*(rows(values, 0) for values in every[0]))
-    own = {name: rows(np.stack([getattr(n, name) for n in every]), 1) for name in _OWN}
-    shape = (len(every), grid.steps, 3)
-    force = np.stack([nodes.force[:1, :1] for nodes in every])
-    return first._replace(
-        **own,
-        phase=np.broadcast_to(first.phase, shape),
-        force=np.broadcast_to(force, (*shape, force.shape[-1])),
-        weight=step_weights(grid),
-    )
 
 
 class _Grid(NamedTuple):
@@ -115,6 +79,14 @@ class _Grid(NamedTuple):
         rows, load = self.program.rows[number], self.program.constant_load[number]
         return self.program._replace(rows=rows, constant_load=load)
 
+    def every_other(self, grid: Grid) -> _Grid:
+        """The same on the grid of which this one has the halves."""
+        count = len(self.program.rows)
+        rows = self.program.rows.reshape(count, 2 * grid.steps, 3, -1)
+        taken = rows_of_every_other(rows, grid.steps, 1).reshape(count, -1)
+        program = self.program._replace(rows=taken, width=grid.width, restart=grid.after_event)
+        return _Grid(grid, every_other(self.nodes, grid), program)
+
 
 class _Group:
     """Maps of systems alike over one mesh cycle, each at its own mesh frequency."""
@@ -123,26 +95,29 @@ class _Group:
         self.systems, self.system, self.beat = systems, systems[0], beat
         grid = build_grid(system_events(self.system), steps)
         fine = halved_grid(grid)
-        every = [evaluate_nodes(system, fine) for system in systems]
-        self.whole, self.halved = (
-            _Grid(each, nodes, build_program(self.system, each, nodes))
-            for each, nodes in (
-                (each, _stacked(every, each, each is grid)) for each in (grid, fine)
-            )
-        )
+        nodes = evaluate_alike(systems, fine)
+        program = build_program(self.system, fine, nodes)
+        self.halved = _Grid(fine, nodes, program)
+        self.whole = self.halved.every_other(grid)
+        self.step_numbers = self._step_numbers()
         shared = orbit_coordinates(self.compiled(0), 1.0)
         rate = shared.rate * beat[:, None, None]
         self.coordinates: OrbitCoordinates = replace(shared, rate=rate)
         self.balance = Balance.of(self.system, shared)
 
     def compiled(self, number: int) -> Compiled:
-        """One of the systems, checked for its step."""
+        """One of the systems."""
         grid, nodes, _ = self.whole
-        differing = {name: getattr(nodes, name)[number] for name in (*_OWN, "phase", "force")}
-        system, own = self.systems[number], nodes._replace(**differing)
-        rate = system._rates.get(grid.steps)
-        order = refuse_unstable_step(system, own, grid, float(self.beat[number]), rate=rate)
-        return Compiled(system, grid, own, self.whole.of(number), order)
+        step_number = float(self.step_numbers[number])
+        own, program = rows_of(nodes, number), self.whole.of(number)
+        return Compiled(self.systems[number], grid, own, program, step_number)
+
+    def _step_numbers(self) -> Array:
+        """Products ``omega_max * dt`` of the widest steps."""
+        grid, nodes, _ = self.whole
+        rates = [system._rates.get(grid.steps, np.nan) for system in self.systems]
+        known = np.array(rates) if np.isfinite(rates).all() else rates_alike(self.systems, nodes)
+        return np.asarray(known * float(grid.width.max()) / self.beat)
 
     def start(self) -> Array:
         """Points (p, 1, k) at rest under the mean loads."""
@@ -257,7 +232,7 @@ def _orbits(group: _Group) -> _Orbits:
     k = y.shape[-1]
     step = APART * np.linalg.norm(y, axis=-1, keepdims=True)
     along = np.empty((count, steps + 1, k + 1))
-    direction = nodes.direction[0, 0, 0]
+    direction = nodes.direction[0, 0, 0, 0]
     used = np.flatnonzero(direction)
 
     def beside(number: int, record: Array) -> None:
@@ -351,5 +326,5 @@ def _responses(group: _Group) -> list[Response | None]:
             period=1,
         )
 
-    good = orbits.good & (cost <= STEP_LIMIT)
+    good = orbits.good & (cost <= STEP_LIMIT) & (group.step_numbers <= LIMIT)
     return [response(number) if good[number] else None for number in range(len(good))]

@@ -50,8 +50,12 @@ def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progr
 
 def motions_of(points: Sequence[tuple[Case, System, float]]) -> list[Response | None]:
     """Motions of cases at mesh frequencies, side by side; None where one is found by itself."""
+    from tribodyn.dynamics.equations.alike import groups_alike, remember_rates
     from tribodyn.dynamics.orbits.side_by_side import orbits_in_touch
 
+    for group in groups_alike([system for _, system, _ in points]):
+        with suppress(InputError), collected():
+            remember_rates([points[number][1] for number in group])
     alike: dict[int, list[int]] = {}
     for number, (case, system, frequency) in enumerate(points):
         if case.solver.method == "steady" and case.solver.engine == _ORBITS:
