@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.grid import Grid
+from tribodyn.dynamics.equations.grid import Grid, once
 from tribodyn.dynamics.equations.nodes import Nodes, friction_force
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
@@ -47,18 +47,40 @@ _SAME = Scales()
 
 def has_gap(nodes: Nodes) -> Mask:
     """Contacts with a dead zone."""
-    return np.asarray(np.any(nodes.gap > 0.0, axis=tuple(range(nodes.gap.ndim - 1))))
+    gap = once(nodes.gap, 1)
+    return np.asarray(np.any(gap > 0.0, axis=tuple(range(gap.ndim - 1))))
+
+
+def _times(values: Array, matrix: Array) -> Array:
+    """Matrix times vectors (..., n), in one product of two matrices."""
+    flat = values.reshape(-1, values.shape[-1]) @ np.ascontiguousarray(matrix.T)
+    return np.asarray(flat.reshape(*values.shape[:-1], len(matrix)))
+
+
+def _along(direction: Array, vectors: Array) -> Array:
+    """Parts of vectors (..., n) along directions (..., contacts, n)."""
+    few = once(direction, 2)
+    if few.shape[:-2] == (1,) * (few.ndim - 2):
+        return _times(vectors, few.reshape(few.shape[-2:]))
+    return np.asarray(np.einsum("...ji,...i->...j", direction, vectors))
+
+
+def _pushed(push: Array, force: Array) -> Array:
+    """Sum of directions (..., contacts, n), each times its force (..., contacts)."""
+    if force.shape[-1] == 1:
+        return push[..., 0, :] * force
+    return np.asarray(np.einsum("...ji,...j->...i", push, force))
 
 
 def compression(rows: Nodes, q: Array, error: Any = 1.0) -> Array:
     """Compression of every contact."""
-    return np.asarray(np.einsum("...ji,...i->...j", rows.direction, q) - error * rows.error)
+    return np.asarray(_along(rows.direction, q) - error * rows.error)
 
 
 def compression_rate(rows: Nodes, beat: Any, q: Array, v: Array, error: Any = 1.0) -> Array:
     """Rate of every compression at the mesh frequency ``beat``."""
-    turning = np.einsum("...ji,...i->...j", rows.direction_slope, q) - error * rows.error_slope
-    return np.asarray(np.einsum("...ji,...i->...j", rows.direction, v) + beat * turning)
+    turning = _along(rows.direction_slope, q) - error * rows.error_slope
+    return np.asarray(_along(rows.direction, v) + beat * turning)
 
 
 def sides(deflection: Array, gap: Array, dead: Mask) -> Array:
@@ -86,20 +108,28 @@ def forces(
     d = compression(rows, q, scales.error)
     rate = compression_rate(rows, beat, q, v, scales.error)
     gap = scales.gap * rows.gap
-    if side is None:
-        side = sides(d, gap, has_gap(rows))
-    in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
-    contact = np.abs(side) * scales.stiffness * rows.stiffness * (d - side * gap)
-    contact = contact + ((side != 0.0) | in_gap) * scales.damping * rows.damping * rate
-    total = scales.force * rows.force + extra
-    total = total - q @ np.asarray(system.stiffness).T - v @ np.asarray(system.damping).T
-    total = total - np.einsum("...ji,...j->...i", rows.direction, contact)
-    rub = np.einsum("...ji,...j->...i", rows.force_direction - rows.direction, contact)
+    if side is None and np.all(d > gap):
+        side = np.broadcast_to(1.0, d.shape)
+        contact = scales.stiffness * rows.stiffness * (d - gap)
+        contact = contact + scales.damping * rows.damping * rate
+    else:
+        side = sides(d, gap, has_gap(rows)) if side is None else side
+        in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
+        contact = np.abs(side) * scales.stiffness * rows.stiffness * (d - side * gap)
+        contact = contact + ((side != 0.0) | in_gap) * scales.damping * rows.damping * rate
+    total = scales.force * once(rows.force, 1) + extra
+    total = total - _times(q, np.asarray(system.stiffness))
+    total = total - _times(v, np.asarray(system.damping))
+    if scales is _SAME:
+        total = total - _pushed(rows.force_direction, contact)
+    else:
+        total = total - _pushed(rows.direction, contact)
+        rub = _pushed(rows.force_direction - rows.direction, contact)
+        total = total - scales.friction * rub
     if system.frictions:
         drag = friction_force(system, rows.friction_coefficients, contact)
-        rub = rub + np.einsum("...fi,...f->...i", rows.friction_direction, drag)
-    total = total - scales.friction * rub
-    return Forces(d, contact, side, total @ system.inverse_mass.T)
+        total = total - scales.friction * _pushed(rows.friction_direction, drag)
+    return Forces(d, contact, side, _times(total, system.inverse_mass))
 
 
 def quadratic_weights(tau: Any) -> tuple[Any, Any, Any]:
@@ -145,7 +175,7 @@ def with_middles(duration: Array, state: Array) -> tuple[Array, Array]:
 
     ``state`` (..., steps + 1, 2 n) is known at the ends, ``duration`` (..., steps) in s.
     """
-    q, v = np.split(state, 2, axis=-1)
+    q, v = (np.ascontiguousarray(half) for half in np.split(state, 2, axis=-1))
     h = duration[..., None]
     ends = q[..., :-1, :], v[..., :-1, :], q[..., 1:, :], v[..., 1:, :]
     middle = cubic_middle(h, 1.0 / h, *ends)

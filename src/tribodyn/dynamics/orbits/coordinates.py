@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.grid import once
 from tribodyn.dynamics.equations.motion import compression
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
@@ -112,7 +113,7 @@ def refuse_disconnected(compiled: Compiled) -> None:
     coupled = np.asarray(system.mass) - np.diag(np.diag(np.asarray(system.mass)))
     held |= np.any(coupled != 0.0, axis=0)
     for part in (nodes.direction, nodes.direction_slope, nodes.force_direction):
-        held |= np.any(part != 0.0, axis=(0, 1, 2))
+        held |= np.any(once(part, 2) != 0.0, axis=(0, 1, 2))
     held |= np.any(nodes.friction_direction != 0.0, axis=(0, 1, 2))
     if held.all() or not held.any():
         return
@@ -133,7 +134,7 @@ def _used_directions(*parts: Array) -> Array:
     rows = [np.zeros((0, parts[0].shape[-1]))]
     for part in parts:
         for number in range(part.shape[-2]):
-            contact = part[..., number, :].reshape(-1, part.shape[-1])
+            contact = once(part[..., number, :], 1).reshape(-1, part.shape[-1])
             rows.append(contact if np.ptp(contact, axis=0).any() else contact[:1])
     return np.asarray(np.unique(np.vstack(rows), axis=0))
 

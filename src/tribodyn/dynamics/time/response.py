@@ -225,7 +225,7 @@ def _step_samples(
 ) -> FineSamples:
     nodes, grid = compiled.nodes, compiled.grid
     cycles = (states.shape[0] - 1) // grid.steps
-    ends = states[np.arange(cycles)[:, None] * grid.steps + np.arange(grid.steps + 1)]
+    ends = np.stack([states[c * grid.steps : (c + 1) * grid.steps + 1] for c in range(cycles)])
     q, v = with_middles(grid.width / mesh_frequency, ends)
     moved = forces(compiled.system, nodes, mesh_frequency, q, v, extra=extra_force)
     phase = np.arange(cycles)[:, None, None] + nodes.phase
@@ -255,6 +255,8 @@ def _without_jumps(
     if not dead.any():
         return whole
     ends = whole.deflection.reshape(-1, steps, 3, dead.size)[:, :, ::2]
+    if np.all(ends > nodes.gap[:, ::2]):
+        return whole
     at_ends = sides(ends, nodes.gap[:, ::2], dead).reshape(-1, 2, dead.size)
     new = resample_crossings(compiled, mesh_frequency, states, extra, at_ends)
     if new is None:
