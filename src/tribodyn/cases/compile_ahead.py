@@ -135,8 +135,10 @@ def compile_for(job: str) -> None:
     if job == _ENGINE:
         _march()
     else:
+        from tribodyn.study import first_use
         from tribodyn.study.pipeline.run import run
 
+        first_use.allowed = False  # Another process is beside this one already.
         with TemporaryDirectory() as place:  # Some figures of the report compute too.
             run(load_case(job)).save(f"{place}/result")
     loaded = sorted({_name(kernel) for kernel in kernels if kernel.stats.cache_hits})

@@ -11,6 +11,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
+from tribodyn.compiled import agreement
+
 __all__ = ["announced", "source_digest", "tell", "telling"]
 
 Kernel = TypeVar("Kernel")
@@ -35,7 +37,15 @@ def announced(kernel: Kernel, what: str, time: str) -> Kernel:
     kernels.append(kernel)
     _texts[kernel] = f"compiling {what}, once on this machine, about {time}"
     _listen()
+    agreement.share(kernel, lambda: _tell_of(kernel))
     return kernel
+
+
+def _tell_of(kernel: Any) -> None:
+    """Say that a kernel is compiled, once."""
+    text = _texts.pop(kernel, None)
+    if text is not None:
+        tell(text)
 
 
 @cache
@@ -53,9 +63,7 @@ def _listen() -> None:
                 self.collects = gc.isenabled()
                 gc.disable()
             self.depth += 1
-            text = _texts.pop(event.data["dispatcher"], None)
-            if text is not None:
-                tell(text)
+            _tell_of(event.data["dispatcher"])
 
         def on_end(self, event: Any) -> None:
             self.depth -= 1

@@ -13,7 +13,7 @@ import tribodyn
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import alone
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.studies.processes import helpers
+from tribodyn.study.processes import helpers
 from tribodyn.variants.compute import Job, Part
 from tribodyn.variants.members import Chunk
 from tribodyn.variants.store import Store, StudyState

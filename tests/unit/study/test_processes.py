@@ -18,14 +18,14 @@ from registries import as_before
 from tribodyn.friction import LAWS
 from tribodyn.friction.benedict_kelly import VARIANTS
 from tribodyn.model import known_elsewhere
+from tribodyn.study.processes import Helpers, helpers
 from tribodyn.study.studies import sweep as studied
-from tribodyn.study.studies.processes import Helpers, helpers
 
 #: A script without a guard, as many are written: its first process would begin it again otherwise.
 _SCRIPT = """
 import pickle, time
 from concurrent.futures import Future
-from tribodyn.study.studies.processes import Helpers
+from tribodyn.study.processes import Helpers
 
 helper, pool = Future(), Helpers(1)
 pool.each(lambda item: helper.result(), pickle.dumps(eval), ["__import__('os').getpid()"] * 2,

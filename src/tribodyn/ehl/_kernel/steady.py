@@ -171,5 +171,5 @@ def _build_tangent(digest: str) -> Any:
 
 
 _DIGEST = source_digest(Path(__file__).parent, (*SOURCES, "steady"))
-newton_solve = announced(_build(_DIGEST), "the film solver", "one to two minutes")
+newton_solve = announced(_build(_DIGEST), "the film solver", "half a minute")
 tangent_of_film = announced(_build_tangent(_DIGEST), "the tangent of a film", "ten seconds")

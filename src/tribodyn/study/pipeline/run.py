@@ -13,6 +13,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.read import unchanged_files
 from tribodyn.study.coupling import Follow, coupled
+from tribodyn.study.first_use import compiled_beside
 from tribodyn.study.heat_balance import balanced
 from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.cautions import (
@@ -72,7 +73,8 @@ def run(
     >>> case = tribodyn.load_case("fzg-roughness")
     >>> result = run(case)  # doctest: +SKIP
     """
-    result = computed(case, progress, follow=follow)
+    with compiled_beside(case):
+        result = computed(case, progress, follow=follow)
     for warning in result.warnings:
         warnings.warn(warning, stacklevel=frames(stacklevel, sys._getframe()))
     return result

@@ -20,9 +20,9 @@ from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.run import Begun, begin, move_together
+from tribodyn.study.processes import helpers
 from tribodyn.study.studies.axes import Axis, read_axes
 from tribodyn.study.studies.grid import finished, identity
-from tribodyn.study.studies.processes import helpers
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:

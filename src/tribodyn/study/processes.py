@@ -80,6 +80,18 @@ class _Helper:
             refuse_stopped(STOPPED * int(stop_flag()[0]))
         return None
 
+    def answered(self, most: int) -> int:
+        """Number of answers that are there, at most so many; they are dropped."""
+        for number in range(most):
+            try:
+                told = self._answers.get_nowait()
+            except Empty:
+                return number
+            if told is None:
+                self._answers.put(None)  # for whoever asks next
+                raise _LostError
+        return most
+
     def load(self, function: bytes, item: Any, wanted: Callable[[], bool]) -> None:
         """Let it load all that the function needs, by a call that nothing is kept of."""
         if not self._loading:
@@ -163,6 +175,25 @@ class Helpers:
         with threadpool_limits(1, "blas"):
             in_threads(work, [None, *self._helpers], 1 + len(self._helpers))
 
+    def aside(self, function: Callable[[Item], None], items: Sequence[Item]) -> Callable[[], bool]:
+        """Let the first call a function of every item; whether it still does."""
+        if not self._helpers:
+            return lambda: False
+        helper, order = self._helpers[0], pickle.dumps(function)
+        with suppress(_LostError):
+            for item in items:
+                helper.ask(order, item)
+        left = len(items)
+
+        def busy() -> bool:
+            nonlocal left
+            with suppress(_LostError):
+                left -= helper.answered(left)
+                return left > 0
+            return False
+
+        return busy
+
     def end(self) -> None:
         """End all of them."""
         for helper in self._helpers:
@@ -185,6 +216,19 @@ def helpers(most: int = 0) -> Iterator[Helpers]:
         _begun.reset(token)
         if outer is None:
             own.end()
+
+
+@contextmanager
+def aside(function: Callable[[Item], None], items: Sequence[Item]) -> Iterator[Callable[[], bool]]:
+    """Let a process call a function of every item; the block is told whether it still does.
+
+    It is ended with the block. Where it cannot be begun, or is lost, nothing is said.
+    """
+    own = Helpers(min(1, processors() - 1))
+    try:
+        yield own.aside(function, items)
+    finally:
+        own.end()
 
 
 def serve() -> None:

@@ -1,0 +1,85 @@
+"""The first run: what a process beside it compiles is what the run needs, and loads."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tribodyn.study.processes import aside
+
+#: Kernels of the disk cache that a process compiled, and how often each.
+_LISTEN = """
+import json, sys, warnings
+from numba.core import event
+from numba.core.caching import FunctionCache
+
+compiled = []
+
+class Listener(event.Listener):
+    def on_start(self, event): pass
+    def on_end(self, event):
+        kernel = event.data["dispatcher"]
+        if isinstance(kernel._cache, FunctionCache):
+            compiled.append(kernel.py_func.__name__)
+
+event.register("numba:compile", Listener())
+warnings.simplefilter("ignore")
+import tribodyn
+"""
+_JOBS = """
+import os
+from tribodyn.study import first_use
+case = tribodyn.load_case("fzg-roughness")
+for job in first_use._missing(case):
+    first_use._compile((sys.argv[1], job))
+assert first_use._missing(case) == []
+"""
+_RUN = """
+from tribodyn.study import first_use
+first_use.allowed = sys.argv[1] == "allowed"
+tribodyn.run(tribodyn.load_case("fzg-roughness")).save(sys.argv[2])
+"""
+_SAY = "print(json.dumps(compiled))"
+
+
+def _compiled(script: str, cache: Path, *words: str) -> list[str]:
+    call = [sys.executable, "-c", _LISTEN + script + _SAY, *words]
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
+    done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True)
+    return list(json.loads(done.stdout.splitlines()[-1]))
+
+
+@pytest.mark.slow
+def test_the_jobs_compile_what_a_run_needs_and_nothing_else(tmp_path: Path) -> None:
+    marks, cache = tmp_path / "marks", tmp_path / "cache"
+    marks.mkdir()
+    jobs = _compiled(_JOBS, cache, str(marks))
+    assert sorted(jobs) == ["march_block", "march_block", "solve_loads"]
+    assert len(list(marks.iterdir())) == len(jobs)
+    assert _compiled(_RUN, cache, "alone", str(tmp_path / "report")) == []
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.cpu_count() == 1, reason="one processor compiles alone")
+def test_a_first_run_compiles_only_a_part_itself(tmp_path: Path) -> None:
+    cache = tmp_path / "cache"
+    own = _compiled(_RUN, cache, "allowed", str(tmp_path / "report"))
+    assert "solve_loads" not in own
+    assert len(own) < 3
+    assert len([*cache.glob("*/*.nbc")]) == 3
+    assert _compiled(_RUN, cache, "allowed", str(tmp_path / "again")) == []
+
+
+@pytest.mark.parametrize("job", [print, os._exit], ids=["done", "lost"])
+def test_a_process_is_busy_until_all_is_done_or_it_is_lost(job: Callable[[int], None]) -> None:
+    with aside(job, [3, 3]) as busy:
+        assert busy()
+        looks = next(count for count in range(6000) if not busy() or time.sleep(0.01))
+        assert looks > 0
