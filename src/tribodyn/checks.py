@@ -23,6 +23,8 @@ def positive(**quantities: ArrayLike) -> list[Array]:
     """Arrays of quantities to be read, each called by its name; refused unless finite, positive."""
     arrays = [floats(Argument(name), value) for name, value in quantities.items()]
     for name, array in zip(quantities, arrays, strict=True):
+        if not array.size or (array.min() > 0.0 and array.max() < np.inf):
+            continue
         if not np.all((array > 0.0) & (array < np.inf)):
             unit = QUANTITIES[name].unit if name in QUANTITIES else ""
             require_positive(name, array, unit, remedy=_REMEDIES.get(name, ""))

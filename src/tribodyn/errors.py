@@ -363,9 +363,21 @@ _IN_SI = {
 ENDLESS = 1e60
 
 
+def _all_hold(value: Any, holds: Callable[[Any], Any]) -> bool:
+    """Whether floats, as most arguments are, fulfil a limit, which all do that lie in between."""
+    if isinstance(value, float):
+        return abs(value) < ENDLESS and bool(holds(value))
+    if type(value) is not np.ndarray or value.dtype != float or not value.size:
+        return False
+    ends = float(value.min()), float(value.max())
+    return all(abs(end) < ENDLESS and holds(end) for end in ends)
+
+
 def _check(
     name: str, value: Any, unit: str, holds: Callable[[Any], Any], limit: str, remedy: str
 ) -> None:
+    if _all_hold(value, holds):
+        return
     array = floats(Argument(name), value)
     if not array.size:
         raise InputError(f"{name} is empty", Argument(name), "Wanted: numbers", "Give one at least")

@@ -229,6 +229,10 @@ class MeshColumns(Record):
     @property
     def mesh_stiffness(self) -> Array:
         """Secant stiffness of all pairs together, tip corners included (n,) [N/m]."""
+        return self._mesh_stiffness
+
+    @cached_property
+    def _mesh_stiffness(self) -> Array:
         known = self.stiffness.sum(axis=1)
         return np.asarray(known + known * self.corner_share.sum(axis=1) / self.load_share.sum(1))
 
@@ -285,6 +289,12 @@ class MeshColumns(Record):
     def _directed_friction(self) -> Array:
         return self.sliding_direction * self.friction_coefficient
 
+    @cached_property
+    def _last_touch(self) -> tuple[int, int]:
+        """Knot and pair of the last contact before the pair leaves."""
+        last = int(np.flatnonzero(self.in_contact.any(axis=0))[-1])
+        return int(np.flatnonzero(self.in_contact[:, last])[-1]), last
+
     def by_share(self, column: Array) -> Array:
         """Sum a column over all pairs and tip corners, each with its part of the load.
 
@@ -298,7 +308,5 @@ class MeshColumns(Record):
         -------
         array (n,)
         """
-        last = int(np.flatnonzero(self.in_contact.any(axis=0))[-1])
-        leaving = int(np.flatnonzero(self.in_contact[:, last])[-1])
-        ends = np.array([column[0, 0], column[leaving, last]])
+        ends = np.array([column[0, 0], column[self._last_touch]])
         return np.asarray((column * self.load_share).sum(axis=1) + self.corner_share @ ends)

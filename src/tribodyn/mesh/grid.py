@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.monotone import monotone_cubic
-from tribodyn.types import Array, Index
+from tribodyn.recent import Recent
+from tribodyn.types import Array, ComplexArray, Index
 
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
 _LEAST_INTERVALS = 4
@@ -68,24 +68,18 @@ class PhaseGrid:
         starts, counts = np.array(self.event_phases), np.array(self.intervals)
         return starts, counts, np.diff(starts, append=1.0), np.cumsum(counts + 1) - counts - 1
 
-    def _between(self, phase: Array) -> tuple[Index, tuple[Array, ...]]:
-        """First of the four knots about each phase, and the weights of their cubic."""
+    def _between(self, phase: Array) -> tuple[Index, Array]:
+        """The four knots about each phase, and the weights of their cubic."""
         if not _FEWEST_KEPT <= phase.size <= _MOST_KEPT:
             return self._located(phase)
         # The tables of one case, and of all its operating points, are asked at the same phases.
-        key = phase.shape, phase.tobytes()
-        found = self._known.get(key)
-        if found is None:
-            if len(self._known) >= _KEPT:
-                self._known.clear()
-            found = self._known[key] = self._located(phase)
-        return found
+        return self._known.get((phase,), lambda: self._located(phase))
 
     @cached_property
-    def _known(self) -> dict[Any, tuple[Index, tuple[Array, ...]]]:
-        return {}
+    def _known(self) -> Recent[tuple[Index, Array]]:
+        return Recent(_KEPT)
 
-    def _located(self, phase: Array) -> tuple[Index, tuple[Array, ...]]:
+    def _located(self, phase: Array) -> tuple[Index, Array]:
         folded = np.mod(phase, 1.0)
         starts, counts, widths, knots = self._layout
         segment = np.searchsorted(starts, folded, side="right") - 1
@@ -99,7 +93,7 @@ class PhaseGrid:
             u * (u - 1.0) * (3.0 - u) / 2.0,
             u * (u - 1.0) * (u - 2.0) / 6.0,
         )
-        return np.asarray(knots[segment] + left), weights
+        return np.stack([knots[segment] + left + knot for knot in range(4)]), np.stack(weights)
 
     def mean(self, values: Array) -> Array:
         """Mean over the cycle by Simpson's rule in each segment.
@@ -116,6 +110,21 @@ class PhaseGrid:
         """
         means = self._weights @ values.reshape(len(values), -1)
         return np.asarray(means.reshape(values.shape[1:]))
+
+    def _harmonics(self, values: Array, count: int) -> Array:
+        """Peak amplitudes (count,) of the mesh harmonics 1, 2, ... of values (n,) at the knots."""
+        waves = self._waves(count) * values[:, None]
+        return np.asarray(2.0 * np.abs(self._weights @ waves))
+
+    def _waves(self, count: int) -> ComplexArray:
+        if count not in self._known_waves:
+            orders = np.arange(1, count + 1)
+            self._known_waves[count] = np.exp(-2j * np.pi * np.outer(self.phase, orders))
+        return self._known_waves[count]
+
+    @cached_property
+    def _known_waves(self) -> dict[int, ComplexArray]:
+        return {}
 
     @cached_property
     def _weights(self) -> Array:
@@ -153,13 +162,11 @@ class PhaseFunction:
 
     def __call__(self, phase: Array | float) -> Array:
         """Interpolate with the cubic through four knots; on an event the value after it."""
-        first, weights = self.grid._between(np.asarray(phase, dtype=float))
+        knots, weights = self.grid._between(np.asarray(phase, dtype=float))
         # Places last, so that every loop is long.
         columns = np.ascontiguousarray(self.values.reshape(len(self.values), -1).T)
-        total = np.zeros((len(columns), *first.shape))
-        for knot, weight in enumerate(weights):
-            total += weight * columns.take(first + knot, axis=1)
-        found = np.moveaxis(total, 0, -1).reshape(first.shape + self.values.shape[1:])
+        total = np.einsum("k...,ck...->c...", weights, columns.take(knots, axis=1))
+        found = np.moveaxis(total, 0, -1).reshape(knots.shape[1:] + self.values.shape[1:])
         return found if self.onto is None else np.asarray(found @ self.onto)
 
 

@@ -77,8 +77,7 @@ class MeshTable(MeshColumns):
         array (count,)
             Orders 1, 2, ... of the mesh frequency, in the unit of the column.
         """
-        wave = np.exp(-2j * np.pi * np.outer(self.phase, np.arange(1, count + 1)))
-        return np.asarray(2.0 * np.abs(self.grid.mean(wave * getattr(self, column)[:, None])))
+        return self.grid._harmonics(getattr(self, column), count)
 
     def at(self, column: str, phase: Array | float) -> Array:
         """Interpolate a column at any mesh phase.
@@ -140,7 +139,8 @@ class MeshTable(MeshColumns):
         return float(values[knot, number]) if self.in_contact[knot, number] else None
 
     def _columns(self) -> list[str]:
-        stored = [name for name, value in vars(self).items() if isinstance(value, np.ndarray)]
+        columns = {k: v for k, v in vars(self).items() if not k.startswith("_")}
+        stored = [name for name, value in columns.items() if isinstance(value, np.ndarray)]
         return [*stored, *(name for name in self.DERIVED if name != "phase")]
 
     def functions(self) -> MeshFunctions:

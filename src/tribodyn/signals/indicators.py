@@ -6,13 +6,13 @@ every step. Between these three samples a signal is a parabola, so that peaks ar
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from tribodyn.dynamics.time.response import FineSamples, Response, sample_extremes
 from tribodyn.errors import Argument, InputError, require_positive
+from tribodyn.recent import Recent
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array, ComplexArray
@@ -210,8 +210,12 @@ def line_of_action_indicator(samples: FineSamples, along: Array, across: Array) 
     >>> round(line_of_action_indicator(samples, wave, 0.25 * wave), 6)
     0.25
     """
-    base = float(alternating_rms(samples, along))
-    other = float(alternating_rms(samples, across))
+    return across_over_along(alternating_rms(samples, along), alternating_rms(samples, across))
+
+
+def across_over_along(along: Array | float, across: Array | float) -> float:
+    """Line-of-action indicator of two alternating rms."""
+    base, other = float(along), float(across)
     if base == 0.0:
         return float("inf") if other > 0.0 else 0.0
     return other / base
@@ -331,11 +335,13 @@ def mesh_harmonics(
 _KEPT = 10**6
 
 
-@lru_cache(maxsize=2)
-def _turns(orders: bytes, phase: bytes, weight: bytes) -> ComplexArray:
-    """Matrix of a transform: every order at all phases, weighted."""
-    order, turn, share = map(np.frombuffer, (orders, phase, weight))
-    return np.asarray(np.exp(-2j * np.pi * order[:, None] * turn) * share)
+_recent: Recent[tuple[Array, Array]] = Recent(2)
+
+
+def _turns(orders: Array, phase: Array, weight: Array) -> tuple[Array, Array]:
+    """Matrix of a transform: every order at all phases, weighted; real and imaginary part."""
+    turns = np.exp(-2j * np.pi * orders[:, None] * phase) * weight
+    return turns.real.copy(), turns.imag.copy()
 
 
 def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
@@ -346,9 +352,11 @@ def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
         why = f"With this step it is resolved up to harmonic {limit:.0f}, eight steps each"
         raise InputError(what, "argument count", why, "Use more steps per mesh cycle")
     _on(fine.phase.size, signal)
-    make = _turns if orders.size * fine.phase.size < _KEPT else _turns.__wrapped__
-    turns = make(orders.tobytes(), fine.phase.tobytes(), fine.weight.tobytes())
-    return np.asarray(2.0 * np.tensordot(turns, signal, axes=(1, 0)))
+    given = orders, fine.phase, fine.weight
+    small = orders.size * fine.phase.size < _KEPT
+    turns = _recent.get(given, lambda: _turns(*given)) if small else _turns(*given)
+    real, imaginary = (np.tensordot(part, signal, axes=(1, 0)) for part in turns)
+    return np.asarray(2.0 * (real + 1j * imaginary))
 
 
 @record

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import positive
 from tribodyn.errors import warn
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 
 class Groups(NamedTuple):
@@ -110,7 +110,7 @@ def film_formula(law: Callable[[Groups], Array]) -> FilmFormula:
     """Make a law of the dimensionless groups a formula of the six arguments in SI."""
 
     def value(*arguments: Any, **named: Any) -> Array:
-        return np.asarray(law(line_contact_groups(*arguments, **named)))[()]
+        return np.asarray(law(_groups(*arguments, **named)))[()]
 
     def formula(*arguments: Any, **named: Any) -> Array:
         return value(*arguments, **named)
@@ -156,15 +156,27 @@ def line_contact_groups(
     >>> round(float(groups.moes_load), 3), round(float(groups.moes_material), 2)
     (1.654, 19.82)
     """
-    load, radius, speed, viscosity, coefficient, modulus = np.broadcast_arrays(
-        *positive(
-            load_per_width=load_per_width,
-            equivalent_radius=equivalent_radius,
-            entrainment_speed=entrainment_speed,
-            dynamic_viscosity=dynamic_viscosity,
-            pressure_viscosity_coefficient=pressure_viscosity_coefficient,
-            effective_modulus=effective_modulus,
-        )
+    oil = dynamic_viscosity, pressure_viscosity_coefficient
+    groups = _groups(load_per_width, equivalent_radius, entrainment_speed, *oil, effective_modulus)
+    return Groups(*np.broadcast_arrays(*groups))
+
+
+def _groups(
+    load_per_width: ArrayLike,
+    equivalent_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    pressure_viscosity_coefficient: ArrayLike,
+    effective_modulus: ArrayLike,
+) -> Groups:
+    """The same groups, each of the shape of what it is made of: constants stay numbers."""
+    load, radius, speed, viscosity, coefficient, modulus = positive(
+        load_per_width=load_per_width,
+        equivalent_radius=equivalent_radius,
+        entrainment_speed=entrainment_speed,
+        dynamic_viscosity=dynamic_viscosity,
+        pressure_viscosity_coefficient=pressure_viscosity_coefficient,
+        effective_modulus=effective_modulus,
     )
     stiffness = modulus * radius
     return Groups(
@@ -207,13 +219,26 @@ def survey_film(load: Array, material: Array) -> Array:
     return np.asarray(np.maximum(isoviscous, thick))
 
 
+def _outside(load: tuple[Any, Any], material: tuple[Any, Any]) -> Mask:
+    """Whether contacts with numbers from the first to the second may be clearly elsewhere."""
+    rigid, elastic = rigid_piezoviscous(material[0]), elastic_piezoviscous(load[1], material[0])
+    isoviscous = np.maximum(rigid_isoviscous(load[0]), elastic_isoviscous(load[0]))
+    most = elastic_piezoviscous(load[0], material[1])
+    outside = (isoviscous > np.minimum(elastic, rigid)) | (rigid < _RIGID_SHARE * most)
+    return np.asarray(outside)
+
+
 def warn_outside_elastic_piezoviscous(groups: Groups, formula: str) -> None:
     """Warn once (``film-range``) where the survey diagram puts the contact clearly elsewhere."""
-    load, material = groups.moes_load, groups.moes_material
-    elastic = elastic_piezoviscous(load, material)
-    rigid = rigid_piezoviscous(material)
-    isoviscous = np.maximum(rigid_isoviscous(load), elastic_isoviscous(load))
-    outside = (isoviscous > np.minimum(elastic, rigid)) | (rigid < _RIGID_SHARE * elastic)
+    load = groups.moes_load
+    first, last = (
+        Groups(*(np.asarray(end(group)) for group in groups)).moes_material
+        for end in (np.min, np.max)
+    )
+    if not _outside((np.min(load), np.max(load)), (first, last)):
+        return  # none of them, as the worst of both would not be
+    load, material = np.broadcast_arrays(load, groups.moes_material)
+    outside = _outside((load, load), (material, material))
     if not np.any(outside):
         return
     low, high = np.min(load[outside]), np.max(load[outside])

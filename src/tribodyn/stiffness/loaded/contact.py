@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -11,8 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import Argument, InputError, collected, require_positive
-from tribodyn.gear import Material, SpurPair
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    ModelWarning,
+    collected,
+    require_positive,
+    warn,
+)
+from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.model import NO_OPTIONS
 from tribodyn.stiffness.loaded.problem import (
     Compliance,
@@ -31,6 +38,7 @@ from tribodyn.stiffness.loaded.problem import (
 )
 from tribodyn.stiffness.loaded.result import LoadedContact
 from tribodyn.stiffness.model import MODELS, StiffnessModel, usable_stiffness
+from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
 
@@ -46,7 +54,7 @@ def compliance_of(
     if model.influence is not None:
         reference = {**model.options, **options}["reference"]
         pinion, wheel = (
-            model.influence(gear, material, reference=reference)
+            _influence(model.influence, gear, material, reference)
             for gear in (pair.pinion, pair.wheel)
         )
         structure = coupled_compliance(pinion, wheel, places)
@@ -57,6 +65,22 @@ def compliance_of(
     checked = usable_stiffness(stiffness, places.on_path, model.name)
     structure = independent_compliance(checked, pair.common_face_width)
     return Compliance(structure, np.zeros(places.path.shape), 0.0)
+
+
+def _influence(*given: Any) -> GearInfluence:
+    """Structure of a gear by a model, which is the same under every load."""
+    influence, told = _known_influence(*given)
+    for warning in told:
+        warn(warning.code, warning.message, stacklevel=4)
+    return influence
+
+
+@lru_cache(maxsize=8)
+def _known_influence(
+    model: Callable[..., GearInfluence], gear: SpurGear, material: Material, reference: str
+) -> tuple[GearInfluence, list[ModelWarning]]:
+    with collected() as told:
+        return model(gear, material, reference=reference), told
 
 
 def contact_problem(

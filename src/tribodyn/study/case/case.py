@@ -6,17 +6,16 @@ from collections.abc import Mapping
 from copy import copy
 from functools import cached_property
 from inspect import Signature
-from pathlib import Path
 from typing import Any, ClassVar
 
 from tribodyn.errors import InputError
-from tribodyn.model import Option
 from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.data import CaseData
 from tribodyn.study.case.gears import is_needed
 from tribodyn.study.case.given import Given, Source, plain, unsound, without_spread
 from tribodyn.study.case.provenance import (
+    changed_after,
     effective_values,
     provenance,
     read_stated,
@@ -37,6 +36,11 @@ from tribodyn.study.case.values import (
 )
 from tribodyn.study.case.write import case_rows, case_table, case_toml
 
+#: What a case keeps that follows from its tables.
+_DERIVED = {
+    "_shared",
+    *(name for name, each in vars(CaseData).items() if isinstance(each, cached_property)),
+}
 #: Keys whose choice decides which other keys of their table are allowed, beside those that name
 #: models.
 _DECIDES = ("solver.method",)
@@ -69,8 +73,6 @@ class Case(CaseData, whole=True):
     """
 
     __signature__: ClassVar[Signature]
-    #: Once they were looked for: a case with other numbers names the same.
-    _files: dict[str, Path] | None = None
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         found = list(unsound(data))
@@ -106,8 +108,7 @@ class Case(CaseData, whole=True):
 
     def __getstate__(self) -> dict[str, Any]:
         """What makes a case, without what is derived from it."""
-        derived = {k for k, v in vars(CaseData).items() if isinstance(v, cached_property)}
-        return {key: value for key, value in vars(self).items() if key not in derived}
+        return {key: value for key, value in vars(self).items() if key not in _DERIVED}
 
     def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Case:
         """Return a new case with some values changed; it is checked as a whole.
@@ -156,7 +157,7 @@ class Case(CaseData, whole=True):
         if not base or self.origin not in (None, base.get("origin")):
             return None
         found: Case = object.__new__(type(self))
-        vars(found).update(self.__getstate__())
+        vars(found).update(self.__getstate__(), _shared=vars(self).setdefault("_shared", {}))
         numbers = {}
         for key, value in changes.items():
             table, _, name = key.partition(".")
@@ -178,14 +179,8 @@ class Case(CaseData, whole=True):
         found._effective, found._changed = self._effective | numbers, None
         found._given = self._given.with_numbers(changes)
         found._source = self._source.with_replaced(changes, "replace:")
+        changed_after(self, found, numbers)
         return found
-
-    def _named_files(self) -> dict[str, Path]:
-        """Files that the case names, by dotted key."""
-        if self._files is None:
-            values = dict(self.values())
-            self._files = {key: Path(values[key]) for key in file_keys() if values.get(key)}
-        return self._files
 
     def _chosen_by(self, changes: Mapping[str, Any]) -> dict[str, str]:
         """Models, laws and methods that changes choose anew, by key; unknown names are left out."""
@@ -242,16 +237,3 @@ class Case(CaseData, whole=True):
 
 
 Case.__signature__ = signature_of(Case)
-
-
-def file_keys() -> list[str]:
-    """Dotted keys of a case that name files."""
-    files = [key for key, option in derive.options_of(Case, "") if option.kind == "file"]
-    for table, field in Case.fields.items():
-        known = field.kind.known().keys if isinstance(field, Table) else {}
-        files += [
-            f"{table}.{name}"
-            for name, option in known.items()
-            if isinstance(option, Option) and option.kind == "file"
-        ]
-    return files

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError
@@ -13,7 +13,7 @@ from tribodyn.study.case import derive
 from tribodyn.study.case.gears import Gears
 from tribodyn.study.case.given import Given, Source, Stated
 from tribodyn.study.case.hypoid import hypoid_flanks
-from tribodyn.study.case.section import Section, flat, table
+from tribodyn.study.case.section import Whole, flat, table
 from tribodyn.study.case.sections import (
     Dynamics,
     Film,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh.table_file import TableFile
 
 
-class CaseData(Section):
+class CaseData(Whole):
     """All tables of a case, the objects of the physics that they make, and their origin."""
 
     title: str = text("Gear pair", meaning="one line that names this case", example='"My gear"')
@@ -90,7 +90,8 @@ class CaseData(Section):
         """
         if self.gears.kind != "spur":
             raise InputError(derive.no_gear_pair(self.gears.kind))
-        return derive.gear_pair(self.gears, self.dynamics.backlash)
+        pair = partial(derive.gear_pair, self.gears, self.dynamics.backlash)
+        return self._once("gear_pair", ("gears", "dynamics"), pair)
 
     @cached_property
     def hypoid_flanks(self) -> HypoidFlanks | None:
@@ -100,7 +101,7 @@ class CaseData(Section):
     @cached_property
     def material_properties(self) -> Material:
         """Material of both gears."""
-        return derive.material(self.material)
+        return self._once("material", ("material",), lambda: derive.material(self.material))
 
     def density(self, gear: str) -> float:
         """Density of one gear [kg/m^3]: its own, or that of the material.

@@ -11,11 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Problem, collected
-from tribodyn.model import Option
 from tribodyn.study.case.gears import Gear, Gears, Modification
 from tribodyn.study.case.hypoid import hypoid_flanks, levers
 from tribodyn.study.case.profile_map_file import read_profile_map
-from tribodyn.study.case.section import Section, Table
+from tribodyn.study.case.section import Section, options_of
 from tribodyn.study.case.sections import Losses, LubricantData, MaterialData
 
 if TYPE_CHECKING:
@@ -237,17 +236,6 @@ def _argument(problem: Problem) -> Argument | None:
 def _argument_keys() -> dict[str, str]:
     """Keys of the case file by the argument of the physics that they become."""
     return {o.argument: key for key, o in options_of(Section.whole, "") if o.argument}
-
-
-def options_of(section: type[Section], prefix: str) -> list[tuple[str, Option]]:
-    """Options of a table and of the tables in it, by their keys; those of models are left out."""
-    found: list[tuple[str, Option]] = []
-    for name, field in section.fields.items():
-        if isinstance(field, Table):
-            found += options_of(field.kind, f"{prefix}{name}.")
-        else:
-            found.append((f"{prefix}{name}", field))
-    return found
 
 
 def _key(problem: Problem, section: str) -> str:

@@ -7,7 +7,7 @@ Both are kept beside the values in force, so that a changed value never keeps th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -348,17 +348,37 @@ def changed_keys(case: CaseData) -> tuple[str, ...]:
 
 
 def _keys_that_changed(case: CaseData) -> tuple[str, ...]:
-    values, base, given = effective(case), case.stated.base, case.given
+    values, base = effective(case), case.stated.base
     if any(values.get(key) is None for key in base):
         derived = derived_values(case)
         values = {k: derived.get(k) if v is None else v for k, v in values.items()}
-    new = {
+    before = {**_defaults_before(case, values), **base}
+    return _in_order(case, differing(before, values) - set(_WORDS))
+
+
+def _defaults_before(case: CaseData, keys: Iterable[str]) -> dict[str, Any]:
+    """What was in force of keys that are given now, while the case began without them."""
+    return {
         key: default_of(case, key)
-        for key in values
-        if key in given and key not in base and case.assumed.get(key) != DEFAULT_MARK
+        for key in keys
+        if key in case.given
+        and key not in case.stated.base
+        and case.assumed.get(key) != DEFAULT_MARK
     }
-    changed = differing({**new, **base}, values) - set(_WORDS)
-    return tuple(key for key in dict.fromkeys((*values, *base)) if key in changed)
+
+
+def _in_order(case: CaseData, changed: Set[str]) -> tuple[str, ...]:
+    return tuple(k for k in dict.fromkeys((*case._effective, *case.stated.base)) if k in changed)
+
+
+def changed_after(before: CaseData, case: CaseData, numbers: Mapping[str, Any]) -> None:
+    """Tell a case with other numbers which keys differ: those of the case before, and these."""
+    base = case.stated.base
+    if any(case._effective.get(key) is None for key in base):
+        return  # what is derived in its place may follow from the numbers
+    was = {**_defaults_before(case, numbers), **{k: base[k] for k in numbers if k in base}}
+    changed = set(changed_keys(before)) - set(numbers) | differing(was, case._effective)
+    case._changed = _in_order(case, changed)
 
 
 def _marked(case: CaseData, key: str, value: Any, changed: tuple[str, ...]) -> str:

@@ -13,8 +13,9 @@ from typing import Any
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
 from tribodyn.stored import read_bytes
-from tribodyn.study.case.case import Case, file_keys
+from tribodyn.study.case.case import Case
 from tribodyn.study.case.given import Source
+from tribodyn.study.case.section import file_keys
 
 _SPACE = " \t\r"
 

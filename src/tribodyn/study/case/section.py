@@ -6,13 +6,16 @@ model beside its own. An option of another model is told to belong there, any ot
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from inspect import Parameter, Signature
-from typing import Any, ClassVar, NamedTuple
+from pathlib import Path
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from tribodyn.errors import InputError
 from tribodyn.model import Model, Models, Option
+
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
@@ -143,6 +146,59 @@ def section_at(path: tuple[str, ...]) -> type[Section] | None:
             return None
         section = table.kind
     return section
+
+
+def options_of(section: type[Section], prefix: str) -> list[tuple[str, Option]]:
+    """Options of a table and of the tables in it, by their keys; those of models are left out."""
+    found: list[tuple[str, Option]] = []
+    for name, field in section.fields.items():
+        if isinstance(field, Table):
+            found += options_of(field.kind, f"{prefix}{name}.")
+        else:
+            found.append((f"{prefix}{name}", field))
+    return found
+
+
+def file_keys() -> list[str]:
+    """Dotted keys of a case that name files."""
+    files = [key for key, option in options_of(Section.whole, "") if option.kind == "file"]
+    for table, field in Section.whole.fields.items():
+        known = field.kind.known().keys if isinstance(field, Table) else {}
+        files += [
+            f"{table}.{name}"
+            for name, option in known.items()
+            if isinstance(option, Option) and option.kind == "file"
+        ]
+    return files
+
+
+class Whole(Section):
+    """The table of all tables, with what follows from some of them."""
+
+    #: Once they were looked for: a case with other numbers names the same.
+    _files: dict[str, Path] | None = None
+
+    def _once(self, name: str, tables: tuple[str, ...], compute: Callable[[], Value]) -> Value:
+        """What follows from some tables alone: computed once for all cases that share them all.
+
+        Nobody changes it.
+        """
+        if self._named_files():  # they may change
+            return compute()
+        shared = vars(self).setdefault("_shared", {})
+        own = tuple(vars(self)[table] for table in tables)
+        known = shared.get(name)
+        if known is None or any(one is not other for one, other in zip(known[0], own, strict=True)):
+            known = shared[name] = own, compute()
+        found: Value = known[1]
+        return found
+
+    def _named_files(self) -> dict[str, Path]:
+        """Files that the case names, by dotted key."""
+        if self._files is None:
+            values = flat(self)
+            self._files = {key: Path(values[key]) for key in file_keys() if values.get(key)}
+        return self._files
 
 
 class Choice(NamedTuple):

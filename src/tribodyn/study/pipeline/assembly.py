@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -41,17 +40,15 @@ def geometry(case: Case) -> dict[str, float]:
         return _of_mesh_table(case, case.mesh_table)
     if case.hypoid_flanks is not None:
         return _of_hypoid(case, case.hypoid_flanks)
-    gears = case.gear_pair, case.density("pinion"), case.density("wheel"), case.backlash
-    return dict(_of_spur(*gears))
+    found = case._once("geometry", ("gears", "dynamics", "material"), lambda: _of_spur(case))
+    return dict(found)
 
 
-@lru_cache(maxsize=8)
-def _of_spur(
-    pair: SpurPair, density_pinion: float, density_wheel: float, backlash: float
-) -> dict[str, float]:
-    """Geometry of a spur pair; a study asks for it at every operating point."""
+def _of_spur(case: Case) -> dict[str, float]:
+    """Geometry of a spur pair."""
     from tribodyn.contact import gear_loss_factor, path_of_contact
 
+    pair = case.gear_pair
     values = {
         "transverse_contact_ratio": pair.transverse_contact_ratio,
         "gear_ratio": pair.ratio,
@@ -61,14 +58,14 @@ def _of_spur(
         "base_pitch": pair.base_pitch,
         "line_of_action_length": pair.line_of_action_length,
         "common_face_width": pair.common_face_width,
-        "backlash": backlash,
+        "backlash": case.backlash,
         "gear_loss_factor": gear_loss_factor(pair),
     }
     for place, angle in path_of_contact(pair).roll_angles.items():
         values[f"roll_angle_{place}"] = angle
     bodies = {
-        "pinion": _body(pair.pinion, density_pinion),
-        "wheel": _body(pair.wheel, density_wheel),
+        "pinion": _body(pair.pinion, case.density("pinion")),
+        "wheel": _body(pair.wheel, case.density("wheel")),
     }
     for key in bodies["pinion"]:
         for name, body in bodies.items():
@@ -209,6 +206,8 @@ def _supports(case: Case, masses: tuple[float, float]) -> tuple[float, float]:
 def static_error(case: Case, phase: Array | float) -> Array:
     """Static transmission error of a case: a cosine at mesh frequency."""
     amplitude = case.dynamics.transmission_error_amplitude
+    if amplitude == 0.0:
+        return np.zeros(np.shape(phase))
     angle = 2.0 * np.pi * np.asarray(phase) + case.dynamics.transmission_error_phase
     return np.asarray(amplitude * np.cos(angle))
 

@@ -47,6 +47,11 @@ def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
         return hypoid_warnings(case.gears)
     if case.gears.kind == "table":
         return ()
+    tables = ("gears", "dynamics", "material", "stiffness", "film")
+    return case._once("cautions", tables, lambda: _of_gears(case))
+
+
+def _of_gears(case: Case) -> tuple[ModelWarning, ...]:
     pair = case.gear_pair
     found = list(gear_warnings(case.gears, case.dynamics.backlash))
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):

@@ -39,7 +39,9 @@ def centre_column(names: Sequence[str], gear: str, axis: str) -> int | None:
 def measured(response: Response) -> FineSamples:
     """Samples over which the figures of a summary are taken."""
     fine = response.fine
-    first = 0 if is_steady(response) else response.periods // 2
+    if is_steady(response):
+        return replace(fine, weight=fine.weight / fine.weight.sum())
+    first = response.periods // 2
     skipped = fine.phase.size * first // response.periods
     part = replace(fine, **{f.name: getattr(fine, f.name)[skipped:] for f in fields(fine)})
     return replace(part, phase=part.phase - first, weight=part.weight / part.weight.sum())
@@ -53,7 +55,8 @@ def one_sided_phase(samples: FineSamples) -> Array:
 
 def mesh_force(samples: FineSamples) -> Array:
     """Force of the mesh: the sum over the ramps of its force law, damping included."""
-    return np.asarray(samples.contact_force.sum(axis=1))
+    force = samples.contact_force
+    return force[:, 0] if force.shape[1] == 1 else np.asarray(force.sum(axis=1))
 
 
 def compression(samples: FineSamples) -> Array:
@@ -87,8 +90,9 @@ def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
 
 def support_forces(system: System, samples: FineSamples) -> Array:
     """Forces of the bodies on their supports, from springs and dampers together."""
-    stiffness, damping = np.asarray(system.stiffness), np.asarray(system.damping)
-    return np.asarray(samples.position @ stiffness.T + samples.velocity @ damping.T)
+    forces = samples.position @ np.asarray(system.stiffness).T
+    forces += samples.velocity @ np.asarray(system.damping).T
+    return np.asarray(forces)
 
 
 #: Most that the series of a motion take in a file [bytes].
@@ -128,11 +132,11 @@ def _sided(samples: Any) -> Array:
 def friction_forces(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Friction force of all pairs, and what of it films and asperities cause where that is told."""
     from tribodyn.mesh.functions import ASPERITIES
-    from tribodyn.mesh.grid import PhaseFunction
 
     force, phase, law = mesh_force(samples), _sided(samples), result.friction
     if law is None:
-        rubbing = PhaseFunction(result.mesh.grid, result.mesh.friction_sum)(phase) * force
+        channels: Any = result.mesh.functions()
+        rubbing = channels.friction_sum(phase) * force
         split = result.mesh.asperity_friction_coefficient is not None
         metal = result.mesh.at(ASPERITIES, phase) * force if split else None
     else:

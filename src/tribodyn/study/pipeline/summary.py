@@ -28,6 +28,7 @@ from tribodyn.study.pipeline.series import (
     tooth_force,
     transmission_error,
 )
+from tribodyn.types import Array
 from tribodyn.units import format_quantity
 
 if TYPE_CHECKING:
@@ -260,24 +261,29 @@ def _error_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
 
 def _friction_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     from tribodyn.analysis import mean, rms
+    from tribodyn.mesh.grid import PhaseFunction
 
     mesh, force, phase = result.mesh, mesh_force(samples), one_sided_phase(samples)
-
-    def friction(name: str) -> Any:
-        """Friction or its moment: a friction sum times the force of the teeth."""
-        if result.friction is None:
-            return getattr(mesh.functions(), name)(phase) * force
-        return result.friction.value(name, phase, force) * force
-
     # The surfaces of both gears move along the same friction: what one gains the other loses.
-    wheel_speed = mesh.pinion_speed / result.case.gear_ratio
-    lost = mesh.pinion_speed * friction("friction_moment_pinion")
-    lost = lost - wheel_speed * friction("friction_moment_wheel")
+    speeds = mesh.pinion_speed, mesh.pinion_speed / result.case.gear_ratio
+    names = "friction_moment_pinion", "friction_moment_wheel"
+    if result.friction is None:
+        moments = (getattr(mesh.functions(), name).values for name in names)
+        lost = PhaseFunction(mesh.grid, _less(speeds, moments))(phase) * force
+    else:
+        moments = (result.friction.value(name, phase, force) for name in names)
+        lost = _less(speeds, moments) * force
     forces = friction_forces(result, samples)
     return {
         **{f"rms_{name}": rms(samples, values) for name, (values, *_) in forces.items()},
         "mean_friction_power": mean(samples, lost),
     }
+
+
+def _less(speeds: tuple[float, float], moments: Iterable[Array]) -> Array:
+    """Power of a moment on the pinion less that of one on the wheel."""
+    pinion, wheel = (speed * moment for speed, moment in zip(speeds, moments, strict=True))
+    return pinion - wheel
 
 
 def _hypoid_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
@@ -323,7 +329,8 @@ def _comparison(result: Computed) -> dict[str, Any]:
 
 def _support_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     """Forces on the supports and accelerations of the gear centres."""
-    from tribodyn.analysis import alternating_rms, line_of_action_indicator, mean
+    from tribodyn.analysis import alternating_rms, mean
+    from tribodyn.signals.indicators import across_over_along
 
     def column(gear: str, letter: str) -> int | None:
         return centre_column(result.response.names, gear, letter)
@@ -339,15 +346,14 @@ def _support_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
         for direction, (letter, _) in directions_of(names).items()
     }
     for kind, signals in (("bearing_force", forces), ("acceleration", samples.acceleration)):
-        rms, means = alternating_rms(samples, signals), mean(samples, signals)
-        for place, number in columns.items():
-            figures[f"rms_{kind}_{place}"] = rms[number]
-            if "pinion_z" in names and kind == "bearing_force":
-                figures[f"mean_{kind}_{place}"] = means[number]
+        rms = alternating_rms(samples, signals)
+        figures |= {f"rms_{kind}_{place}": rms[number] for place, number in columns.items()}
     if "pinion_z" in names:
-        return figures
-    along, across = (forces[:, column("pinion", letter)] for letter in "yx")
-    indicator = line_of_action_indicator(samples, along, across)
+        means = mean(samples, forces)
+        means_of = {f"mean_bearing_force_{place}": means[n] for place, n in columns.items()}
+        return figures | means_of
+    along, across = (figures[f"rms_bearing_force_{d}_pinion"] for d in ("loa", "oloa"))
+    indicator = across_over_along(along, across)
     if np.isfinite(indicator):
         figures["line_of_action_indicator"] = indicator
     return figures

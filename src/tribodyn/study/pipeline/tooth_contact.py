@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: Load over the nominal load below which friction may be missing.
 _LIGHT = 0.3
+#: Tables of a case that its tooth contact depends on, beside speed and load.
+_OF_CONTACT = ("gears", "material", "lubricant", "film", "stiffness", "friction")
 #: Phase intervals of a rehearsal.
 _FEWEST = 16
 
@@ -46,12 +48,15 @@ def contact_settings(case: Case) -> ToothContact:
     """Settings of the tooth contact of a case."""
     from tribodyn.mesh.sharing import ToothContact
 
-    return ToothContact(
-        friction_law=case.friction.law,
-        friction_options=chosen_options(case, "friction"),
-        bodies=case.thermal_contact_coefficients,
-        **model_settings(case),
-    )
+    def settings() -> ToothContact:
+        return ToothContact(
+            friction_law=case.friction.law,
+            friction_options=chosen_options(case, "friction"),
+            bodies=case.thermal_contact_coefficients,
+            **model_settings(case),
+        )
+
+    return case._once("contact_settings", _OF_CONTACT, settings)
 
 
 def mesh_of(
