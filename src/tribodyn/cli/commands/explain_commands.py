@@ -158,8 +158,9 @@ def _choices() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     from tribodyn.study.pipeline.citations import sources_of
 
     told = explanations()
+    named = [(key, spec.names()) for key, spec, _ in case_keys() if spec.names]
     for name, meaning in choice_meanings().items():
-        keys = [key for key, spec, _ in case_keys() if spec.names and name in spec.names()]
+        keys = [key for key, names in named if name in names]
         yield (
             (name,),
             {
