@@ -48,11 +48,20 @@ class OrbitCoordinates:
         """Inverse of ``lower``."""
         return np.asarray(np.linalg.inv(self.lower))
 
+    @cached_property
+    def _reducing(self) -> Array:
+        """Matrix (2 n, e + v) that reduces a state, without the weight of positions."""
+        size, count = self.elastic.shape
+        matrix = np.zeros((2 * size, count + self.moving.shape[1]))
+        matrix[:size, :count] = self.lower @ self.elastic
+        matrix[size:, count:] = self.lower @ self.moving
+        return matrix
+
     def reduce(self, state: Array) -> Array:
         """State (..., 2 n) to reduced vector (..., e + v)."""
-        size = self.lower.shape[0]
-        q, v = state[..., :size] @ self.lower, state[..., size:] @ self.lower
-        return np.concatenate((self.rate * (q @ self.elastic), v @ self.moving), axis=-1)
+        reduced = state @ self._reducing
+        reduced[..., : self.elastic.shape[1]] *= self.rate
+        return np.asarray(reduced)
 
     def expand(self, reduced: Array) -> Array:
         """Reduced vector (..., e + v) to state (..., 2 n), with the free motions at rest."""
@@ -195,10 +204,12 @@ def balanced_position(system: System, nodes: Nodes, carrying: Array, push: Array
     """Position at rest if each newton of a contact pushes with ``push`` (..., contacts, n)."""
     shape = (*push.shape[:-4], -1, system.size)
     along = np.broadcast_to(nodes.direction, push.shape).reshape(shape)
-    pushed = ((nodes.weight[..., None] * carrying)[..., None] * push).reshape(shape)
-    stiffness = system.stiffness + np.swapaxes(pushed, -1, -2) @ along
     shift = (nodes.error + nodes.gap).reshape(*shape[:-1], 1)
-    force = np.einsum("...rs,...rsi->...i", nodes.weight, nodes.force) + (pushed * shift).sum(-2)
+    weight = nodes.weight[..., None] * carrying
+    pushed = (weight[..., None] * push).reshape(shape)
+    sums = np.swapaxes(pushed, -1, -2) @ np.concatenate((along, shift), axis=-1)
+    stiffness = system.stiffness + sums[..., :-1]
+    force = np.einsum("...rs,...rsi->...i", nodes.weight, nodes.force) + sums[..., -1]
     # Least squares in mass-weighted coordinates: free motions get no displacement.
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
     matrix = np.asarray(stiffness, dtype=float) * np.outer(scale, scale)

@@ -192,7 +192,7 @@ class _Touch(NamedTuple):
     def stays(self, rates: Array, matrix: Array, distance: Array) -> Mask:
         """Whether motions beside orbits reach them without parting."""
         least, kept = self.room.min(axis=1), self.kept
-        steepest = np.sqrt((rates**2).sum(axis=-1).max(axis=1))
+        steepest = _greatest(rates)
         first = np.abs(rates @ distance[..., None])[..., 0].max(axis=1)
         going = kept.copy()
         for _ in range(HORIZON):
@@ -211,6 +211,11 @@ class _Touch(NamedTuple):
 
 def _times(matrix: Array, vector: Array) -> Array:
     return np.asarray((matrix @ vector[..., None])[..., 0])
+
+
+def _greatest(rows: Array) -> Array:
+    """Greatest size of the vectors (p, rows, k) of each."""
+    return np.asarray(np.sqrt(np.einsum("prk,prk->pr", rows, rows).max(axis=1)))
 
 
 class _Orbits(NamedTuple):
@@ -259,7 +264,7 @@ def _orbits(group: _Group) -> _Orbits:
     phase = np.append(nodes.phase[0, :, 0], 1.0)
     take_drift_out(group.coordinates, phase[:, None] / group.beat[:, None, None], states)
     reduced = group.coordinates.reduce(states)
-    scale = np.linalg.norm(reduced, axis=-1).max(axis=1)
+    scale = _greatest(reduced)
     error = distance / scale
     held = matrix if group.balance is None else matrix[:, :-1, :-1]
     values = np.linalg.eigvals(held).astype(complex)
@@ -291,8 +296,9 @@ def _step_errors(group: _Group, orbits: _Orbits) -> Array:
         left = left[((way < 0.5 * last) & (far <= OTHER * orbits.scale))[left]]
         at[left] += step[left]
         near = ((way <= CLOSE * far) | (way <= 1e-9 * orbits.scale))[left]
-        moved[left[near]] = step[left[near]]
-        fine[left[near]] = group.coordinates.reduce(states)[left[near]]
+        if near.any():
+            moved[left[near]] = step[left[near]]
+            fine[left[near]] = group.coordinates.reduce(states)[left[near]]
         left = left[~near]
     ended = np.flatnonzero(~np.isnan(fine[:, 0, 0]))
 
@@ -302,8 +308,7 @@ def _step_errors(group: _Group, orbits: _Orbits) -> Array:
     # What is left of the way moves both motions alike.
     group.march(group.whole, orbits.point + moved, ended, coarse)
     fine += group.coordinates.reduce(states) - orbits.reduced
-    apart = np.linalg.norm(fine - orbits.reduced, axis=-1).max(axis=1)
-    return np.asarray(apart / np.linalg.norm(fine, axis=-1).max(axis=1))
+    return _greatest(fine - orbits.reduced) / _greatest(fine)
 
 
 def _responses(group: _Group) -> list[Response | None]:
