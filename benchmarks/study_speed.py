@@ -42,7 +42,7 @@ def main(words: Sequence[str] | None = None) -> None:
     from distributed import Client, LocalCluster
 
     quick = arguments(__doc__, words).quick
-    speeds, loads, chunk = (4, 4, 8) if quick else (100, 50, 100)
+    speeds, loads, chunk = (4, 4, 8) if quick else (200, 100, 1000)
     study = read_study(STUDY.format(chunk=chunk, speeds=speeds, loads=loads))
     members, chunks = study.layout.count, -(-study.layout.count // chunk)
     plan = Plan(study.layout, [{**study.layout.facts(), "chunk": chunk}])
@@ -69,7 +69,9 @@ def main(words: Sequence[str] | None = None) -> None:
         told(f"all threads ({os.cpu_count()}), into a store", timed(stored()), members, bare)
         for count in () if quick else (1, 2):
             with (
-                LocalCluster(count, threads_per_worker=1, dashboard_address=None) as cluster,
+                LocalCluster(
+                    n_workers=count, threads_per_worker=1, dashboard_address=None
+                ) as cluster,
                 Client(cluster) as client,
             ):
                 client.run(warm, STUDY.format(chunk=8, speeds=4, loads=2))

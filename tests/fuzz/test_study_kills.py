@@ -90,7 +90,9 @@ def test_workers_of_a_cluster_killed_at_any_moment(
 ) -> None:
     distributed = pytest.importorskip("distributed")
     with (
-        distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None
+        ) as cluster,
         distributed.Client(cluster) as client,
     ):
         words = ["study", "s.toml", "--out", "r", "--scheduler", cluster.scheduler_address]

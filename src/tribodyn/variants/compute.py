@@ -35,6 +35,14 @@ class Part(NamedTuple):
     warned: list[str]  #: codes of warnings of the models, with blanks between
 
 
+class Stored(NamedTuple):
+    """What came of a chunk, as it is written into the store."""
+
+    content: bytes  #: of its file
+    failed: list[str]  #: why a member has nothing; empty where it has
+    figures: list[str]
+
+
 class Job(NamedTuple):
     """What is sent to whoever computes a chunk."""
 
@@ -53,7 +61,12 @@ class Job(NamedTuple):
         absent = np.full(len(part.failed), np.nan)
         return part._replace(figures={name: part.figures.get(name, absent) for name in names})
 
-    def encoded(self, part: Part) -> bytes:
+    def stored(self, progress: Progress = SILENT) -> Stored:
+        """Compute the members and encode what came of them, which a worker so does as well."""
+        part = self.compute(progress)
+        return Stored(self._encoded(part), part.failed, [*part.figures])
+
+    def _encoded(self, part: Part) -> bytes:
         """Result as netCDF; made in memory, since HDF5 takes a full disk badly."""
         import h5netcdf
 

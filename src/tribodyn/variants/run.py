@@ -14,13 +14,13 @@ from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import alone
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.processes import helpers
-from tribodyn.variants.compute import Job, Part
+from tribodyn.variants.compute import Job, Stored
 from tribodyn.variants.members import Chunk
 from tribodyn.variants.store import Store, StudyState
 from tribodyn.variants.study_file import Study, load_study
 
 Jobs = Iterable[tuple[Chunk, Job]]
-Results = Iterator[tuple[Chunk, Part | Exception]]
+Results = Iterator[tuple[Chunk, Stored | Exception]]
 
 #: Chunks that fail as a whole before any is finished, after which nothing else is tried.
 _HOPELESS = 3
@@ -77,11 +77,11 @@ def run_study(
         progress.start("Members", total)
         progress.advance(total - sum(chunk.end - chunk.begin for chunk in left))
         jobs = ((chunk, place.job(chunk)) for chunk in left)
-        for chunk, part in compute(jobs, progress):
-            if isinstance(part, Part):
-                place.put(chunk, part)
+        for chunk, found in compute(jobs, progress):
+            if isinstance(found, Stored):
+                place.put(chunk, found)
             else:
-                missing[chunk.name] = f"{type(part).__name__}: {part}"
+                missing[chunk.name] = f"{type(found).__name__}: {found}"
                 _give_up(missing, len(place.left()) == len(left))
         progress.finish()
         return place.state(missing)
@@ -101,7 +101,7 @@ def _here(jobs: Jobs, progress: Progress) -> Results:
     with helpers():
         for chunk, job in jobs:
             try:
-                yield chunk, job.compute(_Within(progress))
+                yield chunk, job.stored(_Within(progress))
             except (ImportError, MemoryError, OSError) as error:
                 yield chunk, error
 
@@ -119,13 +119,13 @@ class _Within:
         """End nothing."""
 
 
-def compute_alone(version: str, job: Job) -> Part:
+def compute_alone(version: str, job: Job) -> Stored:
     """Compute a chunk in one thread of a worker."""
     if version != tribodyn.__version__:
         what = f"a worker has version {tribodyn.__version__} of tribodyn, the study {version}"
         raise InputError(what, "", "", "Install the same version on all machines")
     with alone():
-        return job.compute()
+        return job.stored()
 
 
 @contextmanager
@@ -181,11 +181,11 @@ def _on_workers(client: Any, jobs: Jobs, progress: Progress) -> Results:
     for future in ended:
         chunk = running.pop(future)
         try:
-            part: Part | Exception = future.result()
+            found: Stored | Exception = future.result()
             progress.advance(chunk.end - chunk.begin)
         except Exception as error:
             if client.status != "running":
                 raise
-            part = error
-        yield chunk, part
+            found = error
+        yield chunk, found
         fill()

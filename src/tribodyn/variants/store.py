@@ -24,7 +24,7 @@ from tribodyn.files import lock, whole
 from tribodyn.members import NAME, Members, read_lines
 from tribodyn.stored import read_bytes
 from tribodyn.study.studies.grid import identity
-from tribodyn.variants.compute import Job, Part
+from tribodyn.variants.compute import Job, Stored
 from tribodyn.variants.members import Chunk, Plan, layout_of
 
 if TYPE_CHECKING:
@@ -229,24 +229,23 @@ class Store:
         """Chunks that are to be computed."""
         return [chunk for chunk in self.plan.chunks if chunk.name not in self.chunks]
 
-    def put(self, chunk: Chunk, part: Part) -> None:
+    def put(self, chunk: Chunk, found: Stored) -> None:
         """Write a chunk, then tell that it is there."""
         path = chunk_path(self.folder, chunk.name)
-        content = self.job(chunk).encoded(part)
         with quiet("leftover"):
             with suppress(OSError):  # whole() tells what is wrong
                 path.parent.mkdir(exist_ok=True)
             with whole(path) as partial:
-                partial.write_bytes(content)
+                partial.write_bytes(found.content)
         told: dict[str, int] = {}
-        for reason in filter(None, part.failed):
+        for reason in filter(None, found.failed):
             told[reason] = told.get(reason, 0) + 1
         facts = {
-            "members": len(part.failed),
+            "members": len(found.failed),
             "failed": sum(told.values()),
             "reasons": dict(sorted(told.items(), key=lambda item: -item[1])[:_REASONS]),
-            "figures": list(part.figures),
-            "crc": zlib.crc32(content),
+            "figures": found.figures,
+            "crc": zlib.crc32(found.content),
             "time": time.time(),
         }
         self.members.keep(chunk.name, facts)

@@ -99,7 +99,7 @@ def test_a_study_grows_while_it_is_unfinished_and_never_shrinks(tmp_path: Path) 
     place = tmp_path / "s"
     with Store(read_study(grid()), place) as first:
         for chunk in first.left()[2:5]:
-            first.put(chunk, first.job(chunk).compute())
+            first.put(chunk, first.job(chunk).stored())
     part = open_study(place)
     assert int((part["failed"] == "not computed yet").sum()) == 18
     assert study_state(place).done == 12
