@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
+from tribodyn.dynamics.orbits.side_by_side import _Group
 from tribodyn.errors import quiet
 from tribodyn.study.pipeline.run import Begun, begin, computed, move_together
 
@@ -63,3 +64,16 @@ def test_a_motion_depends_on_no_other(cases: list[td.Case], together: list[Begun
     with quiet():
         move_together(alone)
     assert alone[0].response == together[1].response
+
+
+def test_a_motion_that_ends_takes_no_other_with_it(cases: list[td.Case]) -> None:
+    points = [begin(case) for case in cases[:2]]
+    frequencies = np.array([point.mesh.mesh_frequency for point in points])
+    group = _Group([point.system for point in points], frequencies, 1024)
+    state, every = group.coordinates.expand(group.start()), np.arange(2)
+    given = 1.0 / frequencies, group.program.constant_load
+    alone = dict(group.whole.march(*given, state, every))
+    state[0] = np.inf
+    beside = dict(group.whole.march(*given, state, every))
+    assert np.isnan(beside[0]).all()
+    assert np.array_equal(beside[1], alone[1])

@@ -32,7 +32,7 @@ Block = TypeVar("Block", bound="LaneBlock")
 WIDTH = 16
 #: Lanes of one block whose rows differ: these stream from memory, which more lanes do not help.
 #: Fewer lanes than these march one by one.
-_OWN_ROWS = 4
+OWN_ROWS = 4
 #: Steps of all lanes, times coordinates and contacts, that take a few milliseconds together.
 _BRIEF = 200_000
 
@@ -79,7 +79,7 @@ class LaneBlock:
 def lane_blocks(lanes: int, width: int | None = None, *, own_rows: bool = False) -> list[LaneBlock]:
     """Divide lanes into blocks."""
     if width is None:
-        width = 1 if lanes < _OWN_ROWS else _OWN_ROWS if own_rows else WIDTH
+        width = 1 if lanes < OWN_ROWS else OWN_ROWS if own_rows else WIDTH
     return [
         LaneBlock(np.minimum(np.arange(first, first + width), lanes - 1), min(width, lanes - first))
         for first in range(0, lanes, width)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -59,7 +60,7 @@ class Compiled:
         if not (scaled or split or self.members):
             return (self.program,)
         if (scaled, split) not in self._programs:
-            options = {"scaled": scaled, "split": split}
+            options: dict[str, Any] = {"scaled": scaled, "split": split}
             pairs = [(member.system, member.nodes) for member in self.each(1)]
 
             def build(pattern: Mask | None) -> tuple[Program, ...]:

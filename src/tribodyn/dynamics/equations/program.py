@@ -8,6 +8,7 @@ Lanes that scale their contacts have the same rows: the factors are numbers of t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -85,7 +86,7 @@ def compile_system(
     return grid, nodes, build_program(system, grid, nodes)
 
 
-#: Steps whose rows are written at a time, so that they stay in the memory near a core.
+#: Rows that are written at a time, of all lanes, so that they stay in the memory near a core.
 _BLOCK = 256
 
 
@@ -122,17 +123,34 @@ class _Terms:
         """All factors of a row side by side."""
         wide = [np.broadcast_to(values, self.shape) for values in self.factors or [0.0]]
         rows = np.empty((*self.shape, len(wide)))
-        varying = [item for item, values in enumerate(wide) if any(values.strides[-2:])]
         for lead in np.ndindex(*self.shape[:-2]):
-            own, table = [values[lead] for values in wide], rows[lead]
-            same = np.tile([values[0, 0] for values in own], (min(_BLOCK, len(table)), 3, 1))
-            for first in range(0, len(table), _BLOCK):
-                block = slice(first, first + _BLOCK)
-                part = table[block]
-                part[...] = same[: len(part)]
-                for item in varying:
-                    part[..., item] = own[item][block]
+            _fill(rows[lead], [values[lead] for values in wide])
         return rows.reshape(*self.shape[:-2], -1)
+
+    def rows_of_lanes(self, blocks: Sequence[Index]) -> Array:
+        """The same (blocks, items, lanes), each lane of a block with the rows of its system."""
+        wide = [np.broadcast_to(values, self.shape) for values in self.factors or [0.0]]
+        rows = np.empty((len(blocks), *self.shape[1:], len(wide), len(blocks[0])))
+        for table, lanes in zip(rows, blocks, strict=True):
+            few = [once(values) for values in wide]
+            some = [values[lanes] if len(values) > 1 else values for values in few]
+            shape = len(lanes), *self.shape[1:]
+            _fill(table, [np.moveaxis(np.broadcast_to(each, shape), 0, -1) for each in some])
+        return rows.reshape(len(blocks), -1, rows.shape[-1])
+
+
+def _fill(table: Array, columns: Sequence[Array]) -> None:
+    """Write columns (steps, 3, ...) into a table (steps, 3, columns, ...)."""
+    varying = [item for item, values in enumerate(columns) if any(values.strides[:2])]
+    size = max(1, _BLOCK // int(np.prod(table.shape[3:])))
+    start = np.stack([values[0, 0] for values in columns])
+    same = np.broadcast_to(start, (min(size, len(table)), *table.shape[1:])).copy()
+    for first in range(0, len(table), size):
+        block = slice(first, first + size)
+        part = table[block]
+        part[...] = same[: len(part)]
+        for item in varying:
+            part[:, :, item] = columns[item][block]
 
 
 def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> list[int]:
@@ -207,15 +225,19 @@ def build_program(
     scaled: bool = False,
     split: bool = False,
     pattern: Mask | None = None,
+    blocks: Sequence[Index] = (),
 ) -> Program:
-    """Flatten a system on its grid; or several alike, whose rows have a first axis more."""
+    """Flatten a system on its grid; or several alike, whose rows have a first axis more.
+
+    With the systems of lanes, in ``blocks``, that axis is one of the blocks, the last of the lanes.
+    """
     size, contacts = system.size, len(system.contacts)
     slots = lay_out(size, contacts, len(system.frictions) + (contacts if split else 0))
     terms = _Terms(nodes.phase.shape, pattern)
     lists = _contact_terms(system, nodes, terms, 2 * int(scaled))
     lists += _friction_terms(system, nodes, terms, slots, split)
     own, varies = _coordinate_terms(system, nodes, terms, slots, split)
-    rows = terms.rows()
+    rows = terms.rows_of_lanes(blocks) if blocks else terms.rows()
     relative = np.array(terms.slots, dtype=np.int64)
     # State slots move with the buffer that a stage reads; all others stay.
     moving = (relative < 2 * size).astype(np.int64)

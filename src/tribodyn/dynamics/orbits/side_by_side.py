@@ -8,13 +8,13 @@ anything else happens there is no answer here, and the system is looked at by it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import WIDTH
+from tribodyn.dynamics._engine.blocks import OWN_ROWS, WIDTH, LaneBlock, lane_blocks
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics.equations.alike import (
     evaluate_alike,
@@ -27,7 +27,7 @@ from tribodyn.dynamics.equations.alike import (
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, halved_grid
-from tribodyn.dynamics.equations.program import Program, build_program, lane_load
+from tribodyn.dynamics.equations.program import Program, build_program
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import (
@@ -67,25 +67,55 @@ def orbits_in_touch(
     return found
 
 
-class _Grid(NamedTuple):
-    """Systems alike on one grid."""
+#: A motion (rows, 2 n, lanes) of the system with a number.
+_Motion = tuple[int, Array]
 
-    grid: Grid
-    nodes: Nodes
-    program: Program
 
-    def of(self, number: int) -> Program:
-        """Program of one of them."""
-        rows, load = self.program.rows[number], self.program.constant_load[number]
-        return self.program._replace(rows=rows, constant_load=load)
+class _Lanes(NamedTuple):
+    """One motion of each of systems alike, several side by side as lanes of a block."""
 
-    def every_other(self, grid: Grid) -> _Grid:
+    program: Program  #: with rows (blocks, items, lanes) and constant loads (p, n)
+    blocks: list[LaneBlock]
+
+    @classmethod
+    def of(cls, system: System, grid: Grid, nodes: Nodes) -> _Lanes:
+        """Lanes of systems alike on a grid."""
+        blocks = lane_blocks(len(nodes.stiffness), OWN_ROWS)
+        lanes = [block.index for block in blocks]
+        return cls(build_program(system, grid, nodes, blocks=lanes), blocks)
+
+    def every_other(self, grid: Grid) -> _Lanes:
         """The same on the grid of which this one has the halves."""
-        count = len(self.program.rows)
-        rows = self.program.rows.reshape(count, 2 * grid.steps, 3, -1)
-        taken = rows_of_every_other(rows, grid.steps, 1).reshape(count, -1)
+        rows = self.program.rows
+        each = rows.reshape(len(rows), 2 * grid.steps, 3, -1)
+        taken = rows_of_every_other(each, grid.steps, 1).reshape(len(rows), -1, rows.shape[-1])
         program = self.program._replace(rows=taken, width=grid.width, restart=grid.after_event)
-        return _Grid(grid, every_other(self.nodes, grid), program)
+        return _Lanes(program, self.blocks)
+
+    def march(self, period: Array, load: Array, state: Array, which: Index) -> Iterator[_Motion]:
+        """Motions of some systems from states (p, 1, 2 n); NaN where one ends."""
+        for rows, block in zip(self.program.rows, self.blocks, strict=True):
+            asked = np.isin(block.index, which)
+            if not asked.any():
+                continue
+            # A lane that is not asked for marches with one that is.
+            lanes = np.where(asked, np.arange(asked.size), int(np.argmax(asked)))
+            record = self._marched(rows, lanes, block.index, period, load, state)
+            for lane in np.flatnonzero(asked[: block.count]):
+                own = record[..., lane : lane + 1]
+                if np.isnan(own[0, 0, 0]):  # some lane ended, and the block with it
+                    again = np.full(asked.size, lane)
+                    own = self._marched(rows, again, block.index, period, load, state)[..., :1]
+                yield int(block.index[lane]), own
+
+    def _marched(
+        self, rows: Array, lanes: Index, index: Index, period: Array, load: Array, state: Array
+    ) -> Array:
+        """States (rows, 2 n, lanes) of lanes of a block; NaN if any of them ends."""
+        program = self.program
+        flat = program._replace(rows=rows.reshape(-1), constant_load=program.constant_load[0])
+        own, numbers = rows if np.all(np.diff(lanes) == 1) else rows[:, lanes].copy(), index[lanes]
+        return _states(flat, own, period[numbers], load[numbers], state[numbers, 0])
 
 
 class _Group:
@@ -96,9 +126,11 @@ class _Group:
         grid = build_grid(system_events(self.system), steps)
         fine = halved_grid(grid)
         nodes = evaluate_alike(systems, fine)
-        program = build_program(self.system, fine, nodes)
-        self.halved = _Grid(fine, nodes, program)
+        self.halved = _Lanes.of(self.system, fine, nodes)
         self.whole = self.halved.every_other(grid)
+        self.grid, self.nodes = grid, every_other(nodes, grid)
+        pattern = self.whole.program.pattern
+        self.program = build_program(self.system, grid, self.nodes, pattern=pattern)
         self.step_numbers = self._step_numbers()
         shared = orbit_coordinates(self.compiled(0), 1.0)
         rate = shared.rate * beat[:, None, None]
@@ -107,21 +139,21 @@ class _Group:
 
     def compiled(self, number: int) -> Compiled:
         """One of the systems."""
-        grid, nodes, _ = self.whole
-        step_number = float(self.step_numbers[number])
-        own, program = rows_of(nodes, number), self.whole.of(number)
-        return Compiled(self.systems[number], grid, own, program, step_number)
+        step_number, nodes = float(self.step_numbers[number]), rows_of(self.nodes, number)
+        rows, load = self.program.rows[number], self.program.constant_load[number]
+        program = self.program._replace(rows=rows, constant_load=load)
+        return Compiled(self.systems[number], self.grid, nodes, program, step_number)
 
     def _step_numbers(self) -> Array:
         """Products ``omega_max * dt`` of the widest steps."""
-        grid, nodes, _ = self.whole
-        rates = [system._rates.get(grid.steps, np.nan) for system in self.systems]
-        known = np.array(rates) if np.isfinite(rates).all() else rates_alike(self.systems, nodes)
-        return np.asarray(known * float(grid.width.max()) / self.beat)
+        known = [system._rates.get(self.grid.steps, np.nan) for system in self.systems]
+        looked = not np.isfinite(known).all()
+        rates = rates_alike(self.systems, self.nodes) if looked else np.array(known)
+        return np.asarray(rates * float(self.grid.width.max()) / self.beat)
 
     def start(self) -> Array:
         """Points (p, 1, k) at rest under the mean loads."""
-        nodes = self.whole.nodes
+        nodes = self.nodes
         place = balanced_position(self.system, nodes, nodes.stiffness, nodes.force_direction)
         y = self.coordinates.reduce(np.concatenate((place, 0.0 * place), axis=-1)[:, None])
         return y if self.balance is None else np.concatenate((y, 0.0 * y[..., :1]), axis=-1)
@@ -132,15 +164,42 @@ class _Group:
             return np.zeros((*points.shape[:-1], self.system.size))
         return np.asarray(points[..., -1:] * self.beat[:, None, None] * self.balance.force)
 
+    def beside(self, points: Array, keep: Callable[[int, Array], None]) -> Array:
+        """Images of many points (p, lanes, k) of each system; ``keep`` has their states first."""
+
+        def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
+            for number, own in enumerate(state):
+                program, lanes = self.compiled(number).program, len(own)
+                times, forces = np.full(lanes, period[number]), load[number]
+                blocks = [
+                    _states(program, program.rows, times[at], forces[at], own[at])
+                    for at in (slice(i, i + WIDTH) for i in range(0, lanes, WIDTH))
+                ]
+                yield number, blocks[0] if len(blocks) == 1 else np.concatenate(blocks, axis=-1)
+
+        return self._images(points, motions, keep)
+
     def march(
-        self, on: _Grid, points: Array, which: Index, keep: Callable[[int, Array], None]
+        self, on: _Lanes, points: Array, which: Index, keep: Callable[[int, Array], None]
     ) -> Array:
-        """Images of some points (p, lanes, k); ``keep`` has the states (rows, 2 n, lanes) first."""
+        """Images of a point (p, 1, k) of some systems; ``keep`` has its states first."""
+
+        def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
+            return on.march(period, load[:, 0], state, which)
+
+        return self._images(points, motions, keep)
+
+    def _images(
+        self,
+        points: Array,
+        motions: Callable[[Array, Array, Array], Iterator[_Motion]],
+        keep: Callable[[int, Array], None],
+    ) -> Array:
+        """Images of points (p, lanes, k) whose states are marched from states (p, lanes, 2 n)."""
         y = points if self.balance is None else points[..., :-1]
-        state, extra = self.coordinates.expand(y), self.extra(points)
-        for number in which:
-            program, period = on.of(number), 1.0 / float(self.beat[number])
-            record = _marched(program, self.system, period, state[number], extra[number])
+        state, pushed = self.coordinates.expand(y), self.extra(points) @ self.system.inverse_mass.T
+        load = self.program.constant_load[:, None] + pushed
+        for number, record in motions(1.0 / self.beat, load, state):
             keep(number, record)
             state[number] = record[-1].T
         image = self.coordinates.reduce(state)
@@ -150,22 +209,17 @@ class _Group:
         return np.concatenate((image, points[..., -1:] - gained[..., None]), axis=-1)
 
 
-def _marched(program: Program, system: System, period: float, state: Array, extra: Array) -> Array:
-    """States (rows, 2 n, lanes) of lanes (lanes, 2 n) over one mesh cycle; NaN where they end."""
+def _states(program: Program, rows: Array, period: Array, load: Array, start: Array) -> Array:
+    """States (rows, 2 n, lanes) of a block of lanes over a mesh cycle; NaN if any of them ends."""
     from tribodyn.dynamics._engine.marching import march_block
 
-    load, periods = lane_load(program, system, extra), np.full(len(state), period)
-    blocks = []
-    for first in range(0, len(state), WIDTH):
-        own = slice(first, first + WIDTH)
-        part = state[own].copy()
-        record = np.empty((program.width.size + 1, state.shape[1], len(part)))
-        lanes = (0.0,) * len(part), RungeKutta4(), program, program.rows, periods[own], load[own]
-        code = refuse_stopped(int(march_block(*lanes, part, 1, record, None, stop_flag())))
-        if code >= 0:
-            record[:] = np.nan
-        blocks.append(record)
-    return blocks[0] if len(blocks) == 1 else np.concatenate(blocks, axis=-1)
+    state, width = np.array(start), len(start)
+    record = np.empty((program.width.size + 1, state.shape[1], width))
+    lanes = (0.0,) * width, RungeKutta4(), program, rows, period, load
+    code = refuse_stopped(int(march_block(*lanes, state, 1, record, None, stop_flag())))
+    if code >= 0:
+        record[:] = np.nan
+    return record
 
 
 class _Touch(NamedTuple):
@@ -232,8 +286,8 @@ class _Orbits(NamedTuple):
 
 
 def _orbits(group: _Group) -> _Orbits:
-    y, nodes, every = group.start(), group.whole.nodes, np.arange(len(group.systems))
-    count, steps, size = len(every), group.whole.grid.steps, group.system.size
+    y, nodes, every = group.start(), group.nodes, np.arange(len(group.systems))
+    count, steps, size = len(every), group.grid.steps, group.system.size
     k = y.shape[-1]
     step = APART * np.linalg.norm(y, axis=-1, keepdims=True)
     along = np.empty((count, steps + 1, k + 1))
@@ -244,7 +298,7 @@ def _orbits(group: _Group) -> _Orbits:
         along[number] = sum(direction[i] * record[:, i, : k + 1] for i in used)
 
     points = y + step * np.eye(-(-(k + 1) // WIDTH) * WIDTH, k, -1)
-    image = group.march(group.whole, points, every, beside)[:, : k + 1]
+    image = group.beside(points, beside)[:, : k + 1]
     matrix = np.swapaxes(image[:, 1:] - image[:, :1], 1, 2) / step
     slope = np.eye(k) - matrix
     inverse = np.linalg.pinv(slope)
