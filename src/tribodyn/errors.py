@@ -361,6 +361,8 @@ _IN_SI = {
 
 #: No quantity in SI is as large, and powers of this one still are numbers of the machine.
 ENDLESS = 1e60
+#: Numbers of which fewer are looked at one by one.
+_FEW = 8
 
 
 def _all_hold(value: Any, holds: Callable[[Any], Any]) -> bool:
@@ -369,7 +371,8 @@ def _all_hold(value: Any, holds: Callable[[Any], Any]) -> bool:
         return abs(value) < ENDLESS and bool(holds(value))
     if type(value) is not np.ndarray or value.dtype != float or not value.size:
         return False
-    ends = float(value.min()), float(value.max())
+    few = value.size < _FEW
+    ends = value.ravel().tolist() if few else (float(value.min()), float(value.max()))
     return all(abs(end) < ENDLESS and holds(end) for end in ends)
 
 

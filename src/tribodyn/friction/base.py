@@ -247,6 +247,9 @@ class FrictionLaw(Model):
         Keys of the bibliography of the package.
     rehearsal : str
         Where it needs a solved film: the law that refuses the same options without one.
+    together : bool
+        Whether the coefficient of a contact depends on that contact alone, its ``pitch`` left out:
+        contacts of several operating points may then be given in rows.
 
     Examples
     --------
@@ -263,6 +266,7 @@ class FrictionLaw(Model):
     meaning: str = ""
     papers: tuple[str, ...] = ()
     rehearsal: str = "none"
+    together: bool = False
 
     def __call__(self, contact: TribologicalContact, **options: Any) -> Array:
         """Friction coefficient of every contact, never negative.

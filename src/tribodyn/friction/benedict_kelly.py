@@ -201,6 +201,7 @@ _OPTIONS = {
     "benedict-kelly",
     source="Benedict and Kelley, ASLE Trans. 4 (1961)",
     options=_OPTIONS,
+    together=True,
     meaning=_OPTIONS["variant"].meanings["benedict-kelly"],
     papers=("benedict-kelley",),
 )

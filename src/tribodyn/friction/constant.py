@@ -52,6 +52,7 @@ _COEFFICIENT = number(
     source="Coulomb (1781)",
     options={"coefficient": _COEFFICIENT},
     needs_oil=False,
+    together=True,
     meaning="one friction coefficient everywhere",
 )
 def _constant(contact: TribologicalContact, *, coefficient: float) -> Array:
@@ -82,7 +83,11 @@ def none(shape: tuple[int, ...] = ()) -> Array:
 
 
 @LAWS.define(
-    "none", source="the limit of smooth sliding", needs_oil=False, meaning="no friction at all"
+    "none",
+    source="the limit of smooth sliding",
+    needs_oil=False,
+    together=True,
+    meaning="no friction at all",
 )
 def _none(contact: TribologicalContact) -> Array:
     return none(np.shape(contact.load_per_width))

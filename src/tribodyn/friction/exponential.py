@@ -104,6 +104,7 @@ def exponential(
 @LAWS.define(
     "exponential",
     source="a study of time-varying friction in spur gears, with reference values",
+    together=True,
     meaning="exponential of the slide-to-roll ratio times a power of the roughness",
     options={
         "reference_coefficient": number(

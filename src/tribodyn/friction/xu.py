@@ -136,6 +136,7 @@ def _require_plausible(coefficient: Array, roughness: float) -> None:
 @LAWS.define(
     "xu-2007",
     source=_SOURCE,
+    together=True,
     meaning="regression of the friction coefficient to computed elastohydrodynamic contacts",
     papers=("xu",),
 )

@@ -12,7 +12,7 @@ import numpy as np
 from tribodyn.contact import Kinematics, path_of_contact
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ModelWarning, collected, require_positive, warn
-from tribodyn.friction import pitch_point
+from tribodyn.friction import FrictionParts, TribologicalContact, pitch_point
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.columns import FILM_COLUMNS, MIXED_COLUMNS
@@ -190,34 +190,62 @@ class LoadedMesh:
 
     def table(self, settings: ToothContact) -> MeshTable:
         """Mesh table with the friction law and the roughness of some settings."""
-        loads, motion, roughness = self.loads, self.motion, settings.composite_roughness
-        pitch = pitch_point(self.pair, self.pinion_speed, self.pinion_torque)
+        operation = float(self.pinion_speed), float(self.pinion_torque)
+        cycle, motion, loads = self.cycle, self.motion, self.loads
         contact = tribological_contact(
-            motion, self.pairs, loads.tribological, roughness, pitch, self.films
+            motion,
+            self.pairs,
+            loads.tribological,
+            settings.composite_roughness,
+            pitch_point(self.pair, *operation),
+            self.films,
         )
-        columns: dict[str, Array] = {
-            **_motion_columns(motion, self.cycle.sliding_direction),
-            "load_per_width": loads.load_per_width,
-            "hertz_pressure": np.where(loads.load_per_width > 0.0, contact.hertz_pressure, 0.0),
-            **as_columns(self._reported, roughness),
-        }
-        told = loads.film_at.friction(contact, motion, settings)
-        columns |= friction_columns(told, columns.get("film_ratio"))
-        return MeshTable(
-            grid=self.cycle.grid,
-            path=self.cycle.path,
-            in_contact=self.cycle.in_contact,
-            **self._load_columns,
-            gear_pair=self.pair,
-            pinion_speed=float(self.pinion_speed),
-            pinion_torque=float(self.pinion_torque),
-            composite_roughness=roughness,
-            stiffness_model=settings.stiffness_model,
-            friction_law=settings.friction_law,
-            film_model=settings.film_model,
-            film_stiffness_kind=settings.film["stiffness"],
-            **_spread(columns, self.cycle.in_contact),
-        )
+        friction = loads.film_at.friction(contact, motion, settings)
+        columns = columns_of(cycle, motion, loads, contact, self._reported, friction)
+        return table_of(self.pair, settings, cycle, operation, self._load_columns | columns)
+
+
+def columns_of(
+    cycle: MeshCycle,
+    motion: Kinematics,
+    loads: Loads,
+    contact: TribologicalContact,
+    reported: Films,
+    friction: Array | FrictionParts,
+) -> dict[str, Any]:
+    """Columns of a mesh table that follow from the contacts, which may be those of many in rows."""
+    columns: dict[str, Array] = {
+        **_motion_columns(motion, cycle.sliding_direction),
+        "load_per_width": loads.load_per_width,
+        "hertz_pressure": np.where(loads.load_per_width > 0.0, contact.hertz_pressure, 0.0),
+        **as_columns(reported, contact.composite_roughness),
+    }
+    columns |= friction_columns(friction, columns.get("film_ratio"))
+    return _spread(columns, cycle.in_contact, loads.load_per_width.shape[:-1])
+
+
+def table_of(
+    pair: Gears,
+    settings: ToothContact,
+    cycle: MeshCycle,
+    operation: tuple[float, float],
+    columns: Mapping[str, Any],
+) -> MeshTable:
+    """Make a mesh table of its columns."""
+    return MeshTable(
+        grid=cycle.grid,
+        path=cycle.path,
+        in_contact=cycle.in_contact,
+        gear_pair=pair,
+        pinion_speed=operation[0],
+        pinion_torque=operation[1],
+        composite_roughness=settings.composite_roughness,
+        stiffness_model=settings.stiffness_model,
+        friction_law=settings.friction_law,
+        film_model=settings.film_model,
+        film_stiffness_kind=settings.film["stiffness"],
+        **columns,
+    )
 
 
 def loaded_mesh(
@@ -237,7 +265,7 @@ def loaded_mesh(
     pinion_speed, pinion_torque = operation
     require_positive("pinion_speed", pinion_speed, "rad/s")
     require_positive("pinion_torque", pinion_torque, "N*m")
-    cycle, teeth = _teeth(pair, settings, pinion_torque, steps, loading)
+    cycle, teeth = known_teeth(pair, settings, pinion_torque, steps, loading)
     motion = cycle.motion(pinion_speed)
     pairs = pairs_in_contact(cycle, motion, settings.lubricant, settings.material)
     loads = quasi_static_loads(cycle, teeth, pairs, settings, pinion_speed, progress)
@@ -245,7 +273,7 @@ def loaded_mesh(
     return LoadedMesh(pair, settings, cycle, pairs, motion, teeth, loads, *operation, force_law)
 
 
-def _teeth(
+def known_teeth(
     pair: Gears, settings: ToothContact, torque: float, steps: int | None, loading: Array | None
 ) -> tuple[MeshCycle, Teeth]:
     """Teeth under load over one mesh cycle: the same object at every speed and with every oil."""
@@ -306,10 +334,10 @@ def _motion_columns(motion: Kinematics, direction: Array) -> dict[str, Array]:
     }
 
 
-def _spread(known: dict[str, Array], in_contact: Mask) -> dict[str, Any]:
+def _spread(known: dict[str, Array], in_contact: Mask, rows: tuple[int, ...]) -> dict[str, Any]:
     """Put the values of the touching pairs in their places, with zeros elsewhere."""
     columns: dict[str, Any] = dict.fromkeys((*FILM_COLUMNS, *MIXED_COLUMNS))
     for name, values in known.items():
-        columns[name] = np.zeros(in_contact.shape)
-        columns[name][in_contact] = values
+        columns[name] = np.zeros((*rows, *in_contact.shape))
+        columns[name][..., in_contact] = values
     return columns

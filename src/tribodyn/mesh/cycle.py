@@ -52,8 +52,8 @@ class MeshCycle:
         radius = path if self.contact.direction > 0 else gears.line_of_action_length - path
         return f"the tooth pair at the roll angle {radius / gears.driving.base_radius:.4f} rad"
 
-    def motion(self, pinion_speed: float) -> Kinematics:
-        """Curvatures and speeds of the touching pairs."""
+    def motion(self, pinion_speed: Array | float) -> Kinematics:
+        """Curvatures and speeds of the touching pairs; speeds in a column give them in rows."""
         return self.contact.kinematics(self.path[self.in_contact], pinion_speed)
 
 

@@ -69,11 +69,13 @@ def _under_load(
     else:
         shared = teeth.shared_load()
         film_at = solve(teeth.load_per_width * shared.share, ALL)
-    load = (teeth.load_per_width * shared.share)[cycle.in_contact]
+    load = teeth.dry_load
+    if springs is not None:
+        load = (teeth.load_per_width * shared.share)[cycle.in_contact]
     return Loads(shared, load, np.maximum(load, film.least_load), film_at, springs)
 
 
-def reported_films(films: Films, loads: Loads, least_load: float) -> Films:
+def reported_films(films: Films, loads: Loads, least_load: Array | float) -> Films:
     """Leave out pairs that hardly touch, and what is not known well enough."""
     loads.film_at.warn_of_doubt()
     films, known = loads.film_at.reported(films, loads.tribological)
@@ -103,7 +105,7 @@ def tribological_contact(
     pairs: PairsInContact,
     load_per_width: Array,
     composite_roughness: float,
-    pitch: PitchPoint,
+    pitch: PitchPoint | None,
     films: Films,
 ) -> TribologicalContact:
     """Loaded contacts as the friction laws see them."""

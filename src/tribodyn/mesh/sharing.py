@@ -138,6 +138,11 @@ class Teeth:
         return self._shared(None)
 
     @cached_property
+    def dry_load(self) -> Array:
+        """Load per width of every pair in contact without films [N/m]."""
+        return np.asarray((self.load_per_width * self._dry.share)[self.in_contact])
+
+    @cached_property
     def _dry_law(self) -> tuple[Array, Array, float]:
         return force_ramps(self.problem, self.normal_force)
 

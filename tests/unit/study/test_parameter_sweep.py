@@ -81,12 +81,12 @@ def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
     begin, figures = module.begin, module._figures
     ready = [threading.Event(), threading.Event()]
 
-    def third_is_interrupted(changed):
+    def third_is_interrupted(changed, **known):
         speed = round(changed.operation.speed * 30.0 / np.pi)
         if speed == 1250:
             assert all(event.wait(300.0) for event in ready)
             raise KeyboardInterrupt
-        return begin(changed)
+        return begin(changed, **known)
 
     def told(point):
         found = figures(point)
@@ -184,7 +184,9 @@ def test_an_unknown_figure_names_the_nearest(grid):
     ],
 )
 def test_bad_input_is_refused_before_anything_runs(case, over, words, monkeypatch):
-    monkeypatch.setattr("tribodyn.study.studies.sweep.begin", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr(
+        "tribodyn.study.studies.sweep.begin", lambda *_, **__: pytest.fail("it ran")
+    )
     with pytest.raises(InputError, match=words):
         td.sweep(case, over)
 

@@ -50,7 +50,7 @@ def test_a_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         with pytest.raises(_KilledError):
             sweep(case, _SPEEDS, members=members)
     begin, asked = sweeps.begin, []
-    monkeypatch.setattr(sweeps, "begin", lambda case: asked.append(case) or begin(case))
+    monkeypatch.setattr(sweeps, "begin", lambda *a, **k: asked.append(a) or begin(*a, **k))
     with Members(tmp_path / "s") as members:
         found = sweep(case, _SPEEDS, members=members)
     assert len(asked) == 2

@@ -40,7 +40,7 @@ def row_of(
         require_positive(name, array, unit)
     else:
         require_between(name, array, 0.0, np.inf, unit)
-    return np.broadcast_to(array, (count,)).astype(float)
+    return np.full(count, array)
 
 
 def pair_of(name: str, value: ArrayLike, unit: str, *, positive: bool = True) -> Array:

@@ -95,7 +95,8 @@ class FormulaFilm:
 
     settings: ToothContact
     pairs: PairsInContact
-    least_load: float  #: load for which the film of a pair is found at least [N/m]
+    #: Load for which the film of a pair is found at least; several where contacts are in rows.
+    least_load: Array | float
 
     keeps_distance = False
     rigid_share = 0.0
@@ -114,7 +115,7 @@ class FormulaFilm:
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
         """Report every film."""
-        return films, np.ones((len(QUANTITIES), 1), dtype=bool)
+        return films, np.ones((len(QUANTITIES), *(1,) * load.ndim), dtype=bool)
 
     def friction(
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact

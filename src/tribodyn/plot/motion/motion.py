@@ -92,7 +92,8 @@ class Motion:
         column = series.centre_column(self._response.names, gear, axis)
         if quantity == "acceleration":
             return np.asarray(self._response.fine.acceleration[:, column])
-        return series.support_forces(self._result.system, self._response.fine)[:, column]
+        assert column is not None  # Asked of gears whose centres move.
+        return series.support_force(self._result.system, self._response.fine, column)
 
     def measured(self, values: Array) -> Array:
         """Keep the part of a signal over which the figures of a summary are taken."""

@@ -365,15 +365,21 @@ def body_share(
     return _known_share(*given, MODELS.version)
 
 
+@lru_cache(maxsize=8)
+def _even(pair: SpurPair) -> SpurPair:
+    with collected():
+        pinion, wheel = (
+            replace(gear, modification=replace(gear.modification, **_EVEN))
+            for gear in (pair.pinion, pair.wheel)
+        )
+        return replace(pair, pinion=pinion, wheel=wheel)
+
+
 @lru_cache(maxsize=256)
 def _known_share(
     pair: SpurPair, torque: float, settings: Any, options: Any, _version: int
 ) -> float:
-    pinion, wheel = (
-        replace(gear, modification=replace(gear.modification, **_EVEN))
-        for gear in (pair.pinion, pair.wheel)
-    )
-    even = replace(pair, pinion=pinion, wheel=wheel)
+    even = _even(pair)
 
     def deflection(reference: str) -> float:
         known = {**dict(settings), "options": {**dict(options), "reference": reference}}

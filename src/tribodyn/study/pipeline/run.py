@@ -6,7 +6,7 @@ import sys
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.errors import ModelWarning, collected, frames
 from tribodyn.progress import SILENT, Progress
@@ -28,7 +28,7 @@ from tribodyn.study.pipeline.cautions import (
 from tribodyn.study.pipeline.computed import Coupling
 from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
 from tribodyn.study.pipeline.result import Result
-from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_of
+from tribodyn.study.pipeline.tooth_contact import alike, load_friction_of, mesh_of, meshes_of
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
@@ -166,6 +166,29 @@ def begin(
         system = system_of(case, mesh, damping, friction)
         progress.finish()
     return Begun(case, mesh, coupling, heat, friction, damping, system, found)
+
+
+class Asked(NamedTuple):
+    """A case that is to be begun, and its mesh table where a study has loads and films at hand."""
+
+    case: Case
+    known: Callable[[], MeshTable] | None = None
+
+
+def with_tables(asked: Sequence[Asked]) -> list[Asked]:
+    """Add the mesh tables of cases that differ by speed and load alone, computed in one pass."""
+    places: dict[Any, list[int]] = {}
+    for place, (case, known) in enumerate(asked):
+        oil = case.lubricant
+        follows = case.solver.coupling != "none" or (oil is not None and oil.heat_transfer)
+        if known is None and not follows and (key := alike(case)) is not None:
+            places.setdefault(key, []).append(place)
+    found = list(asked)
+    for group in places.values():
+        tables = meshes_of([asked[place].case for place in group])
+        for place, table in zip(group, tables, strict=False):
+            found[place] = asked[place]._replace(known=table)
+    return found
 
 
 def move_together(points: Sequence[Begun]) -> None:

@@ -88,11 +88,10 @@ def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
     return np.asarray(rows[:, :3] * force[:, None])
 
 
-def support_forces(system: System, samples: FineSamples) -> Array:
-    """Forces of the bodies on their supports, from springs and dampers together."""
-    forces = samples.position @ np.asarray(system.stiffness).T
-    forces += samples.velocity @ np.asarray(system.damping).T
-    return np.asarray(forces)
+def support_force(system: System, samples: FineSamples, number: int) -> Array:
+    """Force of the bodies on the support of a coordinate, from springs and dampers together."""
+    stiffness, damping = np.asarray(system.stiffness), np.asarray(system.damping)
+    return np.asarray(samples.position @ stiffness[number] + samples.velocity @ damping[number])
 
 
 #: Most that the series of a motion take in a file [bytes].
@@ -167,13 +166,13 @@ def signals(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]
         for axis, values in zip("xyz", in_space.T, strict=True):
             told = f"force of the teeth on the wheel along the {axis} axis of the pinion"
             found[f"mesh_force_{axis}"] = (values, "N", told)
-    forces = support_forces(result.system, samples)
     for gear in ("pinion", "wheel"):
         for direction, (axis, words) in directions_of(result.response.names).items():
             column = centre_column(result.response.names, gear, axis)
             if column is not None:
                 told = f"force of the {gear} on its bearing {words}"
-                found[f"bearing_force_{direction}_{gear}"] = (forces[:, column], "N", told)
+                force = support_force(result.system, samples, column)
+                found[f"bearing_force_{direction}_{gear}"] = (force, "N", told)
                 told = f"acceleration of the {gear}'s centre {words}"
                 signal = samples.acceleration[:, column]
                 found[f"acceleration_{direction}_{gear}"] = (signal, "m/s^2", told)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from importlib.resources import files
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from tribodyn.study.pipeline.series import (
     measured,
     mesh_force,
     one_sided_phase,
-    support_forces,
+    support_force,
     tooth_force,
     transmission_error,
 )
@@ -128,24 +129,23 @@ _HARMONICS = 5
 
 def summarize(result: Computed) -> dict[str, float]:
     """Compute all figures of a result."""
-    samples = measured(result.response)
+    moving = _motion_figures(result, measured(result.response))
     values: dict[str, Any] = {
         **geometry(result.case),
         **operating_figures(result.case),
         **_mesh_figures(result.mesh),
         **_static_error_figures(result),
         **_film_figures(result.mesh),
-        **_force_figures(result, samples),
-        **_error_figures(result, samples),
-        **_friction_figures(result, samples),
-        **_hypoid_figures(result, samples),
+        "mesh_damping": result.damping.mesh,
+        **moving,
+        **_line_of_action(moving),
+        **_hypoid_figures(result, "mean_mesh_force_x" in moving),
         **_comparison(result),
         **mode_figures(result.system, result.mesh.mesh_frequency, result.case.pinion_speed),
     }
     if centre_column(result.response.names, "pinion", "x") is not None:
-        values |= _support_figures(result, samples)
-    if "shaft1_theta" in result.response.names:
-        values |= _shaft_figures(result, samples)
+        values["bearing_damping_pinion"] = result.damping.bearing_pinion
+        values["bearing_damping_wheel"] = result.damping.bearing_wheel
     values["steps_per_mesh_cycle"] = result.response.time.size // result.response.periods
     values["omega_max_dt"] = result.response.step_number
     if is_steady(result.response):
@@ -229,55 +229,71 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
     return figures | {name: value for name, value in at_pitch_point.items() if value is not None}
 
 
-def _force_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
-    from tribodyn.analysis import extremes, mean, rms
+def _motion_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
+    """Figures of all signals of a motion, each of which is averaged once."""
+    from tribodyn.analysis import alternating_rms, extremes, mean, mesh_harmonics
 
-    force, touch = mesh_force(samples), first_touch(result.system, samples)
-    apart = (compression(samples) <= touch) & (touch > 0.0)
-    least, greatest = extremes(force)
-    return {
-        "mesh_damping": result.damping.mesh,
-        "mean_mesh_force": mean(samples, force),
-        "rms_mesh_force": rms(samples, force),
+    name, signals = "dynamic_transmission_error", _signals(result, samples)
+    # One after the other, as all of them would leave the nearest memory.
+    means = {signal: mean(samples, values) for signal, values in signals.items()}
+    swings = {signal: alternating_rms(samples, values) for signal, values in signals.items()}
+    (least, greatest), ends = extremes(signals["mesh_force"]), extremes(signals[name])
+    amplitudes = np.abs(mesh_harmonics(samples, signals[name], _HARMONICS))
+    figures = {
+        "mean_mesh_force": means["mesh_force"],
         "peak_mesh_force": greatest,
         "minimum_mesh_force": least,
-        "contact_loss_share": mean(samples, apart.astype(float)),
-    }
-
-
-def _error_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
-    from tribodyn.analysis import alternating_rms, mean, mesh_harmonics, peak_to_peak
-
-    error = transmission_error(result, samples)
-    name = "dynamic_transmission_error"
-    amplitudes = np.abs(mesh_harmonics(samples, error, _HARMONICS))
-    return {
-        f"mean_{name}": mean(samples, error),
-        f"rms_{name}": alternating_rms(samples, error),
-        f"peak_to_peak_{name}": peak_to_peak(error),
+        "contact_loss_share": means["contact_loss"],
+        f"mean_{name}": means[name],
+        f"rms_{name}": swings[name],
+        f"peak_to_peak_{name}": ends[1] - ends[0],
         **{f"{name}_harmonic_{order}": size for order, size in enumerate(amplitudes, 1)},
+        "mean_friction_power": means["friction_power"],
     }
+    for signal in signals:
+        if signal == "mesh_force" or signal.endswith("friction_force"):
+            figures[f"rms_{signal}"] = np.hypot(means[signal], swings[signal])
+        elif signal.startswith(_OF_CENTRES):
+            figures[f"rms_{signal}"] = swings[signal]
+            figures[f"mean_{signal}"] = abs(means[signal]) if "torque" in signal else means[signal]
+        elif signal.startswith("mesh_force_"):
+            figures[f"mean_{signal}"] = means[signal]
+    return figures
 
 
-def _friction_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
-    from tribodyn.analysis import mean, rms
+#: Signals of gear centres and shafts, whose mean may be a figure beside their alternating rms.
+_OF_CENTRES = ("bearing_force_", "acceleration_", "torque_shaft")
+
+
+def _signals(result: Computed, samples: FineSamples) -> dict[str, Array]:
+    force, touch = mesh_force(samples), first_touch(result.system, samples)
+    apart = (compression(samples) <= touch) & (touch > 0.0)
+    phase = one_sided_phase(samples)
+    signals = {
+        "mesh_force": force,
+        "contact_loss": apart.astype(float),
+        "dynamic_transmission_error": transmission_error(result, samples),
+        "friction_power": _friction_power(result, phase, force),
+        **{name: values for name, (values, *_) in friction_forces(result, samples).items()},
+    }
+    in_space = tooth_force(result, phase, force)
+    if in_space is not None and result.mesh.unloaded_transmission_error is not None:
+        signals |= {f"mesh_force_{axis}": in_space[:, i] for i, axis in enumerate("xyz")}
+    return signals | _support_signals(result, samples)
+
+
+def _friction_power(result: Computed, phase: Array, force: Array) -> Array:
     from tribodyn.mesh.grid import PhaseFunction
 
-    mesh, force, phase = result.mesh, mesh_force(samples), one_sided_phase(samples)
+    mesh = result.mesh
     # The surfaces of both gears move along the same friction: what one gains the other loses.
     speeds = mesh.pinion_speed, mesh.pinion_speed / result.case.gear_ratio
     names = "friction_moment_pinion", "friction_moment_wheel"
     if result.friction is None:
         moments = (getattr(mesh.functions(), name).values for name in names)
-        lost = PhaseFunction(mesh.grid, _less(speeds, moments))(phase) * force
-    else:
-        moments = (result.friction.value(name, phase, force) for name in names)
-        lost = _less(speeds, moments) * force
-    forces = friction_forces(result, samples)
-    return {
-        **{f"rms_{name}": rms(samples, values) for name, (values, *_) in forces.items()},
-        "mean_friction_power": mean(samples, lost),
-    }
+        return PhaseFunction(mesh.grid, _less(speeds, moments))(phase) * force
+    moments = (result.friction.value(name, phase, force) for name in names)
+    return _less(speeds, moments) * force
 
 
 def _less(speeds: tuple[float, float], moments: Iterable[Array]) -> Array:
@@ -286,20 +302,31 @@ def _less(speeds: tuple[float, float], moments: Iterable[Array]) -> Array:
     return pinion - wheel
 
 
-def _hypoid_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
-    """Force of the teeth in space, and both transmission errors at rest on the line of action."""
-    from tribodyn.analysis import mean
+def _support_signals(result: Computed, samples: FineSamples) -> dict[str, Array]:
+    """Forces on the supports, accelerations of the gear centres and torque in both shafts."""
+    names, signals = result.response.names, dict[str, Array]()
+    shafts, moves = "shaft1_theta" in names, centre_column(names, "pinion", "x") is not None
+    if not (shafts or moves):
+        return signals
+    for gear, (direction, (letter, _)) in product(_GEARS, directions_of(names).items()):
+        if moves and (number := centre_column(names, gear, letter)) is not None:
+            place = f"{direction}_{gear}"
+            signals[f"bearing_force_{place}"] = support_force(result.system, samples, number)
+            signals[f"acceleration_{place}"] = samples.acceleration[:, number].copy()
+    for shaft in (1, 2) if shafts else ():
+        # What twists a shaft turns its disc one way and the gear the other.
+        number = names.index(f"shaft{shaft}_theta")
+        signals[f"torque_shaft{shaft}"] = support_force(result.system, samples, number)
+    return signals
 
-    forces = tooth_force(result, one_sided_phase(samples), mesh_force(samples))
+
+def _hypoid_figures(result: Computed, in_space: bool) -> dict[str, Any]:
+    """Both transmission errors at rest on the line of action, of gears in space."""
     error, mesh = result.mesh.unloaded_transmission_error, result.mesh
-    if forces is None or error is None:
+    if not in_space or error is None:
         return {}
     loaded = error + mesh.static_transmission_error
     return {
-        **{
-            f"mean_mesh_force_{axis}": mean(samples, values)
-            for axis, values in zip("xyz", forces.T, strict=True)
-        },
         "unloaded_transmission_error_peak_to_peak": np.ptp(error),
         "loaded_transmission_error_peak_to_peak": np.ptp(loaded),
     }
@@ -310,12 +337,7 @@ def _comparison(result: Computed) -> dict[str, Any]:
     if result.friction is None or result.nominal_friction_response is None:
         return {}
     other = replace(result, response=result.nominal_friction_response, friction=None)
-    samples = measured(other.response)
-    figures = {
-        **_force_figures(other, samples),
-        **_error_figures(other, samples),
-        **_friction_figures(other, samples),
-    }
+    figures = _motion_figures(other, measured(other.response))
     names = (
         "rms_mesh_force",
         "peak_mesh_force",
@@ -327,47 +349,12 @@ def _comparison(result: Computed) -> dict[str, Any]:
     return found | {"friction_fit_error": result.friction.fit_error}
 
 
-def _support_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
-    """Forces on the supports and accelerations of the gear centres."""
-    from tribodyn.analysis import alternating_rms, mean
+def _line_of_action(figures: Mapping[str, Any]) -> dict[str, Any]:
+    """How much the force on a support of the pinion moves across the line of action."""
     from tribodyn.signals.indicators import across_over_along
 
-    def column(gear: str, letter: str) -> int | None:
-        return centre_column(result.response.names, gear, letter)
-
-    forces, names = support_forces(result.system, samples), result.response.names
-    figures: dict[str, Any] = {
-        "bearing_damping_pinion": result.damping.bearing_pinion,
-        "bearing_damping_wheel": result.damping.bearing_wheel,
-    }
-    columns = {
-        f"{direction}_{gear}": column(gear, letter)
-        for gear in _GEARS
-        for direction, (letter, _) in directions_of(names).items()
-    }
-    for kind, signals in (("bearing_force", forces), ("acceleration", samples.acceleration)):
-        rms = alternating_rms(samples, signals)
-        figures |= {f"rms_{kind}_{place}": rms[number] for place, number in columns.items()}
-    if "pinion_z" in names:
-        means = mean(samples, forces)
-        means_of = {f"mean_bearing_force_{place}": means[n] for place, n in columns.items()}
-        return figures | means_of
-    along, across = (figures[f"rms_bearing_force_{d}_pinion"] for d in ("loa", "oloa"))
+    along, across = (figures.get(f"rms_bearing_force_{way}_pinion") for way in ("loa", "oloa"))
+    if along is None or across is None:
+        return {}
     indicator = across_over_along(along, across)
-    if np.isfinite(indicator):
-        figures["line_of_action_indicator"] = indicator
-    return figures
-
-
-def _shaft_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
-    """Torque in both shafts, from springs and dampers together."""
-    from tribodyn.analysis import alternating_rms, mean
-
-    forces, names = support_forces(result.system, samples), result.response.names
-    figures: dict[str, Any] = {}
-    for number in (1, 2):
-        # What twists a shaft turns its disc one way and the gear the other.
-        signal = forces[:, names.index(f"shaft{number}_theta")]
-        figures[f"mean_torque_shaft{number}"] = abs(mean(samples, signal))
-        figures[f"rms_torque_shaft{number}"] = alternating_rms(samples, signal)
-    return figures
+    return {"line_of_action_indicator": indicator} if np.isfinite(indicator) else {}

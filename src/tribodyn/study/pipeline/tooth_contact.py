@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, collected
+from tribodyn.errors import ComputationError, InputError, ModelWarning, collected, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import derive
 from tribodyn.study.case.derive import chosen_options, friction_of_table, mesh_law_of, placed
@@ -98,6 +100,32 @@ def mesh_of(
         force_law=mesh_law_of(case) == "force-law",
         progress=progress,
     )
+
+
+def alike(case: Case) -> object:
+    """What cases share whose tooth contacts differ by speed and load alone; None of others."""
+    if case.gears.kind != "spur" or case._named_files():
+        return None
+    try:
+        return case.gear_pair, contact_settings(case), mesh_law_of(case)
+    except InputError:
+        return None  # told when it is begun
+
+
+def meshes_of(cases: Sequence[Case]) -> list[Callable[[], MeshTable]]:
+    """Mesh tables of such cases from one pass; none where each has to be computed by itself."""
+    from tribodyn.mesh.rows import mesh_tables
+
+    first, points = cases[0], [(case.pinion_speed, case.pinion_torque) for case in cases]
+    law = mesh_law_of(first) == "force-law"
+    found = mesh_tables(first.gear_pair, contact_settings(first), points, force_law=law)
+    return [partial(_told, *each) for each in found]
+
+
+def _told(table: MeshTable, said: Sequence[ModelWarning]) -> MeshTable:
+    for warning in said:
+        warn(warning.code, warning.message)
+    return table
 
 
 def hypoid_friction_of(case: Case, *, load: float = 1.0, rehearsal: bool = False) -> HypoidFriction:

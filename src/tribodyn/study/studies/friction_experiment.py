@@ -15,7 +15,7 @@ from tribodyn.errors import InputError, collected
 from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import mesh_law_of, placed
-from tribodyn.study.pipeline.run import Begun, begin
+from tribodyn.study.pipeline.run import Asked
 from tribodyn.study.pipeline.tooth_contact import contact_settings
 from tribodyn.study.studies.axes import Axis, ends_of
 from tribodyn.study.studies.friction_claims import (
@@ -109,13 +109,13 @@ def friction_experiment(
     frictions = {one.name: one for one in rubbing}
     axes = (Axis(_KEYS[0], DRIVERS), Axis(_KEYS[1], BALANCES), Axis(_KEYS[2], tuple(frictions)))
 
-    def begun(driver: str, balance: str, friction: str) -> Begun:
+    def asked(driver: str, balance: str, friction: str) -> Asked:
         one, mesh = frictions[friction], loaded[driver]
         changed = _changed(base, one, mesh, driver).replace({_KEYS[1]: balance})
-        return begin(changed, known=lambda: _table(changed, mesh))
+        return Asked(changed, lambda: _table(changed, mesh))
 
     study = identity("friction", base, [(axis.key, axis.values) for axis in axes])
-    points = points_of(axes, begun, study, partial, progress, members)
+    points = points_of(axes, asked, study, partial, progress, members)
     return FrictionExperiment(base, axes, points, rubbing)
 
 

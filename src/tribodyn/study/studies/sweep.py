@@ -19,7 +19,7 @@ from tribodyn.members import Members
 from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.pipeline.run import Begun, begin, move_together
+from tribodyn.study.pipeline.run import Asked, Begun, begin, move_together, with_tables
 from tribodyn.study.processes import helpers
 from tribodyn.study.studies.axes import Axis, read_axes
 from tribodyn.study.studies.grid import finished, identity
@@ -96,17 +96,17 @@ def sweep(
     axes = read_axes(case, _asked(over, between, points), by=by)
     study = identity("sweep", case, [(axis.key, axis.values) for axis in axes])
 
-    begun = functools.partial(_begun, case, tuple(axis.key for axis in axes))
-    return Sweep(case, axes, points_of(axes, begun, study, partial, progress, members))
+    asked = functools.partial(_asked_at, case, tuple(axis.key for axis in axes))
+    return Sweep(case, axes, points_of(axes, asked, study, partial, progress, members))
 
 
-def _begun(case: Case, keys: Sequence[str], *values: Any) -> Begun:
-    return begin(case.replace(dict(zip(keys, values, strict=True))))
+def _asked_at(case: Case, keys: Sequence[str], *values: Any) -> Asked:
+    return Asked(case.replace(dict(zip(keys, values, strict=True))))
 
 
 def points_of(
     axes: tuple[Axis, ...],
-    begun: Callable[..., Begun],
+    asked: Callable[..., Asked],
     study: Mapping[str, Any],
     partial: bool,
     progress: Progress,
@@ -129,7 +129,7 @@ def points_of(
     try:
         # Not by what is left: a sweep that goes on has the figures of one that was not stopped.
         with shared_films() if len(grid) >= _MANY else nullcontext():
-            _over_points(begun, grid, done, progress, keep)
+            _over_points(asked, grid, done, progress, keep)
     except KeyboardInterrupt:
         if not (partial and 0 in done):
             raise
@@ -142,8 +142,8 @@ def points_under(
 ) -> list[SweepPoint]:
     """Compute a case under some changes of the same keys, in their order; what fails is told."""
     done: dict[int, SweepPoint] = {}
-    begun = partial(_begun, case, tuple(changes[0]) if changes else ())
-    _over_points(begun, [tuple(change.values()) for change in changes], done, progress)
+    asked = partial(_asked_at, case, tuple(changes[0]) if changes else ())
+    _over_points(asked, [tuple(change.values()) for change in changes], done, progress)
     return [done[index] for index in range(len(changes))]
 
 
@@ -166,7 +166,7 @@ _WORTH = 50
 
 
 def _over_points(
-    begun: Callable[..., Begun],
+    asked: Callable[..., Asked],
     grid: Sequence[tuple[Any, ...]],
     done: dict[int, SweepPoint],
     progress: Progress,
@@ -188,36 +188,45 @@ def _over_points(
                 done[index] = point
                 progress.advance()
 
-    abroad = _abroad(begun)
+    abroad = _abroad(asked)
     with helpers(len(left) // _WORTH if abroad else 0) as others:
         if abroad and others.count:
-            others.each(partial(_points, begun), abroad, places, keep_group)
+            others.each(partial(_points, asked), abroad, places, keep_group)
         else:
             numbers = range(len(groups))
-            in_threads(lambda i: keep_group(i, _points(begun, places[i])), numbers, count)
+            in_threads(lambda i: keep_group(i, _points(asked, places[i])), numbers, count)
 
 
-def _abroad(begun: Callable[..., Begun]) -> bytes:
+def _abroad(asked: Callable[..., Asked]) -> bytes:
     """What another process calls; nothing where it could not."""
     if known_elsewhere():
         with suppress(pickle.PicklingError, AttributeError, TypeError):
-            return pickle.dumps(partial(_points_abroad, begun))
+            return pickle.dumps(partial(_points_abroad, asked))
     return b""
 
 
 def _points_abroad(
-    begun: Callable[..., Begun], places: Sequence[tuple[Any, ...]]
+    asked: Callable[..., Asked], places: Sequence[tuple[Any, ...]]
 ) -> list[SweepPoint]:
     with shared_films(lasting=True):
-        return _points(begun, places)
+        return _points(asked, places)
 
 
-def _points(begun: Callable[..., Begun], places: Sequence[tuple[Any, ...]]) -> list[SweepPoint]:
+def _points(asked: Callable[..., Asked], places: Sequence[tuple[Any, ...]]) -> list[SweepPoint]:
     """Run the case at some places; what fails is told, and the sweep goes on."""
     with quiet():  # what the models say is kept in the results
-        points = [_tried(partial(begun, *values)) for values in places]
+        found = [_tried(partial(asked, *values)) for values in places]
+        tables = iter(with_tables([each for each in found if isinstance(each, Asked)]))
+        points = [
+            _tried(partial(_begun, next(tables))) if isinstance(each, Asked) else each
+            for each in found
+        ]
         move_together([point for point in points if isinstance(point, Begun)])
         return [_point(values, point) for values, point in zip(places, points, strict=True)]
+
+
+def _begun(asked: Asked) -> Begun:
+    return begin(asked.case, known=asked.known)
 
 
 def _point(values: tuple[Any, ...], point: Begun | InputError | ComputationError) -> SweepPoint:

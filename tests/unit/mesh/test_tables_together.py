@@ -1,0 +1,88 @@
+"""Mesh tables of several operating points from one pass are those of single points."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import collected
+from tribodyn.study.pipeline.run import Asked, begin, with_tables
+from tribodyn.study.pipeline.tooth_contact import mesh_of
+
+_POINTS = (100.0, 60.0), (100.0, 150.0), (300.0, 60.0), (300.0, 150.0)
+_KEYS = "operation.speed", "operation.torque"
+
+
+def _asked(case: td.Case, points: Any = _POINTS) -> list[Asked]:
+    return [Asked(case.replace(dict(zip(_KEYS, point, strict=True)))) for point in points]
+
+
+def _columns(mesh: Any) -> dict[str, Any]:
+    return {name: value for name, value in vars(mesh).items() if not name.startswith("_")}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"film.model": "moes", "friction.law": "xu-2007"},
+        {"friction.law": "none"},
+        {"stiffness.model": "analytic"},
+        {"friction.law": "iso-6336-22"},
+        {"friction.law": "mixed"},
+        {"gears.composite_roughness": 0.9e-6},
+        {"gears.pinion.modification.tip_relief": 3e-6},
+    ],
+    ids=str,
+)
+def test_every_column_is_that_of_a_single_point(changes: dict[str, Any]) -> None:
+    case = td.load_case("fzg-roughness").replace(changes)
+    for one, known in with_tables(_asked(case)):
+        assert known is not None
+        with collected() as beside:
+            together = _columns(known())
+        with collected() as told:
+            alone = _columns(mesh_of(one))
+        assert [str(each) for each in beside] == [str(each) for each in told]
+        assert together.keys() == alone.keys()
+        for name, value in alone.items():
+            if isinstance(value, np.ndarray):
+                assert together[name].shape == value.shape, name
+                np.testing.assert_allclose(together[name], value, rtol=1e-14, atol=0.0)
+            elif isinstance(value, float | str):
+                assert together[name] == value, name
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"film.model": "moes", "film.stiffness": "tangent"},
+        {"gears.pinion.modification.tip_relief": 10e-6},
+    ],
+    ids=["films in series", "something is told of films"],
+)
+def test_what_needs_a_point_of_its_own_gets_it(changes: dict[str, Any]) -> None:
+    case = td.load_case("fzg-roughness").replace(changes)
+    assert [known for _, known in with_tables(_asked(case))] == [None] * len(_POINTS)
+
+
+def test_points_of_other_gears_are_no_company() -> None:
+    case = td.load_case("fzg-roughness")
+    wide = case.replace({"gears.pinion.face_width": 15e-3})
+    asked = [*_asked(case, _POINTS[:2]), *_asked(wide, _POINTS[:1])]
+    known = [known for _, known in with_tables(asked)]
+    assert [each is None for each in known] == [False, False, True]
+    assert known[1] is not None
+    assert known[1]().pinion_torque == _POINTS[1][1]
+
+
+def test_a_point_that_fails_leaves_the_others_to_themselves() -> None:
+    case = td.load_case("fzg-roughness")
+    asked = with_tables(_asked(case, [*_POINTS, (300.0, 1e7)]))
+    assert all(known is None for _, known in asked)
+    with pytest.raises(td.ComputationError):
+        begin(asked[-1].case)
+    assert begin(asked[0].case).mesh.pinion_torque == _POINTS[0][1]
