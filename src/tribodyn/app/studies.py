@@ -40,7 +40,7 @@ class Study:
     compute: Callable[[Case, Values, Progress, Path], Shown]
 
 
-def _varied(case: Case, values: Values) -> Iterator[tuple[str, Any]]:
+def _varied(values: Values) -> Iterator[tuple[str, Any]]:
     for key, name in (("key", "values"), ("second_key", "second_values")):
         if values.get(key):
             yield values[key], _read(name, values.get(name, ""), read_values)
@@ -88,7 +88,7 @@ def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Show
     from tribodyn.study.pipeline.words import in_words
     from tribodyn.study.studies.sweep import sweep
 
-    found = sweep(case, dict(_varied(case, values)), by="study", progress=progress)
+    found = sweep(case, dict(_varied(values)), by="study", progress=progress)
     found.save(target)
     names = found.shown()
     figures = [(in_words(name), found.plot(name), "") for name in names]

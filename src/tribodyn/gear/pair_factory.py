@@ -160,12 +160,12 @@ def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
             where=Argument("backlash"),
             why=f"The profile shifts and the centre distance {mesh.center_distance * 1e3:.6g} "
             f"mm leave {play * 1e3:.6g} mm already",
-            remedy=_less_play(backlash, play, mesh),
+            remedy=_less_play(backlash, mesh),
         )
     return max(0.5 * (backlash - play), 0.0)
 
 
-def _less_play(backlash: float, play: float, mesh: MeshGeometry) -> str:
+def _less_play(backlash: float, mesh: MeshGeometry) -> str:
     """How to come to a smaller play: a centre distance, or that of the teeth where they reach."""
     least = zero_backlash_center_distance(
         mesh.pinion.teeth + mesh.wheel.teeth,

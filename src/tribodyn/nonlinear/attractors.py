@@ -299,15 +299,14 @@ def settle(
     *,
     tolerance: float = 1e-7,
     width: int = 16,
-    threads: int | None = None,
     progress: Progress = SILENT,
 ) -> None:
     """March motions until they repeat, or over the whole transient."""
-    if on_gpu():
-        width, threads = min(len(indices), _MANY_LANES), 1
+    width = min(len(indices), _MANY_LANES) if on_gpu() else width
     motions.queue(indices)
     motions.progress = progress
-    count = 1 if width == 1 and len(indices) == 1 else threads or os.cpu_count() or 1
+    one = on_gpu() or (width == 1 and len(indices) == 1)
+    count = 1 if one else os.cpu_count() or 1
     blocks = [_Block(motions, transient, tolerance, width) for _ in range(count)]
     in_threads(_Block.run, blocks, count)
 

@@ -45,9 +45,9 @@ class Scales:
         """Write a film with its unit."""
         return f"{significant(self.film * film, digits)} {self.film_unit}"
 
-    def pressure_text(self, pressure: float, digits: int = 3) -> str:
+    def pressure_text(self, pressure: float) -> str:
         """Write a pressure with its unit."""
-        return f"{significant(self.pressure * pressure, digits)} {self.pressure_unit}"
+        return f"{significant(self.pressure * pressure)} {self.pressure_unit}"
 
 
 def _unitless(solution: Any) -> Scales:

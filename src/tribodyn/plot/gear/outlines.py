@@ -57,15 +57,15 @@ def placed_outline(
     return np.array([center + turned.real, turned.imag])
 
 
-def circle(center: float, radius: float, points: int = 181) -> Array:
+def circle(center: float, radius: float) -> Array:
     """Array of a circle around a point of the horizontal axis."""
-    angle = np.linspace(0.0, 2.0 * np.pi, points)
+    angle = np.linspace(0.0, 2.0 * np.pi, 181)
     return np.array([center + radius * np.cos(angle), radius * np.sin(angle)])
 
 
-def rotation_arc(center: float, radius: float, sense: int, points: int = 25) -> Array:
+def rotation_arc(center: float, radius: float, sense: int) -> Array:
     """Array of an arc above a gear's axis, in the order in which the gear turns."""
-    angle = 0.5 * np.pi + sense * np.linspace(-0.25 * np.pi, 0.25 * np.pi, points)
+    angle = 0.5 * np.pi + sense * np.linspace(-0.25 * np.pi, 0.25 * np.pi, 25)
     return np.array([center + radius * np.cos(angle), radius * np.sin(angle)])
 
 

@@ -186,7 +186,7 @@ def friction_harmonics(found: FrictionExperiment) -> Any:
     return stack(title, "Mesh harmonic", panels, {"hovermode": "closest", "barmode": "group"})
 
 
-def _broken(words: str, width: int = 44) -> str:
+def _broken(words: str) -> str:
     from textwrap import wrap
 
-    return "<br>".join(wrap(words, width))
+    return "<br>".join(wrap(words, 44))

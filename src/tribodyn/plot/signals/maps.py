@@ -123,8 +123,8 @@ def spectrogram(result: Spectrogram) -> Any:
     )
 
 
-def strongest_orders(result: OrderMap, count: int = 3) -> list[float]:
-    """Find the orders that reach the largest amplitudes."""
+def strongest_orders(result: OrderMap) -> list[float]:
+    """Find the three orders that reach the largest amplitudes."""
     most = np.sqrt(np.mean(result.amplitude**2, axis=1))
     apart = 3  # lines: main lobe of the window
     most[:apart] = 0.0
@@ -136,7 +136,7 @@ def strongest_orders(result: OrderMap, count: int = 3) -> list[float]:
     taken: list[int] = []
     reach = result.amplitude.max(axis=1)
     for number in peak[np.argsort(reach[peak])[::-1]]:
-        if all(abs(number - other) > apart for other in taken) and len(found) < count:
+        if all(abs(number - other) > apart for other in taken) and len(found) < 3:
             taken.append(int(number))
             found.append(float(result.order[number]))
     return found

@@ -100,7 +100,7 @@ def _apart(found: Sequence[Any]) -> list[Any]:
     return kept
 
 
-def _title(run: RunUp, levels: list[Any], found: Sequence[Any], unit: str, factor: float) -> str:
+def _title(levels: list[Any], found: Sequence[Any], unit: str, factor: float) -> str:
     top = max(levels, key=lambda level: float(level.rms.max()))
     at = int(np.argmax(top.rms))
     way = " on the way down" if len(levels) > 1 and top is levels[1] else ""
@@ -167,7 +167,7 @@ def run_up(
         cuts.append(_marks(_apart(found)[:_NAMED], factor, unit))
     top = {"rangemode": "tozero"}
     return stack(
-        _title(run, levels, found, unit, factor),
+        _title(levels, found, unit, factor),
         axis_label("speed"),
         [
             Panel(f"Alternating rms of<br>{words} [{unit}]", overall, top),
@@ -177,7 +177,7 @@ def run_up(
     )
 
 
-def _over_frequency(made: OrderMap, teeth: int, frequency: Array) -> Array:
+def _over_frequency(made: OrderMap, frequency: Array) -> Array:
     """Amplitudes of an order map on a grid of frequencies; the largest in each row is kept."""
     per_order = made.speed / (2.0 * np.pi)
     found = np.empty((frequency.size, made.speed.size))
@@ -295,7 +295,7 @@ def run_up_map(
         order = np.argsort(made.speed, kind="stable")
         speed = made.speed[order]
         frequency = np.linspace(0.1 * run.profile.lowest, top, _ROWS)
-        amplitude = _over_frequency(made, run.teeth, frequency)[:, order]
+        amplitude = _over_frequency(made, frequency)[:, order]
         factor = 1e6 if unit == "m" else 1.0
         surface = amplitude_heatmap(
             displayed("speed", speed),
