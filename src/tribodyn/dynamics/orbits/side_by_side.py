@@ -299,6 +299,9 @@ def _orbits(group: _Group) -> _Orbits:
 
     points = y + step * np.eye(-(-(k + 1) // WIDTH) * WIDTH, k, -1)
     image = group.beside(points, beside)[:, : k + 1]
+    # Of motions that end there is no map: any other will do, as they are not good.
+    ended = ~np.isfinite(image).all(axis=(1, 2))
+    image[ended] = y[ended]
     matrix = np.swapaxes(image[:, 1:] - image[:, :1], 1, 2) / step
     slope = np.eye(k) - matrix
     inverse = np.linalg.pinv(slope)
