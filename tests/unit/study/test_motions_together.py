@@ -71,7 +71,7 @@ def test_a_motion_that_ends_takes_no_other_with_it(cases: list[td.Case]) -> None
     frequencies = np.array([point.mesh.mesh_frequency for point in points])
     group = _Group([point.system for point in points], frequencies, 1024)
     state, every = group.coordinates.expand(group.start()), np.arange(2)
-    given = 1.0 / frequencies, group.program.constant_load
+    given = 1.0 / frequencies, group.whole.program.constant_load
     alone = dict(group.whole.march(*given, state, every))
     state[0] = np.inf
     beside = dict(group.whole.march(*given, state, every))

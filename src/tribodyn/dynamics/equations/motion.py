@@ -175,7 +175,8 @@ def with_middles(duration: Array, state: Array) -> tuple[Array, Array]:
 
     ``state`` (..., steps + 1, 2 n) is known at the ends, ``duration`` (..., steps) in s.
     """
-    q, v = (np.ascontiguousarray(half) for half in np.split(state, 2, axis=-1))
+    size = state.shape[-1] // 2
+    q, v = (np.ascontiguousarray(half) for half in (state[..., :size], state[..., size:]))
     h = duration[..., None]
     ends = q[..., :-1, :], v[..., :-1, :], q[..., 1:, :], v[..., 1:, :]
     middle = cubic_middle(h, 1.0 / h, *ends)

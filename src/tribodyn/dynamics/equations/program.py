@@ -86,10 +86,6 @@ def compile_system(
     return grid, nodes, build_program(system, grid, nodes)
 
 
-#: Rows that are written at a time, of all lanes, so that they stay in the memory near a core.
-_BLOCK = 256
-
-
 class _Terms:
     """Collects factors and the slots that they multiply, in reading order."""
 
@@ -133,7 +129,8 @@ class _Terms:
         rows = np.empty((len(blocks), *self.shape[1:], len(wide), len(blocks[0])))
         for table, lanes in zip(rows, blocks, strict=True):
             few = [once(values) for values in wide]
-            some = [values[lanes] if len(values) > 1 else values for values in few]
+            own = slice(lanes[0], lanes[-1] + 1) if np.all(np.diff(lanes) == 1) else lanes
+            some = [values[own] if len(values) > 1 else values for values in few]
             shape = len(lanes), *self.shape[1:]
             _fill(table, [np.moveaxis(np.broadcast_to(each, shape), 0, -1) for each in some])
         return rows.reshape(len(blocks), -1, rows.shape[-1])
@@ -142,15 +139,10 @@ class _Terms:
 def _fill(table: Array, columns: Sequence[Array]) -> None:
     """Write columns (steps, 3, ...) into a table (steps, 3, columns, ...)."""
     varying = [item for item, values in enumerate(columns) if any(values.strides[:2])]
-    size = max(1, _BLOCK // int(np.prod(table.shape[3:])))
-    start = np.stack([values[0, 0] for values in columns])
-    same = np.broadcast_to(start, (min(size, len(table)), *table.shape[1:])).copy()
-    for first in range(0, len(table), size):
-        block = slice(first, first + size)
-        part = table[block]
-        part[...] = same[: len(part)]
-        for item in varying:
-            part[:, :, item] = columns[item][block]
+    # Whole rows at a time, with what is constant in its place.
+    table.reshape(3 * len(table), -1)[...] = np.stack([values[0, 0] for values in columns]).ravel()
+    for item in varying:
+        table[:, :, item] = columns[item]
 
 
 def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> list[int]:

@@ -129,8 +129,6 @@ class _Group:
         self.halved = _Lanes.of(self.system, fine, nodes)
         self.whole = self.halved.every_other(grid)
         self.grid, self.nodes = grid, every_other(nodes, grid)
-        pattern = self.whole.program.pattern
-        self.program = build_program(self.system, grid, self.nodes, pattern=pattern)
         self.step_numbers = self._step_numbers()
         shared = orbit_coordinates(self.compiled(0), 1.0)
         rate = shared.rate * beat[:, None, None]
@@ -140,9 +138,14 @@ class _Group:
     def compiled(self, number: int) -> Compiled:
         """One of the systems."""
         step_number, nodes = float(self.step_numbers[number]), rows_of(self.nodes, number)
-        rows, load = self.program.rows[number], self.program.constant_load[number]
-        program = self.program._replace(rows=rows, constant_load=load)
-        return Compiled(self.systems[number], self.grid, nodes, program, step_number)
+        system, program = self.systems[number], self.program_of(number)
+        return Compiled(system, self.grid, nodes, program, step_number)
+
+    def program_of(self, number: int) -> Program:
+        """Program of one of the systems."""
+        program, (block, lane) = self.whole.program, divmod(number, OWN_ROWS)
+        rows, load = program.rows[block, :, lane], program.constant_load[number]
+        return program._replace(rows=rows, constant_load=load)
 
     def _step_numbers(self) -> Array:
         """Products ``omega_max * dt`` of the widest steps."""
@@ -169,8 +172,9 @@ class _Group:
 
         def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
             for number, own in enumerate(state):
-                program, lanes = self.compiled(number).program, len(own)
+                program, lanes = self.program_of(number), len(own)
                 times, forces = np.full(lanes, period[number]), load[number]
+                program = program._replace(rows=np.ascontiguousarray(program.rows))
                 blocks = [
                     _states(program, program.rows, times[at], forces[at], own[at])
                     for at in (slice(i, i + WIDTH) for i in range(0, lanes, WIDTH))
@@ -198,7 +202,7 @@ class _Group:
         """Images of points (p, lanes, k) whose states are marched from states (p, lanes, 2 n)."""
         y = points if self.balance is None else points[..., :-1]
         state, pushed = self.coordinates.expand(y), self.extra(points) @ self.system.inverse_mass.T
-        load = self.program.constant_load[:, None] + pushed
+        load = self.whole.program.constant_load[:, None] + pushed
         for number, record in motions(1.0 / self.beat, load, state):
             keep(number, record)
             state[number] = record[-1].T
