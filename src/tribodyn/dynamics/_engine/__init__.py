@@ -9,7 +9,7 @@
 | `dormand_prince` | How does one adaptive step go, how wrong is it, what is between its ends? |
 | `crossing` | When within a step does a contact open or close? |
 | `statistics` | What is gathered of lanes, and the same sums of recorded motions? |
-| `moments` | How is it gathered while marching? |
+| `moments`, `middle` | How is it gathered while marching, and what does a step leave for it? |
 | `marching` | How does a block of lanes march in the steps of the grid? |
 | `adaptive` | How does it march in steps of its own length? |
 | `blocks` | How are lanes spread over blocks and threads, and what is said of a failure? |

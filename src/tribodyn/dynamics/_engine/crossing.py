@@ -268,7 +268,7 @@ def _try(
     own = Law(law.code, law.reads, part)
     w[slots_of(law.code).h] = width * (target - start)
     prepare(method, own, 2 * law.code[2], width * (target - start), I64(-1), w)
-    good: bool = step((0.0,), method, own, I64(-1), I64(0), w)
+    good: bool = step((0.0,), method, own, I64(-1), I64(0), w, None)
     measure(own, 2 * law.code[2], I64(2), w, room, I64(NOW))
     return good
 

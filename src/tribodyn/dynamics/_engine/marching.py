@@ -14,6 +14,7 @@ from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # thei
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     Law,
+    acceleration,
     first_contact,
     is_dead_zone,
     left_side,
@@ -22,7 +23,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.crossing import WIDTH, most_splits, split_step
-from tribodyn.dynamics._engine.lanes import address, ahead, open_rows
+from tribodyn.dynamics._engine.lanes import address, ahead, on_line, open_rows
 from tribodyn.dynamics._engine.method import (
     INNER,
     JIT,
@@ -34,7 +35,14 @@ from tribodyn.dynamics._engine.method import (
     restart,
     step,
 )
-from tribodyn.dynamics._engine.moments import Gathered, gather, gather_parts
+from tribodyn.dynamics._engine.middle import seen_slots, set_inverse
+from tribodyn.dynamics._engine.moments import (
+    Gathered,
+    Place,
+    add_nodes,
+    gather,
+    gather_parts,
+)
 from tribodyn.dynamics.equations.program import Program
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
@@ -78,7 +86,7 @@ def _choose_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-d
 
 
 def _moments_of(gathered: Any) -> Any:
-    """Numbers of all moments and of the waves of a step; none without statistics."""
+    """Numbers of all moments, those of the waves of a step, and what a step has to leave."""
     raise TypeError("chosen by type where it is compiled")
 
 
@@ -86,7 +94,7 @@ def _moments_of(gathered: Any) -> Any:
 def _choose_moments(gathered):  # type: ignore[no-untyped-def]
     if isinstance(gathered, types.NoneType):
         return lambda gathered: (0, 0)
-    return lambda gathered: (gathered.moments.size, 6 * gathered.harmonics)
+    return lambda gathered: (gathered.moments.size, 2 * gathered.harmonics)
 
 
 @nb.njit(**ONCE)
@@ -123,6 +131,18 @@ def has_dead_zones(law: Law) -> bool:
     return some
 
 
+def _seen_of(gathered: Any, slot: int) -> Any:
+    """The slot where a step leaves what statistics need, or None."""
+    raise TypeError("chosen by type where it is compiled")
+
+
+@overload(_seen_of, inline="always")
+def _choose_seen(gathered, slot):  # type: ignore[no-untyped-def]
+    if isinstance(gathered, types.NoneType):
+        return lambda gathered, slot: None
+    return lambda gathered, slot: slot
+
+
 def _build(digest: str) -> Any:
     @nb.njit(cache=True, **JIT)
     def march_block(
@@ -149,17 +169,22 @@ def _build(digest: str) -> Any:
         law = Law(address(program.code), address(program.reads), open_rows(rows))
         s, n, columns, width = slots_of(law.code), law.code[0], law.code[2], len(lanes)
         own, lasting, kinds = own_slots(method, law)
-        slots = s.end + own
+        # What statistics need of a step lies behind the slots of the method.
+        seen = _seen_of(gathered, s.end + own)
+        slots = s.end + own + (0 if seen is None else seen_slots(s.contacts))
         # Slots of all lanes, those of one, rows of a part of a step, rows of one lane.
-        work = np.zeros(slots * (width + 1) + 6 * columns)
-        w = address(work)
-        single, part = ahead(w, slots * width), ahead(w, slots * (width + 1))
+        numbers, waves = _moments_of(gathered)
+        count = numbers // width
+        work = np.zeros((slots + count) * width + slots + 6 * columns + 8)
+        w = on_line(address(work))
+        moments = ahead(w, slots * width)
+        single = ahead(moments, count * width)
+        part = ahead(single, slots)
         room = ahead(part, 3 * columns)
         # A list of the parts of a step, the search, moments of the lanes that were split, waves.
         listed = 1 + (most_splits(s.contacts) + 1) * (2 + s.contacts + 4 * n)
         most = listed + WIDTH * (s.contacts + 1)
-        counts = _moments_of(gathered)
-        kept = np.empty(most + counts[0] + counts[1])
+        kept = np.empty(most + count * width + 3 * waves)
         parts = address(kept)
         search, others = ahead(parts, listed), ahead(parts, most)
         set_up(width, law.code, period, load, state, w)
@@ -169,6 +194,10 @@ def _build(digest: str) -> Any:
             for kind in range(kinds):
                 prepare(method, alone, first, period[lane], kind, single)
             put_lane(lane, width, s.end, slots, w, single)
+        if gathered is not None:
+            sums = Gathered(gathered.outputs, address(gathered.waves), gathered.harmonics, moments)
+            for item in range(numbers):
+                moments[item] = gathered.moments[item]
         switching = has_dead_zones(law)
         keep, kept_states, states = record.shape[0] > 0, address(record), 2 * n * width
         point = 0
@@ -179,6 +208,8 @@ def _build(digest: str) -> Any:
                 base = 3 * columns * r
                 for lane in range(width):
                     w[s.h * width + lane] = period[lane] * share[r]
+                if gathered is not None:
+                    set_inverse(lanes, law, share[r], w)
                 if again[r] or point == 0:
                     if switching:
                         set_sides(lanes, law, base, I64(0), w)
@@ -186,7 +217,7 @@ def _build(digest: str) -> Any:
                 if keep:
                     for item in range(states):
                         kept_states[point * states + item] = w[item]
-                if not step(lanes, method, law, r, base, w):
+                if not step(lanes, method, law, r, base, w, seen):
                     return UNFOUND + point + 1
                 gone = I64(0)
                 if switching:
@@ -198,6 +229,12 @@ def _build(digest: str) -> Any:
                         take_lane(lane, width, slots, w, single)
                         alone, first = _rows_of_lane(law, base, width, lane, room)
                         whole = period[lane] * share[r]
+                        if gathered is not None:
+                            mine = ahead(others, lane * count)
+                            take_lane(lane, width, count, sums.moments, mine)
+                            own_sums = Gathered(sums.outputs, sums.waves, sums.harmonics, mine)
+                            place = Place(first, 3 * waves * r, share[r] / cycles, seen)
+                            add_nodes((0.0,), alone, place, I64(0), own_sums, single)
                         good, contact = split_step(
                             method, alone, first, whole, part, single, parts, search
                         )
@@ -209,30 +246,24 @@ def _build(digest: str) -> Any:
                         put_lane(lane, width, s.force, s.side + s.contacts, w, single)
                         put_lane(lane, width, s.end, s.end + lasting, w, single)
                         if gathered is not None:
-                            count = counts[0] // width
-                            mine = ahead(others, lane * count)
-                            take_lane(lane, width, count, address(gathered.moments), mine)
-                            waves, number = address(gathered.waves), gathered.harmonics
-                            own_sums = Gathered(gathered.outputs, waves, number, mine)
-                            weight, wave = share[r] / cycles, 6 * number * r
-                            near = ahead(others, counts[0])
-                            gather_parts(
-                                alone, first, parts, whole, part, weight, wave, near, own_sums,
-                                single,
-                            )  # fmt: skip
+                            near = ahead(others, count * width)
+                            gather_parts(alone, place, parts, whole, part, near, own_sums, single)
                 if gathered is not None:
+                    place, pending = Place(base, 3 * waves * r, share[r] / cycles, seen), 1.0
+                    add_nodes(lanes, law, place, I64(1), sums, w)
+                    if r + 1 == share.size or again[r + 1]:
+                        acceleration(lanes, law, base + 2 * columns, I64(2), s.first, w)
+                        add_nodes(lanes, law, place, I64(2), sums, w)
+                        pending = 0.0
                     for lane in range(width):
-                        w[s.inverse * width + lane] = 1.0 / w[s.h * width + lane]
-                    moments, number = address(gathered.moments), gathered.harmonics
-                    sums = Gathered(gathered.outputs, address(gathered.waves), number, moments)
-                    weight, wave = share[r] / cycles, 6 * number * r
-                    gather(lanes, law, base, switching, weight, wave, sums, w)
-                    # The whole step was added to lanes that were split: their own moments instead.
-                    for lane in range(width if gone != 0 else 0):
+                        at = (seen + 3 * s.contacts) * width + lane
+                        w[at] = pending * place.share / 6.0
+                        # The whole step was added to lanes that were split: their own moments
+                        # instead.
                         if (gone >> lane) & 1:
-                            count = counts[0] // width
                             mine = ahead(others, lane * count)
-                            put_lane(lane, width, I64(0), count, moments, mine)
+                            put_lane(lane, width, I64(0), count, sums.moments, mine)
+                            w[at] = 0.0
                 accept(lanes, method, law, w)
                 point += 1
             for item in range(states):
@@ -240,6 +271,9 @@ def _build(digest: str) -> Any:
                     return point
         # Addresses hold only as long as their owners are in use.
         kept[0] = work[0]
+        if gathered is not None:
+            for item in range(numbers):
+                gathered.moments[item] = moments[item]
         for lane in range(width):
             for i in range(2 * n):
                 state[lane, i] = w[i * width + lane]
@@ -283,8 +317,8 @@ def _build_gather(digest: str) -> Any:
             for item in range(2 * n * width):
                 w[item] = states[2 * n * width * r + item]
                 w[4 * n * width + item] = states[2 * n * width * (r + 1) + item]
-            weight = share[r] / cycles
-            gather(lanes, law, 3 * columns * r, switching, weight, 6 * waves * r, sums, w)
+            place = Place(3 * columns * r, 6 * waves * r, share[r] / cycles, I64(0))
+            gather(lanes, law, switching, place, sums, w)
         # Addresses hold only as long as their owner is in use.
         work[0] = 0.0
 

@@ -93,8 +93,13 @@ def restart(lanes: Any, method: Any, law: Any, base: int, w: Array) -> None:
     raise TypeError("chosen by type where it is compiled")
 
 
-def step(lanes: Any, method: Any, law: Any, number: int, base: int, w: Array) -> bool:
-    """March every lane by step ``number``, -1 for a part of one; False if it was not found."""
+def step(lanes: Any, method: Any, law: Any, number: int, base: int, w: Array, seen: Any) -> bool:
+    """March every lane by step ``number``, -1 for a part of one; False if it was not found.
+
+    If ``seen`` is a slot and not None, the accelerations at the left end are left in the slots from
+    ``first`` and those in the middle in the slots from ``second``, the state there in buffer 1, and
+    the rest as :func:`~tribodyn.dynamics._engine.middle.seen_slots` tells.
+    """
     raise TypeError("chosen by type where it is compiled")
 
 

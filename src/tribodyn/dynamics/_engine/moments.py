@@ -1,9 +1,11 @@
 """Statistics of every lane, gathered while marching, so that no time series is stored.
 
-Each step contributes with Simpson's rule: both ends and the middle, where the state is the cubic
-Hermite interpolant of the two ends. A lane in which a contact opens or closes within the step
-contributes with every part of it by itself, as the damping force jumps there. The signals and their
-order are those of :mod:`tribodyn.dynamics._engine.statistics`.
+Each step contributes with Simpson's rule: both ends and the middle. The end of one step is the
+beginning of the next, which evaluates it anyway, so that only the middle and the ends at events
+are evaluated for the statistics; see :mod:`tribodyn.dynamics._engine.middle`. A lane in which a
+contact opens or closes within the step contributes with every part of it by itself, as the damping
+force jumps there. The signals and their order are those of
+:mod:`tribodyn.dynamics._engine.statistics`.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     acceleration,
     compression,
     first_contact,
+    is_dead_zone,
     next_contact,
     set_sides,
     slots_of,
@@ -27,11 +30,9 @@ from tribodyn.dynamics._engine.contact_forces import (
 from tribodyn.dynamics._engine.crossing import row_within
 from tribodyn.dynamics._engine.lanes import greatest, least, load, store
 from tribodyn.dynamics._engine.method import INNER, ONCE
+from tribodyn.dynamics._engine.middle import to_middle
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
-from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array
-
-cubic_middle = nb.njit(**INNER)(motion.cubic_middle)
 
 #: Shorter parts of a step are left out: their rate of change would be nothing but rounding.
 _SHORTEST = 1e-7
@@ -46,76 +47,90 @@ class Gathered(NamedTuple):
     moments: Any  #: of all lanes, or of one
 
 
-@nb.njit(**INNER)
-def _middle(lanes: Any, law: Law, w: Array) -> None:
-    """Interpolant of buffers 0 and 2 at the middle of the step, into buffer 1."""
-    s = slots_of(law.code)
-    n, h, inverse = s.n, load(lanes, w, s.h), load(lanes, w, s.inverse)
-    for i in range(n):
-        q0, v0 = load(lanes, w, i), load(lanes, w, n + i)
-        q1, v1 = load(lanes, w, 4 * n + i), load(lanes, w, 5 * n + i)
-        q, v = cubic_middle(h, inverse, q0, v0, q1, v1)
-        store(w, 2 * n + i, q)
-        store(w, 3 * n + i, v)
+class Place(NamedTuple):
+    """A step whose signals are added."""
+
+    row: int  #: of its left end in the table
+    wave: int  #: of its left end in the cosines and sines
+    share: float  #: of all that is gathered
+    seen: int  #: slot from which the step left what is counted
 
 
 @nb.njit(**INNER)
-def _add(lanes: Any, value: Any, weight: float, at: int, m: Array) -> Any:
-    """Add to the plain moments of a signal; returns the value times its weight."""
-    weighted = weight * value
-    store(m, at, load(lanes, m, at) + weighted)
-    store(m, at + 1, load(lanes, m, at + 1) + weighted * value)
-    store(m, at + 2, least(load(lanes, m, at + 2), value))
-    store(m, at + 3, greatest(load(lanes, m, at + 3), value))
-    return weighted
+def _add(lanes: Any, one: Any, other: Any, weights: Any, at: int, m: Array) -> None:
+    """Add two values to the plain moments of a signal."""
+    heavy, weighted = weights[0] * one, weights[1] * other
+    store(m, at, load(lanes, m, at) + heavy + weighted)
+    store(m, at + 1, load(lanes, m, at + 1) + heavy * one + weighted * other)
+    store(m, at + 2, least(load(lanes, m, at + 2), least(one, other)))
+    store(m, at + 3, greatest(load(lanes, m, at + 3), greatest(one, other)))
 
 
 @nb.njit(**INNER)
-def _add_waves(lanes: Any, weighted: Any, at: int, wave: int, into: Gathered) -> None:
-    """Add to the harmonics of a signal of a contact."""
-    for item in range(2 * into.harmonics):
-        slot = at + PLAIN_MOMENTS + item
-        part = into.waves[wave + item] * weighted
-        store(into.moments, slot, load(lanes, into.moments, slot) + part)
+def add_nodes(lanes: Any, law: Law, place: Place, kind: int, into: Gathered, w: Array) -> None:
+    """Add the signals at one or two nodes of a step to the moments.
 
-
-@nb.njit(**INNER)
-def gather(
-    lanes: Any, law: Law, row: int, switching: bool, share: float, wave: int, into: Gathered, w: Any
-) -> None:
-    """Add one step, whose ends are in buffers 0 and 2, to the moments."""
-    s, columns, m = slots_of(law.code), law.code[2], into.moments
-    n, contacts, outputs = s.n, s.contacts, into.outputs
-    long = PLAIN_MOMENTS + 2 * into.harmonics
-    _middle(lanes, law, w)
-    for node in range(3):
-        at, phase = row + node * columns, wave + node * 2 * into.harmonics
-        weight = (4.0 / 6.0 if node == 1 else 1.0 / 6.0) * share
-        if switching:
-            set_sides(lanes, law, at, node, w)
-        acceleration(lanes, law, at, node, s.first, w)
-        here = first_contact(law, at, node)
-        for j in range(contacts):
-            d = compression(lanes, law, here, s.error, w)
-            weighted = _add(lanes, d, weight, j * long, m)
-            _add_waves(lanes, weighted, j * long, phase, into)
-            slot = (contacts + j) * long
-            weighted = _add(lanes, load(lanes, w, s.force + j), weight, slot, m)
-            _add_waves(lanes, weighted, slot, phase, into)
-            off = weight * (1.0 - greatest(load(lanes, w, s.side + j), 0.0 * d))
+    Kind 0 is the left end, as no more than the right end of the step before; 1 the left end as
+    both, and the middle, as the step left them; 2 the right end; from 3 on a node by itself.
+    """
+    s, m, zero = slots_of(law.code), into.moments, 0.0 * load(lanes, w, 0)
+    waves, own, both = 2 * into.harmonics, kind < 2, kind == 1
+    one = I64(0) if own else I64(2) if kind == 2 else kind - 3
+    other = I64(1) if both else one
+    heavy = zero + (4.0 / 6.0 if kind == 4 else 0.0 if kind == 0 else 1.0 / 6.0) * place.share
+    if own:
+        heavy = heavy + load(lanes, w, place.seen + 3 * s.contacts)
+    weights = heavy, zero + (4.0 / 6.0 * place.share if both else 0.0)
+    force = place.seen if own else s.force
+    far_force, far_side = (s.force, place.seen + s.contacts) if both else (force, s.side)
+    far = s.second if both else s.first
+    first = first_contact(law, place.row + one * law.code[2], one)
+    second = first_contact(law, place.row + other * law.code[2], other)
+    for j in range(s.contacts):
+        slot = j * (PLAIN_MOMENTS + waves)
+        left = compression(lanes, law, first, s.error, w)
+        right = compression(lanes, law, second, s.error, w)
+        for signal in range(2):
+            if signal == 1:
+                slot += s.contacts * (PLAIN_MOMENTS + waves)
+                left, right = load(lanes, w, force + j), load(lanes, w, far_force + j)
+            _add(lanes, left, right, weights, slot, m)
+            left, right = weights[0] * left, weights[1] * right
+            for item in range(waves):
+                at, wave = slot + PLAIN_MOMENTS + item, place.wave + item
+                part = into.waves[wave + one * waves] * left
+                part = part + into.waves[wave + other * waves] * right
+                store(m, at, load(lanes, m, at) + part)
+        if is_dead_zone(law, first):
+            off = weights[0] * (1.0 - greatest(load(lanes, w, s.side + j), zero))
+            off = off + weights[1] * (1.0 - greatest(load(lanes, w, far_side + j), zero))
             store(m, slot + 4, load(lanes, m, slot + 4) + off)
-            here = next_contact(law, here)
-        signal = 2 * contacts * long
-        for i in range(n):
-            _add(lanes, load(lanes, w, s.first + i), weight, signal, m)
-            signal += PLAIN_MOMENTS
-        for o in range(outputs.shape[0]):
-            y = 0.0 * load(lanes, w, 0)
-            for i in range(2 * n):
-                if outputs[o, i] != 0.0:
-                    y = y + outputs[o, i] * load(lanes, w, 2 * n * node + i)
-            _add(lanes, y, weight, signal, m)
-            signal += PLAIN_MOMENTS
+        first, second = next_contact(law, first), next_contact(law, second)
+    slot = 2 * s.contacts * (PLAIN_MOMENTS + waves)
+    for i in range(s.n):
+        left, right = load(lanes, w, s.first + i), load(lanes, w, far + i)
+        _add(lanes, left, right, weights, slot, m)
+        slot += PLAIN_MOMENTS
+    for o in range(into.outputs.shape[0]):
+        left = right = zero
+        for i in range(2 * s.n):
+            if into.outputs[o, i] != 0.0:
+                left = left + into.outputs[o, i] * load(lanes, w, 2 * s.n * one + i)
+                right = right + into.outputs[o, i] * load(lanes, w, 2 * s.n * other + i)
+        _add(lanes, left, right, weights, slot, m)
+        slot += PLAIN_MOMENTS
+
+
+@nb.njit(**INNER)
+def gather(lanes: Any, law: Law, switching: bool, place: Place, into: Gathered, w: Array) -> None:
+    """Add one step, whose ends are in buffers 0 and 2, to the moments, node by node."""
+    to_middle(lanes, law, place.row + law.code[2], I64(0), w)
+    for node in range(3):
+        row = place.row + node * law.code[2]
+        if switching:
+            set_sides(lanes, law, row, node, w)
+        acceleration(lanes, law, row, node, slots_of(law.code).first, w)
+        add_nodes(lanes, law, place, 3 + node, into, w)
 
 
 @nb.njit(**INNER)
@@ -134,8 +149,8 @@ def _waves_within(
 
 @nb.njit(**ONCE)
 def gather_parts(
-    law: Law, base: int, parts: Array, width: float, part: Array, share: float, wave: int,
-    near: Array, into: Gathered, w: Array,
+    law: Law, step: Place, parts: Array, width: float, part: Array, near: Array, into: Gathered,
+    w: Array,
 ) -> None:  # fmt: skip
     """Add one step of one lane, part by part as :func:`split_step` left them in ``parts``."""
     s, own = slots_of(law.code), Law(law.code, law.reads, part)
@@ -152,9 +167,10 @@ def gather_parts(
                 w[4 * n + i] = parts[at + contacts + 2 * n + i]
             for node in range(3):
                 tau = start + 0.5 * node * (end - start)
-                row_within(law, base, tau, part, I64(node))
-                _waves_within(into.waves, wave, into.harmonics, tau, near, I64(node))
+                row_within(law, step.row, tau, part, I64(node))
+                _waves_within(into.waves, step.wave, into.harmonics, tau, near, I64(node))
             w[s.h] = width * (end - start)
             w[s.inverse] = 1.0 / w[s.h]
-            gather((0.0,), own, I64(0), np.bool_(False), share * (end - start), I64(0), here, w)
+            whole = Place(I64(0), I64(0), step.share * (end - start), I64(0))
+            gather((0.0,), own, np.bool_(False), whole, here, w)
         at += contacts + 4 * n

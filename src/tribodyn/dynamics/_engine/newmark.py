@@ -50,6 +50,7 @@ from tribodyn.dynamics._engine.method import (
     restart,
     step,
 )
+from tribodyn.dynamics._engine.middle import copy_slots, from_middle, to_middle
 from tribodyn.dynamics._engine.runge_kutta import take_over
 from tribodyn.types import Array, Index
 
@@ -338,14 +339,12 @@ def _iterate(lanes: Any, tolerance: float, law: Law, base: int, w: Array) -> boo
     return False
 
 
-@for_method(Newmark, step)
-def newmark_step(lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Array) -> bool:
-    """March every lane by one step with the sides at its start."""
+@nb.njit(**INNER)
+def _step(lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Array) -> bool:
+    """March every lane by one step; ``base`` is the row at its end."""
     keep_apart()
     s, o = slots_of(law.code), _slots_of(law.code)
     n, m = s.n, s.contacts
-    # The row at the end of the step is read.
-    base = base + 2 * law.code[2]
     inverse = o.inverse + (method.kind[number] if number >= 0 else I64(0)) * n * n
     _without_contacts(lanes, method, law, base, inverse, w)
     if m == 0:
@@ -364,6 +363,24 @@ def newmark_step(lanes: Any, method: Newmark, law: Law, number: int, base: int, 
         store(w, o.new + i, load(lanes, w, o.new + i) + a)
         store(w, 4 * n + i, load(lanes, w, 4 * n + i) + late * a)
         store(w, 5 * n + i, load(lanes, w, 5 * n + i) + fast * a)
+    return there
+
+
+@for_method(Newmark, step)
+def newmark_step(
+    lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Array, seen: Any
+) -> bool:
+    """March every lane by one step with the sides at its start."""
+    s, columns = slots_of(law.code), law.code[2]
+    if seen is not None:
+        acceleration(lanes, law, base, I64(0), s.first, w)
+        copy_slots(lanes, s.force, seen, s.contacts, w)
+    # The row at the end of the step is read.
+    there: bool = _step(lanes, method, law, number, base + 2 * columns, w)
+    if seen is not None:
+        to_middle(lanes, law, base + columns, seen, w)
+        acceleration(lanes, law, base + columns, I64(1), s.second, w)
+        from_middle(lanes, law, seen, w)
     return there
 
 

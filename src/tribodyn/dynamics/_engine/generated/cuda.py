@@ -18,7 +18,7 @@ import numba
 import numpy as np
 
 from tribodyn.compiled import tell
-from tribodyn.dynamics._engine import contact_forces, crossing, moments, runge_kutta
+from tribodyn.dynamics._engine import contact_forces, crossing, middle, moments, runge_kutta
 from tribodyn.dynamics._engine.generated.source import write_source
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.divergence import most_splits
@@ -69,7 +69,7 @@ class _Kernel:
         sizes = (self.slots, 3 * columns, crossing.WIDTH * (contacts + 1), parts)
         self.ends = tuple(int(end) for end in np.cumsum(sizes))
         names: dict[str, Any] = {}
-        for module in (contact_forces, crossing, moments, runge_kutta, thread):
+        for module in (contact_forces, crossing, middle, moments, runge_kutta, thread):
             names.update(vars(module))
         for name, value in list(names.items()):
             function = getattr(value, "py_func", value)

@@ -129,7 +129,7 @@ def write_source(program: Program) -> str:
             out.add("gone = gone or inside < 0.0")
     out.add("return gone")
 
-    out.begin("step(lanes, method, law, number, base, w)")
+    out.begin("step(lanes, method, law, number, base, w, seen)")
     out.add(once, f"h = w[{s.h}]", "sixth = (1.0 / 6.0) * h")
     out.add(*(f"x{i} = w[{i}]" for i in range(2 * n)))
     out.add(*(f"first{i} = inner{i} = a{i} = 0.0" for i in range(n)))

@@ -24,7 +24,7 @@ from tribodyn.dynamics._engine.marching import (
     set_up,
     take_lane,
 )
-from tribodyn.dynamics._engine.moments import Gathered, gather, gather_parts
+from tribodyn.dynamics._engine.moments import Gathered, Place, gather, gather_parts
 from tribodyn.dynamics._engine.runge_kutta import take_over
 
 #: Constants and functions of one structure, put in before compiling.
@@ -116,9 +116,9 @@ def march_thread(
             if record.shape[0] > 0:
                 for item in range(state.shape[1]):
                     record[point, item, lane] = w[item]
-            step((0.0,), 0, law, r, base, w)
+            step((0.0,), 0, law, r, base, w, None)
             split = switching and left_side((0.0,), law, base + 2 * COLUMNS, w)
-            wave, of_step = 6 * harmonics * r, weight * share[r]
+            place = Place(base, 6 * harmonics * r, weight * share[r], I64(0))
             if split:
                 take_lane(0, 1, SLOTS, w, single)
                 _, contact = split_step(0, law, base, w[s.h], part, single, parts, search)
@@ -128,13 +128,11 @@ def march_thread(
                 put_lane(0, 1, 4 * s.n, 6 * s.n, w, single)
                 put_lane(0, 1, s.side, s.side + s.contacts, w, single)
                 if gathering:
-                    gather_parts(
-                        law, base, parts, w[s.h], part, of_step, wave, near, gathered, single
-                    )
+                    gather_parts(law, place, parts, w[s.h], part, near, gathered, single)
                     set_sides((0.0,), law, base + 2 * COLUMNS, I64(2), w)
             elif gathering:
                 w[s.inverse] = 1.0 / w[s.h]
-                gather((0.0,), law, base, switching, of_step, wave, gathered, w)
+                gather((0.0,), law, switching, place, gathered, w)
             take_over((0.0,), s.n, w)
             point += 1
         for item in range(state.shape[1]):
