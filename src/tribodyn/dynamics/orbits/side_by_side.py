@@ -248,17 +248,17 @@ class _Touch(NamedTuple):
         return np.asarray(np.all(self.room > 0.0, axis=1))
 
     def stays(self, rates: Array, matrix: Array, distance: Array) -> Mask:
-        """Whether motions beside orbits reach them without parting."""
+        """Whether motions beside orbits reach them without parting; ``rates`` (p, k, rows)."""
         least, kept = self.room.min(axis=1), self.kept
-        steepest = _greatest(rates)
-        first = np.abs(rates @ distance[..., None])[..., 0].max(axis=1)
+        steepest = np.sqrt(np.einsum("pkr,pkr->pr", rates, rates).max(axis=1))
+        first = np.abs(distance[:, None] @ rates)[:, 0].max(axis=1)
         going = kept.copy()
         for _ in range(HORIZON):
             size = steepest * np.linalg.norm(distance, axis=1)
             near = going & (size > least)
             going &= near | (size > GONE * first)
             for number in np.flatnonzero(near):
-                moved = rates[number] @ distance[number]
+                moved = distance[number] @ rates[number]
                 kept[number] = np.all(self.room[number] + moved > 0.0)
                 going[number] = kept[number] and np.abs(moved).max() > GONE * first[number]
             if not going.any():
@@ -294,12 +294,12 @@ def _orbits(group: _Group) -> _Orbits:
     count, steps, size = len(every), group.grid.steps, group.system.size
     k = y.shape[-1]
     step = APART * np.linalg.norm(y, axis=-1, keepdims=True)
-    along = np.empty((count, steps + 1, k + 1))
+    along = np.empty((count, k + 1, steps + 1))
     direction = nodes.direction[0, 0, 0, 0]
     used = np.flatnonzero(direction)
 
     def beside(number: int, record: Array) -> None:
-        along[number] = sum(direction[i] * record[:, i, : k + 1] for i in used)
+        along[number] = sum(direction[i] * record[:, i, : k + 1] for i in used).T
 
     points = y + step * np.eye(-(-(k + 1) // WIDTH) * WIDTH, k, -1)
     image = group.beside(points, beside)[:, : k + 1]
@@ -309,9 +309,10 @@ def _orbits(group: _Group) -> _Orbits:
     matrix = np.swapaxes(image[:, 1:] - image[:, :1], 1, 2) / step
     slope = np.eye(k) - matrix
     inverse = np.linalg.pinv(slope)
-    touch = _Touch.of(nodes, along[..., 0])
-    rates = touch.flank[..., None] * (along[..., 1:] - along[..., :1]) / step
-    good = touch.kept & np.all(touch.room[..., None] + step * rates > 0.0, axis=(1, 2))
+    touch = _Touch.of(nodes, along[:, 0])
+    moved = touch.flank[..., None] * (along[:, 1:] - along[:, :1])
+    good = touch.kept & np.all(touch.room[:, None] + moved > 0.0, axis=(1, 2))
+    rates = moved / step
     point = y + _times(inverse, (image[:, :1] - y)[:, 0])[:, None]
     states = np.empty((count, steps + 1, 2 * size))
 
