@@ -66,14 +66,22 @@ def test_a_motion_depends_on_no_other(cases: list[td.Case], together: list[Begun
     assert alone[0].response == together[1].response
 
 
-def test_a_motion_that_ends_takes_no_other_with_it(cases: list[td.Case]) -> None:
-    points = [begin(case) for case in cases[:2]]
+@pytest.mark.parametrize("count", [2, 8, 9])
+def test_motions_of_systems_alike_march_as_alone(cases: list[td.Case], count: int) -> None:
+    points = [begin(cases[number % 2]) for number in range(count)]
     frequencies = np.array([point.mesh.mesh_frequency for point in points])
     group = _Group([point.system for point in points], frequencies, 1024)
-    state, every = group.coordinates.expand(group.start()), np.arange(2)
+    state, every = group.coordinates.expand(group.start()), np.arange(count)
     given = 1.0 / frequencies, group.whole.program.constant_load
-    alone = dict(group.whole.march(*given, state, every))
+    alone = _Group([points[1].system], frequencies[1:2], 1024)
+    load = alone.whole.program.constant_load
+    exact = dict(alone.whole.march(1.0 / frequencies[1:2], load, state[1:2], np.arange(1)))[0]
+    most = np.abs(exact).max(axis=0)
+    motions = dict(group.whole.march(*given, state, every))
+    assert motions.keys() == set(every.tolist())
+    assert np.all(np.abs(motions[1] - exact) <= 1e-12 * most)
+    assert dict(group.whole.march(*given, state, every[1:2])).keys() == {1}
     state[0] = np.inf
     beside = dict(group.whole.march(*given, state, every))
     assert np.isnan(beside[0]).all()
-    assert np.array_equal(beside[1], alone[1])
+    assert all(np.array_equal(beside[number], motions[number]) for number in every[1:])

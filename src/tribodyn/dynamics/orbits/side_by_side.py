@@ -45,6 +45,8 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Steps of all systems that are marched side by side: rows of more are far from the core.
 _STEPS = 16384
+#: Systems from which on four march side by side: few are no reason to compile that.
+_MANY = 8
 
 
 def orbits_in_touch(
@@ -80,7 +82,8 @@ class _Lanes(NamedTuple):
     @classmethod
     def of(cls, system: System, grid: Grid, nodes: Nodes) -> _Lanes:
         """Lanes of systems alike on a grid."""
-        blocks = lane_blocks(len(nodes.stiffness), OWN_ROWS)
+        count = len(nodes.stiffness)
+        blocks = lane_blocks(count, OWN_ROWS if count >= _MANY else 1)
         lanes = [block.index for block in blocks]
         return cls(build_program(system, grid, nodes, blocks=lanes), blocks)
 
@@ -115,6 +118,7 @@ class _Lanes(NamedTuple):
         program = self.program
         flat = program._replace(rows=rows.reshape(-1), constant_load=program.constant_load[0])
         own, numbers = rows if np.all(np.diff(lanes) == 1) else rows[:, lanes].copy(), index[lanes]
+        own = flat.rows if lanes.size == 1 else own
         return _states(flat, own, period[numbers], load[numbers], state[numbers, 0])
 
 
@@ -143,7 +147,8 @@ class _Group:
 
     def program_of(self, number: int) -> Program:
         """Program of one of the systems."""
-        program, (block, lane) = self.whole.program, divmod(number, OWN_ROWS)
+        program = self.whole.program
+        block, lane = divmod(number, program.rows.shape[-1])
         rows, load = program.rows[block, :, lane], program.constant_load[number]
         return program._replace(rows=rows, constant_load=load)
 
