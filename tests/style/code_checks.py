@@ -57,7 +57,7 @@ def star_imports(module: Module) -> list[str]:
     """Every name can be traced to where it is made."""
     return [
         f"{module.path}:{node.lineno}: star import"
-        for node in ast.walk(module.tree)
+        for node in module.nodes
         if isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names)
     ]
 
@@ -65,7 +65,7 @@ def star_imports(module: Module) -> list[str]:
 def broad_errors(module: Module) -> list[str]:
     """No bare except, no swallowed exception, no `raise Exception`."""
     found = []
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         if isinstance(node, ast.ExceptHandler):
             caught = ast.unparse(node.type) if node.type else ""
             idle = all(isinstance(step, ast.Pass | ast.Continue) for step in node.body)
@@ -97,7 +97,7 @@ def prints(module: Module) -> list[str]:
         return []
     return [
         f"{module.path}:{node.lineno}: print"
-        for node in ast.walk(module.tree)
+        for node in module.nodes
         if isinstance(node, ast.Call)
         and isinstance(node.func, ast.Name)
         and node.func.id == "print"

@@ -6,7 +6,7 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 from tribodyn.drawing import figure_text
@@ -51,7 +51,7 @@ class Function:
         names = [self.node.name, *([self.owner.name] if self.owner else [])]
         return not self.nested and not any(name.startswith("_") for name in names)
 
-    @property
+    @cached_property
     def decorators(self) -> list[str]:
         """Text of the decorators."""
         return [ast.unparse(decorator) for decorator in self.node.decorator_list]
@@ -68,7 +68,7 @@ class Function:
         """Whether it is a film formula, whose arguments and their texts a decorator completes."""
         return bool({"film_formula", "shared_arguments"} & set(self.decorators))
 
-    @property
+    @cached_property
     def docstring(self) -> str:
         """Cleaned docstring as a user reads it, empty if there is none."""
         text = ast.get_docstring(self.node) or ""
@@ -123,9 +123,18 @@ class Module:
         parts = Path(self.path).parts
         return parts[2] if len(parts) > 3 else Path(self.path).stem
 
-    def functions(self) -> Iterator[Function]:
+    @cached_property
+    def nodes(self) -> list[ast.AST]:
+        """All nodes of the tree."""
+        return list(ast.walk(self.tree))
+
+    @cached_property
+    def _found(self) -> list[Function]:
+        return list(_functions(self.tree, "", None, nested=False))
+
+    def functions(self) -> list[Function]:
         """All functions with their qualified names."""
-        yield from _functions(self.tree, "", None, nested=False)
+        return self._found
 
     def classes(self) -> Iterator[ast.ClassDef]:
         """Classes at the top level."""

@@ -20,7 +20,7 @@ _STATES = re.compile(r"^(assert|check|expect|raises|warns|fail|refuse)")
 def clocks(module: Module) -> list[str]:
     """No test reads a clock: what a busy machine decides is measured in benchmarks only."""
     found = []
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             owner, names = node.value.id, {node.attr}
         elif isinstance(node, ast.ImportFrom):
@@ -62,12 +62,10 @@ def _accepts(name: str) -> bool:
 def silent_skips(module: Module) -> list[str]:
     """A test that is skipped or expected to fail says why."""
     found = []
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         if isinstance(node, ast.Attribute) and node.attr in {"skip", "xfail", "skipif"}:
             called = [
-                call
-                for call in ast.walk(module.tree)
-                if isinstance(call, ast.Call) and call.func is node
+                call for call in module.nodes if isinstance(call, ast.Call) and call.func is node
             ]
             reasoned = called and any(
                 keyword.arg == "reason" for keyword in called[0].keywords
