@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
 from typing import Any
 
-import pytest
-
 from tribodyn.errors import ModelWarning
-from tribodyn.gear import BasicRack, Material, SpurPair, spur_pair
+from tribodyn.gear import SpurPair, spur_pair
 
 
 def pair_of(**changes: Any) -> SpurPair:
@@ -57,34 +54,4 @@ def standard(teeth: tuple[int, int], bore: float = 30e-3, **changes: Any) -> Spu
             "wheel_bore_diameter": bore,
             **changes,
         }
-    )
-
-
-@pytest.fixture(scope="session")
-def steel() -> Material:
-    return Material()
-
-
-@pytest.fixture(scope="session")
-def fzg() -> Callable[..., SpurPair]:
-    """FZG type A with any change; its thin tip and undercut are known and not the matter here."""
-    return pair_of
-
-
-@pytest.fixture(scope="session")
-def high_contact_pair() -> SpurPair:
-    """A pair with a contact ratio between two and three."""
-    rack = BasicRack(
-        addendum_coefficient=1.4, dedendum_coefficient=1.65, tip_radius_coefficient=0.2
-    )
-    return spur_pair(
-        pinion_teeth=45,
-        wheel_teeth=60,
-        normal_module=3e-3,
-        normal_pressure_angle=math.radians(20.0),
-        pinion_face_width=30e-3,
-        pinion_bore_diameter=60e-3,
-        wheel_bore_diameter=60e-3,
-        pinion_rack=rack,
-        wheel_rack=rack,
     )

@@ -13,16 +13,15 @@ gear_compliance.py.
 from __future__ import annotations
 
 import math
-import warnings
 from functools import cache
 
 import numpy as np
 import pytest
 
+from known_pairs import pair_of
 from references import gear_compliance
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import ModelWarning
-from tribodyn.gear import Material, SpurPair, default_relief_length, spur_pair
+from tribodyn.gear import Material, SpurPair, default_relief_length
 from tribodyn.stiffness import loaded_contact, with_tip_relief
 from tribodyn.stiffness.loaded import contact as prepare
 from tribodyn.stiffness.loaded import contact_problem
@@ -56,20 +55,7 @@ ROUNDING = 0.005
 
 @cache
 def reference_pair() -> SpurPair:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)
-        return spur_pair(
-            pinion_teeth=16,
-            wheel_teeth=24,
-            normal_module=4.5e-3,
-            normal_pressure_angle=math.radians(20.0),
-            center_distance=91.5e-3,
-            pinion_face_width=20e-3,
-            pinion_profile_shift_coefficient=0.8635,
-            wheel_profile_shift_coefficient=-0.5103,
-            pinion_bore_diameter=30e-3,
-            wheel_bore_diameter=30e-3,
-        )
+    return pair_of()
 
 
 def phase_at(roll: float) -> float:

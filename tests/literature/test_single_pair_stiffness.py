@@ -10,16 +10,13 @@ mark ``regression``. Those off the tips are computed anew by tests/references/ge
 
 from __future__ import annotations
 
-import math
-import warnings
-
 import numpy as np
 import pytest
 
+from known_pairs import pair_of
 from references.gear_compliance import DEFLECTIONS, STIFFNESS
 from tribodyn.contact import path_of_contact
-from tribodyn.errors import ModelWarning
-from tribodyn.gear import Material, SpurPair, spur_pair
+from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness import MODELS, iso6336_pair_stiffness, single_pair_stiffness
 
 pytestmark = pytest.mark.regression
@@ -30,20 +27,7 @@ FORCE = 100e3 * 0.02
 
 @pytest.fixture(scope="module")
 def pair() -> SpurPair:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)
-        return spur_pair(
-            pinion_teeth=16,
-            wheel_teeth=24,
-            normal_module=4.5e-3,
-            normal_pressure_angle=math.radians(20.0),
-            center_distance=91.5e-3,
-            pinion_face_width=20e-3,
-            pinion_profile_shift_coefficient=0.8635,
-            wheel_profile_shift_coefficient=-0.5103,
-            pinion_bore_diameter=30e-3,
-            wheel_bore_diameter=30e-3,
-        )
+    return pair_of()
 
 
 def figures(pair: SpurPair, reference: str = "bore") -> dict[str, float]:

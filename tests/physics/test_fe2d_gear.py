@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import itertools
 import math
-import warnings
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
+from known_pairs import pair_of
 from tribodyn.contact import effective_modulus, hertz_line, path_of_contact
-from tribodyn.errors import InputError, ModelWarning
-from tribodyn.gear import BasicRack, Material, SpurGear, SpurPair, spur_pair
+from tribodyn.errors import InputError
+from tribodyn.gear import BasicRack, Material, SpurGear, SpurPair
 from tribodyn.stiffness import GearInfluence, load_point, wind_up_compliance
 from tribodyn.stiffness.fe2d import MeshSize, fe2d_influence
 from tribodyn.stiffness.fe2d.flank_load import flank_loads, half_plane_displacement, remainder_loads
@@ -58,20 +58,7 @@ GEARS: dict[str, Callable[[], SpurGear]] = {
 
 @pytest.fixture(scope="module")
 def pair() -> SpurPair:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)
-        return spur_pair(
-            pinion_teeth=16,
-            wheel_teeth=24,
-            normal_module=4.5e-3,
-            normal_pressure_angle=math.radians(20.0),
-            center_distance=91.5e-3,
-            pinion_face_width=20e-3,
-            pinion_profile_shift_coefficient=0.8635,
-            wheel_profile_shift_coefficient=-0.5103,
-            pinion_bore_diameter=30e-3,
-            wheel_bore_diameter=30e-3,
-        )
+    return pair_of()
 
 
 @pytest.fixture(scope="module")

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-import warnings
-
 import numpy as np
 import pytest
 
-from tribodyn.errors import InputError, ModelWarning
-from tribodyn.gear import Material, spur_pair
+from known_pairs import pair_of
+from tribodyn.errors import InputError
+from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import build, comprehensive_stiffness
 
@@ -18,21 +16,11 @@ TORQUES, SPEEDS = (50.0, 150.0), (60.0, 120.0, 240.0)
 
 
 def gears(driver="pinion"):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)
-        return spur_pair(
-            pinion_teeth=16,
-            wheel_teeth=24,
-            normal_module=4.5e-3,
-            normal_pressure_angle=math.radians(20.0),
-            center_distance=91.5e-3,
-            pinion_face_width=20e-3,
-            pinion_profile_shift_coefficient=0.8532,
-            wheel_profile_shift_coefficient=-0.5,
-            pinion_bore_diameter=30e-3,
-            wheel_bore_diameter=30e-3,
-            driver=driver,
-        )
+    return pair_of(
+        pinion_profile_shift_coefficient=0.8532,
+        wheel_profile_shift_coefficient=-0.5,
+        driver=driver,
+    )
 
 
 def study(driver="pinion", **options):
