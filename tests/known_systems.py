@@ -77,3 +77,33 @@ def hysteresis_system():
     """Case H1: one degree of freedom with a dead zone and a pulsating stiffness."""
     contact = Contact([1.0], stiffness=lambda phase: 1.0 + 0.2 * np.cos(2 * np.pi * phase), gap=1.0)
     return System([[1.0]], [[0.1]], [[0.0]], [0.5], [contact])
+
+
+def turning(phase):
+    """Direction of a contact of three coordinates that turns with the phase."""
+    angle = 2 * np.pi * phase
+    return np.stack([1.0 + 0 * phase, 0.2 * np.sin(angle), 0.3 * np.cos(angle)], axis=1)
+
+
+def everything_varies(stiffness=1.0, friction=0.02, more=(), **loads):
+    """Two contacts with dead zones and more, directions and loads that move with the phase."""
+    first = Contact(
+        turning,
+        stiffness=lambda phase: stiffness * (40.0 + np.where(phase < 0.4, 20.0, 0.0)),
+        damping=0.3,
+        error=lambda phase: 0.02 * np.sin(4 * np.pi * phase),
+        gap=lambda phase: 0.01 + 0.005 * np.cos(2 * np.pi * phase),
+        friction=lambda phase: (
+            np.where(phase < 0.55, friction, -friction)[:, None] * [1.0, -1.0, 0.5]
+        ),
+        events=(0.4, 0.55),
+    )
+    second = Contact([0.0, 1.0, -1.0], stiffness=25.0, damping=0.2, gap=0.02, damping_in_gap=True)
+    return System(
+        np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 0.5]]),
+        0.5 * np.eye(3),
+        np.array([[3.0, -1.0, 0.0], [-1.0, 4.0, -1.0], [0.0, -1.0, 2.0]]),
+        lambda phase: np.stack([np.sin(2 * np.pi * phase), 0 * phase, 1.0 + 0 * phase], axis=1),
+        [first, second, *more],
+        **loads,
+    )

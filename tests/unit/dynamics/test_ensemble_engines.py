@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from known_marches import march_adaptive, march_newmark
-from known_systems import hysteresis_system, reference_system
+from known_systems import everything_varies, hysteresis_system, reference_system
 from plain.moments import add_record
 from tribodyn.dynamics import (
     Contact,
@@ -34,33 +34,11 @@ ENGINES = [
 ]
 
 
-def _turning(phase):
-    angle = 2 * np.pi * phase
-    return np.stack([1.0 + 0 * phase, 0.2 * np.sin(angle), 0.3 * np.cos(angle)], axis=1)
-
-
 def _build(stiffness=1.0):
     """Everything varies over the cycle, teeth separate, both kinds of friction act."""
-    first = Contact(
-        _turning,
-        stiffness=lambda phase: stiffness * (40.0 + np.where(phase < 0.4, 20.0, 0.0)),
-        damping=0.3,
-        error=lambda phase: 0.02 * np.sin(4 * np.pi * phase),
-        gap=lambda phase: 0.01 + 0.005 * np.cos(2 * np.pi * phase),
-        friction=lambda phase: np.where(phase < 0.55, 0.2, -0.2)[:, None] * [1.0, -1.0, 0.5],
-        events=(0.4, 0.55),
-    )
-    second = Contact([0.0, 1.0, -1.0], stiffness=25.0, damping=0.2, gap=0.02, damping_in_gap=True)
     third = Contact([0.5, 0.0, 1.0], stiffness=9.0, damping=0.1)
     follows = LoadFriction([0.1, 0.3, 0.0], np.array([0.2, 0.1]), 0.5, contacts=(0, 2))
-    return System(
-        np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 0.5]]),
-        0.5 * np.eye(3),
-        np.array([[3.0, -1.0, 0.0], [-1.0, 4.0, -1.0], [0.0, -1.0, 2.0]]),
-        lambda phase: np.stack([np.sin(2 * np.pi * phase), 0 * phase, 1.0 + 0 * phase], axis=1),
-        [first, second, third],
-        frictions=[follows],
-    )
+    return everything_varies(stiffness, 0.2, [third], frictions=[follows])
 
 
 def _parameters(lanes, seed=1):

@@ -3,45 +3,17 @@
 import numpy as np
 import pytest
 
-from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
+from known_systems import MESH_FREQUENCY, everything_varies, hysteresis_system, reference_system
 from plain.runge_kutta import march_plain
 from tribodyn.analysis import alternating_rms, extremes, mesh_harmonics, rms
-from tribodyn.dynamics import Contact, System, simulate, simulate_ensemble
+from tribodyn.dynamics import simulate, simulate_ensemble
 from tribodyn.dynamics.equations.compiled import compile_for
-
-
-def _everything_varies():
-    """Two contacts, one with a dead zone, directions and loads that move with the phase."""
-
-    def turning(phase):
-        angle = 2 * np.pi * phase
-        return np.stack([1.0 + 0 * phase, 0.2 * np.sin(angle), 0.3 * np.cos(angle)], axis=1)
-
-    first = Contact(
-        turning,
-        stiffness=lambda phase: 40.0 + np.where(phase < 0.4, 20.0, 0.0),
-        damping=0.3,
-        error=lambda phase: 0.02 * np.sin(4 * np.pi * phase),
-        gap=lambda phase: 0.01 + 0.005 * np.cos(2 * np.pi * phase),
-        friction=lambda phase: np.where(phase < 0.55, 0.02, -0.02)[:, None] * [1.0, -1.0, 0.5],
-        events=(0.4, 0.55),
-    )
-    second = Contact([0.0, 1.0, -1.0], stiffness=25.0, damping=0.2, gap=0.02, damping_in_gap=True)
-    mass = np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 0.5]])
-    return System(
-        mass,
-        0.5 * np.eye(3),
-        np.array([[3.0, -1.0, 0.0], [-1.0, 4.0, -1.0], [0.0, -1.0, 2.0]]),
-        lambda phase: np.stack([np.sin(2 * np.pi * phase), 0 * phase, 1.0 + 0 * phase], axis=1),
-        [first, second],
-    )
-
 
 CASES = {
     "linear": (reference_system(0.1), MESH_FREQUENCY, 1e-6),
     "backlash": (reference_system(0.1, gap=1e-5), MESH_FREQUENCY, 2e-5),
     "hysteresis": (hysteresis_system(), 0.14, 1.5),
-    "everything": (_everything_varies(), 0.4, 0.2),
+    "everything": (everything_varies(), 0.4, 0.2),
 }
 
 

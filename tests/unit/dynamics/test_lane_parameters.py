@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from known_systems import reference_system
+from known_systems import reference_system, turning
 from tribodyn.dynamics import (
     Contact,
     LaneParameters,
@@ -21,16 +21,11 @@ FREQUENCY = 0.4
 START = (np.array([0.2, -0.1, 0.15]), np.array([0.3, 0.1, -0.2]))
 
 
-def _turning(phase):
-    angle = 2 * np.pi * phase
-    return np.stack([1.0 + 0 * phase, 0.2 * np.sin(angle), 0.3 * np.cos(angle)], axis=1)
-
-
 def _build(stiffness=1.0, damping=1.0, friction=1.0, error=1.0, gap=1.0, force=1.0, *, extra=False):
     """Everything varies over the cycle, teeth separate, both kinds of friction act."""
     rub = np.array([1.0, -1.0, 0.5])
     first = Contact(
-        _turning,
+        turning,
         stiffness=lambda phase: stiffness * (40.0 + np.where(phase < 0.4, 20.0, 0.0)),
         damping=0.3 * damping,
         error=lambda phase: error * 0.02 * np.sin(4 * np.pi * phase),

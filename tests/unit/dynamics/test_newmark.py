@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from known_marches import compile_newmark, march_newmark
-from known_systems import MESH_FREQUENCY, hysteresis_system, reference_system
+from known_systems import (
+    MESH_FREQUENCY,
+    everything_varies,
+    hysteresis_system,
+    reference_system,
+)
 from plain.newmark import newmark_plain
 from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics.equations.compiled import compile_for
@@ -54,30 +59,6 @@ def test_turn_and_decay_of_the_family(system, gamma, beta):
     assert np.trace(ends) == pytest.approx(2.0 * decay * np.cos(turn), abs=1e-11)
     if gamma > 0.5:
         assert decay < 0.2
-
-
-def everything_varies():
-    def turning(phase):
-        angle = 2 * np.pi * phase
-        return np.stack([1.0 + 0 * phase, 0.2 * np.sin(angle), 0.3 * np.cos(angle)], axis=1)
-
-    first = Contact(
-        turning,
-        stiffness=lambda phase: 40.0 + np.where(phase < 0.4, 20.0, 0.0),
-        damping=0.3,
-        error=lambda phase: 0.02 * np.sin(4 * np.pi * phase),
-        gap=lambda phase: 0.01 + 0.005 * np.cos(2 * np.pi * phase),
-        friction=lambda phase: np.where(phase < 0.55, 0.02, -0.02)[:, None] * [1.0, -1.0, 0.5],
-        events=(0.4, 0.55),
-    )
-    second = Contact([0.0, 1.0, -1.0], stiffness=25.0, damping=0.2, gap=0.02, damping_in_gap=True)
-    return System(
-        np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 0.5]]),
-        0.5 * np.eye(3),
-        np.array([[3.0, -1.0, 0.0], [-1.0, 4.0, -1.0], [0.0, -1.0, 2.0]]),
-        lambda phase: np.stack([np.sin(2 * np.pi * phase), 0 * phase, 1.0 + 0 * phase], axis=1),
-        [first, second],
-    )
 
 
 @pytest.mark.parametrize(
