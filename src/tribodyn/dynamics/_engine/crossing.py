@@ -51,6 +51,8 @@ _LOW, _HIGH, _LOW_WEIGHT, _HIGH_WEIGHT, _LAST, _WIDE, _TRIES, _LEADER = 0, 1, 2,
 MAX_TRIES = 240
 #: Distances from the boundary over their change in the step: of the crossing, and of others there.
 _THERE, _TOGETHER = 1e-14, 1e-12
+#: Distance from the boundary over the gap that is nothing but rounding.
+_ROUNDING = 4e-16
 #: Narrowest search, and time within which it is not told whether a contact leaves its boundary.
 _NARROW, _STAY = 1e-15, 1e-6
 
@@ -163,7 +165,9 @@ def go_on(
     there = False
     if leader >= 0:
         g = _distance(room, leader, I64(NOW), sides, w)
-        there = alone and abs(g) <= _THERE * room[WIDTH * leader + _CHANGE]
+        at = WIDTH * leader
+        limit = max(_THERE * room[at + _CHANGE], _ROUNDING * room[at + NOW + 1])
+        there = alone and abs(g) <= limit
         # A motion beyond all bounds has no crossing to be found; the caller reports it.
         there = there or not math.isfinite(g)
     if there:
@@ -262,8 +266,8 @@ def _try(
     start: float,
     target: float,
 ) -> bool:
-    """March the part of a step from ``start`` to ``target`` with the sides at its beginning."""
-    for node in range(3):
+    """March the part of a step from ``start``, whose row is there, to ``target``."""
+    for node in range(1, 3):
         row_within(law, base, start + 0.5 * node * (target - start), part, I64(node))
     own = Law(law.code, law.reads, part)
     w[slots_of(law.code).h] = width * (target - start)
@@ -279,9 +283,9 @@ def split_step(
 ) -> tuple[bool, int]:
     """March one lane by one step in parts; also returns -1, or a contact that comes to no end.
 
-    The state in buffer 0 and the sides are those at the left end; the new state is left in
-    buffer 2, and the sides are updated. The parts are left in ``parts``. The first number tells
-    whether every part was found.
+    The state in buffer 0 and the sides are those at the left end, the state in buffer 2 is that at
+    the right end if the sides stay; the new state is left there, and the sides are updated. The
+    parts are left in ``parts``. The first number tells whether every part was found.
     """
     n, contacts, sides = law.code[0], law.code[1], slots_of(law.code).side
     start, contact, good = 0.0, I64(-1), True
@@ -293,9 +297,12 @@ def split_step(
     row_within(law, base, 0.0, part, I64(0))
     own = Law(law.code, law.reads, part)
     measure(own, I64(0), I64(0), w, room, I64(NEAR))
-    target, searching, left = 1.0, False, most_splits(contacts) + 1
+    measure(law, base + 2 * law.code[2], I64(2), w, room, I64(NOW))
+    target, searching, left, marched = 1.0, False, most_splits(contacts) + 1, True
     while left > 0:
-        good = _try(method, law, base, width, part, w, room, start, target) and good
+        if not marched:
+            good = _try(method, law, base, width, part, w, room, start, target) and good
+        marched = False
         there, following = True, 0.0
         if searching:
             there, following = go_on(room, contacts, start, target, sides, w)
@@ -312,6 +319,7 @@ def split_step(
         for i in range(2 * n):
             w[i] = w[4 * n + i]
         restart((0.0,), method, own, 2 * law.code[2], w)
+        row_within(law, base, target, part, I64(0))
         start, target, searching, left = target, 1.0, False, left - 1
     for i in range(2 * n):
         if not math.isfinite(w[i]):
