@@ -106,7 +106,7 @@ def _values(rows: RowEvaluator, where: str, entries: Sequence[Any], size: int) -
         constants = [entry_values(where, each, at, size) for each in entries]
         return np.broadcast_to(np.stack(constants)[:, None], shape)
     joined = _joined(rows, entries, size)
-    if joined is not None and np.all(np.isfinite(joined)):
+    if joined is not None:
         return joined
     return np.stack([rows.values(where, 0.0 if e is None else e, size) for e in entries])
 
@@ -123,7 +123,10 @@ def _joined(rows: RowEvaluator, entries: Sequence[Any], size: int) -> Array | No
         for each in entries
     ):
         return None
-    table = kind(first.grid, np.stack([each.values for each in entries], axis=1))
+    knots = np.stack([each.values for each in entries], axis=1)
+    if not np.all(np.isfinite(knots)):  # which is told of each by itself
+        return None
+    table = kind(first.grid, knots)
     found = np.moveaxis(table(rows.nodes.reshape(-1)), 1, 0)
     found = found if first.onto is None else found @ first.onto
     return np.asarray(found).reshape(len(entries), *rows.nodes.shape, size)
