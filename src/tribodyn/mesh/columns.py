@@ -248,7 +248,7 @@ class MeshColumns(Record):
         """Friction over normal force of all pairs together, with direction (n,)."""
         if self.friction_direction is not None:
             return self._of(self.friction, "pinion_x")
-        return self.by_share(self._directed_friction)
+        return np.asarray(self._plane_friction[0])
 
     @property
     def asperity_friction_sum(self) -> Array | None:
@@ -266,14 +266,14 @@ class MeshColumns(Record):
         """Friction moment on the pinion over total normal force (n,) [m]."""
         if self.friction_direction is not None:
             return self._of(self.friction, "pinion_theta")
-        return self.by_share(self._directed_friction * self.pinion_curvature_radius)
+        return np.asarray(self._plane_friction[1])
 
     @property
     def friction_moment_wheel(self) -> Array:
         """Friction moment on the wheel over total normal force (n,) [m]."""
         if self.friction_direction is not None:
             return -self._of(self.friction, "wheel_theta")
-        return self.by_share(self._directed_friction * self.wheel_curvature_radius)
+        return np.asarray(self._plane_friction[2])
 
     @property
     def friction(self) -> Array:
@@ -308,5 +308,30 @@ class MeshColumns(Record):
         -------
         array (n,)
         """
-        ends = np.array([column[0, 0], column[self._last_touch]])
-        return np.asarray((column * self.load_share).sum(axis=1) + self.corner_share @ ends)
+        return sum_by_share(column, self.load_share, self.corner_share, self._last_touch)
+
+    @cached_property
+    def _plane_friction(self) -> Array:
+        share, corners = self.load_share, self.corner_share
+        levers = self.pinion_curvature_radius, self.wheel_curvature_radius
+        return plane_friction(self._directed_friction, levers, share, corners, self._last_touch)
+
+
+def sum_by_share(column: Array, share: Array, corners: Array, last: tuple[int, int]) -> Array:
+    """Sum columns (..., n, pairs) over the pairs and tip corners (..., n)."""
+    sums = (column * share).sum(axis=-1)
+    for end, place in enumerate(((0, 0), last)):
+        sums += corners[..., end] * column[(..., *place, None)]
+    return np.asarray(sums)
+
+
+def plane_friction(
+    directed: Array,
+    levers: tuple[Array, Array],
+    share: Array,
+    corners: Array,
+    last: tuple[int, int],
+) -> Array:
+    """Friction over the normal force, and its moments on pinion and wheel (3, ..., n)."""
+    columns = np.stack((directed, *(directed * lever for lever in levers)))
+    return sum_by_share(columns, share, corners, last)

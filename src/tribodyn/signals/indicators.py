@@ -105,7 +105,13 @@ def alternating_rms(samples: FineSamples, signal: Array) -> Array:
     >>> round(float(alternating_rms(samples, wave) ** 2), 6)
     2.0
     """
-    return rms(samples, signal - mean(samples, signal))
+    return moments(samples, signal)[1]
+
+
+def moments(samples: FineSamples, signal: Array) -> tuple[Array, Array]:
+    """Mean and alternating rms."""
+    middle = samples.mean(_on(samples.phase.size, signal))
+    return middle, np.asarray(np.sqrt(samples.mean((signal - middle) ** 2)))
 
 
 def extremes(signal: Array) -> tuple[Array, Array]:

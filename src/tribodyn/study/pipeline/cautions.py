@@ -235,11 +235,12 @@ def motion_cautions(case: Case, system: System, response: Response) -> tuple[Mod
     """Find flanks that part in a steady motion."""
     if case.backlash == 0.0 or not is_steady(response):
         return ()
-    samples = measured(response)
+    samples = response.fine  # all of them, as the motion is steady
     deflection, touch = compression(samples), first_touch(system, samples)
-    share = float(samples.mean((deflection <= touch).astype(float)))
-    if share == 0.0:
+    apart = deflection <= touch
+    if not apart.any():
         return ()
+    share = float(measured(response).mean(apart.astype(float)))
     back = "the back flanks touch as well" if np.any(deflection < -touch) else ""
     message = (
         f"the flanks are apart for {share:.3g} of the mesh cycle; "

@@ -231,12 +231,13 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
 
 def _motion_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     """Figures of all signals of a motion, each of which is averaged once."""
-    from tribodyn.analysis import alternating_rms, extremes, mean, mesh_harmonics
+    from tribodyn.analysis import extremes, mesh_harmonics
+    from tribodyn.signals.indicators import moments
 
     name, signals = "dynamic_transmission_error", _signals(result, samples)
     # One after the other, as all of them would leave the nearest memory.
-    means = {signal: mean(samples, values) for signal, values in signals.items()}
-    swings = {signal: alternating_rms(samples, values) for signal, values in signals.items()}
+    both = {signal: moments(samples, values) for signal, values in signals.items()}
+    means, swings = ({name: pair[i] for name, pair in both.items()} for i in range(2))
     (least, greatest), ends = extremes(signals["mesh_force"]), extremes(signals[name])
     amplitudes = np.abs(mesh_harmonics(samples, signals[name], _HARMONICS))
     figures = {
