@@ -150,7 +150,13 @@ def _name(kernel: Any) -> str:
 
 
 def _march() -> None:
-    """The orbit of a system that takes no time."""
-    from tribodyn.dynamics import System, steady_state
+    """The orbit of a system that takes no time, and those of as many as an operating map has."""
+    import numpy as np
 
-    steady_state(System([[1.0]], [[1.0]], [[1e4]], [0.0]), 10.0, steps=64)
+    from tribodyn.dynamics import Contact, System, steady_state
+    from tribodyn.dynamics.orbits.side_by_side import orbits_in_touch
+
+    teeth, count = Contact([1.0], 1e4, 10.0), 16
+    system = System([[1.0]], [[1.0]], [[1e4]], [1.0], contacts=[teeth])
+    steady_state(system, 10.0, steps=64)
+    orbits_in_touch([system] * count, np.full(count, 10.0), 64)
