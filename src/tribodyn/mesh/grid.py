@@ -13,9 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
+from tribodyn.arrays.monotone import monotone_cubic
+from tribodyn.arrays.recent import Recent
 from tribodyn.errors import InputError
-from tribodyn.monotone import monotone_cubic
-from tribodyn.recent import Recent
 from tribodyn.types import Array, ComplexArray, Index
 
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.

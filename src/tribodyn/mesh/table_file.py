@@ -13,6 +13,7 @@ from typing import Any, NoReturn, cast
 import numpy as np
 
 from tribodyn import units
+from tribodyn.arrays.monotone import monotone_cubic
 from tribodyn.errors import InputError
 from tribodyn.mesh.force_law import at_rest
 from tribodyn.mesh.gears import (
@@ -34,7 +35,6 @@ from tribodyn.mesh.storage import (
     is_mesh_table,
 )
 from tribodyn.mesh.table import MeshTable
-from tribodyn.monotone import monotone_cubic
 from tribodyn.stored import file_kind, plain_number, read_bytes, read_dataset
 from tribodyn.types import Array
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.arrays.recent import Recent
 from tribodyn.dynamics.time.response import FineSamples, Response, sample_extremes
 from tribodyn.errors import Argument, InputError, require_positive
-from tribodyn.recent import Recent
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array, ComplexArray

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.arrays.monotone import monotone_cubic
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.mesh.cycle import PairsInContact, PathPositions, lobatto_polynomial
-from tribodyn.monotone import monotone_cubic
 from tribodyn.types import Array, Index, Mask
 
 #: What is interpolated, in this order; the last as compliance, which has no pole.

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.arrays.monotone import monotone_cubic
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.model import number, numbers
-from tribodyn.monotone import monotone_cubic
 from tribodyn.stiffness.model import MODELS, MeshState, share_equally
 from tribodyn.types import Array, Mask
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.monotone import monotone_cubic
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurGear, ToothForm, half_tooth
-from tribodyn.monotone import monotone_cubic
 from tribodyn.types import Array
 
 
