@@ -9,7 +9,6 @@ import numpy as np
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, Outcome
 from tribodyn.ehl.steady.newton_engine import (
-    BRIEF,
     CAP,
     LINEAR,
     STEPS,
@@ -117,9 +116,8 @@ def run_multigrid(problem: ContactProblem) -> tuple[Outcome, Cycles]:
     limits = MultigridLimits(problem.tolerance, flux, _LOAD, _CYCLES, film)
     contact, start = steady_contact(problem), (offset, free, P, H)
     ended = stoppable(
-        multigrid_solve, n, count, first, contact, limits, *start, shape, films, record,
-        brief=n <= BRIEF,
-    )  # fmt: skip
+        multigrid_solve, n, count, first, contact, limits, *start, shape, films, record
+    )
     if ended.status != 0:
         reason = _REASONS[ended.status].format(
             cycles=ended.cycles, change=ended.change, flux=ended.flux_error
@@ -157,8 +155,7 @@ def _start(
         limits = Limits(pressure, flux, STEPS, LINEAR, CAP)
         contact, films = steady_contact(problem, n // m), np.zeros(20)
         start = 0.0, offset, free, P, H, films
-        brief = m <= BRIEF
-        solved, *_ = stoppable(newton_solve, m, m, warm, contact, limits, *start, brief=brief)
+        solved, *_ = stoppable(newton_solve, m, m, warm, contact, limits, *start)
         offset, free = solved.offset, solved.free
         if solved.status == 0:
             return m, offset, free, ""

@@ -27,10 +27,6 @@ _REASONS = {
 }
 
 
-#: Intervals up to which a solve ends within a tenth of a second, found or not.
-BRIEF = 1024
-
-
 def first_intervals(problem: ContactProblem) -> int:
     """Intervals of the grid on which a cold start can resolve the inlet."""
     m = problem.nodes - 1
@@ -60,9 +56,10 @@ def newton_engine(problem: ContactProblem) -> Outcome:
     linear = _LINEAR_TIGHT if tight else LINEAR
     limits = Limits(problem.tolerance, problem.flux_tolerance, STEPS, linear, CAP)
     contact, film = steady_contact(problem), problem.film_tolerance
-    start = offset, free, P, H, films
+    # Never brief: Python makes the named tuple of the state within the compiled call, and there an
+    # interruption of the main thread would end the process.
     solved, m, first, grids = stoppable(
-        newton_solve, n, first, warm, contact, limits, film, *start, brief=n <= BRIEF
+        newton_solve, n, first, warm, contact, limits, film, offset, free, P, H, films
     )
     message = ""
     if solved.status != 0:
