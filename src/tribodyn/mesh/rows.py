@@ -12,10 +12,10 @@ from tribodyn.contact import Kinematics
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import ModelWarning, TribodynError, collected, require_positive
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact, pitch_point
-from tribodyn.gear import SpurPair
 from tribodyn.mesh.build import columns_of, known_teeth, table_of
 from tribodyn.mesh.cycle import MeshCycle, pairs_in_contact
 from tribodyn.mesh.film.path_film import FormulaFilm, Friction
+from tribodyn.mesh.gears import Gears
 from tribodyn.mesh.loads import Loads, reported_films, tribological_contact
 from tribodyn.mesh.sharing import Teeth, ToothContact, shared_load_columns
 from tribodyn.mesh.table import MeshTable
@@ -35,7 +35,7 @@ class _Point(NamedTuple):
 
 
 def mesh_tables(
-    pair: SpurPair,
+    pair: Gears,
     settings: ToothContact,
     operations: Sequence[tuple[float, float]],
     *,
@@ -64,14 +64,14 @@ def mesh_tables(
     return [] if found else tables
 
 
-def _point(pair: SpurPair, settings: ToothContact, speed: float, torque: float) -> _Point:
+def _point(pair: Gears, settings: ToothContact, speed: float, torque: float) -> _Point:
     require_positive("pinion_torque", torque, "N*m")
     with collected() as told:
         cycle, teeth = known_teeth(pair, settings, torque, None, None)
     return _Point(speed, torque, cycle, teeth, told)
 
 
-def _columns(pair: SpurPair, settings: ToothContact, points: Sequence[_Point]) -> dict[str, Any]:
+def _columns(pair: Gears, settings: ToothContact, points: Sequence[_Point]) -> dict[str, Any]:
     """Columns of all points, each in its row."""
     cycle = points[0].cycle
     motion = cycle.motion(np.array([[point.speed] for point in points]))
@@ -92,7 +92,7 @@ def _columns(pair: SpurPair, settings: ToothContact, points: Sequence[_Point]) -
 class _Law(NamedTuple):
     """The friction law of some settings, asked about contacts in rows."""
 
-    pair: SpurPair
+    pair: Gears
     settings: ToothContact
     film_at: FormulaFilm
     motion: Kinematics

@@ -358,12 +358,11 @@ def _keys_that_changed(case: CaseData) -> tuple[str, ...]:
 
 def _defaults_before(case: CaseData, keys: Iterable[str]) -> dict[str, Any]:
     """What was in force of keys that are given now, while the case began without them."""
+    given, base = case.given, case.stated.base
     return {
         key: default_of(case, key)
         for key in keys
-        if key in case.given
-        and key not in case.stated.base
-        and case.assumed.get(key) != DEFAULT_MARK
+        if key in given and key not in base and case.assumed.get(key) != DEFAULT_MARK
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,15 +41,21 @@ def geometry(case: Case) -> dict[str, float]:
         return _of_mesh_table(case, case.mesh_table)
     if case.hypoid_flanks is not None:
         return _of_hypoid(case, case.hypoid_flanks)
-    found = case._once("geometry", ("gears", "dynamics", "material"), lambda: _of_spur(case))
-    return dict(found)
+
+    def of_spur() -> dict[str, float]:
+        densities = case.density("pinion"), case.density("wheel")
+        return _of_spur(case.gear_pair, *densities, case.backlash)
+
+    return dict(case._once("geometry", ("gears", "dynamics", "material"), of_spur))
 
 
-def _of_spur(case: Case) -> dict[str, float]:
-    """Geometry of a spur pair."""
+@lru_cache(maxsize=8)
+def _of_spur(
+    pair: SpurPair, density_pinion: float, density_wheel: float, backlash: float
+) -> dict[str, float]:
+    """Geometry of a spur pair; a study asks for it under many loads."""
     from tribodyn.contact import gear_loss_factor, path_of_contact
 
-    pair = case.gear_pair
     values = {
         "transverse_contact_ratio": pair.transverse_contact_ratio,
         "gear_ratio": pair.ratio,
@@ -58,14 +65,14 @@ def _of_spur(case: Case) -> dict[str, float]:
         "base_pitch": pair.base_pitch,
         "line_of_action_length": pair.line_of_action_length,
         "common_face_width": pair.common_face_width,
-        "backlash": case.backlash,
+        "backlash": backlash,
         "gear_loss_factor": gear_loss_factor(pair),
     }
     for place, angle in path_of_contact(pair).roll_angles.items():
         values[f"roll_angle_{place}"] = angle
     bodies = {
-        "pinion": _body(pair.pinion, case.density("pinion")),
-        "wheel": _body(pair.wheel, case.density("wheel")),
+        "pinion": _body(pair.pinion, density_pinion),
+        "wheel": _body(pair.wheel, density_wheel),
     }
     for key in bodies["pinion"]:
         for name, body in bodies.items():

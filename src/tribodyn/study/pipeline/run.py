@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -73,11 +74,18 @@ def run(
     >>> case = tribodyn.load_case("fzg-roughness")
     >>> result = run(case)  # doctest: +SKIP
     """
-    with compiled_beside(case):
+    with nullcontext() if _has_marched() else compiled_beside(case):
         result = computed(case, progress, follow=follow)
     for warning in result.warnings:
         warnings.warn(warning, stacklevel=frames(stacklevel, sys._getframe()))
     return result
+
+
+def _has_marched() -> bool:
+    """Whether this process has loaded the engine already, and so most of what it needs."""
+    from tribodyn.dynamics._engine.marching import march_block
+
+    return bool(getattr(march_block, "signatures", ()))
 
 
 def rehearse(case: Case) -> tuple[ModelWarning, ...]:
