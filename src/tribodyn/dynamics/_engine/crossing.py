@@ -8,7 +8,7 @@ The search: two places of the step enclose the instant; nobody is beyond its bou
 one, somebody is at the far one. Every try replaces one of them, whichever contact it was meant for,
 so that the search ends however many contacts cross together; those that do so to rounding change
 their sides at one instant. A try is a step to that place with fixed steps, and the polynomial of
-the step with adaptive ones. Nine numbers per contact and eight of the search itself are kept in
+the step with adaptive ones. Eight numbers per contact and eight of the search itself are kept in
 ``room``.
 """
 
@@ -38,11 +38,11 @@ quadratic_weights = nb.njit(**INNER)(motion.quadratic_weights)
 most_splits = nb.njit(**INNER)(divergence.most_splits)
 
 #: Numbers per contact, and those of the search behind them: see the slots.
-WIDTH = 9
+WIDTH = 8
 #: Slots of a contact: -1 without a dead zone, 1 if it begins on its boundary, else 0; its
 #: compression and gap at the near place, at the far one, at the last try; what they change by in
-#: the whole step; the size of what the compression at the last try is the sum of.
-KIND, NEAR, FAR, NOW, _CHANGE, _SIZE = 0, 1, 3, 5, 7, 8
+#: the whole step.
+KIND, NEAR, FAR, NOW, _CHANGE = 0, 1, 3, 5, 7
 #: Slots of the search: near and far place, weights of their distances, which of them was replaced
 #: last, its width some tries ago and how many, contact for which the last try was made.
 _LOW, _HIGH, _LOW_WEIGHT, _HIGH_WEIGHT, _LAST, _WIDE, _TRIES, _LEADER = 0, 1, 2, 3, 4, 5, 6, 7
@@ -51,8 +51,6 @@ _LOW, _HIGH, _LOW_WEIGHT, _HIGH_WEIGHT, _LAST, _WIDE, _TRIES, _LEADER = 0, 1, 2,
 MAX_TRIES = 240
 #: Distances from the boundary over their change in the step: of the crossing, and of others there.
 _THERE, _TOGETHER = 1e-14, 1e-12
-#: Distance from the boundary that is nothing but rounding, over the size of what it is the sum of.
-_ROUNDING = 2e-16
 #: Narrowest search, and time within which it is not told whether a contact leaves its boundary.
 _NARROW, _STAY = 1e-15, 1e-6
 
@@ -64,13 +62,6 @@ def _distance(room: Array, j: int, place: int, sides: int, w: Array) -> float:
     d, gap, side = room[at + place], room[at + place + 1], w[sides + j]
     leaving = 1.0 if room[at + FAR] > 0.0 else -1.0
     return side * d - gap if side != 0.0 else gap - leaving * d
-
-
-@nb.njit(**INNER)
-def _noticed(room: Array, j: int, share: float) -> float:
-    """Distance of a contact that is a share of its change, but not less than rounding."""
-    at = WIDTH * j
-    return max(share * room[at + _CHANGE], _ROUNDING * room[at + _SIZE])
 
 
 @nb.njit(**INNER)
@@ -166,13 +157,13 @@ def go_on(
     for j in range(contacts):
         if _is_beyond(room, j, target - start < _STAY, sides, w):
             some = True
-            limit = _noticed(room, j, _TOGETHER)
+            limit = _TOGETHER * room[WIDTH * j + _CHANGE]
             alone = alone and _distance(room, j, I64(NOW), sides, w) >= -limit
     leader = I64(room[search + _LEADER])
     there = False
     if leader >= 0:
         g = _distance(room, leader, I64(NOW), sides, w)
-        there = alone and abs(g) <= _noticed(room, leader, _THERE)
+        there = alone and abs(g) <= _THERE * room[WIDTH * leader + _CHANGE]
         # A motion beyond all bounds has no crossing to be found; the caller reports it.
         there = there or not math.isfinite(g)
     if there:
@@ -206,7 +197,7 @@ def change_sides(
         if target == start:
             crosses = room[at + KIND] > 0.0
         else:
-            limit = _noticed(room, j, _TOGETHER)
+            limit = _TOGETHER * room[at + _CHANGE]
             crosses = narrow or _distance(room, j, I64(NOW), sides, w) <= limit
             crosses = crosses and not (room[at + KIND] > 0.0 and target - start < _STAY)
             crosses = crosses or j == I64(room[search + _LEADER])
@@ -227,10 +218,6 @@ def measure(law: Law, base: int, buffer: int, w: Array, room: Array, place: int)
     for j in range(s.contacts):
         if is_dead_zone(law, here):
             room[WIDTH * j + place] = first_lane(compression((0.0,), law, here, s.error, w))
-            size = abs(room[WIDTH * j + place])
-            for item in range(law.code[here.at]):
-                size += abs(law.rows[here.row + 5 + item] * w[law.reads[here.read + item]])
-            room[WIDTH * j + _SIZE] = size
             room[WIDTH * j + place + 1] = first_lane(dead_zone((0.0,), law, here, s.gap, w))
         here = next_contact(law, here)
 
@@ -275,8 +262,8 @@ def _try(
     start: float,
     target: float,
 ) -> bool:
-    """March the part of a step from ``start``, whose row is there, to ``target``."""
-    for node in range(1, 3):
+    """March the part of a step from ``start`` to ``target`` with the sides at its beginning."""
+    for node in range(3):
         row_within(law, base, start + 0.5 * node * (target - start), part, I64(node))
     own = Law(law.code, law.reads, part)
     w[slots_of(law.code).h] = width * (target - start)
@@ -292,9 +279,9 @@ def split_step(
 ) -> tuple[bool, int]:
     """March one lane by one step in parts; also returns -1, or a contact that comes to no end.
 
-    The state in buffer 0 and the sides are those at the left end, the state in buffer 2 is that at
-    the right end if the sides stay; the new state is left there, and the sides are updated. The
-    parts are left in ``parts``. The first number tells whether every part was found.
+    The state in buffer 0 and the sides are those at the left end; the new state is left in
+    buffer 2, and the sides are updated. The parts are left in ``parts``. The first number tells
+    whether every part was found.
     """
     n, contacts, sides = law.code[0], law.code[1], slots_of(law.code).side
     start, contact, good = 0.0, I64(-1), True
@@ -306,12 +293,9 @@ def split_step(
     row_within(law, base, 0.0, part, I64(0))
     own = Law(law.code, law.reads, part)
     measure(own, I64(0), I64(0), w, room, I64(NEAR))
-    measure(law, base + 2 * law.code[2], I64(2), w, room, I64(NOW))
-    target, searching, left, marched = 1.0, False, most_splits(contacts) + 1, True
+    target, searching, left = 1.0, False, most_splits(contacts) + 1
     while left > 0:
-        if not marched:
-            good = _try(method, law, base, width, part, w, room, start, target) and good
-        marched = False
+        good = _try(method, law, base, width, part, w, room, start, target) and good
         there, following = True, 0.0
         if searching:
             there, following = go_on(room, contacts, start, target, sides, w)
@@ -328,7 +312,6 @@ def split_step(
         for i in range(2 * n):
             w[i] = w[4 * n + i]
         restart((0.0,), method, own, 2 * law.code[2], w)
-        row_within(law, base, target, part, I64(0))
         start, target, searching, left = target, 1.0, False, left - 1
     for i in range(2 * n):
         if not math.isfinite(w[i]):
