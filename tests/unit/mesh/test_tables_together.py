@@ -40,8 +40,9 @@ def _columns(mesh: Any) -> dict[str, Any]:
 )
 def test_every_column_is_that_of_a_single_point(changes: dict[str, Any]) -> None:
     case = td.load_case("fzg-roughness").replace(changes)
-    for one, known in with_tables(_asked(case)):
-        assert known is not None
+    asked = with_tables(_asked(case))
+    assert [callable(known) for _, known in asked] == [True] * len(_POINTS)
+    for one, known in asked:
         with collected() as beside:
             together = _columns(known())
         with collected() as told:
@@ -75,7 +76,6 @@ def test_points_of_other_gears_are_no_company() -> None:
     asked = [*_asked(case, _POINTS[:2]), *_asked(wide, _POINTS[:1])]
     known = [known for _, known in with_tables(asked)]
     assert [each is None for each in known] == [False, False, True]
-    assert known[1] is not None
     assert known[1]().pinion_torque == _POINTS[1][1]
 
 
