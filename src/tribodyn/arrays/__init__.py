@@ -2,6 +2,7 @@
 
 | module | what it answers |
 |---|---|
+| ``cubic`` | cubics through points, with slopes given or with steady bends |
 | ``monotone`` | cubics through points that swing beyond none of them |
 | ``recent`` | the last values of a function of arrays, found by what is in them |
 """

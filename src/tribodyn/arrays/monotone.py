@@ -1,4 +1,4 @@
-"""Monotone cubics through points, without the half second that scipy.interpolate loads in."""
+"""Monotone cubics through points."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tribodyn.arrays.cubic import cubic
 from tribodyn.types import Array
 
 
@@ -20,16 +21,7 @@ def monotone_cubic(x: Array, y: Array) -> Callable[[Array], Array]:
         raise ValueError("a curve needs two places or more that increase, and finite values")
     secant = np.diff(y, axis=0) / step
     slope = np.repeat(secant[:1], x.size, axis=0) if x.size == 2 else _slopes(step, secant)
-    bend = (slope[:-1] + slope[1:] - 2.0 * secant) / step
-    square, cube = (secant - slope[:-1]) / step - bend, bend / step
-
-    def at(places: Array) -> Array:
-        piece = np.clip(np.searchsorted(x, places, side="right") - 1, 0, x.size - 2)
-        s = np.reshape(places - x[piece], (*np.shape(places), *[1] * (np.ndim(y) - 1)))
-        value = y[piece] + slope[piece] * s + square[piece] * (s * s) + cube[piece] * (s * s * s)
-        return np.asarray(value)
-
-    return at
+    return cubic(x, y, slope)
 
 
 def _slopes(step: Array, secant: Array) -> Array:

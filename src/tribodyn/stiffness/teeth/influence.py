@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.arrays.cubic import spline
 from tribodyn.errors import Argument, InputError
 from tribodyn.types import Array
 
@@ -80,10 +81,7 @@ class GearInfluence:
 
     @cached_property
     def _self(self) -> Callable[[Array], Array]:
-        from scipy.interpolate import CubicSpline
-
-        spline: Callable[[Array], Array] = CubicSpline(self.curvature_radius, self.self_compliance)
-        return spline
+        return spline(self.curvature_radius, self.self_compliance)
 
     @cached_property
     def _cross(self) -> list[Any]:
