@@ -484,12 +484,14 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
     """
     words = list(known)
     if not isinstance(value, str) or value not in words:
-        raise InputError(
-            Problem(
-                what=f'{name} = "{value}"',
-                where=f"argument {name}",
-                why=f"Known: {', '.join(words)}",
-                remedy="Choose one of these",
-            )
-        )
+        what, why = f'{name} = "{value}"', f"Known: {', '.join(words)}"
+        raise InputError(what, f"argument {name}", why, "Choose one of these")
     return value
+
+
+def did_you_mean(name: object, known: Iterable[str], otherwise: str = "") -> str:
+    """Remedy for an unknown name: the known one that was probably meant, or something else."""
+    from difflib import get_close_matches  # most messages do without
+
+    near = get_close_matches(str(name), list(known), n=1)
+    return f'Did you mean "{near[0]}"?' if near else otherwise

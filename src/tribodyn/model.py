@@ -9,7 +9,6 @@ then on a case file can name it, and its options stand in the table of the case 
 
 from __future__ import annotations
 
-import difflib
 import math
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -19,7 +18,7 @@ from importlib.metadata import entry_points
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from tribodyn.nomenclature import Quantity
@@ -233,8 +232,7 @@ class Model:
 
     def nearest(self, option: str) -> str:
         """Question for the option that was probably meant; empty if none is near."""
-        near = difflib.get_close_matches(option, self.declared, n=1)
-        return f'Did you mean "{near[0]}"?' if near else ""
+        return did_you_mean(option, self.declared)
 
 
 _registries: list[Registry[Any]] = []
@@ -357,11 +355,10 @@ class Registry(Generic[T]):
             self._search()
         if isinstance(name, str) and name in self._items:
             return self._items[name]
-        near = difflib.get_close_matches(str(name), self._items, n=1)
         raise InputError(
             f'no {self.kind} is called "{name}"',
             why=f"Known: {', '.join(self._items)}",
-            remedy=f'Did you mean "{near[0]}"?' if near else "Choose one of these",
+            remedy=did_you_mean(name, self._items, "Choose one of these"),
         )
 
 

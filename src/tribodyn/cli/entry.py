@@ -207,12 +207,9 @@ def _remedy(arguments: list[str], what: str) -> str:
 
 
 def _no_command(word: str, names: list[str]) -> Problem:
-    import difflib
+    from tribodyn.errors import Problem, did_you_mean
 
-    from tribodyn.errors import Problem
-
-    near = difflib.get_close_matches(word, names, n=1)
-    remedy = f'Did you mean "{near[0]}"?' if near else "See: tribodyn --help"
+    remedy = did_you_mean(word, names, "See: tribodyn --help")
     return Problem(f'there is no command "{word}"', "", f"Commands: {', '.join(names)}", remedy)
 
 

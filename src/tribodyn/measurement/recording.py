@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem, require_positive, shortened
+from tribodyn.errors import Argument, InputError, Problem, did_you_mean, require_positive, shortened
 from tribodyn.measurement.readers.content import MEASURED, Content, rate_of
 from tribodyn.measurement.readers.recognised import content_of
 from tribodyn.record import Parts, Record, fact, record
@@ -261,8 +260,6 @@ def _from_sensor(text: str, unit: str, name: str) -> tuple[float, str]:
 
 def _no_channel(name: object, known: Iterable[str]) -> InputError:
     names = list(known)
-    near = get_close_matches(str(name), names, 1)
-    meant = f' Did you mean "{near[0]}"?' if near else ""
     what = f"there is no channel {shortened(repr(name))}"
-    why = f"It has {', '.join(names[:20])}{meant}"
+    why = f"It has {', '.join(names[:20])} {did_you_mean(name, names)}".rstrip()
     return InputError(what, Argument("channels"), why, "Write the name as it stands there")

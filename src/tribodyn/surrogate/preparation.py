@@ -5,7 +5,6 @@ Whatever is fitted is fitted on the training rows alone.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +12,15 @@ from typing import Any
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import Argument, InputError, real_numbers, require_positive, shortened, warn
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    did_you_mean,
+    real_numbers,
+    require_positive,
+    shortened,
+    warn,
+)
 from tribodyn.record import Record
 from tribodyn.types import Array, Index, Mask
 
@@ -92,10 +99,9 @@ def columns_of(data: Any, names: Sequence[str], argument: str) -> Array:
     rows = max((shape[0] for shape in known.values() if len(shape) == 1), default=0)
     for name in map(str, listed):
         if name not in known:
-            near = difflib.get_close_matches(str(name), known, n=1)
-            remedy = f'Did you mean "{near[0]}"?' if near else f"It has {', '.join(known)}"
-            what = f'no column "{name}"'
-            raise InputError(what, Argument(argument), "Names are those of the columns", remedy)
+            remedy = did_you_mean(name, known, f"It has {', '.join(known)}")
+            what, why = f'no column "{name}"', "Names are those of the columns"
+            raise InputError(what, Argument(argument), why, remedy)
     return np.stack([_column(table[name], str(name), rows) for name in listed], axis=1)
 
 

@@ -7,7 +7,6 @@ import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ import numpy as np
 
 from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.stored import read_bytes
@@ -190,8 +189,7 @@ class _Reader:
         """Values of a table, and what is wrong with it."""
         values: dict[str, Any] = {}
         for key in (key for key in data if key not in known):
-            near = get_close_matches(key, known, n=1, cutoff=0.6)
-            remedy = f'Did you mean "{near[0]}"?' if near else "Remove it"
+            remedy = did_you_mean(key, known, "Remove it")
             place = f"[{path[:-1]}]" if path else "the top of the file"
             why = f"{place} has: {', '.join(known)}"
             self.put(path + key, Problem(f"{key}: unknown key", "", why, remedy))
@@ -215,8 +213,7 @@ class _Reader:
             self.put("keep", Problem(f"keep = {written(names)}", "", "It is a list", remedy))
             return ()
         for name in (name for name in names if name not in known):
-            near = get_close_matches(name, known, n=1)
-            remedy = f'Did you mean "{near[0]}"?' if near else "Leave it out"
+            remedy = did_you_mean(name, known, "Leave it out")
             why = f'compute = "{kind}" gives {", ".join(known)}'
             self.put("keep", Problem(f'there is no figure "{name}"', "", why, remedy))
         return tuple(name for name in known if name in names)

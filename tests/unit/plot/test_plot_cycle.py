@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tribodyn.contact import path_of_contact
+from tribodyn.plot.gear.path import pair_ages
 from tribodyn.plot.mesh.cycle import (
     CYCLES,
     cycles,
@@ -15,7 +16,6 @@ from tribodyn.plot.mesh.cycle import (
     mesh_events,
     pair_life,
     pair_lives,
-    positions,
     roll_angle_positions,
 )
 
@@ -54,7 +54,7 @@ def test_marks_are_the_events_of_the_mesh(drawable: Any, driver: str) -> None:
 def test_sliding_changes_its_sign_at_the_pitch_point(drawable: Any) -> None:
     mesh = drawable().mesh
     age, sliding = pair_life(mesh, "sliding_speed")
-    pitch_point = positions(mesh)["C"]
+    pitch_point = pair_ages(mesh.gear_pair)["C"]
     assert np.all(sliding[age < pitch_point - 1e-9] < 0.0)
     assert np.all(sliding[age > pitch_point + 1e-9] > 0.0)
 

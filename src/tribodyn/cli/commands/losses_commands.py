@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,7 +20,7 @@ from tribodyn.cli.settings import (
     read_changes,
     read_ranges,
 )
-from tribodyn.errors import InputError, Problem, collected
+from tribodyn.errors import InputError, Problem, collected, did_you_mean
 from tribodyn.model import Option, number
 from tribodyn.study.case.values import FaultError, read_value
 
@@ -218,8 +217,7 @@ def _options(settings: Sequence[str]) -> dict[str, Any]:
     problems = []
     for key, value in read_changes(settings).items():
         if key not in _KEYS:
-            near = difflib.get_close_matches(key, _KEYS, n=1)
-            remedy = f'Did you mean "{near[0]}"?' if near else "Take one of these"
+            remedy = did_you_mean(key, _KEYS, "Take one of these")
             why = f"Keys: {', '.join(_KEYS)}"
             problems.append(Problem(f'unknown key "{key}"', "--set", why, remedy))
             continue

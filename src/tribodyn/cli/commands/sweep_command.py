@@ -104,16 +104,13 @@ def ended(found: Sweep, target: Path) -> int:
 
 def _asked(show: str) -> list[str]:
     """Names of figures that are asked for; unknown ones are told before anything is computed."""
-    import difflib
-
-    from tribodyn.errors import InputError
+    from tribodyn.errors import InputError, did_you_mean
     from tribodyn.study.pipeline.summary import SUMMARY
 
     names = [name.strip() for name in show.split(",") if name.strip()]
     for name in names:
         if name not in SUMMARY:
-            near = difflib.get_close_matches(name, SUMMARY, n=1)
-            remedy = f'Did you mean "{near[0]}"?' if near else "See: tribodyn check and run"
+            remedy = did_you_mean(name, SUMMARY, "See: tribodyn check and run")
             raise InputError(f'there is no figure "{name}"', "--show", "", remedy)
     return names
 

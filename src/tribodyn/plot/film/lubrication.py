@@ -9,11 +9,11 @@ import numpy as np
 from tribodyn.drawing import Need, drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
 from tribodyn.plot.film.path import Path
-from tribodyn.plot.gear.path import sharing_words
+from tribodyn.plot.gear.path import roll_label, sharing_words
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, figure, line
-from tribodyn.plot.mesh.cycle import TABLE, roll_angle_label, roll_angle_positions
+from tribodyn.plot.mesh.cycle import TABLE, roll_angle_positions
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def lubrication(mesh: MeshTable) -> Any:
     marks = event_lines(roll_angle_positions(mesh).items())
     marks["shapes"] = [*_bands(low, high), *marks["shapes"]]
     marks["annotations"] += _names(low, high)
-    return stack(_title(mesh, share), roll_angle_label(mesh), panels, marks)
+    return stack(_title(mesh, share), roll_label(mesh.gear_pair), panels, marks)
 
 
 def _title(mesh: MeshTable, share: Array) -> str:

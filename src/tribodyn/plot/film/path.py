@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import Need
-from tribodyn.plot.gear.path import sharing_words
+from tribodyn.plot.gear.path import roll_label, sharing_words
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.plot.mesh.cycle import (
     driving_roll_angle,
     pair_life,
-    roll_angle_label,
     roll_angle_positions,
     table_drawing,
 )
@@ -77,7 +76,7 @@ class Path:
     def figure(self, title: str, panels: list[Panel]) -> Any:
         """Stack panels over the roll angle, with the positions A to E."""
         marks = event_lines(roll_angle_positions(self.mesh).items())
-        return stack(title, roll_angle_label(self.mesh), panels, marks)
+        return stack(title, roll_label(self.mesh.gear_pair), panels, marks)
 
     def level(self, value: float, name: str, unit: str = "") -> Trace:
         """A dotted line at one value."""

@@ -35,30 +35,36 @@ def roll_label(pair: Gears) -> str:
     return axis_label("roll_angle", f"Roll angle of the driving gear ({pair.driver})")
 
 
-def pair_letters(pair: Gears) -> list[tuple[str, float]]:
-    """Positions A to E and further changes of sharing, as roll angles in the display unit."""
+def pair_ages(pair: Gears) -> dict[str, float]:
+    """Ages at which a tooth pair passes the positions A to E and further changes of sharing."""
     contact = path_of_contact(pair)
     ratio = contact.contact_ratio
     pitch_point = contact.direction * (contact.C - contact.A) / pair.base_pitch
-    ages = {"A": 0.0, "B": ratio - 1.0, "C": pitch_point, "D": 1.0, "E": ratio}
-    if not 0.0 <= pitch_point <= ratio:
+    ages = {"A": 0.0, "B": ratio - 1.0, "C": float(pitch_point), "D": 1.0, "E": ratio}
+    return ages | further_changes(ratio)
+
+
+def pair_letters(pair: Gears) -> list[tuple[str, float]]:
+    """Positions A to E and further changes of sharing, as roll angles in the display unit."""
+    ages = pair_ages(pair)
+    if not 0.0 <= ages["C"] <= ages["E"]:
         del ages["C"]
-    ages |= further_changes(ratio)
     return [
         (name, float(displayed("roll_angle", roll_angle_of(pair, age))))
         for name, age in ages.items()
     ]
 
 
-def mesh_marks(pair: Gears, repeats: int) -> list[tuple[str, float]]:
+def mesh_marks(
+    pair: Gears, repeats: int, enters: str = "A", leaves: str = "E"
+) -> list[tuple[str, float]]:
     """Mesh phases at which a tooth pair reaches A, leaves at E or passes the pitch point."""
-    contact = path_of_contact(pair)
-    pitch_point = contact.direction * (contact.C - contact.A) / pair.base_pitch
-    marks = [("A", 0.0), ("E", contact.contact_ratio % 1.0)]
-    if 0.0 <= pitch_point <= contact.contact_ratio:
-        marks.append(("C", pitch_point % 1.0))
+    ages = pair_ages(pair)
+    marks = [(enters, 0.0), (leaves, ages["E"] % 1.0)]
+    if 0.0 <= ages["C"] < ages["E"]:
+        marks.append(("C", ages["C"] % 1.0))
     placed = [(name, at + cycle) for cycle in range(repeats) for name, at in marks]
-    return [*placed, ("A", float(repeats))]
+    return [*placed, (enters, float(repeats))]
 
 
 def corner_shades(pair: Gears, first: float, last: float) -> dict[str, list[Trace]]:

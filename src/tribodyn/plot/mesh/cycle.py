@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.gear.path import further_changes
-from tribodyn.plot.look.labels import axis_label
+from tribodyn.plot.gear.path import mesh_marks, pair_ages, roll_angle_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -72,45 +71,15 @@ def pair_lives(mesh: MeshTable, column: str) -> list[Curve]:
     return lives
 
 
-def _driving(mesh: MeshTable) -> tuple[Array, float]:
-    """Radius of curvature of the driving flank along a pair's life, and its base radius [m]."""
-    if getattr(mesh, "gears", mesh) is None:
-        mesh.gear_pair.driver  # noqa: B018 (says why there is none)
-    radius = pair_life(mesh, f"{mesh.driver}_curvature_radius")[1]
-    return radius, getattr(mesh, f"base_radius_{mesh.driver}")
-
-
 def driving_roll_angle(mesh: MeshTable) -> Array:
     """Roll angle of the driving gear along the life of one tooth pair."""
-    radius, base_radius = _driving(mesh)
-    return radius / base_radius
-
-
-def roll_angle_label(mesh: MeshTable) -> str:
-    """Label of an axis of roll angles."""
-    return axis_label("roll_angle", f"Roll angle of the driving gear ({mesh.driver})")
-
-
-def positions(mesh: MeshTable) -> dict[str, float]:
-    """Ages at which a tooth pair passes the positions A to E and further changes of sharing."""
-    radius, base_radius = _driving(mesh)
-    line_of_action = mesh.pinion_curvature_radius[0, 0] + mesh.wheel_curvature_radius[0, 0]
-    share = base_radius / (mesh.base_radius_pinion + mesh.base_radius_wheel)
-    base_pitch = abs(mesh.path[-1, 0] - mesh.path[0, 0])
-    pitch_point = (share * line_of_action - radius[0]) / base_pitch
-    ratio = mesh.transverse_contact_ratio
-    letters = {"A": 0.0, "B": ratio - 1.0, "C": float(pitch_point), "D": 1.0, "E": ratio}
-    return letters | further_changes(ratio)
+    return roll_angle_of(mesh.gear_pair, pair_life(mesh, "stiffness")[0])
 
 
 def roll_angle_positions(mesh: MeshTable) -> dict[str, float]:
     """Roll angles of the driving gear at the positions A to E and further changes of sharing."""
-    radius, base_radius = _driving(mesh)
-    base_pitch = abs(mesh.path[-1, 0] - mesh.path[0, 0])
-    return {
-        name: float((radius[0] + age * base_pitch) / base_radius)
-        for name, age in positions(mesh).items()
-    }
+    pair = mesh.gear_pair
+    return {name: float(roll_angle_of(pair, age)) for name, age in pair_ages(pair).items()}
 
 
 def mesh_events(mesh: MeshTable, repeats: int = CYCLES) -> list[tuple[str, float]]:
@@ -120,9 +89,4 @@ def mesh_events(mesh: MeshTable, repeats: int = CYCLES) -> list[tuple[str, float
     """
     if getattr(mesh, "gears", mesh) is None:
         return [("cycle", float(cycle)) for cycle in range(repeats + 1)]
-    age = positions(mesh)
-    marks = [("enters", 0.0), ("leaves", age["E"] % 1.0)]
-    if 0.0 <= age["C"] < age["E"]:
-        marks.append(("C", age["C"] % 1.0))
-    marked = [(name, phase + cycle) for cycle in range(repeats) for name, phase in marks]
-    return [*marked, ("enters", float(repeats))]
+    return mesh_marks(mesh.gear_pair, repeats, "enters", "leaves")

@@ -20,7 +20,6 @@ from tribodyn.plot.mesh.cycle import (
     mesh_events,
     pair_life,
     pair_lives,
-    positions,
     table_drawing,
 )
 from tribodyn.types import Array
@@ -120,7 +119,7 @@ def static_stiffness(mesh: MeshTable) -> Any:
 def whole_life(mesh: MeshTable) -> tuple[Array, Array]:
     """Follow the load share of one tooth pair, tip corners before A and after E included."""
     age, share = pair_life(mesh, "load_share")
-    ratio = positions(mesh)["E"]
+    ratio = mesh.transverse_contact_ratio
     before, after = mesh.corner_share.T
     coming = before > _LOADED
     gone = mesh.phase + np.ceil(ratio - mesh.phase - 1e-9)
@@ -225,7 +224,7 @@ def static_transmission_error(mesh: MeshTable) -> Any:
 
 def _phases(mesh: MeshTable) -> list[tuple[str, float]]:
     """Phases in the middle between two events, and how many pairs are on the path there."""
-    events = sorted({0.0, positions(mesh)["E"] % 1.0, 1.0})
+    events = sorted({0.0, mesh.transverse_contact_ratio % 1.0, 1.0})
     found = []
     for start, stop in pairwise(events):
         if stop - start > 1e-6:

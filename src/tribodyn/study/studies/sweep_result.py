@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.drawing import draw, write_report_of
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, did_you_mean
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.stored import write_dataset
 from tribodyn.study.pipeline.save import new_directory
@@ -99,10 +99,7 @@ class Sweep(Record):
     def __getitem__(self, name: str) -> Array:
         """Return one figure of the summary over the grid, in SI; NaN where ``failed`` says why."""
         if name not in self.figures:
-            import difflib
-
-            near = difflib.get_close_matches(name, self.figures, n=1)
-            remedy = f'Did you mean "{near[0]}"?' if near else f"It has: {', '.join(self.figures)}"
+            remedy = did_you_mean(name, self.figures, f"It has: {', '.join(self.figures)}")
             why = "A sweep shows the figures that its points have"
             raise InputError(f'there is no figure "{name}" in this sweep', why=why, remedy=remedy)
         values = np.full(prod(self.shape), np.nan)
