@@ -21,7 +21,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from tribodyn.errors import ComputationError, InputError, Problem, warn
+from tribodyn.errors import Argument, ComputationError, InputError, OutputExistsError, Problem, warn
 
 try:
     import fcntl
@@ -49,6 +49,15 @@ _BEFORE_REPORT = {
     "sweep.nc",
     "bifurcation.nc",
 }
+
+
+def check_new(path: str | os.PathLike[str], where: Argument | str) -> Path:
+    """Path of a file to write, which must not be there yet."""
+    target = Path(path)
+    if target.exists():
+        what, why = f"{target} exists already", "An existing file is never overwritten"
+        raise OutputExistsError(what, where, why, "Choose another name")
+    return target
 
 
 def cannot_write(place: object, error: Exception) -> Problem:

@@ -29,8 +29,8 @@ from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.errors import Argument, InputError, OutputExistsError
-from tribodyn.files import whole
+from tribodyn.errors import Argument, InputError
+from tribodyn.files import check_new, whole
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.stored import write_dataset
 
@@ -232,11 +232,7 @@ class Record:
         OutputExistsError
             If the file exists.
         """
-        target = Path(path)
-        if target.exists():
-            what, where = f"{target} exists already", Argument("path")
-            why, remedy = "An existing file is never overwritten", "Choose another name"
-            raise OutputExistsError(what, where, why, remedy)
+        target = check_new(path, Argument("path"))
         with whole(target) as partial:
             write_dataset(self._stored(), partial)
         return target

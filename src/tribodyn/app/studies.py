@@ -61,14 +61,9 @@ def _ends(name: str, words: str) -> tuple[Any, Any]:
 
 def _points(case: Case, key: str, words: str) -> list[float] | None:
     """Torques or speeds, read as the keys of the case."""
-    from tribodyn.study.studies.axes import ends_of, read_axes
+    from tribodyn.study.studies.axes import points_of
 
-    if not words:
-        return None
-    given = _read(key, words, read_values)
-    if isinstance(given, list) and len(given) == 1:
-        return list(ends_of(case, key, given, by="study"))
-    return list(read_axes(case, {key: given}, by="study")[0].values)
+    return points_of(case, key, _read(key, words, read_values), by="study") if words else None
 
 
 def _operation(case: Case, values: Values) -> list[list[float] | None]:
@@ -99,7 +94,7 @@ def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Show
 
 def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn import plot
-    from tribodyn.report.answers import save_bifurcation
+    from tribodyn.report.answers import pictured, save_bifurcation
     from tribodyn.study.studies.bifurcation import Findings, bifurcation
 
     low, high, points = _read("values", values["values"], read_range)
@@ -119,11 +114,10 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
     findings = Findings(case, found)
     save_bifurcation(found, case, findings, target)
     head, rows = findings.rows()
-    each = plot.bifurcation
     return {
         "told": list(findings.sentences()),
         "tables": [["Table", list(head), [list(row) for row in rows]]],
-        "figures": [(each.heading, found.plot(), each.caption_of(found))],
+        "figures": [pictured(plot.bifurcation, found)],
     }
 
 

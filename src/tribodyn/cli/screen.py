@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import Problem
+from tribodyn.errors import ModelWarning, Problem
 
 if TYPE_CHECKING:
     from tribodyn.members import Members
@@ -42,10 +42,10 @@ def show_resumed(members: Members) -> None:
         tell(f"{len(members)} finished parts of this study were kept and are not computed again.")
 
 
-def show_warnings(warnings: Iterable[tuple[str, str]]) -> None:
+def show_warnings(warnings: Iterable[ModelWarning]) -> None:
     """Write model warnings to stderr."""
-    for code, message in warnings:
-        tell(f"warning [{code}]: {message}")
+    for warning in warnings:
+        tell(f"warning [{warning.code}]: {warning.message}")
 
 
 def figures(values: Mapping[str, float]) -> str:

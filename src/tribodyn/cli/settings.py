@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import show_warnings
-from tribodyn.errors import InputError, Problem, collected
+from tribodyn.errors import InputError, OutputExistsError, Problem, collected
 from tribodyn.study.studies.range_words import UnreadError, read_range, read_values, toml_value
 
 if TYPE_CHECKING:
@@ -37,9 +37,18 @@ def check_place(target: Path, force: bool) -> None:
 
     with collected() as told:
         clear_leftovers(target)
-    show_warnings((warning.code, warning.message) for warning in told)
+    show_warnings(told)
     remedy = "Choose another directory with --out, or replace it with --force"
     check_target(target, force, remedy=remedy)
+
+
+def check_file(path: Path, force: bool) -> None:
+    """Refuse a file that is there and is not to be replaced, or that has no directory."""
+    if path.exists() and (path.is_dir() or not force):
+        remedy = "Choose another name" + ("" if path.is_dir() else ", or add --force to replace it")
+        raise OutputExistsError("this exists already", str(path), "", remedy)
+    if not path.parent.is_dir():
+        raise InputError("there is no such directory", str(path.parent), "", "Create it")
 
 
 def read_changes(settings: Sequence[str]) -> dict[str, Any]:

@@ -301,7 +301,7 @@ class FlankModification:
         for name in (*_PITCHES, "wear_depth"):
             value = getattr(self, name)
             if not isinstance(value, (str, float, int)):
-                object.__setattr__(self, name, _numbers(value))
+                object.__setattr__(self, name, _floats(value))
         if self.wear_depth == ():
             object.__setattr__(self, "wear_depth", 0.0)
         problems = [
@@ -411,10 +411,6 @@ def amount_problems(name: str, value: object, low: float, high: float) -> list[P
         why = f"{name} must be finite and from {low * 1e6:g} to {high * 1e6:g} um"
         return [Problem(f"{name} = {shown}", Argument(name), why, "Check value and unit")]
     return []
-
-
-def _numbers(values: Sequence[float]) -> tuple[Any, ...]:
-    return tuple(float(value) for value in values)
 
 
 def _any(value: float | tuple[float, ...]) -> bool:

@@ -12,6 +12,7 @@ from tribodyn.report.study import write_bifurcation_report, write_study_report
 from tribodyn.study.pipeline.save import new_directory
 
 if TYPE_CHECKING:
+    from tribodyn.drawing import Drawing
     from tribodyn.losses import GearboxLosses
     from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
@@ -22,16 +23,29 @@ _ROWS = 40
 _ALONE = "Counted are the teeth alone; bearings, seals and oil are where the case has [losses]."
 
 
+#: Heading, figure and caption.
+Picture = tuple[str, Any, str]
+
+
 class Answer(NamedTuple):
     """What a study tells: its data, figures, sentences and a table."""
 
     data: Any  #: result whose data set is stored
-    figures: Sequence[tuple[str, Any, str]]  #: heading, figure and caption
+    figures: Sequence[Picture]
     told: Sequence[str]
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
     facts: dict[str, Any]  #: in SI
     best: Case | None = None  #: a case that the study made
+
+
+def pictured(figure: Drawing, found: Any) -> Picture:
+    """A figure of what a study found, with what stands above and below it."""
+    return figure.heading, figure(found), figure.caption_of(found)
+
+
+def _title(picture: Picture) -> str:
+    return str(picture[1].layout.title.text)
 
 
 def save_answer(kind: str, case: Case, target: Path, found: Answer, force: bool = False) -> None:
@@ -87,13 +101,8 @@ def modes_answer(case: Case, ends: Any, progress: Progress = SILENT) -> Answer:
     found = natural_modes(system)
     diagram = diagram_of(system, case, mesh_frequency, speeds)
     rows = mode_rows(found, case, mesh_frequency)
-    figures = [
-        (each.heading, each(thing), each.caption_of(thing))
-        for each, thing in ((plot.mode_shapes, found), (plot.campbell, diagram))
-    ]
-    told = [
-        f"{diagram.plot().layout.title.text}; speeds are those of the {case.operation.speed_of}."
-    ]
+    figures = [pictured(plot.mode_shapes, found), pictured(plot.campbell, diagram)]
+    told = [f"{_title(figures[1])}; speeds are those of the {case.operation.speed_of}."]
     facts = {
         "mesh_frequency": mesh_frequency,
         "orders": list(ORDERS),
@@ -118,10 +127,9 @@ def harris_answer(case: Case, torque: Sequence[Any] | None) -> Answer:
         for t, m, p, k in zip(*columns.values(), strict=True)
     ]
     head = ["Pinion torque [N*m]", "Mean error [um]", "Peak to peak [um]", "Stiffness [N/um]"]
-    figure = found.plot()
-    figures = [(plot.harris_map.heading, figure, plot.harris_map.caption_of(found))]
+    figure = pictured(plot.harris_map, found)
     facts = {name: values.tolist() for name, values in columns.items()}
-    return Answer(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
+    return Answer(found, [figure], [f"{_title(figure)}."], head, rows, facts)
 
 
 def relief_answer(case: Case, torque: Sequence[Any] | None, gears: str) -> Answer:
@@ -141,7 +149,7 @@ def relief_answer(case: Case, torque: Sequence[Any] | None, gears: str) -> Answe
     ]
     if found.on_edge:
         told.append("It lies at the edge of what was searched: a wider range may hold a better.")
-    figures = [(plot.tip_relief_map.heading, found.plot(), plot.tip_relief_map.caption_of(found))]
+    figures = [pictured(plot.tip_relief_map, found)]
     facts = {
         "amount": found.amount,
         "length": found.length,
@@ -166,14 +174,10 @@ def run_up_answer(
     picked = range(0, level.rms.size, max(1, level.rms.size // _ROWS))
     rpm = convert(1.0, "rad/s", "rpm") * level.speed
     rows = [[f"{rpm[k]:.5g}", f"{level.rms[k]:.4g}"] for k in picked]
-    figure = found.plot()
-    figures = [
-        (each.heading, drawn, each.caption_of(found))
-        for each, drawn in ((plot.run_up, figure), (plot.run_up_map, plot.run_up_map(found)))
-    ]
+    figures = [pictured(plot.run_up, found), pictured(plot.run_up_map, found)]
     facts = {"speed": level.speed.tolist(), "rms_mesh_force": level.rms.tolist()}
     head = ["Speed [rpm]", "Mesh force, rms [N]"]
-    return Answer(found, figures, [f"{figure.layout.title.text}."], head, rows, facts)
+    return Answer(found, figures, [f"{_title(figures[0])}."], head, rows, facts)
 
 
 def losses_answer(
@@ -184,13 +188,12 @@ def losses_answer(
     from tribodyn.study.studies.losses import loss_map
 
     found = loss_map(case, torque=torque, speed=speed, progress=progress)
-    figure = found.plot()
-    figures = [(plot.losses.heading, figure, plot.losses.caption_of(found))]
+    figure = pictured(plot.losses, found)
     counted = [words for part, words in PARTS.items() if getattr(found, part).any()]
     told = _ALONE if counted == ["teeth"] else f"Counted are {', '.join(counted)}."
     names = ("pinion_torque", "pinion_speed", *PARTS, "total", "gear_efficiency", "efficiency")
     facts = {name: getattr(found, name).tolist() for name in names}
-    return Answer(found, figures, [f"{figure.layout.title.text}.", told], *_losses(found), facts)
+    return Answer(found, [figure], [f"{_title(figure)}.", told], *_losses(found), facts)
 
 
 def _losses(found: GearboxLosses) -> tuple[list[str], list[list[str]]]:
@@ -238,11 +241,7 @@ def film_answer(
     speed = list(STEPS * operation.speed) if speed is None else speed
     found = film_over_operation(case, torque=torque, speed=speed, progress=progress)
     drawn = (plot.film_over_operation, plot.lubrication_map)
-    figures = [
-        (each.heading, each(found), each.caption_of(found))
-        for each in drawn
-        if not each.missing(found)
-    ]
+    figures = [pictured(each, found) for each in drawn if not each.missing(found)]
     known = found.central_film if found.minimum_film is None else found.minimum_film
     least = np.nanmin(np.asarray(known), axis=2)
     rpm = found.pinion_speed * convert(1.0, "rad/s", "rpm")
@@ -256,4 +255,4 @@ def film_answer(
         "pinion_speed": found.pinion_speed.tolist(),
         "least_film": least.tolist(),
     }
-    return Answer(found, figures, [f"{figures[0][1].layout.title.text}."], head, rows, facts)
+    return Answer(found, figures, [f"{_title(figures[0])}."], head, rows, facts)

@@ -238,22 +238,23 @@ def order_map(
         raise InputError(what, "argument revolutions", why, "Take shorter blocks, or record longer")
     hop = max(length - round(overlap * length), 1)
     starts = np.arange(0, made.signal.size - length + 1, hop)
-    weights = window_values(window, length)
     blocks = np.lib.stride_tricks.sliding_window_view(made.signal, length)[starts]
+    orders, lines = orders_of_blocks(blocks, revolutions, highest_order, window)
+    middle = starts + length // 2
+    speed, moments = made.speed[middle], made.time[middle]
+    return OrderMap(orders, speed, moments, lines, float(revolutions), window, unit)
+
+
+def orders_of_blocks(
+    blocks: Array, revolutions: int, highest: float, window: str
+) -> tuple[Array, Array]:
+    """Orders up to the highest, and the amplitude of each in every block (orders, blocks)."""
+    weights = window_values(window, blocks.shape[1])
     lines = np.abs(np.fft.rfft(blocks * weights, axis=1)) * (2.0 / weights.sum())
     lines[:, 0] *= 0.5
     orders = np.arange(lines.shape[1]) / revolutions
-    kept = orders <= highest_order + 1e-9
-    middle = starts + length // 2
-    return OrderMap(
-        orders[kept],
-        made.speed[middle],
-        made.time[middle],
-        lines[:, kept].T,
-        float(revolutions),
-        window,
-        unit,
-    )
+    kept = orders <= highest + 1e-9
+    return orders[kept], lines[:, kept].T
 
 
 @record

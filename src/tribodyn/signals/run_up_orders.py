@@ -13,7 +13,7 @@ from tribodyn.dynamics.running_up.run_up_result import RunUp
 from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.record import Record, quantity, record
 from tribodyn.signals.angular_resampling import window_values
-from tribodyn.signals.order_map import OrderCut, OrderMap
+from tribodyn.signals.order_map import OrderCut, OrderMap, orders_of_blocks
 from tribodyn.signals.spectrum import mains_of
 from tribodyn.types import Array, Index, Mask
 
@@ -138,21 +138,11 @@ def run_up_order_map(
     values, unit = run.signal(signal)
     length = int(cycles) * run.samples
     starts, middle = _starts(run, int(cycles), max(round((1.0 - overlap) * cycles), 1), part)
-    weights = window_values(window, length)
-    view = np.lib.stride_tricks.sliding_window_view(values, length)[starts * run.samples]
-    lines = np.abs(np.fft.rfft(view * weights, axis=1)) * (2.0 / weights.sum())
-    lines[:, 0] *= 0.5
-    order = np.arange(lines.shape[1]) / cycles
-    kept = order <= (run.samples / 2 if highest_order is None else highest_order) + 1e-9
-    return OrderMap(
-        order[kept] * run.teeth,
-        run.speed[middle],
-        run.time[middle],
-        lines[:, kept].T,
-        cycles / run.teeth,
-        window,
-        unit,
-    )
+    blocks = np.lib.stride_tricks.sliding_window_view(values, length)[starts * run.samples]
+    highest = run.samples / 2 if highest_order is None else highest_order
+    orders, lines = orders_of_blocks(blocks, cycles, highest, window)
+    speed, moments = run.speed[middle], run.time[middle]
+    return OrderMap(orders * run.teeth, speed, moments, lines, cycles / run.teeth, window, unit)
 
 
 def order_cut(

@@ -8,8 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import figures, say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import CaseName, Flag, Settings, changed_case
-from tribodyn.errors import InputError, OutputExistsError
+from tribodyn.cli.settings import CaseName, Flag, Settings, changed_case, check_file
 
 
 def cases(*, json: Flag = False) -> None:
@@ -50,7 +49,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
         say_json(values)
     else:
         say(f"{checked.title}\n{figures(values)}")
-    show_warnings((warning.code, warning.message) for warning in (*case_cautions(checked), *told))
+    show_warnings([*case_cautions(checked), *told])
     kinds = [assumption.kind for assumption in assumptions(checked)]
     tell(
         f"The case is in order; {kinds.count('assumed')} values are assumed, "
@@ -84,11 +83,7 @@ def new(
     from tribodyn.study.case.reference import start_toml
     from tribodyn.study.pipeline.save import write_file
 
-    if path.exists() and (path.is_dir() or not force):
-        remedy = "Choose another name" + ("" if path.is_dir() else ", or add --force to replace it")
-        raise OutputExistsError("this exists already", str(path), "", remedy)
-    if not path.parent.is_dir():
-        raise InputError("there is no such directory", str(path.parent), "", "Create it")
+    check_file(path, force)
     write_file(path, load_case(from_).to_toml() if from_ else start_toml())
     if json:
         say_json({"path": str(path)})

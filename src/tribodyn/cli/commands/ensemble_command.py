@@ -50,7 +50,7 @@ def ensemble(
     from tribodyn.errors import InputError
     from tribodyn.plot import ensemble as spread
     from tribodyn.plot.signals.bands import banded
-    from tribodyn.report.answers import Answer
+    from tribodyn.report.answers import Answer, pictured
     from tribodyn.report.blocks import sections_of
     from tribodyn.study import SUMMARY
     from tribodyn.study import ensemble as compute
@@ -74,7 +74,7 @@ def ensemble(
             rows.append([name, *(SUMMARY[name].show(float(end)) for end in ends)])
     told = [f"{len(found.value)} variants over {', '.join(map(str, found.input))}"]
     told += [f"{key} = {text}" for key, text in ready.uncertain.items()]
-    figures = [(spread.heading, found.plot(), spread.caption_of(found))]
+    figures = [pictured(spread, found)]
     figures += banded(found, sections_of(ready))
     share = f"{_SHARE:.0%} of the variants"
     head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, table, tell
-from tribodyn.cli.settings import Flag, changed_case, read_changes
-from tribodyn.errors import InputError, OutputExistsError
+from tribodyn.cli.settings import Flag, changed_case, check_file, read_changes
+from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
     from tribodyn.exchange import GearboxModel, Load, Stage
@@ -60,11 +60,7 @@ def import_(
             _tell_remarks(model)
             tell(f"To compute a stage: tribodyn import {file} --stage NUMBER --out case.toml")
         return
-    if out.exists() and (out.is_dir() or not force):
-        remedy = "Choose another name" + ("" if out.is_dir() else ", or add --force to replace it")
-        raise OutputExistsError("this exists already", str(out), "", remedy)
-    if not out.parent.is_dir():
-        raise InputError("there is no such directory", str(out.parent), "", "Create it")
+    check_file(out, force)
     case = case_from_rexs(model, stage, load_case, changes=read_changes(set_ or []))
     write_file(out, case.to_toml())
     if json:

@@ -25,7 +25,7 @@ from tribodyn.model import Option, number
 from tribodyn.study.case.values import FaultError, read_value
 
 if TYPE_CHECKING:
-    from tribodyn.losses import FrictionFromLoss, PowerLossTable
+    from tribodyn.losses import FrictionFromLoss, PowerLossTable, RigPowerFlow
     from tribodyn.study.case.case import Case
 
 Text = str | None
@@ -64,7 +64,7 @@ def losses(
     """
     from tribodyn import plot
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.report.answers import losses_answer
+    from tribodyn.report.answers import losses_answer, pictured
 
     ready, target = begun("losses", case, out, set_, force)
     slave = _slave(ready, rig)
@@ -75,26 +75,23 @@ def losses(
         with progress_bar() as progress:
             answer = losses_answer(ready, **points, progress=progress)
         if slave is not None:
-            flow, drawn = _rig(ready, slave, answer.facts)
-            shown = (plot.power_flow.heading, drawn, plot.power_flow.caption_of(flow))
-            told = [*answer.told, f"{drawn.layout.title.text}."]
+            shown = pictured(plot.power_flow, _rig(ready, slave, answer.facts))
+            told = [*answer.told, f"{shown[1].layout.title.text}."]
             answer = answer._replace(figures=[*answer.figures, shown], told=told)
     finish("losses", ready, target, answer, force, json)
-    show_warnings((warning.code, warning.message) for warning in warnings)
+    show_warnings(warnings)
 
 
 def _values(case: Case, name: str, text: Text) -> list[float] | None:
     """Torques or speeds of an option, checked like the key of the case."""
-    from tribodyn.study.studies.axes import ends_of, read_axes
+    from tribodyn.study.studies.axes import points_of
 
     if text is None:
         return None
     key, by = f"operation.{name}", f"--{name}"
     given = read_ranges([f"{key}={text}"])[key]
     try:
-        if isinstance(given, list) and len(given) == 1:
-            return list(ends_of(case, key, given, by=by))
-        return list(read_axes(case, {key: given}, by=by)[0].values)
+        return points_of(case, key, given, by=by)
     except InputError as error:
         remedy = f'Write --{name} "{_EXAMPLES[name]}"'
         told = [replace(each, where=by, remedy=remedy) for each in error.problems]
@@ -108,8 +105,8 @@ def _slave(case: Case, rig: Text) -> Case | None:
     return case.replace(bearings, by="--rig")
 
 
-def _rig(case: Case, slave: Case, facts: dict[str, Any]) -> tuple[Any, Any]:
-    """Power flow of the rig and its figure; its figures are added to the facts."""
+def _rig(case: Case, slave: Case, facts: dict[str, Any]) -> RigPowerFlow:
+    """Power flow of the rig; its figures are added to the facts."""
     from tribodyn.study.studies.losses import rig_power_flow
 
     flow = rig_power_flow(case, slave)
@@ -119,7 +116,7 @@ def _rig(case: Case, slave: Case, facts: dict[str, Any]) -> tuple[Any, Any]:
         "circulating_power": flow.circulating_power,
         **{box: dict(zip(flow.part, lost, strict=True)) for box, lost in boxes},
     }
-    return flow, flow.plot()
+    return flow
 
 
 _GUARD = "guards against a wrong unit"
@@ -174,6 +171,7 @@ def friction_from_loss(
     from tribodyn import plot
     from tribodyn.losses import friction_from_power_loss
     from tribodyn.report import write_study_report
+    from tribodyn.report.answers import pictured
     from tribodyn.stored import write_dataset
     from tribodyn.study.pipeline.save import new_directory
 
@@ -183,10 +181,9 @@ def friction_from_loss(
         measured = _measured(file, case, _options(set_ or []))
         found = friction_from_power_loss(measured)
     head, rows = _friction_rows(found)
-    figure = found.plot()
-    each = plot.friction_from_loss
+    figure = pictured(plot.friction_from_loss, found)
     told = [
-        f"{figure.layout.title.text}.",
+        f"{figure[1].layout.title.text}.",
         f"H_V = {measured.gear_loss_factor:.5g}. Source: {measured.source}.",
         *(warning.message for warning in warnings),
     ]
@@ -199,7 +196,7 @@ def friction_from_loss(
             place / "report.html",
             kind="friction from losses",
             told=told,
-            figures=[(each.heading, figure, each.caption_of(found))],
+            figures=[figure],
             head=head,
             rows=rows,
         )
@@ -207,7 +204,7 @@ def friction_from_loss(
         say_json(_friction_facts(found, measured))
     else:
         say("\n".join([*told[:2], table([head, *rows])]))
-    show_warnings((warning.code, warning.message) for warning in warnings)
+    show_warnings(warnings)
     tell(f"Report: {target / 'report.html'}")
 
 

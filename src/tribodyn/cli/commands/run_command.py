@@ -58,7 +58,7 @@ def run(
         say_json(result.summary())
     elif not quiet:
         say(f"{result.case.title}\n{figures(result.summary())}")
-    show_warnings((warning.code, warning.message) for warning in result.warnings)
+    show_warnings(result.warnings)
     report = target / "report.html"
     tell(f"Report: {report}")
     if open_:

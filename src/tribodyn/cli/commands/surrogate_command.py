@@ -10,7 +10,8 @@ import numpy as np
 
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import Flag, Output, Words, changed_case, read_changes
-from tribodyn.errors import InputError, OutputExistsError, Problem, collected
+from tribodyn.errors import InputError, Problem, collected
+from tribodyn.files import check_new
 
 if TYPE_CHECKING:
     from tribodyn.surrogate import Surrogate
@@ -68,10 +69,8 @@ def _train(
     from tribodyn.surrogate import Training, train
 
     (size, seed), (out, settings) = draw, places
-    path = out if out is not None else Path(f"{Path(source).stem}-surrogate.nc")
-    if path.exists():
-        what, why = f"{path} exists already", "An existing file is never overwritten"
-        raise OutputExistsError(what, "--out", why, "Choose another name")
+    place = out if out is not None else Path(f"{Path(source).stem}-surrogate.nc")
+    path = check_new(place, "--out")
     over = {key: str(value) for key, value in read_changes(values).items()} or None
     case = changed_case(source, settings)
     with collected() as told, progress_bar() as progress:
@@ -82,7 +81,7 @@ def _train(
         model = train(
             data, features=inputs, targets=varied, seed=seed, training=shares, progress=progress
         )
-    show_warnings((warning.code, warning.message) for warning in told)
+    show_warnings(told)
     model.save(path)
     if json:
         facts = {
@@ -139,7 +138,7 @@ def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
     inputs = _inputs(model, read_changes(values))
     with collected() as told:
         answers, bands = model.predict(inputs), model.predict_band(inputs)
-    show_warnings((warning.code, warning.message) for warning in told)
+    show_warnings(told)
     rows, facts = [["target", "prediction", f"{model.level:.0%} band"]], {}
     for name, unit in zip(model.targets, model.target_unit, strict=True):
         value, (low, high) = float(answers[name]), map(float, bands[name])

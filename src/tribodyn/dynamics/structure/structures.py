@@ -107,10 +107,6 @@ class Structure(Model):
     papers: tuple[str, ...] = ()
     gears: tuple[str, ...] = ()
 
-    def __post_init__(self) -> None:
-        """Keep options and defaults apart."""
-        self.declare(self.options)
-
     def __call__(self, gearing: Gearing, **options: Any) -> System:
         """Build the structure.
 

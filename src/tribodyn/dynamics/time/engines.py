@@ -218,10 +218,6 @@ class Engine(Model):
     papers: tuple[str, ...] = ()
     source: str = ""
 
-    def __post_init__(self) -> None:
-        """Keep options and defaults apart."""
-        self.declare(self.options)
-
     def arguments(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Arguments of :func:`tribodyn.dynamics.simulate`.
 

@@ -159,6 +159,13 @@ def _range(case: Case, key: str, given: tuple[Any, ...], by: str) -> tuple[float
     return tuple(np.linspace(low, high, int(points)).tolist())
 
 
+def points_of(case: Case, key: str, given: Any, *, by: str) -> list[float]:
+    """Read the values of a key that one alone may be of."""
+    if isinstance(given, list) and len(given) == 1:
+        return list(ends_of(case, key, given, by=by))
+    return list(read_axes(case, {key: given}, by=by)[0].values)
+
+
 def operation_values(name: str, given: Any, case: Case) -> list[float]:
     """Read one or several torques or speeds, each checked like the key of the case."""
     if given is None:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, OutputExistsError
-from tribodyn.files import whole
+from tribodyn.errors import Argument, InputError
+from tribodyn.files import check_new, whole
 from tribodyn.record import Parts, Record, fact, record
 from tribodyn.stored import read_dataset
 from tribodyn.types import Array, Mask
@@ -87,10 +87,7 @@ class DataSet(Record):
         except ImportError:
             why, remedy = "It writes Parquet", 'pip install "tribodyn[learn]", or use save()'
             raise InputError("pyarrow is not installed", "", why, remedy) from None
-        target = Path(path)
-        if target.exists():
-            what, why = f"{target} exists already", "An existing file is never overwritten"
-            raise OutputExistsError(what, Argument("path"), why, "Choose another name")
+        target = check_new(path, Argument("path"))
         facts = self._parts().attributes | {f"unit of {n}": u for n, u in self.units.items()}
         table = pyarrow.table(self.columns).replace_schema_metadata(
             {name: str(value) for name, value in facts.items()}
