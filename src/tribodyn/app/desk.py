@@ -63,6 +63,11 @@ class Desk:
         """The form of the case."""
         return CaseForm(self.case, self.typed, self.units)
 
+    @property
+    def job_in_view(self) -> Job | None:
+        """The job that is looked at."""
+        return next((j for j in self.jobs_here() if self.view == f"job-{j.number}"), None)
+
     def edit(self, told: Mapping[str, Any]) -> None:
         """Take down what was typed into a field, and check the case with it."""
         key, number = str(told.get("key", "")), int(told.get("number", 0))

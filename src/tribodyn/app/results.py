@@ -233,7 +233,7 @@ def _progress(job: Job) -> html.Div:
 
 def tools(desk: Desk) -> list[Any]:
     """What can be done with the job that is looked at."""
-    job = next((j for j in desk.jobs_here() if desk.view == f"job-{j.number}"), None)
+    job = desk.job_in_view
     if job is None or not job.ended:
         return []
     number, parts = str(job.number), []
@@ -319,7 +319,7 @@ def bench(desk: Desk) -> list[Any]:
     """What is looked at; a case that cannot be drawn says why."""
     if desk.view in ("files", "studies"):
         return files(desk) if desk.view == "files" else studies(desk)
-    job = next((j for j in desk.jobs_here() if desk.view == f"job-{j.number}"), None)
+    job = desk.job_in_view
     try:
         return pair(desk) if job is None else result(desk, job)
     except TribodynError as error:

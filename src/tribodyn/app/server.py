@@ -278,7 +278,7 @@ _ACTS: dict[str, Callable[[Desk, str, str], None]] = {
 
 def _versions(desk: Desk) -> dict[str, Any]:
     """By part of the page something that changes with it."""
-    job = next((j for j in desk.jobs_here() if desk.view == f"job-{j.number}"), None)
+    job = desk.job_in_view
     jobs = [[j.number, j.state] for j in desk.jobs_here()]
     moving = [job.version, job.seconds] if job is not None and not job.ended else []
     at = [job.number, job.state, *moving] if job is not None else desk.edits

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -104,9 +105,13 @@ def hertz_line(
         equivalent_radius=equivalent_radius, effective_modulus=effective_modulus
     )
     load = np.asarray(load_per_width, dtype=float)
-    half_width = np.sqrt(8.0 * load * radius / (math.pi * modulus))
     maximum = np.sqrt(load * modulus / (2.0 * math.pi * radius))
-    return HertzLine(half_width, maximum, math.pi / 4.0 * maximum)
+    return HertzLine(dry_half_width(load, radius, modulus), maximum, math.pi / 4.0 * maximum)
+
+
+def dry_half_width(load: Any, radius: Any, modulus: Any) -> Any:
+    """Half width of a line contact, see :func:`hertz_line`."""
+    return np.sqrt(8.0 * load * radius / (math.pi * modulus))
 
 
 #: Steps of bisection in the logarithm of the ratio of both axes, and its least value.

@@ -145,7 +145,7 @@ class PathOfContact:
         [0.0, 0.6052, 0.8268]
         """
         ratio = self.contact_ratio
-        pitch_point = self.direction * (self.C - self.A) / self.pair.base_pitch
+        pitch_point = pitch_point_age(self)
         events = [0.0, ratio % 1.0]
         if 0.0 <= pitch_point < ratio:
             events.append(pitch_point % 1.0)
@@ -313,11 +313,15 @@ def path_of_contact(pair: SpurPair) -> PathOfContact:
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
+def pitch_point_age(contact: PathOfContact) -> float:
+    """Mesh cycles from where a tooth pair enters to the pitch point, wherever that lies."""
+    return contact.direction * (contact.C - contact.A) / contact.pair.base_pitch
+
+
 def _travel_breaks(contact: PathOfContact) -> Array:
     """Travel from A, in base pitches, at which load share or sliding may change abruptly."""
     ratio, whole = contact.contact_ratio, np.arange(contact.pairs + 1)
-    pitch_point = contact.direction * (contact.C - contact.A) / contact.pair.base_pitch
-    breaks = np.concatenate([whole, ratio - whole, [pitch_point, ratio]])
+    breaks = np.concatenate([whole, ratio - whole, [pitch_point_age(contact), ratio]])
     return np.unique(np.clip(breaks, 0.0, ratio))
 
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tribodyn.ehl import lubrication_regime
-from tribodyn.mesh.gears import GearData, Gears, NoGears, coordinates_of
+from tribodyn.mesh.gears import GearData, Gears, NoGears, column_of, lever
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
@@ -171,7 +171,7 @@ class MeshColumns(Record):
     @property
     def driver(self) -> str:
         """Which gear drives: ``"pinion"`` or ``"wheel"``."""
-        along = self._of(self.direction, "pinion_theta")
+        along = column_of(self.direction, "pinion_theta")
         return "pinion" if float(along.mean()) > 0.0 else "wheel"
 
     @property
@@ -187,19 +187,12 @@ class MeshColumns(Record):
     @property
     def base_radius_pinion(self) -> float:
         """Lever of the normal force on the pinion: for spur gears the base radius [m]."""
-        return self._lever("pinion_theta")
+        return lever(self.direction, "pinion_theta", self.grid)
 
     @property
     def base_radius_wheel(self) -> float:
         """Lever of the normal force on the wheel: for spur gears the base radius [m]."""
-        return self._lever("wheel_theta")
-
-    def _of(self, columns: Array, coordinate: str) -> Array:
-        return np.asarray(columns[..., coordinates_of(columns.shape[-1]).index(coordinate)])
-
-    def _lever(self, coordinate: str) -> float:
-        column = self._of(self.direction, coordinate)
-        return abs(float(column if column.ndim == 0 else self.grid.mean(column)))
+        return lever(self.direction, "wheel_theta", self.grid)
 
     @property
     def mesh_frequency(self) -> float:
@@ -247,7 +240,7 @@ class MeshColumns(Record):
     def friction_sum(self) -> Array:
         """Friction over normal force of all pairs together, with direction (n,)."""
         if self.friction_direction is not None:
-            return self._of(self.friction, "pinion_x")
+            return column_of(self.friction, "pinion_x")
         return np.asarray(self._plane_friction[0])
 
     @property
@@ -259,20 +252,20 @@ class MeshColumns(Record):
         if self.friction_direction is None:
             return self.by_share(self.sliding_direction * part)
         each = (part * self.load_share)[:, :, None] * self.friction_direction
-        return self._of(each.sum(axis=1), "pinion_x")
+        return column_of(each.sum(axis=1), "pinion_x")
 
     @property
     def friction_moment_pinion(self) -> Array:
         """Friction moment on the pinion over total normal force (n,) [m]."""
         if self.friction_direction is not None:
-            return self._of(self.friction, "pinion_theta")
+            return column_of(self.friction, "pinion_theta")
         return np.asarray(self._plane_friction[1])
 
     @property
     def friction_moment_wheel(self) -> Array:
         """Friction moment on the wheel over total normal force (n,) [m]."""
         if self.friction_direction is not None:
-            return -self._of(self.friction, "wheel_theta")
+            return -column_of(self.friction, "wheel_theta")
         return np.asarray(self._plane_friction[2])
 
     @property

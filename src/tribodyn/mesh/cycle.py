@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import Kinematics, PathOfContact, effective_modulus, hertz_line
+from tribodyn.contact.path import pitch_point_age
 from tribodyn.ehl import FILM_MODELS, moes_central
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import require_between
@@ -226,8 +227,7 @@ def path_positions(
     found = [0.0, ratio]
     for number in range(1, contact.pairs):
         found += [float(number), ratio - number]
-    pitch_point = contact.direction * (contact.C - contact.A) / contact.pair.base_pitch
-    found.append(pitch_point)
+    found.append(pitch_point_age(contact))
     for number in range(contact.pairs):
         wide = [number + bend for bend in bends]
         found += [age for age in wide if np.min(np.abs(np.array(found) - age)) > _NARROW]

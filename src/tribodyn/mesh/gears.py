@@ -9,8 +9,10 @@ from typing import Any, NoReturn
 import numpy as np
 
 from tribodyn.contact import path_of_contact
+from tribodyn.contact.path import pitch_point_age
 from tribodyn.errors import InputError, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
+from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.types import Array
 
 #: Coordinates of a gear pair: across and along the line of action, and the angle of each gear.
@@ -27,6 +29,23 @@ SPATIAL_COORDINATES = tuple(
 def coordinates_of(count: int) -> tuple[str, ...]:
     """Names of this many coordinates."""
     return SPATIAL_COORDINATES if count == len(SPATIAL_COORDINATES) else COORDINATES
+
+
+def plane_direction(driver: str, pinion: float, wheel: float) -> Array:
+    """Change of the compression with each of the :data:`COORDINATES`, by both base radii."""
+    sign = 1.0 if driver == "pinion" else -1.0
+    return np.asarray(sign * np.array([0.0, 1.0, pinion, 0.0, -1.0, -wheel]))
+
+
+def column_of(columns: Array, coordinate: str) -> Array:
+    """What belongs to one coordinate."""
+    return np.asarray(columns[..., coordinates_of(columns.shape[-1]).index(coordinate)])
+
+
+def lever(direction: Array, coordinate: str, grid: PhaseGrid) -> float:
+    """Lever of the normal force on a gear, over the cycle [m]."""
+    column = column_of(direction, coordinate)
+    return abs(float(column if column.ndim == 0 else grid.mean(column)))
 
 
 class NoGears:
@@ -58,15 +77,14 @@ class GearData:
     @property
     def direction(self) -> Array:
         """Change of the compression with each of the :data:`COORDINATES` [1 or m]."""
-        sign = 1.0 if self.pair.driver == "pinion" else -1.0
-        radii = (self.pair.pinion.base_radius, self.pair.wheel.base_radius)
-        return np.asarray(sign * np.array([0.0, 1.0, radii[0], 0.0, -1.0, -radii[1]]))
+        radii = self.pair.pinion.base_radius, self.pair.wheel.base_radius
+        return plane_direction(self.pair.driver, *radii)
 
     @property
     def pitch_point_age(self) -> float | None:
         """Mesh cycles from entry to pitch point; None where that is outside of the contact."""
         contact = path_of_contact(self.pair)
-        age = contact.direction * (contact.C - contact.A) / self.pair.base_pitch
+        age = pitch_point_age(contact)
         return float(age) if 0.0 <= age < contact.contact_ratio else None
 
     def written(self) -> str:

@@ -22,6 +22,8 @@ from tribodyn.mesh.gears import (
     GearData,
     NoGears,
     coordinates_of,
+    lever,
+    plane_direction,
 )
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
 from tribodyn.mesh.storage import (
@@ -79,15 +81,12 @@ class TableFile:
         """Change of the compression with the six coordinates of the pair [1 or m]."""
         if "direction" in self.columns:
             return self.columns["direction"]
-        sign = 1.0 if driver == "pinion" else -1.0
-        radii = [self.facts[f"base_radius_{gear}"] for gear in ("pinion", "wheel")]
-        return np.asarray(sign * np.array([0.0, 1.0, radii[0], 0.0, -1.0, -radii[1]]))
+        radii = (self.facts[f"base_radius_{gear}"] for gear in ("pinion", "wheel"))
+        return plane_direction(driver, *radii)
 
     def lever(self, coordinate: str) -> float:
         """Lever of the normal force on a gear, over the cycle [m]."""
-        columns = self.direction("pinion")
-        column = columns[..., coordinates_of(columns.shape[-1]).index(coordinate)]
-        return abs(float(column if column.ndim == 0 else self.grid.mean(column)))
+        return lever(self.direction("pinion"), coordinate, self.grid)
 
     def table(
         self,

@@ -80,6 +80,11 @@ def window_values(window: str, length: int) -> Array:
         raise InputError(what, "argument window", str(error), remedy) from error
 
 
+def noise_bandwidth(weights: Array, sampling_rate: float) -> float:
+    """Width of the ideal filter that passes as much noise as one line of a window [Hz]."""
+    return sampling_rate * float(np.sum(weights**2) / weights.sum() ** 2)
+
+
 #: Most samples over the rotation before the filter, and samples per period for cubic pieces.
 _MOST = 20_000_000
 _FINE = 16.0
@@ -239,20 +244,20 @@ def _refined(moments: Array, values: Array, highest: float) -> tuple[Array, Arra
     times = int(np.ceil(_FINE * highest * step.mean()))
     if times < 2 or not even:
         return moments, values
-    from scipy.signal import firwin, resample_poly
-
-    taps = firwin(2 * 40 * times + 1, 1.0 / times, window=("kaiser", 8.0))
-    fine = resample_poly(values, times, 1, window=taps, padtype="line")
+    fine = _resampled(values, times, 1)
     grid = moments[0] + step.mean() / times * np.arange(fine.size)
     inside = grid <= moments[-1] + 1e-9 * step.mean()
-    return grid[inside], np.asarray(fine)[inside]
+    return grid[inside], fine[inside]
 
 
 def _decimated(values: Array, factor: int) -> Array:
     """Every so many samples, after a filter without delay that removes what would fold."""
-    if factor == 1:
-        return values
+    return values if factor == 1 else _resampled(values, 1, factor)
+
+
+def _resampled(values: Array, up: int, down: int) -> Array:
     from scipy.signal import firwin, resample_poly
 
+    factor = max(up, down)
     taps = firwin(2 * 40 * factor + 1, 1.0 / factor, window=("kaiser", 8.0))
-    return np.asarray(resample_poly(values, 1, factor, window=taps, padtype="line"))
+    return np.asarray(resample_poly(values, up, down, window=taps, padtype="line"))

@@ -13,6 +13,7 @@ from tribodyn.signals.angular_resampling import (
     angular_resampling,
     checked_rising,
     checked_signal,
+    noise_bandwidth,
     shaft_rotation,
     window_values,
 )
@@ -153,7 +154,7 @@ def spectrogram(
         np.abs(lines),
         length / sampling_rate,
         sampling_rate,
-        sampling_rate * float(np.sum(weights**2) / weights.sum() ** 2),
+        noise_bandwidth(weights, sampling_rate),
         unit,
     )
 

@@ -10,7 +10,12 @@ import numpy as np
 
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.signals.angular_resampling import checked_signal, refuse_above_half, window_values
+from tribodyn.signals.angular_resampling import (
+    checked_signal,
+    noise_bandwidth,
+    refuse_above_half,
+    window_values,
+)
 from tribodyn.types import Array, ComplexArray, Mask
 
 _SCALINGS = ("amplitude", "power", "density")
@@ -97,7 +102,7 @@ def spectrum(
         lines = np.fft.rfft(weights * values[start : start + length]) / weights.sum()
         square += np.abs(lines) ** 2 / len(starts)
     single = _single_sided(length)
-    bandwidth = sampling_rate * float(np.sum(weights**2) / weights.sum() ** 2)
+    bandwidth = noise_bandwidth(weights, sampling_rate)
     size = {
         "amplitude": np.where(single, 2.0, 1.0) * np.sqrt(square),
         "power": np.where(single, 2.0, 1.0) * square,
@@ -362,6 +367,6 @@ def zoom_spectrum(
         np.abs(lines),
         np.angle(lines),
         window=window,
-        noise_bandwidth=sampling_rate * float(np.sum(weights**2) / weights.sum() ** 2),
+        noise_bandwidth=noise_bandwidth(weights, sampling_rate),
         unit=unit,
     )

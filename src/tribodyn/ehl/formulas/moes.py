@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -50,13 +52,21 @@ def moes_dimensionless_central(load: ArrayLike, material: ArrayLike) -> Array:
     require_positive("load", load)
     require_positive("material", material)
     loads, materials = np.asarray(load, dtype=float), np.asarray(material, dtype=float)
-    rigid, elastic = rigid_isoviscous(loads), elastic_isoviscous(loads)
-    rigid_thick = rigid_piezoviscous(materials)
-    elastic_thick = elastic_piezoviscous(loads, materials)
+    thin = rigid_isoviscous(loads), elastic_isoviscous(loads)
+    thick = rigid_piezoviscous(materials), elastic_piezoviscous(loads, materials)
+    return np.asarray(blended(*thin, *thick))[()]
+
+
+def isoviscous(rigid: Any, elastic: Any) -> Any:
+    """Film between its asymptotes where pressure thickens no oil."""
+    return (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 / 7)
+
+
+def blended(rigid: Any, elastic: Any, rigid_thick: Any, elastic_thick: Any) -> Any:
+    """Film between its four asymptotes, isoviscous and piezoviscous."""
     s = (7.0 + 8.0 * np.exp(-2.0 * elastic / rigid)) / 5.0
-    isoviscous = (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 / 7)
     piezoviscous = (rigid_thick**-3.5 + elastic_thick**-3.5) ** (-2 / 7)
-    return np.asarray((isoviscous**s + piezoviscous**s) ** (1.0 / s))[()]
+    return (isoviscous(rigid, elastic) ** s + piezoviscous**s) ** (1.0 / s)
 
 
 @film_formula

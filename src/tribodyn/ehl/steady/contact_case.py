@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.checks import require_flag
+from tribodyn.contact.hertz import dry_half_width
 from tribodyn.errors import (
     Argument,
     InputError,
@@ -151,7 +152,7 @@ def si_case(
     if require_one_of("viscosity_law", viscosity_law, LAWS) == "isoviscous":
         L = 0.0
     pressure = math.sqrt(load * modulus / (2.0 * math.pi * radius))
-    half_width = math.sqrt(8.0 * load * radius / (math.pi * modulus))
+    half_width = float(dry_half_width(load, radius, modulus))
     _check_pressure(pressure, load, modulus, radius)
     _check_width(half_width, radius)
     _check_numbers(M, L, "load_per_width, equivalent_radius, entrainment_speed")

@@ -15,6 +15,7 @@ from tribodyn.ehl.formulas.dimensionless_groups import (
     rigid_isoviscous,
     rigid_piezoviscous,
 )
+from tribodyn.ehl.formulas.moes import blended, isoviscous
 from tribodyn.ehl.steady.contact_case import ContactScales
 from tribodyn.errors import InputError
 
@@ -58,12 +59,8 @@ def regime_name(M: float, L: float) -> str:
 
 def estimate_film(M: float, L: float, density_ratio: float) -> float:
     """Central film ``H = h R/b^2`` by the formula of Moes, for domain and start; L may be zero."""
-    rigid, elastic, thick_rigid, thick_elastic = _asymptotes(M, L).values()
-    s = (7.0 + 8.0 * math.exp(-2.0 * elastic / rigid)) / 5.0
-    film = (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 / 7)
-    if L > 0.0:
-        thick = (thick_rigid**-3.5 + thick_elastic**-3.5) ** (-2 / 7)
-        film = (film**s + thick**s) ** (1.0 / s)
+    films = tuple(_asymptotes(M, L).values())
+    film = blended(*films) if L > 0.0 else isoviscous(*films[:2])
     return float(math.pi / 8.0 * film / M / density_ratio)
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.contact.hertz import dry_half_width
 from tribodyn.ehl.formulas.dimensionless_groups import Groups, survey_film
 from tribodyn.ehl.roughness import RoughnessProfile, warn_if_unresolved
 from tribodyn.ehl.steady.contact_case import ContactScales, contact_scales, moes_numbers
@@ -170,7 +171,7 @@ def reference_scale(
     time: Array, load: Array, radius: Array, entrainment_speed: Array, effective_modulus: float
 ) -> ReferenceScale:
     """Scale of the widest dry contact of a series, after Hertz (1881)."""
-    width = np.sqrt(8.0 * load * radius / (np.pi * effective_modulus))
+    width = dry_half_width(load, radius, effective_modulus)
     instant = int(np.argmax(width))
     b = float(width[instant])
     fastest = float(np.max(entrainment_speed))
@@ -200,7 +201,7 @@ def flooded_domain(
         equivalent_radius=radius,
     )
     film = survey_film(groups.moes_load, groups.moes_material) * groups.moes_film_unit
-    width = np.sqrt(8.0 * load * radius / (np.pi * effective_modulus))
+    width = dry_half_width(load, radius, effective_modulus)
     local = np.minimum(film * radius / width**2, 1.0)
     round_width = np.sqrt(2.0 * radius * film)
     first = np.maximum((4.0 + 1.2 * local) * width, 3.6 * round_width)

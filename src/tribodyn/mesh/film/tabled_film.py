@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.contact.path import pitch_point_age
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.formulas.dimensionless_groups import line_contact_groups
 from tribodyn.ehl.steady.batch import Films, warn_coarse
@@ -96,10 +97,8 @@ def tabled_film(
     table = _table_for(settings, pairs)
     if table is None:
         return None
-    contact = cycle.contact
-    pitch_point = contact.direction * (contact.C - contact.A) / contact.pair.base_pitch
     # Of both sides of the pitch point the one after it counts.
-    pitch = np.flatnonzero(np.abs(pairs.age - pitch_point) < _SAME)[-1:]
+    pitch = np.flatnonzero(np.abs(pairs.age - pitch_point_age(cycle.contact)) < _SAME)[-1:]
     return TabledFilm(settings, table, pairs, cycle.in_contact, teeth.least_load, pitch)
 
 

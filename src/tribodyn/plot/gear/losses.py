@@ -21,6 +21,7 @@ from tribodyn.plot.look.style import (
     Trace,
     figure,
     line,
+    translucent,
 )
 from tribodyn.types import Array
 
@@ -174,7 +175,7 @@ def power_flow(found: RigPowerFlow) -> Any:
     colors = [INK, MUTED, MUTED, *(color for _, _, color in _SINKS)]
     links = [(0, 1 + box, power[1 + box], GRID) for box in (0, 1)]
     links += [
-        (1 + box, 3 + sink, lost[sink, box], _pale(colors[3 + sink]))
+        (1 + box, 3 + sink, lost[sink, box], translucent(colors[3 + sink], 0.35))
         for sink in range(len(_SINKS))
         for box in (0, 1)
         if lost[sink, box] > 0.0
@@ -211,12 +212,6 @@ def power_flow(found: RigPowerFlow) -> Any:
         f"{_watts(found.circulating_power)} go round in the loop"
     )
     return figure(title, [trace], {"height": 460, "margin": {"l": 24, "r": 24, "t": 74, "b": 24}})
-
-
-def _pale(color: str) -> str:
-    """The colour at little opacity, for a band that others may cross."""
-    red, green, blue = (int(color[place : place + 2], 16) for place in (1, 3, 5))
-    return f"rgba({red}, {green}, {blue}, 0.35)"
 
 
 @drawing(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.contact import path_of_contact
+from tribodyn.contact.path import pitch_point_age
 from tribodyn.plot.look.labels import axis_label, displayed
 from tribodyn.plot.look.style import MUTED, Trace
 from tribodyn.types import Array
@@ -39,8 +40,8 @@ def pair_ages(pair: Gears) -> dict[str, float]:
     """Ages at which a tooth pair passes the positions A to E and further changes of sharing."""
     contact = path_of_contact(pair)
     ratio = contact.contact_ratio
-    pitch_point = contact.direction * (contact.C - contact.A) / pair.base_pitch
-    ages = {"A": 0.0, "B": ratio - 1.0, "C": float(pitch_point), "D": 1.0, "E": ratio}
+    pitch_point = float(pitch_point_age(contact))
+    ages = {"A": 0.0, "B": ratio - 1.0, "C": pitch_point, "D": 1.0, "E": ratio}
     return ages | further_changes(ratio)
 
 

@@ -114,6 +114,12 @@ def line(
     }
 
 
+def translucent(color: str, opacity: float) -> str:
+    """A colour through which others are seen."""
+    red, green, blue = (int(color[place : place + 2], 16) for place in (1, 3, 5))
+    return f"rgba({red}, {green}, {blue}, {opacity})"
+
+
 def player(
     words: Sequence[str], milliseconds: int, *, redraw: bool, slider: dict[str, Any], buttons: float
 ) -> dict[str, Any]:

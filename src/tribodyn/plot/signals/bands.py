@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.drawing import FIGURES, drawing
 from tribodyn.errors import InputError
-from tribodyn.plot.look.style import MUTED, Trace
+from tribodyn.plot.look.style import MUTED, Trace, translucent
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -164,5 +164,4 @@ def _at(x: Array, other_x: Array, y: Array, *, lines: bool) -> Array:
 def _faint(color: str | None) -> str:
     """The colour of a curve for a surface about it."""
     text = color if color and len(color) == 7 and color.startswith("#") else MUTED
-    red, green, blue = (int(text[k : k + 2], 16) for k in (1, 3, 5))
-    return f"rgba({red}, {green}, {blue}, {_FAINT})"
+    return translucent(text, _FAINT)

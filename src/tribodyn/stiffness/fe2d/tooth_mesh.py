@@ -271,7 +271,7 @@ def _body_points(top: Array, levels: Array, bore: float) -> Array:
     """Columns from the top edge to the bore in polar coordinates, shape (columns, levels, 2)."""
     radius, angle = np.hypot(*top.T)[:, None], np.arctan2(*top.T)[:, None]
     radii = radius + (bore - radius) * levels
-    return np.stack([radii * np.sin(angle), radii * np.cos(angle)], axis=-1)
+    return _cartesian(radii, angle)
 
 
 def _numbered(
