@@ -79,35 +79,16 @@ __all__ = [
     "warm_up",
 ]
 
-_HOMES = {
-    "Case": "study",
+#: Where a public name is at home, if not in ``study``.
+_ELSEWHERE = {
     "ComputationError": "errors",
     "InputError": "errors",
     "ModelWarning": "errors",
-    "Result": "study",
-    "bifurcation": "study",
-    "campbell": "study",
-    "compare_results": "study",
-    "comprehensive_stiffness": "study",
-    "ensemble": "study",
-    "film_over_operation": "study",
-    "friction_experiment": "study",
-    "harris_map": "study",
     "load_case": "cases",
     "load_result": "cases",
-    "loaded_contact": "study",
-    "loss_map": "study",
-    "natural_modes": "study",
     "open_study": "variants",
-    "operating_data": "study",
-    "optimize_tip_relief": "study",
-    "rig_power_flow": "study",
     "run": "cases",
     "run_study": "variants",
-    "run_up": "study",
-    "speed_sweep": "study",
-    "sweep": "study",
-    "vibration_data": "study",
     "warm_up": "cases",
 }
 
@@ -122,8 +103,8 @@ def __getattr__(name: str) -> Any:
     """Load a public name or a room when it is first used."""
     if name in _ROOMS:
         return import_module(f"{__name__}.{name}")
-    if name in _HOMES:
-        return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    if name in __all__:
+        return getattr(import_module(f"{__name__}.{_ELSEWHERE.get(name, 'study')}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

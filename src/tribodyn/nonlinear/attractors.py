@@ -256,7 +256,7 @@ class _Block:
         for lane in np.flatnonzero(period > 1):
             shorter = [p for p in range(1, period[lane]) if period[lane] % p == 0]
             period[lane] = next((p for p in shorter if change[p - 1, lane] <= _SAME), period[lane])
-            if still_settles(states[:, lane], self.earlier[:, lane], _PART, int(period[lane])):
+            if still_settles(states[:, lane], self.earlier[:, lane], int(period[lane])):
                 period[lane] = 0
         self.earlier = states
         m = self.motions
@@ -311,9 +311,9 @@ def settle(
     in_threads(_Block.run, blocks, count)
 
 
-def still_settles(states: Array, earlier: Array, apart: int, period: int) -> bool:
+def still_settles(states: Array, earlier: Array, period: int) -> bool:
     """Tell whether a motion comes nearer after fewer cycles than whole periods ago."""
-    back = period * -(-apart // period) - apart
+    back = period * -(-_PART // period) - _PART
     for fewer in range(1, period):
         if period % fewer == 0:
             new = states[-1] - states[-1 - fewer]

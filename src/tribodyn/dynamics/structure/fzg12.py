@@ -55,7 +55,7 @@ class RectangularMesh:
     @property
     def event_phases(self) -> tuple[float, ...]:
         """Phases at which a pair enters, leaves or passes the pitch point."""
-        return tuple(sorted({0.0, self.duty, self._travelled(_PITCH_POINT) % 1.0}))
+        return tuple(sorted({0.0, self.duty, self._pitch_point_age % 1.0}))
 
     def stiffness(self, phase: Array) -> Array:
         """Mesh stiffness."""
@@ -73,9 +73,10 @@ class RectangularMesh:
         """Friction moment on the wheel over the normal force."""
         return np.asarray(sum(pull * (_LINE - lever) for pull, lever in self._pairs(phase)))
 
-    def _travelled(self, lever: float) -> float:
-        """Base pitches that a contact has travelled when it is at a lever of the pinion."""
-        forward = (lever - _BEGIN) / _PITCH
+    @property
+    def _pitch_point_age(self) -> float:
+        """Base pitches that a contact has travelled when it is at the pitch point."""
+        forward = (_PITCH_POINT - _BEGIN) / _PITCH
         return forward if self.driver == "pinion" else 1.0 + self.duty - forward
 
     def _pairs(self, phase: Array) -> list[tuple[Array, Array]]:

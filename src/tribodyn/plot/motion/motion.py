@@ -44,12 +44,12 @@ def _ends(values: Array) -> NDArray[np.intp]:
     return np.sort(np.concatenate((left, right[:-1][apart], right[-1:])))
 
 
-def _extremes(values: Array, kept: int) -> NDArray[np.intp]:
+def _extremes(values: Array) -> NDArray[np.intp]:
     """Indices of the least and greatest value of every group, so that thinning keeps peaks."""
     count = len(values)
-    if count <= kept:
+    if count <= _KEPT:
         return np.arange(count)
-    width = -(-2 * count // kept)
+    width = -(-2 * count // _KEPT)
     folded = np.append(values, np.full(-count % width, values[-1])).reshape(-1, width)
     picked = np.stack((folded.argmin(axis=1), folded.argmax(axis=1)), axis=1)
     starts = np.arange(len(folded))[:, None] * width
@@ -132,7 +132,7 @@ class Motion:
         shown, fine = displayed(name, values), self._response.fine
         if not self.periodic:
             last = self._last()
-            early, late = _extremes(shown[:last], _KEPT), last + _extremes(shown[last:], _KEPT)
+            early, late = _extremes(shown[:last]), last + _extremes(shown[last:])
             kept = np.concatenate((early, late))
             return displayed("time", fine.time)[kept], shown[kept]
         kept = _ends(shown)

@@ -49,11 +49,9 @@ class ContactPlaces:
         return self.contact.direction
 
 
-def contact_places(
-    contact: PathOfContact, phase: ArrayLike, *, extended: bool = True, side: str = "right"
-) -> ContactPlaces:
+def contact_places(contact: PathOfContact, phase: ArrayLike, *, extended: bool) -> ContactPlaces:
     """Find where tooth pairs may touch."""
-    path, touching = contact.pair_paths(phase, side)
+    path, touching = contact.pair_paths(phase)
     turned = np.atleast_1d(np.asarray(phase, dtype=float))
     if not extended:
         return on_path_places(contact, turned, path, touching)
