@@ -35,18 +35,10 @@ Lack = Callable[[Any], str]
 
 @dataclass(frozen=True)
 class Need:
-    """Something that a result must have before a figure of it can be drawn.
+    """Something that a result must have before a figure of it can be drawn."""
 
-    Parameters
-    ----------
-    attributes : str
-        Names of attributes, of which one that is not None is enough, separated by blanks.
-    reason : str
-        One sentence for a result that has none of them, with the remedy.
-    """
-
-    attributes: str
-    reason: str
+    attributes: str  #: names, of which one that is not None is enough, separated by blanks
+    reason: str  #: one sentence for a result that has none of them, with the remedy
 
     def __call__(self, subject: Any) -> str:
         """Return the reason where the need is not met."""

@@ -100,11 +100,5 @@ def _no_bar() -> Iterator[Progress]:
 
 
 def progress_bar() -> AbstractContextManager[Progress]:
-    """Return a bar if stderr is a terminal, else something that draws none.
-
-    Returns
-    -------
-    context manager
-        Yields a :class:`tribodyn.progress.Progress`.
-    """
+    """Return a bar if stderr is a terminal, else something that draws none."""
     return Bar() if sys.stderr.isatty() else _no_bar()

@@ -45,12 +45,7 @@ _ear = _Ear()
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Repeat an interruption that was dropped inside the block.
-
-    Yields
-    ------
-    None
-    """
+    """Repeat an interruption that was dropped inside the block."""
     previous = sys.unraisablehook
     timers: list[threading.Timer] = []
 

@@ -11,6 +11,7 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
+from known_figures import caption, curve
 from tribodyn.drawing import Sketch
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
@@ -56,19 +57,6 @@ def result(drawable: Any) -> Any:
 @pytest.fixture(scope="module")
 def drawn(result: Any) -> dict[str, go.Figure]:
     return {name: FIGURES[name](result) for name in NAMES}
-
-
-def curve(figure: go.Figure, name: str, axis: str = "y") -> Any:
-    """The one curve of a name on an axis."""
-    (found,) = (trace for trace in figure.data if (trace.name, trace.yaxis or "y") == (name, axis))
-    return found
-
-
-def caption(name: str, result: Any) -> str:
-    """What a figure says about a result."""
-    figure = FIGURES[name]
-    assert isinstance(figure, Drawing)
-    return figure.caption_of(result)
 
 
 def frictionless(result: Any) -> Any:

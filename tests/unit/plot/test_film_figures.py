@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from known_figures import caption, curve
 from tribodyn.errors import InputError
-from tribodyn.plot import FIGURES, Drawing
+from tribodyn.plot import FIGURES
 
 
 @pytest.fixture
@@ -22,17 +23,6 @@ def result(drawable: Any) -> Any:
         film_stiffness_kind="tangent",
     )
     return made
-
-
-def curve(figure: Any, name: str, axis: str = "y") -> Any:
-    (found,) = (trace for trace in figure.data if (trace.name, trace.yaxis or "y") == (name, axis))
-    return found
-
-
-def caption(name: str, result: Any) -> str:
-    figure = FIGURES[name]
-    assert isinstance(figure, Drawing)
-    return figure.caption_of(result)
 
 
 def test_the_film_ratio_has_a_panel_of_its_own(result: Any) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
+from known_figures import marks
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, spur_pair
 from tribodyn.plot import FIGURES, Drawing
@@ -45,10 +46,6 @@ def contact() -> Any:
 
 def on_axis(figure: go.Figure, axis: str) -> list[Any]:
     return [trace for trace in figure.data if (trace.yaxis or "y") == axis]
-
-
-def marks(figure: go.Figure) -> dict[str, float]:
-    return {note.text: note.x for note in figure.layout.annotations}
 
 
 def test_curves_are_the_numbers_in_display_units(contact: Any) -> None:

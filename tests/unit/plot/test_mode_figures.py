@@ -1,19 +1,13 @@
 """Figures of natural modes, of the Campbell diagram and of the response to an error."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
+from known_figures import curve
 from known_systems import reference_system
 from tribodyn.dynamics import campbell, forced_response, fzg12, natural_modes
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES
-
-
-def curve(figure: Any, name: str, axis: str = "y") -> Any:
-    (found,) = (trace for trace in figure.data if (trace.name, trace.yaxis or "y") == (name, axis))
-    return found
 
 
 def test_bars_are_the_energy_shares() -> None:

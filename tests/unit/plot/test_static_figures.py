@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 import pytest
 
+from known_figures import curve, marks
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, SpurPair, spur_pair
 from tribodyn.plot import FIGURES, Drawing, flank_modification
@@ -22,11 +22,6 @@ def result(drawable: Any) -> Any:
     return drawable()
 
 
-def curve(figure: go.Figure, name: str, axis: str = "y") -> Any:
-    (found,) = (trace for trace in figure.data if (trace.name, trace.yaxis or "y") == (name, axis))
-    return found
-
-
 def pair_with(driver: str = "pinion", **modifications: Any) -> SpurPair:
     return spur_pair(
         pinion_teeth=20,
@@ -37,10 +32,6 @@ def pair_with(driver: str = "pinion", **modifications: Any) -> SpurPair:
         driver=driver,
         **modifications,
     )
-
-
-def marks(figure: go.Figure) -> dict[str, float]:
-    return {note.text: note.x for note in figure.layout.annotations}
 
 
 def test_static_transmission_error_is_force_over_stiffness(result: Any) -> None:
