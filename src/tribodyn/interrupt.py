@@ -26,6 +26,7 @@ __all__ = [
     "STOPPED",
     "Threads",
     "alone",
+    "aside",
     "in_threads",
     "processors",
     "refuse_stopped",
@@ -170,6 +171,11 @@ def in_threads(
             for future in done:
                 future.result()
         return [future.result() for future in running]
+
+
+def aside(work: Callable[[], Value]) -> Value:
+    """Let a thread do several stoppable calls and what lies between them: it is begun once."""
+    return in_threads(lambda _: work(), (0,), 1)[0]
 
 
 def stoppable(kernel: Callable[..., Any], *arguments: Any, brief: bool = False) -> Any:

@@ -5,6 +5,7 @@
 | ``elementary`` | how kernels are compiled; exponential and logarithm as vector instructions |
 | ``reynolds`` | oil, fluxes, residual and exact tangent of the discrete equation |
 | ``film_sum`` | elastic deflection by Fourier transforms |
+| ``factors`` | elimination: of a band, of a dense matrix |
 | ``linear_solver`` | GMRES with the tangent, preconditioned by its band and a coarse grid |
 | ``newton`` | Newton's method on one grid, with the free outlet and with cavities |
 | ``transfer`` | free outlet, and a solution carried to other grids |

@@ -30,7 +30,8 @@ OPEN: dict[str, Any] = {**JIT, "no_cfunc_wrapper": True}
 
 
 #: Files whose code ends up in every compiled kernel of a film, beside its own.
-SOURCES = ("elementary", "reynolds", "film_sum", "linear_solver", "transfer", "inlet", "newton")
+SOURCES: tuple[str, ...] = ("elementary", "reynolds", "film_sum", "factors", "linear_solver")
+SOURCES += ("transfer", "inlet", "newton")
 
 #: Sums must keep their order: the rounding below would be optimised away. For the same reason
 #: the functions are inlined by the compiler's back end, which keeps these flags, never by Numba.

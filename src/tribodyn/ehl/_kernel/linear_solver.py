@@ -15,113 +15,18 @@ import numba as nb
 import numpy as np
 
 from tribodyn.ehl._kernel.elementary import INNER
+from tribodyn.ehl._kernel.factors import (
+    BAND_ROW,
+    HALF_BAND,
+    band_factor,
+    band_solve,
+    lu_factor,
+    lu_solve,
+)
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum, film_work_size, make_grid
 from tribodyn.ehl._kernel.reynolds import fill_oil, fill_tangent, make_fields
 from tribodyn.types import Array, Index
 
-
-@nb.njit(**INNER)
-def band_factor(n: int, w: int, a: Array, pivot: Index) -> bool:
-    """Factor a matrix of half bandwidth ``w`` in place."""
-    for i in range(n):
-        for c in range(2 * w + 1, 3 * w + 1):
-            a[i, c] = 0.0
-    for k in range(n):
-        below = min(w, n - 1 - k)
-        best, largest = k, abs(a[k, w])
-        for r in range(k + 1, k + below + 1):
-            size = abs(a[r, k - r + w])
-            if size > largest:
-                best, largest = r, size
-        if not largest > 0.0:
-            return False
-        pivot[k] = best
-        span = min(2 * w, n - 1 - k) + 1
-        row = a[k, w : w + span]
-        if best != k:
-            other = a[best, k - best + w : k - best + w + span]
-            for c in range(span):
-                row[c], other[c] = other[c], row[c]
-        inverse = 1.0 / row[0]
-        multipliers = a[k, 3 * w + 1 :]
-        for r in range(k + 1, k + below + 1):
-            low = a[r, k - r + w : k - r + w + span]
-            factor = low[0] * inverse
-            multipliers[r - k - 1] = factor
-            if factor != 0.0:
-                for c in range(1, span):
-                    low[c] -= factor * row[c]
-    return True
-
-
-@nb.njit(**INNER)
-def band_solve(n: int, w: int, a: Array, pivot: Index, b: Array) -> None:
-    """Solve with the factors of :func:`band_factor`; ``b`` becomes the solution."""
-    for k in range(n):
-        best = pivot[k]
-        value = b[best]
-        b[best] = b[k]
-        b[k] = value
-        span = min(w, n - 1 - k)
-        below, multipliers = b[k + 1 : k + 1 + span], a[k, 3 * w + 1 : 3 * w + 1 + span]
-        for r in range(span):
-            below[r] -= multipliers[r] * value
-    for k in range(n - 1, -1, -1):
-        span = min(2 * w, n - 1 - k)
-        known, row = b[k + 1 : k + 1 + span], a[k, w + 1 : w + 1 + span]
-        value = b[k]
-        for c in range(span):
-            value -= row[c] * known[c]
-        b[k] = value / a[k, w]
-
-
-@nb.njit(**INNER)
-def lu_factor(n: int, a: Array, pivot: Index) -> bool:
-    """Factor a matrix in place with partial pivoting."""
-    for k in range(n):
-        best, largest = k, abs(a[k, k])
-        for r in range(k + 1, n):
-            size = abs(a[r, k])
-            if size > largest:
-                best, largest = r, size
-        if not largest > 0.0:
-            return False
-        pivot[k] = best
-        if best != k:
-            for c in range(n):
-                a[k, c], a[best, c] = a[best, c], a[k, c]
-        row = a[k, k + 1 :]
-        inverse = 1.0 / a[k, k]
-        for r in range(k + 1, n):
-            factor = a[r, k] * inverse
-            a[r, k] = factor
-            low = a[r, k + 1 :]
-            for c in range(n - k - 1):
-                low[c] -= factor * row[c]
-    return True
-
-
-@nb.njit(**INNER)
-def lu_solve(n: int, a: Array, pivot: Index, b: Array) -> None:
-    """Solve with the factors of :func:`lu_factor`; ``b`` becomes the solution."""
-    for k in range(n):
-        best = pivot[k]
-        if best != k:
-            b[k], b[best] = b[best], b[k]
-    for k in range(n):
-        value = b[k]
-        for c in range(k):
-            value -= a[k, c] * b[c]
-        b[k] = value
-    for k in range(n - 1, -1, -1):
-        value = b[k]
-        for c in range(k + 1, n):
-            value -= a[k, c] * b[c]
-        b[k] = value / a[k, k]
-
-
-#: Half bandwidth of the preconditioner.
-HALF_BAND = 7
 #: Vectors of the Krylov space before it is restarted, and how often it is.
 BASIS, RESTARTS = 30, 6
 
@@ -160,7 +65,7 @@ def linear_work(n: int) -> LinearWork:
     """Arrays of the linear solver on ``n`` intervals."""
     a = np.zeros((5, n + 2))
     return LinearWork(
-        np.empty((n + 1, 4)), np.empty((n + 1, 4)), np.empty((n + 1, 4 * HALF_BAND + 1)),
+        np.empty((n + 1, 4)), np.empty((n + 1, 4)), np.empty((n + 1, BAND_ROW)),
         np.empty(n + 1, np.int64), a[0], a[1], a[2], a[3], a[4],
         np.zeros((BASIS + 1, n + 2)), np.empty((BASIS + 4, BASIS + 2)),
         np.empty(film_work_size(n)),
@@ -310,10 +215,10 @@ def prepare(grid: Grid, k: int, imposed: bool, work: LinearWork) -> bool:
         for c in range(2 * w + 1):
             a[c] *= factor
         border[i - 1] = factor * (h0 + h1 + h2 + h3)
-    if not band_factor(k, w, band, pivot):
+    if not band_factor(k, band, pivot):
         return False
     if imposed:
-        band_solve(k, w, band, pivot, border)
+        band_solve(k, band, pivot, border)
         total = 0.0
         for i in range(k):
             total += border[i]
@@ -336,7 +241,7 @@ def _precondition(
     border, correction = work.border, work.correction
     if coarse.factors.size > 0:
         target -= _correct(grid, k, imposed, target, coarse, work, z)
-    band_solve(k, HALF_BAND, work.band, work.pivot, z)
+    band_solve(k, work.band, work.pivot, z)
     if imposed:
         total = 0.0
         for i in range(k):

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import INNER
+from tribodyn.ehl._kernel.elementary import INNER, STRICT
+from tribodyn.ehl._kernel.factors import lu_factor, lu_solve
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum, film_work_size, influence
-from tribodyn.ehl._kernel.linear_solver import lu_factor, lu_solve
 from tribodyn.ehl._kernel.newton import CONVERGED, GAP, SINGULAR
 from tribodyn.ehl._kernel.reynolds import Fields, fill_oil, fill_tangent, make_fields, residual
 from tribodyn.types import Array, Index
@@ -198,6 +198,16 @@ def assemble_band(k: int, dipole: Array, near: Array, cH: Array, cP: Array, band
                 j = i + c - LEFT
                 film = near[1] if 1 <= j <= k and dipole[j] > 0.0 else near[0]
                 row[c] = h0 * film[0, c] + h1 * film[1, c] + h2 * film[2, c] + h3 * film[3, c]
+        if inside == _WIDTH:
+            # Every node of the row takes its change half from each of its neighbours.
+            p0, p1, p2, p3 = cP[i, 0], cP[i, 1], cP[i, 2], cP[i, 3]
+            row[LEFT - 3] -= 0.5 * p0
+            row[LEFT - 2] += p0 - 0.5 * p1
+            row[LEFT - 1] += p1 - 0.5 * (p0 + p2)
+            row[LEFT] += p2 - 0.5 * (p1 + p3)
+            row[LEFT + 1] += p3 - 0.5 * p2
+            row[LEFT + 2] -= 0.5 * p3
+            continue
         for s in range(4):
             j, value = i - 2 + s, cP[i, s]
             c = LEFT - 2 + s
@@ -211,22 +221,70 @@ def assemble_band(k: int, dipole: Array, near: Array, cH: Array, cP: Array, band
 
 
 @nb.njit(**INNER)
+def _less(
+    f: float, u: Array, a: float, b: float, c: float, d: float, e: float, g: float
+) -> tuple[float, float, float, float, float, float]:
+    """Six numbers of a row less ``f`` times those behind the diagonal of an earlier row."""
+    return a - f * u[1], b - f * u[2], c - f * u[3], d - f * u[4], e - f * u[5], g - f * u[6]
+
+
+@nb.njit(**INNER)
+def _eliminate(k: int, band: Array, x: Array) -> None:
+    """Subtract the seven rows before from every row, which leaves the inverse of its diagonal.
+
+    A row stays in variables: in its array every step would wait for the one before to be stored.
+    """
+    for i in range(min(LEFT, k)):
+        for c in range(LEFT - i):
+            band[i, c] = 0.0
+    for i in range(k):
+        r, y = band[i], x[i]
+        a0, a1, a2, a3, a4, a5, a6, a7 = r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7]
+        b1, b2, b3, b4, b5 = r[8], r[9], r[10], r[11], r[12]
+        # Before the first row there is none, and nothing to subtract.
+        p7, p6, p5, p4 = max(i - 7, 0), max(i - 6, 0), max(i - 5, 0), max(i - 4, 0)
+        p3, p2, p1 = max(i - 3, 0), max(i - 2, 0), max(i - 1, 0)
+        f = a0 * band[p7, LEFT]
+        y -= f * x[p7]
+        a1, a2, a3, a4, a5, a6 = _less(f, band[p7, LEFT:], a1, a2, a3, a4, a5, a6)
+        f = a1 * band[p6, LEFT]
+        y -= f * x[p6]
+        a2, a3, a4, a5, a6, a7 = _less(f, band[p6, LEFT:], a2, a3, a4, a5, a6, a7)
+        f = a2 * band[p5, LEFT]
+        y -= f * x[p5]
+        a3, a4, a5, a6, a7, b1 = _less(f, band[p5, LEFT:], a3, a4, a5, a6, a7, b1)
+        f = a3 * band[p4, LEFT]
+        y -= f * x[p4]
+        a4, a5, a6, a7, b1, b2 = _less(f, band[p4, LEFT:], a4, a5, a6, a7, b1, b2)
+        f = a4 * band[p3, LEFT]
+        y -= f * x[p3]
+        a5, a6, a7, b1, b2, b3 = _less(f, band[p3, LEFT:], a5, a6, a7, b1, b2, b3)
+        f = a5 * band[p2, LEFT]
+        y -= f * x[p2]
+        a6, a7, b1, b2, b3, b4 = _less(f, band[p2, LEFT:], a6, a7, b1, b2, b3, b4)
+        f = a6 * band[p1, LEFT]
+        a7, b1, b2, b3, b4, b5 = _less(f, band[p1, LEFT:], a7, b1, b2, b3, b4, b5)
+        r[7], x[i] = 1.0 / a7, y - f * x[p1]
+        r[8], r[9], r[10], r[11], r[12] = b1, b2, b3, b4, b5
+
+
+@nb.njit(**STRICT)
+def _substitute(k: int, band: Array, x: Array) -> None:
+    """Find the unknowns from the last to the first; the sum ends with the one found last."""
+    x1 = x2 = x3 = x4 = x5 = x6 = 0.0
+    for i in range(k - 1, -1, -1):
+        r = band[i, LEFT:]
+        far = r[6] * x6 + r[5] * x5 + r[4] * x4
+        here = (((x[i] - far) - (r[3] * x3 + r[2] * x2)) - r[1] * x1) * r[0]
+        x[i] = here
+        x6, x5, x4, x3, x2, x1 = x5, x4, x3, x2, x1, here
+
+
+@nb.njit(**INNER)
 def solve_band(k: int, band: Array, x: Array) -> None:
     """Gaussian elimination in node order; ``x`` is the right side, then the solution."""
-    for i in range(k):
-        row = band[i]
-        inverse, value = 1.0 / row[LEFT], x[i]
-        for r in range(1, min(LEFT, k - 1 - i) + 1):
-            low = band[i + r, LEFT - r :]
-            factor = low[0] * inverse
-            for c in range(1, RIGHT + 1):
-                low[c] -= factor * row[LEFT + c]
-            x[i + r] -= factor * value
-    for i in range(k - 1, -1, -1):
-        row, value = band[i], x[i]
-        for c in range(1, min(RIGHT, k - 1 - i) + 1):
-            value -= row[LEFT + c] * x[i + c]
-        x[i] = value / row[LEFT]
+    _eliminate(k, band, x)
+    _substitute(k, band, x)
 
 
 @nb.njit(**INNER)

@@ -14,10 +14,11 @@ from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, si_case
 from tribodyn.ehl.steady.contact_problem import ContactProblem
 from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, cut_error, estimate_film
-from tribodyn.ehl.steady.grid_error import grid_error
-from tribodyn.ehl.steady.rescue import solve_problem
+from tribodyn.ehl.steady.grid_error import GridError, grid_error
+from tribodyn.ehl.steady.rescue import Verified, solve_problem
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
 from tribodyn.errors import InputError, real_numbers, require_between, warn
+from tribodyn.interrupt import aside
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
 
@@ -250,8 +251,12 @@ def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution
         problem = replace(problem, profile=_heights(options.profile, case, problem))
     if options.start is not None:
         problem = replace(problem, start=_start(options.start))
-    solved = solve_problem(problem, options.method)
-    return assemble(case, domain, solved, grid_error(problem, solved.outcome, flooded))
+
+    def solve() -> tuple[Verified, GridError]:
+        solved = solve_problem(problem, options.method)
+        return solved, grid_error(problem, solved.outcome, flooded)
+
+    return assemble(case, domain, *aside(solve))
 
 
 def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:

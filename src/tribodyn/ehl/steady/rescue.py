@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -48,12 +49,13 @@ class Verification:
         return "; ".join(complaints)
 
 
-def _transform(n: int, dx: float) -> tuple[int, Array]:
-    """Length of the circular sum, and transform of the influence."""
+@lru_cache(maxsize=16)
+def _transform(n: int) -> tuple[int, Array]:
+    """Length of the circular sum, and transform of the influence on intervals of length one."""
     from scipy.fft import next_fast_len, rfft
 
     size = next_fast_len(2 * n + 2, real=True)
-    edge = (np.arange(n + 2) - 0.5) * dx
+    edge = np.arange(n + 2) - 0.5
     integral = edge * (np.log(np.abs(edge)) - 1.0)
     influence = -np.diff(integral) / np.pi
     circular = np.zeros(size)
@@ -65,9 +67,11 @@ def _transform(n: int, dx: float) -> tuple[int, Array]:
 def _film(grid: DiscreteContact) -> Array:
     from scipy.fft import irfft, rfft
 
-    size, spectrum = _transform(grid.n, grid.dx)
+    size, spectrum = _transform(grid.n)
     deflection = irfft(rfft(grid.P, size) * spectrum, size)[: grid.n + 1]
-    return np.asarray(grid.H0 + grid.shape + deflection)
+    # A logarithm of lengths in another unit differs by a constant.
+    deflection -= math.log(grid.dx) / math.pi * float(np.sum(grid.P))
+    return np.asarray(grid.H0 + grid.shape + grid.dx * deflection)
 
 
 def verify(grid: DiscreteContact) -> Verification:
