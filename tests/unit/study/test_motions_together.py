@@ -64,6 +64,27 @@ def test_a_motion_depends_on_no_other(cases: list[td.Case], together: list[Begun
     with quiet():
         move_together(alone)
     assert alone[0].response == together[1].response
+    with quiet():
+        move_together([begin(cases[0])])
+    assert alone[0].response == together[1].response
+
+
+def test_slow_points_whose_map_has_more_rounding_are_found_together() -> None:
+    case = td.load_case("fzg-roughness")
+    changed = [
+        case.replace({"operation.speed": "400 rpm", "operation.torque": f"{torque} Nm"})
+        for torque in (136.2, 265.5, 300.0)
+    ]
+    points = [begin(each) for each in changed]
+    with quiet():
+        move_together(points)
+        alone = computed(changed[1]).summary()
+    responses = [point.response for point in points if point.response is not None]
+    assert len(responses) == len(points)
+    assert all(each.converged and each.error < 1e-9 for each in responses)
+    beside = points[1].result().summary()
+    for name in alone.keys() - _ROUNDED - _SMALL:
+        assert beside[name] == pytest.approx(alone[name], rel=1e-9, abs=1e-300), name
 
 
 @pytest.mark.parametrize("count", [2, 8, 9])

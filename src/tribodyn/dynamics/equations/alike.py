@@ -19,6 +19,7 @@ from tribodyn.dynamics.equations.nodes import (
     refuse_negative_gap,
     step_weights,
 )
+from tribodyn.dynamics.equations.program import Room
 from tribodyn.dynamics.equations.step_limit import FEWEST, look_at, rates_at
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array
@@ -153,11 +154,12 @@ def every_other(nodes: Nodes, grid: Grid) -> Nodes:
     return Nodes(**rows)._replace(weight=step_weights(grid))
 
 
-def rows_of_every_other(values: Array, steps: int, lead: int) -> Array:
+def rows_of_every_other(values: Array, steps: int, lead: int, room: Room = np.empty) -> Array:
     """Values (..., 2 steps, 3, ...) at both ends and the middle of pairs of steps."""
     shape = values.shape
     pairs = values.reshape(*shape[:lead], steps, 6, *shape[lead + 2 :])
-    return pairs.take([0, 2, 5], axis=lead + 1)
+    taken = room((*shape[:lead], steps, 3, *shape[lead + 2 :]))
+    return pairs.take([0, 2, 5], axis=lead + 1, out=taken, mode="clip")
 
 
 def rates_alike(systems: Sequence[System], nodes: Nodes) -> Array:

@@ -8,7 +8,7 @@ Lanes that scale their contacts have the same rows: the factors are numbers of t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +18,9 @@ from tribodyn.dynamics.equations.grid import Grid, build_grid, once, system_even
 from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
+
+#: Gives an array of a shape, whatever is in it.
+Room = Callable[[tuple[int, ...]], Array]
 
 
 class Program(NamedTuple):
@@ -123,10 +126,10 @@ class _Terms:
             _fill(rows[lead], [values[lead] for values in wide])
         return rows.reshape(*self.shape[:-2], -1)
 
-    def rows_of_lanes(self, blocks: Sequence[Index]) -> Array:
+    def rows_of_lanes(self, blocks: Sequence[Index], room: Room) -> Array:
         """The same (blocks, items, lanes), each lane of a block with the rows of its system."""
         wide = [np.broadcast_to(values, self.shape) for values in self.factors or [0.0]]
-        rows = np.empty((len(blocks), *self.shape[1:], len(wide), len(blocks[0])))
+        rows = room((len(blocks), *self.shape[1:], len(wide), len(blocks[0])))
         for table, lanes in zip(rows, blocks, strict=True):
             few = [once(values) for values in wide]
             own = slice(lanes[0], lanes[-1] + 1) if np.all(np.diff(lanes) == 1) else lanes
@@ -218,10 +221,12 @@ def build_program(
     split: bool = False,
     pattern: Mask | None = None,
     blocks: Sequence[Index] = (),
+    room: Room = np.empty,
 ) -> Program:
     """Flatten a system on its grid; or several alike, whose rows have a first axis more.
 
-    With the systems of lanes, in ``blocks``, that axis is one of the blocks, the last of the lanes.
+    With the systems of lanes, in ``blocks``, that axis is one of the blocks, the last of the lanes;
+    ``room`` then gives the array for the rows.
     """
     size, contacts = system.size, len(system.contacts)
     slots = lay_out(size, contacts, len(system.frictions) + (contacts if split else 0))
@@ -229,7 +234,7 @@ def build_program(
     lists = _contact_terms(system, nodes, terms, 2 * int(scaled))
     lists += _friction_terms(system, nodes, terms, slots, split)
     own, varies = _coordinate_terms(system, nodes, terms, slots, split)
-    rows = terms.rows_of_lanes(blocks) if blocks else terms.rows()
+    rows = terms.rows_of_lanes(blocks, room) if blocks else terms.rows()
     relative = np.array(terms.slots, dtype=np.int64)
     # State slots move with the buffer that a stage reads; all others stay.
     moving = (relative < 2 * size).astype(np.int64)

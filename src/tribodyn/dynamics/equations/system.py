@@ -16,6 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.arrays.recent import Recent
 from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.errors import InputError, real_numbers, require_positive
@@ -242,7 +243,8 @@ class System:
             remedy = "Give as many names as coordinates, or none"
             raise InputError(what, "System.names", "Every coordinate has one name", remedy)
         object.__setattr__(self, "names", names)
-        _refuse_singular(matrices["mass"], names)
+        mass = matrices["mass"]
+        _sound.get((mass,), lambda: _refuse_singular(mass, names))
         _refuse_missing_contacts(self)
         if self.balance is not None:
             balance = real_numbers("System.balance", self.balance)
@@ -269,6 +271,8 @@ class System:
 
 
 _MATRICES = ("mass", "damping", "stiffness")
+#: Mass matrices that were not refused: a study builds the same structure many times.
+_sound: Recent[None] = Recent(8)
 
 
 def _refuse_singular(mass: Array, names: tuple[str, ...]) -> None:

@@ -147,7 +147,7 @@ _SETTLED = 1e-3
 #: A motion this far from an unstable orbit, relative to it, has left it.
 _AWAY = 0.1
 _ANDERSON_LIMIT = 40
-_NEWTON_LIMIT = 8
+NEWTON_LIMIT = 8
 #: Plain periods of each further attempt.
 PATIENCE = (150, 400)
 #: Size of the disturbances of the monodromy matrix relative to the orbit, and where all equations
@@ -229,7 +229,7 @@ def finish_orbit(
     """Newton's method from a point near the orbit, of which another may be known."""
     search = mapping.cycles
     best = _examine(mapping, y, known)
-    for _ in range(_NEWTON_LIMIT):
+    for _ in range(NEWTON_LIMIT):
         if best.error <= 0.01 * tolerance:
             break
         trial = _examine(mapping, best.point + best.correction, best)

@@ -8,8 +8,11 @@ anything else happens there is no answer here, and the system is looked at by it
 
 from __future__ import annotations
 
+import math
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +30,7 @@ from tribodyn.dynamics.equations.alike import (
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, halved_grid
-from tribodyn.dynamics.equations.program import Program, build_program
+from tribodyn.dynamics.equations.program import Program, Room, build_program
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import (
@@ -36,7 +39,7 @@ from tribodyn.dynamics.orbits.coordinates import (
     orbit_coordinates,
 )
 from tribodyn.dynamics.orbits.orbit_map import Balance, take_drift_out
-from tribodyn.dynamics.orbits.search import APART, GONE, HORIZON
+from tribodyn.dynamics.orbits.search import APART, GONE, HORIZON, NEWTON_LIMIT
 from tribodyn.dynamics.orbits.steady_state import CLOSE, OTHER, ROUNDS, STEP_LIMIT, TOLERANCE
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.errors import InputError, collected
@@ -59,7 +62,8 @@ def orbits_in_touch(
     for numbers in parts:
         with collected() as told:
             try:
-                group = _Group([systems[i] for i in numbers], mesh_frequency[numbers], steps)
+                alike = [systems[i] for i in numbers]
+                group = _Group(alike, mesh_frequency[numbers], steps, _kept.room)
                 orbits = _responses(group)
             except InputError:  # which is told where each is looked at by itself
                 continue
@@ -73,6 +77,28 @@ def orbits_in_touch(
 _Motion = tuple[int, Array]
 
 
+class _Kept(threading.local):
+    """Memory for the largest arrays of a group, which costs time to get anew for every group."""
+
+    def __init__(self) -> None:
+        self._arrays: dict[str, Array] = {}
+
+    def room(self, name: str, shape: tuple[int, ...]) -> Array:
+        """An array that lasts until this thread asks for that name again."""
+        size = math.prod(shape)
+        if name not in self._arrays or self._arrays[name].size < size:
+            self._arrays[name] = np.empty(size)
+        return self._arrays[name][:size].reshape(shape)
+
+
+_kept = _Kept()
+
+
+def _new(name: str, shape: tuple[int, ...]) -> Array:
+    """An array of its own, as :meth:`_Kept.room` gives one that lasts until the next."""
+    return np.empty(shape)
+
+
 class _Lanes(NamedTuple):
     """One motion of each of systems alike, several side by side as lanes of a block."""
 
@@ -80,25 +106,28 @@ class _Lanes(NamedTuple):
     blocks: list[LaneBlock]
 
     @classmethod
-    def of(cls, system: System, grid: Grid, nodes: Nodes) -> _Lanes:
+    def of(cls, system: System, grid: Grid, nodes: Nodes, room: Room) -> _Lanes:
         """Lanes of systems alike on a grid."""
         count = len(nodes.stiffness)
         blocks = lane_blocks(count, OWN_ROWS if count >= _MANY else 1)
         lanes = [block.index for block in blocks]
-        return cls(build_program(system, grid, nodes, blocks=lanes), blocks)
+        return cls(build_program(system, grid, nodes, blocks=lanes, room=room), blocks)
 
-    def every_other(self, grid: Grid) -> _Lanes:
+    def every_other(self, grid: Grid, room: Room) -> _Lanes:
         """The same on the grid of which this one has the halves."""
         rows = self.program.rows
         each = rows.reshape(len(rows), 2 * grid.steps, 3, -1)
-        taken = rows_of_every_other(each, grid.steps, 1).reshape(len(rows), -1, rows.shape[-1])
-        program = self.program._replace(rows=taken, width=grid.width, restart=grid.after_event)
+        taken = rows_of_every_other(each, grid.steps, 1, room)
+        own = taken.reshape(len(rows), -1, rows.shape[-1])
+        program = self.program._replace(rows=own, width=grid.width, restart=grid.after_event)
         return _Lanes(program, self.blocks)
 
     def march(self, period: Array, load: Array, state: Array, which: Index) -> Iterator[_Motion]:
         """Motions of some systems from states (p, 1, 2 n); NaN where one ends."""
+        wanted = np.zeros(len(period), dtype=bool)
+        wanted[which] = True
         for rows, block in zip(self.program.rows, self.blocks, strict=True):
-            asked = np.isin(block.index, which)
+            asked = wanted[block.index]
             if not asked.any():
                 continue
             # A lane that is not asked for marches with one that is.
@@ -125,13 +154,19 @@ class _Lanes(NamedTuple):
 class _Group:
     """Maps of systems alike over one mesh cycle, each at its own mesh frequency."""
 
-    def __init__(self, systems: Sequence[System], beat: Array, steps: int) -> None:
+    def __init__(
+        self,
+        systems: Sequence[System],
+        beat: Array,
+        steps: int,
+        room: Callable[[str, tuple[int, ...]], Array] = _new,
+    ) -> None:
         self.systems, self.system, self.beat = systems, systems[0], beat
         grid = build_grid(system_events(self.system), steps)
         fine = halved_grid(grid)
         nodes = evaluate_alike(systems, fine)
-        self.halved = _Lanes.of(self.system, fine, nodes)
-        self.whole = self.halved.every_other(grid)
+        self.halved = _Lanes.of(self.system, fine, nodes, partial(room, "halved"))
+        self.whole = self.halved.every_other(grid, partial(room, "whole"))
         self.grid, self.nodes = grid, every_other(nodes, grid)
         self.step_numbers = self._step_numbers()
         shared = orbit_coordinates(self.compiled(0), 1.0)
@@ -281,15 +316,47 @@ def _greatest(rows: Array) -> Array:
     return np.asarray(np.sqrt(np.einsum("prk,prk->pr", rows, rows).max(axis=1)))
 
 
+class _Cycles(NamedTuple):
+    """Mesh cycles from a point of each system, as distances to the orbits tell; rows of all."""
+
+    point: Array  #: (p, 1, k)
+    states: Array  #: (p, rows, 2 n), without drift
+    reduced: Array  #: (p, rows, e + v)
+    scale: Array  #: size of the motion
+    way: Array  #: Newton step to the orbit (p, k)
+    error: Array  #: certified; infinite of systems that were not asked for
+
+    @classmethod
+    def of(cls, group: _Group, point: Array, which: Index, slope: Array, inverse: Array) -> _Cycles:
+        """Cycles of some systems; ``slope`` is one less the matrix of each map (p, k, k)."""
+        states = np.zeros((len(point), group.grid.steps + 1, 2 * group.system.size))
+
+        def motion(number: int, record: Array) -> None:
+            states[number] = record[..., 0]
+
+        residual = (group.march(group.whole, point, which, motion) - point)[:, 0]
+        way = _times(inverse, residual)
+        distance = np.linalg.norm(way, axis=1)
+        distance += np.linalg.norm(residual - _times(slope, way), axis=1)
+        phase = np.append(group.nodes.phase[0, :, 0], 1.0)
+        take_drift_out(group.coordinates, phase[:, None] / group.beat[:, None, None], states)
+        reduced = group.coordinates.reduce(states)
+        scale, error = _greatest(reduced), np.full(len(point), np.inf)
+        error[which] = distance[which] / scale[which]
+        return cls(point, states, reduced, scale, way, error)
+
+    def take(self, other: _Cycles, which: Mask) -> None:
+        """Put the cycles of some systems in place of these."""
+        for own, new in zip(self, other, strict=True):
+            own[which] = new[which]
+
+
 class _Orbits(NamedTuple):
     """Orbits of a group; those that are not ``good`` mean nothing."""
 
-    point: Array  #: (p, 1, k)
     inverse: Array  #: of one less the matrix of the map, (p, k, k)
-    states: Array  #: (p, rows, 2 n)
-    reduced: Array  #: (p, rows, e + v)
-    scale: Array  #: size of the motion
-    error: Array  #: certified
+    cycles: _Cycles
+    marched: Index  #: cycles marched to find each
     multipliers: ComplexArray
     good: Mask
 
@@ -319,36 +386,33 @@ def _orbits(group: _Group) -> _Orbits:
     good = touch.kept & np.all(touch.room[:, None] + moved > 0.0, axis=(1, 2))
     rates = moved / step
     point = y + _times(inverse, (image[:, :1] - y)[:, 0])[:, None]
-    states = np.empty((count, steps + 1, 2 * size))
-
-    def motion(number: int, record: Array) -> None:
-        states[number] = record[..., 0]
-
-    residual = (group.march(group.whole, point, every, motion) - point)[:, 0]
-    way = _times(inverse, residual)
-    distance = np.linalg.norm(way, axis=1)
-    distance += np.linalg.norm(residual - _times(slope, way), axis=1)
-    phase = np.append(nodes.phase[0, :, 0], 1.0)
-    take_drift_out(group.coordinates, phase[:, None] / group.beat[:, None, None], states)
-    reduced = group.coordinates.reduce(states)
-    scale = _greatest(reduced)
-    error = distance / scale
+    cycles, marched = _Cycles.of(group, point, every, slope, inverse), np.full(count, 2)
+    left = good.copy()
+    for _ in range(NEWTON_LIMIT):
+        left &= cycles.error > 0.01 * TOLERANCE
+        if not left.any():
+            break
+        again = cycles.point + cycles.way[:, None]
+        trial = _Cycles.of(group, again, np.flatnonzero(left), slope, inverse)
+        marched[left] += 1
+        left &= trial.error < 0.5 * cycles.error
+        cycles.take(trial, left)
     held = matrix if group.balance is None else matrix[:, :-1, :-1]
     values = np.linalg.eigvals(held).astype(complex)
     order = np.argsort(-np.abs(values), axis=1, kind="stable")
     multipliers = np.take_along_axis(values, order, axis=1)
-    good &= (error <= 0.01 * TOLERANCE) & (np.abs(multipliers[:, 0]) < 1.0)
-    touch = _Touch.of(nodes, states[..., :size] @ direction)
-    good &= touch.stays(rates, matrix, (y - point)[:, 0])
-    return _Orbits(point, inverse, states, reduced, scale, error, multipliers, good)
+    good &= (cycles.error <= TOLERANCE) & (np.abs(multipliers[:, 0]) < 1.0)
+    touch = _Touch.of(nodes, cycles.states[..., :size] @ direction)
+    good &= touch.stays(rates, matrix, (y - cycles.point)[:, 0])
+    return _Orbits(inverse, cycles, marched, multipliers, good)
 
 
 def _step_errors(group: _Group, orbits: _Orbits) -> Array:
     """Distance of each orbit to that at half the step over its size; NaN where it was not found."""
-    at, left = orbits.point.copy(), np.flatnonzero(orbits.good)
-    fine, moved = np.full_like(orbits.reduced, np.nan), np.zeros_like(orbits.point)
-    shape = (len(at), *orbits.states.shape[1:])
-    states, way = np.zeros(shape), np.full(len(at), np.inf)
+    known = orbits.cycles
+    at, left = known.point.copy(), np.flatnonzero(orbits.good)
+    fine, moved = np.full_like(known.reduced, np.nan), np.zeros_like(known.point)
+    states, way = np.zeros_like(known.states), np.full(len(at), np.inf)
 
     def every_other(number: int, record: Array) -> None:
         states[number] = record[::2, :, 0]
@@ -359,10 +423,10 @@ def _step_errors(group: _Group, orbits: _Orbits) -> Array:
         image = group.march(group.halved, at, left, every_other)
         step = _times(orbits.inverse, (image - at)[:, 0])[:, None]
         last, way = way, np.linalg.norm(step[:, 0], axis=1)
-        far = np.linalg.norm((at + step - orbits.point)[:, 0], axis=1)
-        left = left[((way < 0.5 * last) & (far <= OTHER * orbits.scale))[left]]
+        far = np.linalg.norm((at + step - known.point)[:, 0], axis=1)
+        left = left[((way < 0.5 * last) & (far <= OTHER * known.scale))[left]]
         at[left] += step[left]
-        near = ((way <= CLOSE * far) | (way <= 1e-9 * orbits.scale))[left]
+        near = ((way <= CLOSE * far) | (way <= 1e-9 * known.scale))[left]
         if near.any():
             moved[left[near]] = step[left[near]]
             fine[left[near]] = group.coordinates.reduce(states)[left[near]]
@@ -373,27 +437,27 @@ def _step_errors(group: _Group, orbits: _Orbits) -> Array:
         states[number] = record[..., 0]
 
     # What is left of the way moves both motions alike.
-    group.march(group.whole, orbits.point + moved, ended, coarse)
-    fine += group.coordinates.reduce(states) - orbits.reduced
-    return _greatest(fine - orbits.reduced) / _greatest(fine)
+    group.march(group.whole, known.point + moved, ended, coarse)
+    fine += group.coordinates.reduce(states) - known.reduced
+    return _greatest(fine - known.reduced) / _greatest(fine)
 
 
 def _responses(group: _Group) -> list[Response | None]:
     orbits = _orbits(group)
-    cost = _step_errors(group, orbits)
-    extra = group.extra(orbits.point)[:, 0]
+    cost, cycles = _step_errors(group, orbits), orbits.cycles
+    extra = group.extra(cycles.point)[:, 0]
 
     def response(number: int) -> Response:
         return build_response(
             group.compiled(number),
             float(group.beat[number]),
-            orbits.states[number],
+            cycles.states[number],
             extra[number],
-            error=max(float(orbits.error[number]), float(np.finfo(float).eps)),
+            error=max(float(cycles.error[number]), float(np.finfo(float).eps)),
             step_error=float(cost[number]),
             converged=True,
             floquet_multipliers=orbits.multipliers[number],
-            cycles_used=2,
+            cycles_used=int(orbits.marched[number]),
             search_cycles=1,
             period=1,
         )
