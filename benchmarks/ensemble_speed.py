@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from marchers import call, kernel, multiplications, peak
+from marchers import kernel, multiplications, peak
 from peers import Solver, numbalsoda_problem, peers
 from race import Goal, Runner, Times, arguments, machine, print_goals, print_table, race
 from reference_pair import D2, WITH_BACKLASH, Pair
@@ -39,7 +39,7 @@ def _contenders(pair: Pair, lanes: dict[int, int], *, quick: bool) -> dict[str, 
     }
     if not quick:
         found[f"tribodyn, {_MANY} lanes, 2 threads"] = kernel(pair, _MANY, 2, threads=2, settle=20)
-        found[_SUMMED] = call(pair, _MANY, 1, statistics=True)
+        found[_SUMMED] = kernel(pair, _MANY, 1, settle=20, statistics=True)
         found[_APART] = kernel(WITH_BACKLASH, _MANY, 1, settle=20)
         found[_PEAK] = peak()
     available = peers()

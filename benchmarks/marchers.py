@@ -12,6 +12,7 @@ from tribodyn.dynamics import simulate_ensemble
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics._engine.generated.source import write_source
 from tribodyn.dynamics._engine.lanes import load, store
+from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
 
 __all__ = ["call", "end_displacements", "kernel", "march_once", "multiplications", "peak"]
@@ -30,8 +31,9 @@ def _variety(pair: Pair, count: int) -> tuple[Array, Array]:
 
 
 def kernel(
-    pair: Pair, count: int, cycles: int, *, steps: int = 512, threads: int = 1, settle: int = 0
-) -> Callable[[], float]:
+    pair: Pair, count: int, cycles: int, *, steps: int = 512, threads: int = 1, settle: int = 0,
+    statistics: bool = False,
+) -> Callable[[], float]:  # fmt: skip
     """March lanes on a system that is set up beforehand; nothing but the kernel.
 
     Parameters
@@ -47,6 +49,8 @@ def kernel(
         Blocks at a time.
     settle : int
         Mesh cycles beforehand.
+    statistics : bool
+        Whether statistics are gathered.
 
     Returns
     -------
@@ -60,16 +64,16 @@ def kernel(
     if settle:
         state = march(compiled, period, state, settle, extra_force=extra)
 
+    sums = Statistics.of(compiled, np.zeros((0, state.shape[1])), count) if statistics else None
+
     def run() -> float:
-        march(compiled, period, state, cycles, extra_force=extra, threads=threads)
+        march(compiled, period, state, cycles, extra_force=extra, threads=threads, statistics=sums)
         return float(count * cycles * steps)
 
     return run
 
 
-def call(
-    pair: Pair, count: int, cycles: int, *, steps: int = 512, statistics: bool = False
-) -> Callable[[], float]:
+def call(pair: Pair, count: int, cycles: int, *, steps: int = 512) -> Callable[[], float]:
     """One whole call of ``simulate_ensemble`` on one thread, its set-up included.
 
     Parameters
@@ -81,8 +85,6 @@ def call(
         Mesh cycles.
     steps : int
         Steps per mesh cycle.
-    statistics : bool
-        Whether statistics are gathered, in all cycles.
 
     Returns
     -------
@@ -91,13 +93,11 @@ def call(
     """
     frequency, extra = _variety(pair, count)
     structure, start = system(pair), starting_state(pair)
-    averaged = cycles if statistics else 0
 
     def run() -> float:
         simulate_ensemble(
-            structure, frequency, cycles, start, steps=steps, extra_force=extra,
-            averaged=averaged, threads=1,
-        )  # fmt: skip
+            structure, frequency, cycles, start, steps=steps, extra_force=extra, threads=1
+        )
         return float(count * cycles * steps)
 
     return run
