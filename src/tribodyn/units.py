@@ -109,7 +109,8 @@ _USUAL: dict[str, dict[str, tuple[float, float]]] = {
     "1/m^2": {"1/mm^2": (1e6, 1)},
     "1/Pa": {"1/MPa": (1, 1e6), "1/GPa": (1, 1e9), "GPa^-1": (1, 1e9), "Pa^-1": (1, 1)},
 }
-_ZERO_CELSIUS = 273.15
+#: Zero degrees Celsius [K], and one revolution per minute [rad/s].
+ZERO_CELSIUS, RPM = 273.15, math.pi / 30.0
 
 
 class UnitProblemError(ValueError):
@@ -154,7 +155,7 @@ def _usual(value: float, unit: str, si: str) -> float | None:
     if unit == si:
         return value
     if si == "K" and unit == "degC":
-        return value + _ZERO_CELSIUS
+        return value + ZERO_CELSIUS
     scale = _USUAL.get(si, {}).get(unit)
     return None if scale is None else value * scale[0] / scale[1]
 
@@ -162,7 +163,7 @@ def _usual(value: float, unit: str, si: str) -> float | None:
 def _from_si(value: float, si: str, unit: str) -> float | None:
     """Return an SI ``value`` in ``unit``, or None when the table does not hold the unit."""
     if si == "K" and unit == "degC":
-        return value - _ZERO_CELSIUS
+        return value - ZERO_CELSIUS
     scale = _USUAL.get(si, {}).get(unit)
     return None if scale is None else value * scale[1] / scale[0]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 from collections.abc import Iterator, Sequence
@@ -17,6 +15,7 @@ from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import whole
 from tribodyn.record import Record
+from tribodyn.stored import csv_text
 from tribodyn.study import SUMMARY, Result
 
 #: Arrays of a curve of a figure that become columns.
@@ -114,11 +113,7 @@ def _head(name: str, data: Any) -> str:
 
 def _as_csv(table: Table) -> str:
     heads, columns = table
-    held = io.StringIO()
-    writer = csv.writer(held, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows(zip(*columns, strict=True))
-    return held.getvalue()
+    return csv_text([heads, *zip(*columns, strict=True)])
 
 
 def _as_json(table: Table) -> str:
@@ -136,9 +131,7 @@ def _plain(value: Any) -> Any:
 
 def _curves(figure: Any) -> str:
     """The curves of a figure below each other, one row for each point."""
-    held = io.StringIO()
-    writer = csv.writer(held, lineterminator="\n")
-    writer.writerow(["curve", *_COLUMNS])
+    rows: list[Sequence[Any]] = [["curve", *_COLUMNS]]
     for trace in figure.data:
         given = [getattr(trace, name, None) for name in _COLUMNS]
         x, y, z = (None if each is None else np.asarray(each, dtype=object) for each in given)
@@ -149,5 +142,5 @@ def _curves(figure: Any) -> str:
         if any(each.size != length for each in columns):
             continue
         for row in zip(*columns, strict=True):
-            writer.writerow([trace.name or "", *row, *[""] * (len(_COLUMNS) - len(row))])
-    return held.getvalue()
+            rows.append([trace.name or "", *row, *[""] * (len(_COLUMNS) - len(row))])
+    return csv_text(rows)

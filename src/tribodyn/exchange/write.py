@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import whole
+from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -99,7 +100,7 @@ def _parts(case: Case) -> dict[str, Any]:
     ]
     temperature = case.lubricant.temperature if case.lubricant else None
     if temperature is not None:
-        kelvin = [("temperature_lubricant", "C", temperature - 273.15)]
+        kelvin = [("temperature_lubricant", "C", temperature - ZERO_CELSIUS)]
         load.append(_part(_CASING, "gear_casing", "", kelvin))
     gears = [_gear(pair.pinion, case.gears.pinion, 0), _gear(pair.wheel, case.gears.wheel, 1)]
     components = [

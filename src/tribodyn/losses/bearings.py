@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 from tribodyn.errors import InputError, require_between, require_positive
-
-_RPM = math.pi / 30.0
+from tribodyn.units import RPM
 
 
 @dataclass(frozen=True)
@@ -217,7 +216,7 @@ def bearing_moments(
     if sliding_friction is None:
         sliding_friction = 0.02 if family.kind == "cylindrical-roller" else 0.05
     require_between("sliding_friction", sliding_friction, 0.0, 1.0)
-    turns, viscosity = speed / _RPM, 1e6 * kinematic_viscosity
+    turns, viscosity = speed / RPM, 1e6 * kinematic_viscosity
     bore, outer = 1e3 * bearing.bore_diameter, 1e3 * bearing.outer_diameter
     mean = 0.5 * (bore + outer)
     rolling, sliding = _base_values(bearing, family, turns, radial_load, abs(axial_load))

@@ -27,8 +27,8 @@ from tribodyn.friction.mesh_means.measured import FZG_POINTS
 from tribodyn.losses.gearbox import gear_loss_factor
 from tribodyn.stored import plain_number, read_bytes
 from tribodyn.types import Array
+from tribodyn.units import RPM
 
-_RPM = math.pi / 30.0
 #: Columns of a table and their units.
 COLUMNS = {"speed": "rad/s", "torque": "N*m", "torque_loss": "N*m"}
 #: Columns that a file may have besides.
@@ -40,7 +40,7 @@ _NAMED = {"speed": "speed [rpm]", **{n: f"{n} [N*m]" for n in (*list(COLUMNS)[1:
 def _shown(value: float, unit: str) -> str:
     """A value as users write it: speeds in rpm."""
     rpm = unit == "rad/s"
-    return f"{value / _RPM:.6g} rpm" if rpm else f"{value:.6g} {unit}"
+    return f"{value / RPM:.6g} rpm" if rpm else f"{value:.6g} {unit}"
 
 
 @dataclass(frozen=True)

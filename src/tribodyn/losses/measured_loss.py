@@ -13,8 +13,8 @@ from tribodyn.errors import InputError, Problem, warn
 from tribodyn.losses.loss_table import PowerLossTable
 from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, Index
+from tribodyn.units import RPM
 
-_RPM = math.pi / 30.0
 #: Relative standard uncertainty up to which a value is sound, and beyond which it tells nothing.
 _SOUND, _LOST = 0.1, 0.3
 #: Coefficient above which a measurement of lubricated teeth is none.
@@ -189,7 +189,7 @@ def _point(table: PowerLossTable, rows: list[int]) -> _Point:
     if count > 1:
         variance = float(readings.var(ddof=1)) / count
         return _Point(rows, float(readings.mean()), variance, count - 1.0)
-    what = f"one reading at {table.torque[rows[0]]:g} N*m and {table.speed[rows[0]] / _RPM:.4g} rpm"
+    what = f"one reading at {table.torque[rows[0]]:g} N*m and {table.speed[rows[0]] / RPM:.4g} rpm"
     why = "One reading tells no scatter"
     raise InputError(what, table.place(rows[0]), why, "Repeat it, or give torque_loss_uncertainty")
 
@@ -208,8 +208,8 @@ def _matched(
         ]
         where = table.place(point.rows[0])
         if not rest:
-            known = sorted({round(table.speed[idle.rows[0]] / _RPM, 1) for idle in idles})
-            what = f"no run without load at {speed / _RPM:.4g} rpm"
+            known = sorted({round(table.speed[idle.rows[0]] / RPM, 1) for idle in idles})
+            what = f"no run without load at {speed / RPM:.4g} rpm"
             why = f"Without load there are {', '.join(f'{k:g} rpm' for k in known) or 'no rows'}"
             remedy = f"Measure one there, with at most {table.no_load_torque:g} N*m"
             problems.append(Problem(what, where, why, remedy))
@@ -219,7 +219,7 @@ def _matched(
             problems.append(
                 Problem(
                     f"torque_loss = {point.mean:.4g} N*m is below the {rest[0].mean:.4g} N*m "
-                    f"without load at {speed / _RPM:.4g} rpm",
+                    f"without load at {speed / RPM:.4g} rpm",
                     where,
                     "A load can only add to the loss",
                     "Check columns, zero of the torque meter and oil temperature of both runs",

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive, warn
 from tribodyn.types import Array
+from tribodyn.units import RPM
 
-_RPM = math.pi / 30.0
 _GRAVITY = 9.80665  # [m/s^2]
 
 
@@ -47,7 +47,7 @@ def seal_loss(shaft_diameter: ArrayLike, speed: ArrayLike) -> Array:
     require_positive("shaft_diameter", shaft_diameter, "m", remedy="30 mm is 0.030 m")
     require_between("speed", speed, 0.0, np.inf, "rad/s")
     millimetres = 1e3 * np.asarray(shaft_diameter, dtype=float)
-    return np.asarray(7.69e-6 * millimetres**2 * np.asarray(speed, dtype=float) / _RPM)[()]
+    return np.asarray(7.69e-6 * millimetres**2 * np.asarray(speed, dtype=float) / RPM)[()]
 
 
 def churning_loss(
@@ -195,4 +195,4 @@ def windage_loss(
         )
     shape = (1.0 + 2.3 * face_width / pitch_radius) * pitch_radius**4.6
     mist = (0.028 * 1e3 * oil_viscosity + 0.019) ** 0.2
-    return float(1e3 * 2.82e-7 * shape * (speed / _RPM) ** 2.8 * mist)
+    return float(1e3 * 2.82e-7 * shape * (speed / RPM) ** 2.8 * mist)

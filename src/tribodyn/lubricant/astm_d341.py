@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from tribodyn.errors import Argument, InputError, require_between, require_positive
+from tribodyn.units import ZERO_CELSIUS
 
 #: One measured point: temperature [K] and kinematic viscosity [m^2/s].
 TemperaturePoint = tuple[float, float]
@@ -13,7 +14,6 @@ TemperaturePoint = tuple[float, float]
 MARGIN = 30.0
 
 _SHIFT = 0.7  # [mm^2/s], the constant of the standard for viscosities above 2 mm^2/s
-_ABSOLUTE_ZERO = 273.15
 
 
 def _ordinate(kinematic_viscosity: float) -> float:
@@ -43,9 +43,9 @@ def _require_inside(temperature: float, cold: float, warm: float) -> None:
     """Refuse a temperature that lies too far outside the data."""
     if cold - MARGIN <= temperature <= warm + MARGIN:
         return
-    low, high = cold - _ABSOLUTE_ZERO, warm - _ABSOLUTE_ZERO
+    low, high = cold - ZERO_CELSIUS, warm - ZERO_CELSIUS
     raise InputError(
-        f"temperature = {temperature - _ABSOLUTE_ZERO:g} degC",
+        f"temperature = {temperature - ZERO_CELSIUS:g} degC",
         where=Argument("temperature"),
         why=f"the viscosity is known at {low:g} and {high:g} degC, and the line through "
         f"these points is not trusted more than {MARGIN:g} K beyond them",

@@ -9,6 +9,7 @@ from tribodyn.errors import Argument, InputError
 from tribodyn.lubricant.astm_d341 import MARGIN
 from tribodyn.lubricant.oil import Lubricant
 from tribodyn.model import Registry
+from tribodyn.units import ZERO_CELSIUS
 
 #: Temperatures closer than this [K] are the same.
 _SAME_TEMPERATURE = 0.01
@@ -139,10 +140,10 @@ def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> L
     known = float(record["temperature"]["value"])
     if temperature is not None and not abs(temperature - known) <= _SAME_TEMPERATURE:
         raise InputError(
-            f'"{name}" at {temperature - 273.15:g} degC',
+            f'"{name}" at {temperature - ZERO_CELSIUS:g} degC',
             where=Argument("temperature"),
-            why=f"the properties of this oil are known at {known - 273.15:g} degC only",
-            remedy=f"Leave the temperature out or give {known:g} K ({known - 273.15:g} "
+            why=f"the properties of this oil are known at {known - ZERO_CELSIUS:g} degC only",
+            remedy=f"Leave the temperature out or give {known:g} K ({known - ZERO_CELSIUS:g} "
             "degC), or give dynamic_viscosity, density and pressure_viscosity_coefficient "
             "at your temperature",
         )

@@ -12,6 +12,7 @@ from tribodyn.lubricant import temperature_range
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.pipeline.first_look import gearbox_losses_of
 from tribodyn.types import Array
+from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
@@ -68,8 +69,8 @@ def balanced(
     transfer, ambient = oil.heat_transfer, oil.ambient_temperature or _ROOM
     coldest, hottest = temperature_range(oil.name)
     if ambient < coldest:
-        what = f"ambient_temperature = {ambient - 273.15:.4g} degC"
-        why = f"{oil.name} is known from {coldest - 273.15:.4g} degC on"
+        what = f"ambient_temperature = {ambient - ZERO_CELSIUS:.4g} degC"
+        why = f"{oil.name} is known from {coldest - ZERO_CELSIUS:.4g} degC on"
         remedy = "Give warmer surroundings, or another oil"
         raise ComputationError(what, "lubricant.ambient_temperature", why, remedy)
     low, high = 0.0, hottest - ambient
@@ -86,18 +87,18 @@ def balanced(
             return found, mesh, answer, _record(rows, transfer, ambient)
         if excess > 0.0 and rise == hottest - ambient:
             raise ComputationError(
-                f"no temperature up to {hottest - 273.15:.4g} degC balances the losses: there "
-                f"{loss:.4g} W are lost and {transfer * rise:.4g} W given off",
+                f"no temperature up to {hottest - ZERO_CELSIUS:.4g} degC balances the losses: "
+                f"there {loss:.4g} W are lost and {transfer * rise:.4g} W given off",
                 where="lubricant.heat_transfer",
-                why=f"{oil.name} is known up to {hottest - 273.15:.4g} degC",
+                why=f"{oil.name} is known up to {hottest - ZERO_CELSIUS:.4g} degC",
                 remedy=f"Give more than {loss / rise:.4g} W/K, or less torque or speed",
             )
         low, high = (rise, high) if excess > 0.0 else (low, rise)
         rise = _next(rows, transfer, low, high, hottest - ambient)
     last, loss = rows[-1]
     raise ComputationError(
-        f"temperature and losses do not settle: at {ambient + last - 273.15:.6g} degC {loss:.6g} W "
-        f"are lost and {transfer * last:.6g} W given off after {len(rows)} passes",
+        f"temperature and losses do not settle: at {ambient + last - ZERO_CELSIUS:.6g} degC "
+        f"{loss:.6g} W are lost and {transfer * last:.6g} W given off after {len(rows)} passes",
         where="lubricant.heat_transfer",
         why="The losses jump with the temperature",
         remedy="Tighten film.tolerance or give more film.positions, or leave heat_transfer out",

@@ -172,7 +172,7 @@ def friction_from_loss(
     from tribodyn.losses import friction_from_power_loss
     from tribodyn.report import write_study_report
     from tribodyn.report.answers import pictured
-    from tribodyn.stored import write_dataset
+    from tribodyn.stored import csv_text, write_dataset
     from tribodyn.study.pipeline.save import new_directory
 
     target = out if out is not None else Path(f"{Path(file).stem}-friction")
@@ -189,8 +189,7 @@ def friction_from_loss(
     ]
     with new_directory(target, force=force) as place:
         write_dataset(found.to_xarray(), place / "study.nc")
-        lines = [",".join(head), *(",".join(f'"{c}"' if "," in c else c for c in r) for r in rows)]
-        (place / "friction.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        (place / "friction.csv").write_text(csv_text([head, *rows]), encoding="utf-8")
         write_study_report(
             None,
             place / "report.html",

@@ -14,14 +14,13 @@ from tribodyn.friction.mesh_means.mean_law import mean_law
 from tribodyn.friction.mesh_means.pitch_point import PitchPoint
 from tribodyn.model import numbers
 from tribodyn.types import Array, Index, Mask
-
-_RPM = np.pi / 30.0
+from tribodyn.units import RPM
 
 #: Printed points of a back-to-back rig whose wheel of 24 teeth drives: torque [N*m] and speed
 #: [rad/s] of the driving gear, and friction coefficient.
 FZG_POINTS = (
     (50.0, 150.0, 300.0, 150.0, 150.0),
-    tuple(_RPM * speed for speed in (1400.0, 1400.0, 1400.0, 400.0, 1800.0)),
+    tuple(RPM * speed for speed in (1400.0, 1400.0, 1400.0, 400.0, 1800.0)),
     (0.0271, 0.0692, 0.119, 0.1505, 0.0554),
 )
 
@@ -87,9 +86,9 @@ def measured(
         first = where[outside][0]
         warn(
             "friction-range",
-            f"measured: {first[0]:.4g} N*m at {first[1] / _RPM:.4g} rpm lies outside of the points "
-            f"measured, {low[0]:.4g} to {high[0]:.4g} N*m and {low[1] / _RPM:.4g} to "
-            f"{high[1] / _RPM:.4g} rpm: the nearest value between them is held. Measure there, or "
+            f"measured: {first[0]:.4g} N*m at {first[1] / RPM:.4g} rpm lies outside of the points "
+            f"measured, {low[0]:.4g} to {high[0]:.4g} N*m and {low[1] / RPM:.4g} to "
+            f"{high[1] / RPM:.4g} rpm: the nearest value between them is held. Measure there, or "
             "choose another friction law.",
         )
     return np.exp(logarithm).reshape(shape)[()]
@@ -110,7 +109,7 @@ def _points(*columns: tuple[float, ...]) -> Array:
     seen: set[tuple[float, float]] = set()
     for place in zip(columns[0], columns[1], strict=True):
         if place in seen:
-            what = f"two points at {place[0]:.4g} N*m and {place[1] / _RPM:.4g} rpm"
+            what = f"two points at {place[0]:.4g} N*m and {place[1] / RPM:.4g} rpm"
             why, remedy = "One place has one friction coefficient", "Give their mean"
             raise InputError(what, where='friction law "measured"', why=why, remedy=remedy)
         seen.add(place)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import InputError, did_you_mean
 from tribodyn.record import Parts, Record, html_table, record
-from tribodyn.stored import write_dataset
+from tribodyn.stored import csv_text, write_dataset
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.words import in_words
@@ -248,18 +248,12 @@ class Sweep(Record):
         str
             One line for each value; units are in brackets in the first line.
         """
-        import csv
-        import io
-
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
         units = {axis.key: axis.unit for axis in self.axes}
         units |= {name: SUMMARY[name].unit for name in self.figures}
         names = [*units, "failed", "warnings"]
-        writer.writerow([f"{n} [{units[n]}]" if units.get(n) else n for n in names])
-        for row in self.rows():
-            writer.writerow(["" if row[name] is None else row[name] for name in names])
-        return text.getvalue()
+        head = [f"{n} [{units[n]}]" if units.get(n) else n for n in names]
+        rows = (["" if row[name] is None else row[name] for name in names] for row in self.rows())
+        return csv_text([head, *rows])
 
     def save(self, directory: str | os.PathLike[str], *, force: bool = False) -> Path:
         """Write case, table and report into a new directory.
