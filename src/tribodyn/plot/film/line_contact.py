@@ -164,20 +164,23 @@ def point(
     return {**mark, "marker": {**mark["marker"], "line": {"color": color, "width": 2}}}
 
 
-def _pressure(solution: Any, kept: Any, scales: Scales) -> list[Trace]:
+def _profile(
+    solution: Any, quantity: str, scales: Scales, points: int, name: str, color: str, **more: Any
+) -> Trace:
+    """Pressure or film over the place, at so many nodes."""
+    kept = thinned(solution, points)
+    x = scales.position * solution.position[kept]
+    y = getattr(scales, quantity) * getattr(solution, quantity)[kept]
+    return curve(x, y, name, color, unit=getattr(scales, f"{quantity}_unit"), **more)
+
+
+def _pressure(solution: Any, scales: Scales) -> list[Trace]:
     unit = scales.pressure_unit
     x, y = dry_pressure(solution)
+    x, y = scales.position * x, scales.pressure * y
     traces = [
-        curve(
-            scales.position * solution.position[kept],
-            scales.pressure * solution.pressure[kept],
-            "oil film",
-            TOTAL,
-            unit=unit,
-        ),
-        line(
-            scales.position * x, scales.pressure * y, "dry (Hertz)", MUTED, unit=unit, dash="dash"
-        ),
+        _profile(solution, "pressure", scales, _MOST, "oil film", TOTAL),
+        line(x, y, "dry (Hertz)", MUTED, unit=unit, dash="dash"),
     ]
     if solution.spike_position is not None:
         traces.append(
@@ -193,20 +196,14 @@ def _pressure(solution: Any, kept: Any, scales: Scales) -> list[Trace]:
     return traces
 
 
-def _film(solution: Any, kept: Any, scales: Scales) -> list[Trace]:
+def _film(solution: Any, scales: Scales) -> list[Trace]:
     unit = scales.film_unit
     marks = (
         ("central", 0.0, solution.central_film, "circle-open"),
         ("minimum", place_of_minimum(solution), solution.minimum_film, "circle"),
     )
     return [
-        curve(
-            scales.position * solution.position[kept],
-            scales.film * solution.film[kept],
-            "film",
-            TOTAL,
-            unit=unit,
-        ),
+        _profile(solution, "film", scales, _MOST, "film", TOTAL),
         *(
             point(
                 scales.position * x,
@@ -248,7 +245,6 @@ def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
         by zooming out.
     """
     (scales,) = contact_scales([solution], dimensionless)
-    kept = thinned(solution, _MOST)
     center, least = (
         scales.film_text(film) for film in (solution.central_film, solution.minimum_film)
     )
@@ -258,10 +254,8 @@ def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
         f"The film is {center} thick in the centre and {least} at its thinnest",
         scales.position_label,
         [
-            Panel(
-                scales.pressure_label, _pressure(solution, kept, scales), {"rangemode": "tozero"}
-            ),
-            Panel(scales.film_label, _film(solution, kept, scales), view),
+            Panel(scales.pressure_label, _pressure(solution, scales), {"rangemode": "tozero"}),
+            Panel(scales.film_label, _film(solution, scales), view),
         ],
         {"xaxis": {"range": list(scales.position * np.array(window(solution)))}, **marks},
     )
@@ -284,41 +278,22 @@ def _checked(solutions: Iterable[Any], labels: Iterable[str]) -> tuple[list[Any]
 def _pressures(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
     traces = []
     for number, (solution, scales, name) in enumerate(rows):
-        kept, look = thinned(solution, _FEWER), _look(number)
         x, y = dry_pressure(solution)
         dry = curve(scales.position * x, scales.pressure * y, "dry", MUTED, dash="dot", width=1.2)
         first = {"name": "dry (Hertz)", "legendgroup": "dry", "showlegend": number == 0}
         # Where all are drawn in their own half widths, the dry pressure is the same for all.
         if number == 0 or scales.pressure == rows[0][1].pressure:
             traces.append({**dry, **first, "hoverinfo": "skip", "hovertemplate": None})
-        traces.append(
-            curve(
-                scales.position * solution.position[kept],
-                scales.pressure * solution.pressure[kept],
-                name,
-                look["color"],
-                dash=look["dash"],
-                unit=scales.pressure_unit,
-            )
-        )
+        traces.append(_profile(solution, "pressure", scales, _FEWER, name, **_look(number)))
     return traces
 
 
 def _films(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
     traces, marks = [], []
     for number, (solution, scales, name) in enumerate(rows):
-        kept, look = thinned(solution, _FEWER), _look(number)
+        look = _look(number)
         least = f"{name}: at least {scales.film_text(solution.minimum_film)}"
-        traces.append(
-            curve(
-                scales.position * solution.position[kept],
-                scales.film * solution.film[kept],
-                least,
-                look["color"],
-                dash=look["dash"],
-                unit=scales.film_unit,
-            )
-        )
+        traces.append(_profile(solution, "film", scales, _FEWER, least, **look))
         mark = point(
             scales.position * place_of_minimum(solution),
             scales.film * solution.minimum_film,
