@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.plot.look.labels import axis_label, axis_words, display_unit, displayed, rounded
-from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.panels import Panel
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
 from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
@@ -40,11 +40,11 @@ def words_of(quantity: str, direction: str) -> str:
 
 def _motion_panels(result: Result, quantity: str) -> list[Panel]:
     """Show a signal of both gears over the mesh cycle or over time."""
-    motion, unit = Motion(result), display_unit(quantity)
+    motion = Motion(result)
 
     def curve(gear: str, axis: str, color: str) -> dict[str, Any]:
-        x, y = motion.curve(quantity, motion.of_gear(quantity, gear, axis))
-        return line(x, y, gear, color, unit=unit, width=1.5)
+        signal = motion.of_gear(quantity, gear, axis)
+        return motion.line(quantity, signal, gear, color, width=1.5)
 
     return [
         Panel(
@@ -86,20 +86,16 @@ def _force_caption(result: Result) -> str:
 @run_drawing("mesh_force", heading="Mesh force", caption=_force_caption)
 def mesh_force(result: Result) -> Any:
     """Draw the dynamic and the static mesh force."""
-    motion, unit = Motion(result), display_unit("mesh_force")
+    motion = Motion(result)
     force = motion.mesh_force
     static = np.full_like(force, result.mesh.total_normal_force)
     traces = [
-        line(*motion.curve("mesh_force", force), "dynamic", TOTAL, unit=unit),
-        line(*motion.curve("mesh_force", static), "static", MUTED, unit=unit, dash="dash"),
+        motion.line("mesh_force", force, "dynamic", TOTAL),
+        motion.line("mesh_force", static, "static", MUTED, dash="dash"),
     ]
     low, high = (rounded("mesh_force", float(f(motion.measured(force)))) for f in (np.min, np.max))
-    return stack(
-        f"The mesh force varies between {low} and {high}{motion.window}",
-        motion.label,
-        [Panel(axis_label("mesh_force"), traces, {"rangemode": "tozero"}, height=1.3)],
-        motion.layout(),
-    )
+    panel = Panel(axis_label("mesh_force"), traces, {"rangemode": "tozero"}, height=1.3)
+    return motion.figure(f"The mesh force varies between {low} and {high}", [panel])
 
 
 def _friction_caption(result: Result) -> str:
@@ -126,7 +122,7 @@ def _friction_caption(result: Result) -> str:
 )
 def friction_force(result: Result) -> Any:
     """Draw the friction force of all tooth pairs, and its parts from films and asperities."""
-    motion, unit = Motion(result), display_unit("friction_force")
+    motion = Motion(result)
     found = series.friction_forces(result, result.response.fine)
     shown = (
         ("friction_force", "whole", TOTAL),
@@ -134,18 +130,14 @@ def friction_force(result: Result) -> Any:
         ("asperity_friction_force", "asperities", WHEEL),
     )
     traces = [
-        line(*motion.curve("friction_force", found[name][0]), words, color, unit=unit)
+        motion.line("friction_force", found[name][0], words, color)
         for name, words, color in shown
         if name in found
     ]
     force = motion.measured(found["friction_force"][0])
     low, high = (rounded("friction_force", float(f(force))) for f in (np.min, np.max))
-    return stack(
-        f"The friction force goes from {low} to {high}{motion.window}",
-        motion.label,
-        [Panel(axis_label("friction_force"), traces, {"zeroline": True}, height=1.3)],
-        motion.layout(),
-    )
+    panel = Panel(axis_label("friction_force"), traces, {"zeroline": True}, height=1.3)
+    return motion.figure(f"The friction force goes from {low} to {high}", [panel])
 
 
 def _error_caption(result: Result) -> str:
@@ -174,21 +166,15 @@ def transmission_error(result: Result) -> Any:
     """Draw the dynamic transmission error and, for a steady state, the quasi-static one."""
     motion, unit = Motion(result), display_unit("dynamic_transmission_error")
     moving = motion.transmission_error
-    traces = [
-        line(*motion.curve("dynamic_transmission_error", moving), "dynamic", TOTAL, unit=unit)
-    ]
+    traces = [motion.line("dynamic_transmission_error", moving, "dynamic", TOTAL)]
     if motion.periodic:
         mesh = result.mesh
         static = mesh.static_transmission_error + result.static_error(mesh.phase)
         phase, shown = cycles(mesh.phase, displayed("transmission_error", static), motion.shown)
         traces.append(line(phase, shown, "quasi-static", MUTED, unit=unit, dash="dash"))
     swing = rounded("dynamic_transmission_error", float(np.ptp(motion.measured(moving))))
-    return stack(
-        f"The transmission error varies by {swing} peak to peak{motion.window}",
-        motion.label,
-        [Panel(axis_label("dynamic_transmission_error"), traces, height=1.3)],
-        motion.layout(),
-    )
+    panel = Panel(axis_label("dynamic_transmission_error"), traces, height=1.3)
+    return motion.figure(f"The transmission error varies by {swing} peak to peak", [panel])
 
 
 def _settling(result: Result, quantity: str) -> str:
@@ -212,13 +198,8 @@ def acceleration(result: Result) -> Any:
     """Draw the accelerations of the gear centres."""
     motion = Motion(result)
     strongest = np.max(np.abs(motion.measured(motion.of_gear("acceleration", "pinion", "y"))))
-    return stack(
-        f"The pinion shakes with up to {rounded('acceleration', strongest)} "
-        f"{_along(result)}{motion.window}",
-        motion.label,
-        _motion_panels(result, "acceleration"),
-        motion.layout(),
-    )
+    title = f"The pinion shakes with up to {rounded('acceleration', strongest)} {_along(result)}"
+    return motion.figure(title, _motion_panels(result, "acceleration"))
 
 
 def _bearing_caption(result: Result) -> str:
@@ -237,13 +218,11 @@ def bearing_force(result: Result) -> Any:
     """Draw the forces of both gears on their bearings."""
     motion = Motion(result)
     swing = np.ptp(motion.measured(motion.of_gear("bearing_force", "pinion", "y")))
-    return stack(
+    title = (
         f"The force on the pinion's bearing varies by {rounded('bearing_force', swing)} peak to "
-        f"peak {_along(result)}{motion.window}",
-        motion.label,
-        _motion_panels(result, "bearing_force"),
-        motion.layout(),
+        f"peak {_along(result)}"
     )
+    return motion.figure(title, _motion_panels(result, "bearing_force"))
 
 
 def _in_a_plane(result: Result) -> str:
@@ -266,11 +245,8 @@ def tooth_force(result: Result) -> Any:
     values = np.zeros((fine.phase.size, 3)) if found is None else found
     panels = []
     for axis, color, course in zip("xyz", (PINION, WHEEL, TOTAL), values.T, strict=True):
-        x, y = motion.curve("mesh_force", course)
-        curve = line(x, y, axis, color, unit=display_unit("mesh_force"), width=1.5)
-        panels.append(
-            Panel(axis_label("mesh_force", f"{axis_words('mesh_force')}<br>{axis}"), [curve])
-        )
+        curve = motion.line("mesh_force", course, axis, color, width=1.5)
+        panels.append(Panel(axis_label("mesh_force", words_of("mesh_force", axis)), [curve]))
     means = [rounded("mesh_force", float(fine.weight @ course)) for course in values.T]
-    title = f"On average the teeth push with {means[0]}, {means[1]} and {means[2]}{motion.window}"
-    return stack(title, motion.label, panels, motion.layout())
+    title = f"On average the teeth push with {means[0]}, {means[1]} and {means[2]}"
+    return motion.figure(title, panels)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import PAIR_COLORS, PINION, TOTAL, WHEEL, button_row, line
+from tribodyn.plot.look.style import PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, button_row, line
 from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
 from tribodyn.study.pipeline import series
 from tribodyn.types import Array
@@ -140,6 +140,14 @@ class Motion:
             return fine.phase[kept], shown[kept]
         return cycles(fine.phase[kept], shown[kept])
 
+    def line(self, name: str, values: Array, words: str, color: str, **look: Any) -> Trace:
+        """Draw a signal over the axis."""
+        return line(*self.curve(name, values), words, color, unit=display_unit(name), **look)
+
+    def figure(self, title: str, panels: list[Panel]) -> Sketch:
+        """Stack panels over the axis; the title tells of what is measured."""
+        return stack(f"{title}{self.window}", self.label, panels, self.layout())
+
     def layout(self) -> dict[str, Any]:
         """Marks of the events and range of the horizontal axis."""
         if self.periodic:
@@ -181,11 +189,11 @@ def result_comparison(found: ResultComparison) -> Any:
     names = {"dynamic_transmission_error": "transmission_error", "mesh_force": "mesh_force"}
     for quantity, name in names.items():
         traces = [
-            line(
-                *motion.curve(quantity, getattr(motion, name)),
+            motion.line(
+                quantity,
+                getattr(motion, name),
                 title,
                 _COLORS[i % len(_COLORS)],
-                unit=display_unit(quantity),
                 width=1.8,
                 dash=_DASHES[i // len(_COLORS)],
             )
