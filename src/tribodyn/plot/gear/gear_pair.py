@@ -23,7 +23,7 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.contact import PathOfContact
-    from tribodyn.gear import SpurPair
+    from tribodyn.gear import SpurGear, SpurPair
 
 #: Circles of each gear: name and dash.
 _CIRCLES = (("tip", "dot"), ("pitch", "dashdot"), ("base", "dash"))
@@ -45,13 +45,16 @@ def _curve(points: Array, name: str, color: str, **more: Any) -> dict[str, Any]:
     }
 
 
+def _placed(pair: SpurPair) -> tuple[tuple[SpurGear, str, float, str], ...]:
+    """Each gear with its name, the place of its axis, and its colour."""
+    wheel = (pair.wheel, "wheel", pair.center_distance, WHEEL)
+    return (pair.pinion, "pinion", 0.0, PINION), wheel
+
+
 def _gears(pair: SpurPair, touching: float) -> list[Trace]:
     angles = tooth_angles(pair, touching)
     traces = []
-    for gear, center, angle, name, color in (
-        (pair.pinion, 0.0, angles[0], "pinion", PINION),
-        (pair.wheel, pair.center_distance, angles[1], "wheel", WHEEL),
-    ):
+    for (gear, name, center, color), angle in zip(_placed(pair), angles, strict=True):
         role = "drives" if pair.driver == name else "is driven"
         label = f"{name}, {gear.teeth} teeth, {role}"
         outline = placed_outline(gear, center, angle)
@@ -66,10 +69,7 @@ def _gears(pair: SpurPair, touching: float) -> list[Trace]:
 def _circles(pair: SpurPair) -> list[Trace]:
     cosine = np.cos(pair.operating_pressure_angle)
     traces = []
-    for gear, center, color in (
-        (pair.pinion, 0.0, PINION),
-        (pair.wheel, pair.center_distance, WHEEL),
-    ):
+    for gear, _, center, color in _placed(pair):
         radii = (gear.tip_radius, gear.base_radius / cosine, gear.base_radius)
         for (name, dash), radius in zip(_CIRCLES, radii, strict=True):
             traces.append(
@@ -87,13 +87,9 @@ def _circles(pair: SpurPair) -> list[Trace]:
 
 def _arrows(pair: SpurPair) -> list[Trace]:
     """Arcs with an arrow head in the sense in which each gear turns."""
-    pinion_turns = 1 if pair.driver == "pinion" else -1
     traces = []
-    for gear, center, sense, color in (
-        (pair.pinion, 0.0, pinion_turns, PINION),
-        (pair.wheel, pair.center_distance, -pinion_turns, WHEEL),
-    ):
-        arc = rotation_arc(center, 0.8 * gear.root_radius, sense)
+    for gear, name, center, color in _placed(pair):
+        arc = rotation_arc(center, 0.8 * gear.root_radius, 1 if pair.driver == name else -1)
         head = [0] * (arc.shape[1] - 1) + [15]
         marker = {"symbol": "arrow", "angleref": "previous", "size": head, "opacity": 1}
         more = {"mode": "lines+markers", "marker": {**marker, "color": color}}
@@ -113,10 +109,7 @@ def _roles(pair: SpurPair) -> list[Trace]:
             "showarrow": False,
             "font": {"size": 12, "color": color},
         }
-        for gear, name, center, color in (
-            (pair.pinion, "pinion", 0.0, PINION),
-            (pair.wheel, "wheel", pair.center_distance, WHEEL),
-        )
+        for gear, name, center, color in _placed(pair)
     ]
 
 
