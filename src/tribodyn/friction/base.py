@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from inspect import signature
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -366,6 +367,22 @@ class FrictionLaw(Model):
 
 #: The friction laws by name, open to third parties through the entry points of this group.
 LAWS: Registry[FrictionLaw] = Registry("friction law", "tribodyn.friction", FrictionLaw)
+
+
+#: What formulas call columns of the contacts that have another name there.
+_CALLED = {"roughness": "composite_roughness", "roughness_rms": "composite_roughness"}
+
+
+def of_columns(formula: Callable[..., Array]) -> Callable[..., Array]:
+    """Law of a formula whose arguments are columns of the contacts, by name, and options."""
+    known = {each.name for each in fields(TribologicalContact)} | {"kinematic_viscosity"}
+    named = {name: _CALLED.get(name, name) for name in signature(formula).parameters}
+    columns = {name: column for name, column in named.items() if column in known}
+
+    def law(contact: TribologicalContact, **options: Any) -> Array:
+        return formula(**{n: getattr(contact, column) for n, column in columns.items()}, **options)
+
+    return law
 
 
 class Range(NamedTuple):

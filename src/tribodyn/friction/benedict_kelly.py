@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import positive
 from tribodyn.errors import InputError, require_between, require_positive, warn
-from tribodyn.friction.base import LAWS, TribologicalContact
+from tribodyn.friction.base import LAWS, of_columns
 from tribodyn.model import Registry, choice, number
 from tribodyn.types import Array
 
@@ -197,24 +197,11 @@ _OPTIONS = {
 }
 
 
-@LAWS.define(
+LAWS.define(
     "benedict-kelly",
     source="Benedict and Kelley, ASLE Trans. 4 (1961)",
     options=_OPTIONS,
     together=True,
     meaning=_OPTIONS["variant"].meanings["benedict-kelly"],
     papers=("benedict-kelley",),
-)
-def _law(
-    contact: TribologicalContact, *, variant: str, rolling_speed: str, minimum_sliding_speed: float
-) -> Array:
-    return benedict_kelly(
-        contact.load_per_width,
-        contact.sliding_speed,
-        contact.entrainment_speed,
-        contact.dynamic_viscosity,
-        contact.composite_roughness,
-        variant=variant,
-        rolling_speed=rolling_speed,
-        minimum_sliding_speed=minimum_sliding_speed,
-    )
+)(of_columns(benedict_kelly))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, require_between, require_positive
-from tribodyn.friction.base import LAWS, Range, TribologicalContact, warn_outside
+from tribodyn.friction.base import LAWS, Range, of_columns, warn_outside
 from tribodyn.types import Array
 
 #: Range of the coefficients measured, in which the formula is held: it has a pole where sliding
@@ -78,19 +78,12 @@ def misharin(
     return np.asarray(np.clip(formula, *LIMITS))[()]
 
 
-@LAWS.define(
+LAWS.define(
     "misharin",
     source="Misharin, Int. Conf. Gearing, IMechE (1958)",
     meaning="friction coefficient of discs: falls with speeds and viscosity, whatever the load",
     papers=("misharin", "xu"),
-)
-def _misharin(contact: TribologicalContact) -> Array:
-    return misharin(
-        contact.sliding_speed,
-        contact.entrainment_speed,
-        contact.kinematic_viscosity,
-        contact.hertz_pressure,
-    )
+)(of_columns(misharin))
 
 
 _KGF_PER_CM2 = 98066.5  # [Pa]
@@ -173,19 +166,12 @@ def drozdov(
     return np.asarray(1.0 / denominator)[()]
 
 
-@LAWS.define(
+LAWS.define(
     "drozdov",
     source="Drozdov and Gavrikov, Wear 11 (1968)",
     meaning="friction coefficient of discs: falls with sliding and viscosity, grows with pressure",
     papers=("drozdov-gavrikov", "xu"),
-)
-def _drozdov(contact: TribologicalContact) -> Array:
-    return drozdov(
-        contact.sliding_speed,
-        contact.entrainment_speed,
-        contact.kinematic_viscosity,
-        contact.hertz_pressure,
-    )
+)(of_columns(drozdov))
 
 
 _INCH = 0.0254  # [m]
@@ -262,17 +248,9 @@ def odonoghue_cameron(
     return coefficient
 
 
-@LAWS.define(
+LAWS.define(
     "odonoghue-cameron",
     source="O'Donoghue and Cameron, ASLE Trans. 9 (1966)",
     meaning="friction coefficient of discs: falls with speeds and radius, whatever the load",
     papers=("odonoghue-cameron", "xu"),
-)
-def _odonoghue_cameron(contact: TribologicalContact) -> Array:
-    return odonoghue_cameron(
-        contact.sliding_speed,
-        contact.entrainment_speed,
-        contact.dynamic_viscosity,
-        contact.composite_roughness,
-        contact.equivalent_radius,
-    )
+)(of_columns(odonoghue_cameron))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_between, require_positive
-from tribodyn.friction.base import LAWS, Range, TribologicalContact, warn_outside
+from tribodyn.friction.base import LAWS, Range, of_columns, warn_outside
 from tribodyn.model import number
 from tribodyn.types import Array
 
@@ -101,7 +101,7 @@ def exponential(
     return coefficient
 
 
-@LAWS.define(
+LAWS.define(
     "exponential",
     source="a study of time-varying friction in spur gears, with reference values",
     together=True,
@@ -158,8 +158,4 @@ def exponential(
         ),
     },
     papers=("time-varying-friction",),
-)
-def _law(contact: TribologicalContact, **options: float) -> Array:
-    return exponential(
-        contact.slide_to_roll_ratio, contact.hertz_pressure, contact.composite_roughness, **options
-    )
+)(of_columns(exponential))

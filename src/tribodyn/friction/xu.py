@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import positive
 from tribodyn.errors import InputError, require_between
-from tribodyn.friction.base import LAWS, Range, TribologicalContact, warn_outside
+from tribodyn.friction.base import LAWS, Range, of_columns, warn_outside
 from tribodyn.types import Array
 
 #: Constants b1 to b9 of the regression.
@@ -133,19 +133,10 @@ def _require_plausible(coefficient: Array, roughness: float) -> None:
     )
 
 
-@LAWS.define(
+LAWS.define(
     "xu-2007",
     source=_SOURCE,
     together=True,
     meaning="regression of the friction coefficient to computed elastohydrodynamic contacts",
     papers=("xu",),
-)
-def _law(contact: TribologicalContact) -> Array:
-    return xu_2007(
-        contact.slide_to_roll_ratio,
-        contact.hertz_pressure,
-        contact.dynamic_viscosity,
-        contact.composite_roughness,
-        contact.entrainment_speed,
-        contact.equivalent_radius,
-    )
+)(of_columns(xu_2007))
