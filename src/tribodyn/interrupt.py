@@ -27,6 +27,7 @@ __all__ = [
     "Threads",
     "alone",
     "aside",
+    "begins_thread",
     "in_threads",
     "processors",
     "refuse_stopped",
@@ -149,6 +150,13 @@ def processors() -> int:
     return 1 if getattr(_here, "alone", False) else os.cpu_count() or 1
 
 
+def begins_thread() -> bool:
+    """Whether a stoppable call from here needs a thread: not beside others, nor in one already."""
+    if getattr(_here, "alone", False) or getattr(_here, "flag", None) is not None:
+        return False
+    return threading.current_thread() is threading.main_thread()
+
+
 def in_threads(
     function: Callable[[Item], Value], items: Iterable[Item], count: int, *, brief: bool = False
 ) -> list[Value]:
@@ -157,11 +165,8 @@ def in_threads(
     What is ``brief`` anyway, and what one thread of several does by itself, is computed here.
     """
     items = list(items)
-    alone = getattr(_here, "alone", False)
-    count = 1 if alone else max(min(count, len(items)), 1)
-    aside = getattr(_here, "flag", None) is None and not brief and not alone
-    aside = aside and threading.current_thread() is threading.main_thread()
-    if count == 1 and not aside:
+    count = 1 if getattr(_here, "alone", False) else max(min(count, len(items)), 1)
+    if count == 1 and (brief or not begins_thread()):
         return [function(item) for item in items]
     with Threads(count) as threads:
         running = [threads.submit(function, item) for item in items]

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl._kernel.inlet import flooded_inlet as compiled
+from tribodyn.ehl._kernel.inlet import inlet_slopes
 from tribodyn.ehl.steady.grid import inlet_tail
 
 
@@ -47,3 +48,8 @@ def test_slopes_are_the_derivatives() -> None:
         # ln(w) = 2 ln(s)
         slope = (grown[0][item] - grown[1][item]) / (4.0 * step)
         assert here[4 + item] == pytest.approx(slope, rel=1e-6)
+
+
+def test_slopes_in_python_are_those_of_the_kernel() -> None:
+    slopes = inlet_slopes(-4.2, 0.07, 0.15)
+    assert slopes == pytest.approx(flooded_inlet(-4.2, 0.07, 0.15, 1.0, 1.0)[2:], rel=1e-13)

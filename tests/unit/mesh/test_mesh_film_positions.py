@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from tribodyn.contact import path_of_contact
+from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import InputError
+from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import phase_grid
-from tribodyn.mesh.cycle import path_positions
+from tribodyn.mesh.cycle import PairsInContact, path_positions
+from tribodyn.mesh.film.film_refinement import Memory, contact_numbers, places_of
 
 
 @pytest.fixture(params=["pinion", "wheel", "high contact ratio"])
@@ -103,3 +106,27 @@ def test_every_knot_of_a_mesh_table_lies_in_the_zone_of_its_segment(contact):
         edges = np.array(places.edges)
         assert np.all(age[touching] >= edges[zone] - 1e-12)
         assert np.all(age[touching] <= edges[zone + 1] + 1e-12)
+
+
+def test_a_contact_that_is_known_is_not_solved_again():
+    radius, speed, load = np.array([8e-3, 9e-3]), np.array([3.0, 3.1]), np.array([1e5, 2e5])
+    oil = Lubricant(0.082, 880.0, 2.19e-8)
+    pairs = PairsInContact(np.array([0.1, 0.2]), radius, speed, oil, 2.2e11, 0.02)
+    zone, memory, solved = np.array([0, 1]), Memory(), []
+
+    def solve(new):
+        solved.append(new.tolist())
+        options = FILM_MODELS["newton"].complete({"nodes": 129})
+        films = pairs.some(new).films("newton", asked[new], **options)
+        return places_of(pairs.some(new), zone[new], asked[new], films, np.ones(new.size, bool))
+
+    asked = load
+    first = memory.told(pairs, zone, asked, solve)
+    asked = load * [1.0, 1.1]
+    memory.forget_all_but(contact_numbers(pairs, asked))
+    again = memory.told(pairs, zone, asked, solve)
+    assert solved == [[0, 1], [1]]
+    np.testing.assert_array_equal(again.values[:, 0], first.values[:, 0])
+    assert again.solution[0] is first.solution[0]
+    assert np.all(again.values[:3, 1] != first.values[:3, 1])
+    np.testing.assert_array_equal(again.zone, zone)

@@ -16,6 +16,25 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
 @nb.njit(**INNER)
+def _wedge(
+    x: float, film: float, lam: float, curvature: float, s: float
+) -> tuple[float, float, float]:
+    """Integrand of the pressure at distances from the centre, with its slopes over film and load.
+
+    Compiled for a number, and in Python for an array.
+    """
+    root = np.sqrt(np.maximum(x * x - s * s, 0.0))
+    logarithm = s * s * np.log((x + root) / s) if s > 0.0 else 0.0 * x
+    dry = 0.5 * curvature * (x * root - logarithm)
+    gap = dry + film
+    weight = lam * x * x / (gap * gap * gap)
+    by_film = -3.0 * dry / gap
+    # A tenth more load widens s^2 by a tenth: d D/d ln(w) = -(c/2) s^2 ln((x + r)/s).
+    by_load = -0.5 * curvature * logarithm * (1.0 + by_film)
+    return weight * dry, weight * by_film, weight * by_load
+
+
+@nb.njit(**INNER)
 def flooded_inlet(
     start: float, film: float, lam: float, curvature: float, s: float
 ) -> tuple[float, float, float, float, float, float]:
@@ -23,24 +42,27 @@ def flooded_inlet(
     edge = 1.0 / abs(start)
     pressure = load = pressure_film = load_film = pressure_load = load_load = 0.0
     for q in range(_NODES.size):
-        t = 0.5 * edge * (1.0 + _NODES[q])
-        x = 1.0 / t
-        root = np.sqrt(max(x * x - s * s, 0.0))
-        logarithm = s * s * np.log((x + root) / s) if s > 0.0 else 0.0
-        dry = 0.5 * curvature * (x * root - logarithm)
-        gap = dry + film
-        weight = 0.5 * edge * _WEIGHTS[q] * lam * x * x / (gap * gap * gap)
-        arm = x - 1.0 / edge
-        # A tenth more load widens s^2 by a tenth: d D/d ln(w) = -(c/2) s^2 ln((x + r)/s).
-        by_film = -3.0 * dry / gap
-        by_load = -0.5 * curvature * logarithm * (1.0 - 3.0 * dry / gap)
-        pressure += weight * dry
-        load += weight * dry * arm
+        x = 2.0 / (edge * (1.0 + _NODES[q]))
+        weight, arm = 0.5 * edge * _WEIGHTS[q], x - 1.0 / edge
+        here, by_film, by_load = _wedge(x, film, lam, curvature, s)
+        pressure += weight * here
+        load += weight * here * arm
         pressure_film += weight * by_film
         load_film += weight * by_film * arm
         pressure_load += weight * by_load
         load_load += weight * by_load * arm
     return pressure, load, pressure_film, load_film, pressure_load, load_load
+
+
+def inlet_slopes(start: float, film: float, lam: float) -> tuple[float, float, float, float]:
+    """The same slopes in Python, at the reference load: over the film, then over the load."""
+    edge = 1.0 / abs(start)
+    x = 2.0 / (edge * (1.0 + _NODES))
+    _, by_film, by_load = _wedge.py_func(x, film, lam, 1.0, 1.0)
+    weight = 0.5 * edge * _WEIGHTS
+    lever = weight * (x - 1.0 / edge)
+    slopes = weight @ by_film, lever @ by_film, weight @ by_load, lever @ by_load
+    return float(slopes[0]), float(slopes[1]), float(slopes[2]), float(slopes[3])
 
 
 #: Film of Grubin: the reduced pressure reaches this part of its bound at the edge of the contact.

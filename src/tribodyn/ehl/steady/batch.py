@@ -27,7 +27,7 @@ from tribodyn.errors import (
     require_positive,
     warn,
 )
-from tribodyn.interrupt import Threads, processors
+from tribodyn.interrupt import Threads, begins_thread, processors
 from tribodyn.lubricant import Lubricant
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
@@ -272,9 +272,10 @@ def _at(problem: Problem, index: int, shape: tuple[int, ...], columns: list[Arra
 def _in_order(work: Callable[[int], Value], size: int, threads: int | None) -> Iterator[Value]:
     """Results in order as they come; an interrupt or an error leaves no work behind."""
     count = min(threads or processors(), size)
-    if count <= 1:
+    if count < 1 or (count == 1 and not begins_thread()):
         yield from map(work, range(size))
         return
+    # One thread for all of them, where it is one, and not one for each.
     with Threads(count) as pool:
         waiting: deque[Future[Value]] = deque()
         for index in range(size + _AHEAD):

@@ -15,7 +15,7 @@ from tribodyn.ehl.steady.multigrid_engine import multigrid_engine
 from tribodyn.ehl.steady.newton_engine import first_intervals, newton_engine
 from tribodyn.errors import ComputationError, Problem
 from tribodyn.model import Registry
-from tribodyn.types import Array
+from tribodyn.types import Array, ComplexArray
 
 #: Least value of the mass balance in the cavity that still counts as none.
 _CAVITY = -1e-8
@@ -50,9 +50,9 @@ class Verification:
 
 
 @lru_cache(maxsize=16)
-def _transform(n: int) -> tuple[int, Array]:
+def _transform(n: int) -> tuple[int, ComplexArray]:
     """Length of the circular sum, and transform of the influence on intervals of length one."""
-    from scipy.fft import next_fast_len, rfft
+    from scipy.fft import next_fast_len
 
     size = next_fast_len(2 * n + 2, real=True)
     edge = np.arange(n + 2) - 0.5
@@ -61,14 +61,12 @@ def _transform(n: int) -> tuple[int, Array]:
     circular = np.zeros(size)
     circular[: n + 1] = influence
     circular[size - n :] = influence[1 : n + 1][::-1]
-    return size, rfft(circular)
+    return size, np.fft.rfft(circular)
 
 
 def _film(grid: DiscreteContact) -> Array:
-    from scipy.fft import irfft, rfft
-
     size, spectrum = _transform(grid.n)
-    deflection = irfft(rfft(grid.P, size) * spectrum, size)[: grid.n + 1]
+    deflection = np.fft.irfft(np.fft.rfft(grid.P, size) * spectrum, size)[: grid.n + 1]
     # A logarithm of lengths in another unit differs by a constant.
     deflection -= math.log(grid.dx) / math.pi * float(np.sum(grid.P))
     return np.asarray(grid.H0 + grid.shape + grid.dx * deflection)

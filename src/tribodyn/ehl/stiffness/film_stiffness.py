@@ -34,7 +34,7 @@ class InletChange(NamedTuple):
 
 def inlet_change(solution: SolvedContact) -> InletChange:
     """How pressure and load of the inlet follow the load, as in the solver."""
-    from tribodyn.ehl._kernel.inlet import flooded_inlet
+    from tribodyn.ehl._kernel.inlet import inlet_slopes
 
     grid = solution._grid
     if grid.tail == 0.0:
@@ -48,8 +48,8 @@ def inlet_change(solution: SolvedContact) -> InletChange:
         return estimate_film(load, solution.moes_viscosity, density) * math.exp(change)
 
     slope = (film(_STEP) - film(-_STEP)) / (2.0 * _STEP)
-    _, _, pressure_film, load_film, pressure_load, load_load = flooded_inlet.py_func(
-        float(grid.X[0]), film(0.0), grid.lam, 1.0, 1.0
+    pressure_film, load_film, pressure_load, load_load = inlet_slopes(
+        float(grid.X[0]), film(0.0), grid.lam
     )
     return InletChange(
         pressure_load + pressure_film * slope,

@@ -6,7 +6,7 @@ there. Where both differ, the two halves and their neighbours are looked at in t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -50,6 +50,8 @@ _EXTREMES = 6
 
 #: Solved films, one for each place.
 Solutions = NDArray[np.object_]
+#: Radius, speed and load per width: a contact with the same has the same film.
+ContactNumbers = tuple[float, float, float]
 
 
 class Places(NamedTuple):
@@ -70,7 +72,11 @@ class Places(NamedTuple):
     @property
     def yielding_ones(self) -> Places:
         """Those from which the stiffness of the film is taken."""
-        return Places(**{n: getattr(self, n)[..., self.yielding] for n in self._fields})
+        return self.some(self.yielding)
+
+    def some(self, which: Mask | slice) -> Places:
+        """A part of them."""
+        return Places(**{name: getattr(self, name)[..., which] for name in self._fields})
 
     def joined(self, others: Places) -> Places:
         """Both together."""
@@ -84,11 +90,37 @@ class Memory:
     contacts: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     yielding: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))
     curves: dict[tuple[int, int], bool] = field(default_factory=dict)
+    solved: dict[ContactNumbers, Places] = field(default_factory=dict)  #: one contact each
 
     def add(self, contacts: Index, yielding: Mask) -> None:
         """Keep contacts, and whether the stiffness of their films is needed."""
         self.contacts = np.concatenate([self.contacts, contacts])
         self.yielding = np.concatenate([self.yielding, yielding])
+
+    def forget_all_but(self, numbers: Iterable[ContactNumbers]) -> None:
+        """Keep the solutions of these contacts: most pairs that share the load have another."""
+        self.solved = {each: self.solved[each] for each in numbers if each in self.solved}
+
+    def told(
+        self, pairs: PairsInContact, zone: Index, load: Array, solve: Callable[[Index], Places]
+    ) -> Places:
+        """Solved films of some pairs; what is not known yet is solved and kept."""
+        numbers = contact_numbers(pairs, load)
+        new = np.array([i for i, each in enumerate(numbers) if each not in self.solved], dtype=int)
+        if new.size:
+            places = solve(new)
+            for column, index in enumerate(new):
+                self.solved[numbers[index]] = places.some(slice(column, column + 1))
+        parts = zip(*(self.solved[each] for each in numbers), strict=True)
+        known = Places(*(np.concatenate(columns, axis=-1) for columns in parts))
+        every = np.ones(zone.size, dtype=bool)
+        return known._replace(age=pairs.age, zone=zone, yielding=every)
+
+
+def contact_numbers(pairs: PairsInContact, load: Array) -> list[ContactNumbers]:
+    """What the film of each pair depends on."""
+    numbers = pairs.equivalent_radius, pairs.entrainment_speed, load
+    return list(zip(*(column.tolist() for column in numbers), strict=True))
 
 
 def places_of(

@@ -42,6 +42,7 @@ from tribodyn.mesh.film.film_refinement import (
     PathLoads,
     Places,
     Refinement,
+    contact_numbers,
     joined_over_age,
     places_of,
 )
@@ -153,6 +154,11 @@ class PathFilm:
         """Solve the film at the positions, and beside them where checked quantities need it."""
         loads = self._loads(load_per_width)
         count, known = self.places.age.size, self.memory
+        # A pair that carries the whole load alone carries it in every pass.
+        known.forget_all_but(
+            contact_numbers(self.solved, loads.at_positions)
+            + contact_numbers(self.pairs, loads.of_contacts)
+        )
         # A pass that checks no pressure does without the places that only the pressure needs.
         again = known.contacts if PRESSURE in checked else known.contacts[known.yielding]
         first = self._solve(
@@ -187,12 +193,16 @@ class PathFilm:
             return self._solve(pairs, zone, loads.of_contacts[contacts])
 
     def _solve(self, pairs: PairsInContact, zone: Index, loads: Array) -> Places:
-        angles = self.first_angle + self.angle_per_cycle * pairs.age
-        with film_places(lambda index: f"at the roll angle {angles[index]:.4f} rad"):
-            films = pairs.films(
-                self.settings.film_model, loads, **self.settings.film, progress=self.progress
-            )
-        return places_of(pairs, zone, loads, films, np.ones(zone.size, dtype=bool))
+        def solve(new: Index) -> Places:
+            some, load = pairs.some(new), loads[new]
+            angles = self.first_angle + self.angle_per_cycle * some.age
+            with film_places(lambda index: f"at the roll angle {angles[index]:.4f} rad"):
+                films = some.films(
+                    self.settings.film_model, load, **self.settings.film, progress=self.progress
+                )
+            return places_of(some, zone[new], load, films, np.ones(new.size, dtype=bool))
+
+        return self.memory.told(pairs, zone, loads, solve)
 
 
 @dataclass(frozen=True, eq=False)
