@@ -221,7 +221,7 @@ def columns_of(
         **as_columns(reported, contact.composite_roughness),
     }
     columns |= friction_columns(friction, columns.get("film_ratio"))
-    return _spread(columns, cycle.in_contact, loads.load_per_width.shape[:-1])
+    return _spread(columns, cycle.in_contact)
 
 
 def table_of(
@@ -334,10 +334,12 @@ def _motion_columns(motion: Kinematics, direction: Array) -> dict[str, Array]:
     }
 
 
-def _spread(known: dict[str, Array], in_contact: Mask, rows: tuple[int, ...]) -> dict[str, Any]:
+def _spread(known: dict[str, Array], in_contact: Mask) -> dict[str, Any]:
     """Put the values of the touching pairs in their places, with zeros elsewhere."""
     columns: dict[str, Any] = dict.fromkeys((*FILM_COLUMNS, *MIXED_COLUMNS))
+    places = np.flatnonzero(in_contact)
     for name, values in known.items():
-        columns[name] = np.zeros((*rows, *in_contact.shape))
-        columns[name][..., in_contact] = values
+        column = np.zeros((*values.shape[:-1], in_contact.size))
+        column[..., places] = values
+        columns[name] = column.reshape(*values.shape[:-1], *in_contact.shape)
     return columns

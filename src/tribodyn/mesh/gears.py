@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass
+from functools import cached_property, lru_cache
 from typing import Any, NoReturn
 
 import numpy as np
@@ -80,7 +81,7 @@ class GearData:
         radii = self.pair.pinion.base_radius, self.pair.wheel.base_radius
         return plane_direction(self.pair.driver, *radii)
 
-    @property
+    @cached_property
     def pitch_point_age(self) -> float | None:
         """Mesh cycles from entry to pitch point; None where that is outside of the contact."""
         contact = path_of_contact(self.pair)
@@ -90,6 +91,12 @@ class GearData:
     def written(self) -> str:
         """The gears as text for a file."""
         return json.dumps(asdict(self.pair))
+
+
+@lru_cache(maxsize=8)
+def gear_data(pair: SpurPair) -> GearData:
+    """What follows from a pair: the same object in the tables of a study."""
+    return GearData(pair)
 
 
 def read_pair(text: str) -> SpurPair:

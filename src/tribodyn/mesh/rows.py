@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.contact import Kinematics
 from tribodyn.ehl import FILM_MODELS
+from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ModelWarning, TribodynError, collected, require_positive
-from tribodyn.friction import LAWS, FrictionParts, TribologicalContact, pitch_point
+from tribodyn.friction import LAWS, FrictionParts, pitch_point
 from tribodyn.mesh.build import columns_of, known_teeth, table_of
 from tribodyn.mesh.cycle import MeshCycle, pairs_in_contact
 from tribodyn.mesh.film.path_film import FormulaFilm, Friction
@@ -43,25 +44,24 @@ def mesh_tables(
 ) -> list[Told]:
     """Mesh tables at several speeds and torques.
 
-    None at all where films are solved or are springs, where a point cannot be computed, or where
-    something is told of its films: then each table has to be computed by itself.
+    None at all where films are solved or are springs, or where a point cannot be computed: then
+    each table has to be computed by itself.
     """
     if FILM_MODELS[settings.film_model].method or settings.film_in_series or len(operations) < 2:
         return []
     try:
         points = [_point(pair, settings, *operation) for operation in operations]
-        with collected() as found:
-            columns = _columns(pair, settings, points)
+        columns = _columns(pair, settings, points)
     except TribodynError:
         return []
     tables: list[Told] = []
     for row, (speed, torque, cycle, teeth, told) in enumerate(points):
         with collected() as also:
             shared = shared_load_columns(teeth, teeth.shared_load(), None, force_law=force_law)
-        own = {name: c if c is None else c[row] for name, c in columns.items()}
+        own = {name: c[row] if np.ndim(c) == 3 else c for name, c in columns.items()}
         table = table_of(pair, settings, cycle, (speed, torque), shared | own)
         tables.append((table, [*told, *also]))
-    return [] if found else tables
+    return tables
 
 
 def _point(pair: Gears, settings: ToothContact, speed: float, torque: float) -> _Point:
@@ -72,7 +72,7 @@ def _point(pair: Gears, settings: ToothContact, speed: float, torque: float) -> 
 
 
 def _columns(pair: Gears, settings: ToothContact, points: Sequence[_Point]) -> dict[str, Any]:
-    """Columns of all points, each in its row."""
+    """Columns of all points, each in its row, or without rows where they are the same."""
     cycle = points[0].cycle
     motion = cycle.motion(np.array([[point.speed] for point in points]))
     pairs = pairs_in_contact(cycle, motion, settings.lubricant, settings.material)
@@ -81,43 +81,59 @@ def _columns(pair: Gears, settings: ToothContact, points: Sequence[_Point]) -> d
     film_at = FormulaFilm(settings, pairs, least)
     shared = points[0].teeth.shared_load()
     loads = Loads(shared, load, np.maximum(load, least), film_at, None)
-    films = film_at(loads.tribological)
+
+    def films_of(row: int) -> Films:
+        own: FormulaFilm = replace(_row(film_at, row), pairs=_row(pairs, row))
+        return own(loads.tribological[row])
+
+    films: Films = _asked(points, lambda: film_at(loads.tribological), films_of)
     roughness = settings.composite_roughness
     contact = tribological_contact(motion, pairs, loads.tribological, roughness, None, films)
-    law = _Law(pair, settings, film_at, motion)
+
+    def friction_of(row: int) -> Friction:
+        pitch = pitch_point(pair, points[row].speed, points[row].torque)
+        own = replace(_row(contact, row), pitch=pitch)
+        return film_at.friction(own, motion, settings)
+
+    together = LAWS[settings.friction_law].together
+    all_at_once = partial(film_at.friction, contact, motion, settings) if together else None
+    friction = _asked(points, all_at_once, friction_of)
     reported = reported_films(films, loads, least)
-    return columns_of(cycle, motion, loads, contact, reported, law.friction(contact, points))
+    return columns_of(cycle, motion, loads, contact, reported, friction)
 
 
-class _Law(NamedTuple):
-    """The friction law of some settings, asked about contacts in rows."""
-
-    pair: Gears
-    settings: ToothContact
-    film_at: FormulaFilm
-    motion: Kinematics
-
-    def friction(self, contact: TribologicalContact, points: Sequence[_Point]) -> Friction:
-        """Friction of all rows at a time, or of one after the other where that may differ."""
-        if LAWS[self.settings.friction_law].together:
-            with collected() as told:
-                friction = self._of(contact)
-            if not told:
-                return friction
-        each: list[Any] = [self._of_row(contact, row, point) for row, point in enumerate(points)]
-        if not isinstance(each[0], FrictionParts):
-            return np.stack(each)
-        parts = ([getattr(one, part.name) for one in each] for part in fields(each[0]))
-        return FrictionParts(*(np.stack(part) for part in parts))
-
-    def _of_row(self, contact: TribologicalContact, row: int, point: _Point) -> Friction:
-        known = {each.name: getattr(contact, each.name) for each in fields(contact)}
-        own = {name: value[row] for name, value in known.items() if np.ndim(value) == 2}
-        pitch = pitch_point(self.pair, point.speed, point.torque)
+def _asked(
+    points: Sequence[_Point],
+    together: Callable[[], Any] | None,
+    alone: Callable[[int], Any],
+) -> Any:
+    """Ask about all rows at a time, or one after the other where what is told may differ."""
+    if together is not None:
         with collected() as told:
-            friction = self._of(replace(contact, **own, pitch=pitch))
+            found = together()
+        if not told:
+            return found
+    each = []
+    for row, point in enumerate(points):
+        with collected() as told:
+            each.append(alone(row))
         point.told.extend(told)
-        return friction
+    return _stacked(each)
 
-    def _of(self, contact: TribologicalContact) -> Friction:
-        return self.film_at.friction(contact, self.motion, self.settings)
+
+def _row(bundle: Any, row: int) -> Any:
+    """One row of all that is in rows."""
+    known = {each.name: getattr(bundle, each.name) for each in fields(bundle)}
+    own = {name: value[row] for name, value in known.items() if np.ndim(value) == 2}
+    return replace(bundle, **own)
+
+
+def _stacked(each: Sequence[Any]) -> Any:
+    """What was found of every row, in rows."""
+    first: Any = each[0]
+    if isinstance(first, np.ndarray):
+        return np.stack(each)
+    if not isinstance(first, Films | FrictionParts):
+        return first
+    names = [part.name for part in fields(first)]
+    return replace(first, **{n: _stacked([getattr(one, n) for one in each]) for n in names})

@@ -367,7 +367,12 @@ def _defaults_before(case: CaseData, keys: Iterable[str]) -> dict[str, Any]:
 
 
 def _in_order(case: CaseData, changed: Set[str]) -> tuple[str, ...]:
-    return tuple(k for k in dict.fromkeys((*case._effective, *case.stated.base)) if k in changed)
+    def places() -> dict[str, int]:
+        keys = dict.fromkeys((*case._effective, *case.stated.base))
+        return {key: place for place, key in enumerate(keys)}
+
+    place = case._once("places", (), places)
+    return tuple(sorted(changed & place.keys(), key=place.__getitem__))
 
 
 def changed_after(before: CaseData, case: CaseData, numbers: Mapping[str, Any]) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,13 +15,14 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
+    from tribodyn.gear import SpurPair
     from tribodyn.losses import GearboxLosses
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
 #: Elastic natural frequencies in a summary.
 _MODES = 12
-#: Systems whose natural frequencies are kept.
+#: Systems whose natural frequencies are kept, and loads whose figures are.
 _KEPT = 256
 
 
@@ -98,19 +100,31 @@ def gearbox_figures(case: Case, lost: float) -> dict[str, float]:
 
 def standard_figures(case: Case) -> dict[str, float]:
     """``b c_gamma_alpha`` of ISO 6336-1, and what of the computed deflection the bodies make."""
+
+    def under() -> Callable[[float], dict[str, float]]:
+        settings = loaded_settings(case)
+        bored = chosen_options(case, "stiffness").get("reference") == "bore"
+        return lru_cache(_KEPT)(partial(_standard_figures, case.gear_pair, settings, bored))
+
+    # The same at every speed: a study asks for it under the same loads again.
+    tables = ("gears", "dynamics", "material", "stiffness")
+    return case._once("standard_figures", tables, under)(case.pinion_torque)
+
+
+def _standard_figures(
+    pair: SpurPair, settings: Mapping[str, Any], bored: bool, torque: float
+) -> dict[str, float]:
     from tribodyn.stiffness import iso6336_mesh_stiffness, iso6336_single_stiffness
     from tribodyn.stiffness.loaded.contact import body_share
 
-    pair, force = case.gear_pair, case.pinion_torque / case.gear_pair.pinion.base_radius
-    figures = {}
+    figures, force = {}, torque / pair.pinion.base_radius
     with collected() as outside:
-        single = iso6336_single_stiffness(pair, case.material_properties, force)
+        single = iso6336_single_stiffness(pair, settings["material"], force)
     if not outside:  # else its polynomial does not hold for these profile shifts
         mean = iso6336_mesh_stiffness(single, pair.transverse_contact_ratio)
         figures["iso_mesh_stiffness"] = pair.common_face_width * mean
-    if chosen_options(case, "stiffness").get("reference") == "bore":
-        torque = case.pinion_torque
-        figures["gear_body_share"] = body_share(case.gear_pair, torque, **loaded_settings(case))
+    if bored:
+        figures["gear_body_share"] = body_share(pair, torque, **settings)
     return figures
 
 
