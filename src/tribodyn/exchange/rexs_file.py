@@ -75,11 +75,6 @@ class Component:
             what = f'{name} = {content:g} "{value.unit}"'
             raise InputError(what, str(self), str(error), _REMEDY) from None
 
-    def flag(self, name: str) -> bool:
-        """A value that is true."""
-        value = self.values.get(name)
-        return value is not None and value.content in (True, 1.0)
-
 
 @dataclass(frozen=True)
 class Relation:

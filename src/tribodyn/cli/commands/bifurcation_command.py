@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Literal
 
+from tribodyn.cli.commands.study_commands import begun
+from tribodyn.cli.commands.sweep_command import INTERRUPTED
 from tribodyn.cli.screen import say, say_json, show_resumed, tell
 from tribodyn.cli.settings import (
     RANGE,
@@ -12,14 +14,9 @@ from tribodyn.cli.settings import (
     Flag,
     Force,
     Settings,
-    changed_case,
-    check_place,
     read_ranges,
 )
 from tribodyn.errors import InputError
-
-#: Exit code of a diagram that was stopped by Ctrl-C; what was done is kept.
-_INTERRUPTED = 130
 
 
 def bifurcation(
@@ -58,11 +55,9 @@ def bifurcation(
     from tribodyn.cli.bar import progress_bar
     from tribodyn.members import Members
 
-    target = out if out is not None else Path(f"{Path(case).stem}-bifurcation")
     key, (first, last, points) = _one(over)
     _check_lengths(cycles, transient)
-    ready = changed_case(case, set_ or [])
-    check_place(target, force)
+    ready, target = begun("bifurcation", case, out, set_, force)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
     with Members(target, force) as members:
         with progress_bar() as progress:
@@ -99,7 +94,7 @@ def bifurcation(
     else:
         say("\n".join([ready.title, *(f"  {line}" for line in findings.sentences())]))
     tell(f"Diagram: {target / 'bifurcation.html'}")
-    return 0 if complete else _INTERRUPTED
+    return 0 if complete else INTERRUPTED
 
 
 def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:

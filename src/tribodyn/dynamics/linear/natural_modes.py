@@ -42,7 +42,6 @@ class LinearSystem:
     friction_damping: Array
     friction_stiffness: Array
     contact_stiffness: Array  #: share of each contact in ``stiffness`` [N/m, ...]
-    contact_damping: Array  #: share of each contact in ``damping`` [N*s/m, ...]
     direction: Array  #: [1 or m]
     push: Array  #: [1 or m]
     spring: Array  #: stiffness of each contact, mean over the cycle [N/m]
@@ -59,16 +58,14 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
     free = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
     damper = weight[:, :, None] * np.where(closed | free, nodes.damping, 0.0)
     contact_stiffness = _over_cycle(spring, along, along)
-    contact_damping = _over_cycle(damper, along, along)
     return LinearSystem(
         names=tuple(system.names),
         mass=np.asarray(system.mass),
-        damping=np.asarray(system.damping) + contact_damping.sum(axis=0),
+        damping=np.asarray(system.damping) + _over_cycle(damper, along, along).sum(axis=0),
         stiffness=np.asarray(system.stiffness) + contact_stiffness.sum(axis=0),
         friction_damping=_over_cycle(damper, rub, along).sum(axis=0),
         friction_stiffness=_over_cycle(spring, rub, along).sum(axis=0),
         contact_stiffness=contact_stiffness,
-        contact_damping=contact_damping,
         direction=np.einsum("rs,rsji->ji", weight, nodes.direction),
         push=np.einsum("rs,rsji->ji", weight, push),
         spring=spring.sum(axis=(0, 1)),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 
@@ -20,20 +19,6 @@ from tribodyn.ehl.steady.newton_engine import (
 from tribodyn.errors import InputError
 from tribodyn.interrupt import stoppable
 from tribodyn.types import Array, Index
-
-#: Set-up of the study "vibration-with-film" of the sources: five grids, the finest with 1024
-#: intervals, pressure to 1e-4, a starved domain. Keyword arguments of
-#: :func:`~tribodyn.ehl.line_contact.solve_line_contact`.
-FIVE_LEVELS = MappingProxyType(
-    {
-        "method": "multigrid",
-        "levels": 5,
-        "nodes": 1025,
-        "tolerance": 1e-4,
-        "domain": (-2.5, 1.5),
-        "inlet": "zero",
-    }
-)
 
 #: Intervals of the coarsest grid: as chosen here, and the fewest and most that one may ask for.
 _USUAL, _FEWEST, _MOST = 64, 32, 256
