@@ -49,15 +49,21 @@ def warm_up(
     InputError
         If there is no such case.
     ComputationError
-        If a process fails.
+        If a process fails, or no folder takes compiled kernels.
 
     Examples
     --------
     >>> warm_up("fzg-roughness")  # doctest: +SKIP
     """
+    from tribodyn.compiled.agreement import is_kept
+    from tribodyn.dynamics._engine.marching import march_block
+
     most = min(os.cpu_count() or 1, 4) if jobs is None else require_whole("jobs", jobs)
     if case is not None:
         load_case(case)
+    if not is_kept(march_block) and hasattr(march_block, "_cache"):
+        what, why = "compiled kernels cannot be kept", "No folder takes them"
+        raise ComputationError(what, "", why, "Set NUMBA_CACHE_DIR to one that can be written")
     # A solved film takes longest.
     known = sorted(cases(), key=lambda name: "film" not in name) if case is None else [case]
     todo, begun = [known[0], _ENGINE, *known[1:]], time.monotonic()

@@ -35,7 +35,8 @@ def source_digest(folder: str | Path, names: Sequence[str]) -> str:
 def announced(kernel: Kernel, what: str, time: str) -> Kernel:
     """Say so whenever a kernel is compiled, once on a machine: else it looks like a hang."""
     kernels.append(kernel)
-    _texts[kernel] = f"compiling {what}, once on this machine, about {time}"
+    once = "once on this machine" if agreement.is_kept(kernel) else "for this process"
+    _texts[kernel] = f"compiling {what}, {once}, about {time}"
     _listen()
     agreement.share(kernel, lambda: _tell_of(kernel))
     return kernel

@@ -103,10 +103,20 @@ def share(kernel: Any, tell: Callable[[], None]) -> None:
     cache.load_overload, cache.save_overload = load_overload, save_overload
 
 
+def is_kept(kernel: Any) -> bool:
+    """Whether a kernel has a cache on the disk."""
+    return hasattr(getattr(kernel, "_cache", None), "_cache_file")
+
+
 def cached(kernel: Any) -> bool:
-    """Whether the disk cache holds anything of a kernel, for this processor and these sources."""
+    """Whether the disk cache holds anything of a kernel, for this processor and these sources.
+
+    One that is not kept is no other process's to compile.
+    """
     from numba.core.registry import cpu_target
 
+    if not is_kept(kernel):
+        return True
     cache = kernel._cache
     wanted = cache._index_key(None, cpu_target.target_context.codegen())[1:]
     return any(key[1:] == wanted for key in cache._cache_file._load_index())

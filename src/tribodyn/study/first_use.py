@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -28,14 +28,14 @@ _BLOCK = 16
 def compiled_beside(case: Case) -> Iterator[None]:
     """Share what a run of the case compiles inside the block with a process beside it."""
     jobs = _missing(case) if allowed and processors() > 1 else []
-    if not jobs:
-        yield
-        return
-    with (
-        TemporaryDirectory(prefix="tribodyn-", ignore_cleanup_errors=True) as folder,
-        aside(_compile, [(folder, job) for job in jobs]) as busy,
-        agreed(Agreement(Path(folder), partial(_interruptibly, busy))),
-    ):
+    with ExitStack() as stack:
+        if jobs:
+            with suppress(OSError):  # Where no folder can be made, this process compiles alone.
+                made = TemporaryDirectory(prefix="tribodyn-", ignore_cleanup_errors=True)
+                folder = stack.enter_context(made)
+                busy = stack.enter_context(aside(_compile, [(folder, job) for job in jobs]))
+                agreement = Agreement(Path(folder), partial(_interruptibly, busy))
+                stack.enter_context(agreed(agreement))
         yield
 
 

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from tribodyn import load_case
+from tribodyn.study import first_use
 from tribodyn.study.processes import aside
 
 #: Kernels of the disk cache that a process compiled, and how often each.
@@ -75,6 +77,20 @@ def test_a_first_run_compiles_only_a_part_itself(tmp_path: Path) -> None:
     assert len(own) < 3
     assert len([*cache.glob("*/*.nbc")]) == 3
     assert _compiled(_RUN, cache, "allowed", str(tmp_path / "again")) == []
+
+
+def test_where_no_folder_can_be_made_a_run_compiles_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuses(*_: object, **__: object) -> None:
+        raise FileNotFoundError("No usable temporary directory found")
+
+    asked: list[object] = []
+    monkeypatch.setattr(first_use, "TemporaryDirectory", refuses)
+    monkeypatch.setattr(first_use, "aside", lambda *given: asked.append(given))
+    monkeypatch.setattr(first_use, "_missing", lambda case: ["loads"])
+    monkeypatch.setattr(first_use, "processors", lambda: 2)
+    with first_use.compiled_beside(load_case("fzg-roughness")):
+        asked.append("run")
+    assert asked == ["run"]
 
 
 @pytest.mark.parametrize("job", [print, os._exit], ids=["done", "lost"])

@@ -10,6 +10,7 @@ from numba import types
 from numba.extending import overload
 
 from tribodyn.compiled import announced
+from tribodyn.compiled.kept import kept
 from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
@@ -144,7 +145,7 @@ def _choose_seen(gathered, slot):  # type: ignore[no-untyped-def]
 
 
 def _build(digest: str) -> Any:
-    @nb.njit(cache=True, **JIT)
+    @kept(**JIT)
     def march_block(
         lanes: Any,
         method: Any,
@@ -289,7 +290,7 @@ march_block = announced(_build(kernel_digest()), "the engine", "a quarter of a m
 
 
 def _build_gather(digest: str) -> Any:
-    @nb.njit(cache=True, **JIT)
+    @kept(**JIT)
     def gather_record(
         lanes: Any,
         program: Program,

@@ -14,6 +14,7 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled.kept import kept
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, film_sum, film_work_size, influence
 from tribodyn.ehl._kernel.multigrid_levels import (
@@ -250,7 +251,7 @@ def _check(level: Level, k: int, load: float, work: LevelWork, line: Array) -> N
 
 
 def _build(digest: str) -> Any:
-    @nb.njit(cache=True, **JIT)
+    @kept(**JIT)
     def multigrid_solve(
         n: int, count: int, first: int, contact: SteadyContact, limits: MultigridLimits,
         offset: float, free: int, P: Array, H: Array, shape: Array, films: Array, record: Array,

@@ -9,6 +9,7 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled.kept import kept
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import make_grid
 from tribodyn.ehl._kernel.inlet import cold_start, free_nodes
@@ -67,7 +68,7 @@ class SteadyContact(NamedTuple):
 
 
 def _build(digest: str) -> Any:
-    @nb.njit(cache=True, **JIT)
+    @kept(**JIT)
     def newton_solve(
         n: int, first: int, warm: bool, contact: SteadyContact, limits: Limits,
         film_tolerance: float, offset: float, free: int, P: Array, H: Array, films: Array,
@@ -137,7 +138,7 @@ _TOLERANCE = 1e-8
 
 
 def _build_tangent(digest: str) -> Any:
-    @nb.njit(cache=True, **JIT)
+    @kept(**JIT)
     def tangent_of_film(
         n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float,
         load: float, P: Array, H: Array,

@@ -13,6 +13,7 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled.kept import kept
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, influence
 from tribodyn.ehl._kernel.inlet import flooded_inlet
@@ -334,7 +335,7 @@ def _follow(
 
 
 def _build(digest: str) -> Any:
-    @nb.njit(cache=True, **JIT)
+    @kept(**JIT)
     def follow_contact(
         contact: TransientContact, ratio: float, time: Array, table: Array, halvings: int,
         every: int, P: Array, H: Array, state: Instant, records: Array, pressures: Array,

@@ -19,6 +19,7 @@ import numpy as np
 
 from tribodyn.compiled import announced, source_digest
 from tribodyn.compiled.inner import INNER_OPTIONS
+from tribodyn.compiled.kept import kept
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
@@ -227,7 +228,7 @@ def _approach(
 def _build(digest: str) -> tuple[Any, Any, Any]:
     """Make the kernels; the content of the sources is part of their cache key."""
 
-    @nb.njit(cache=True, **_JIT)
+    @kept(**_JIT)
     def solve_loads(
         C: Array,
         A: Array,
@@ -264,7 +265,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                         force[t, p, s, i] = f[s, i]
         return 0
 
-    @nb.njit(cache=True, **_JIT)
+    @kept(**_JIT)
     def solve_deflections(
         C: Array,
         A: Array,
@@ -293,7 +294,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                 tangent[d, p] = sums[1]
         return 0
 
-    @nb.njit(cache=True, **_JIT)
+    @kept(**_JIT)
     def pickups(
         C: Array, A: Array, B: float, gaps: Array, most: Array, found: Array, flag: Index
     ) -> Any:
