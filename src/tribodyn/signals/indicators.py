@@ -361,8 +361,9 @@ def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
     given = orders, fine.phase, fine.weight
     small = orders.size * fine.phase.size < _KEPT
     turns = _recent.get(given, lambda: _turns(*given)) if small else _turns(*given)
-    real, imaginary = (np.tensordot(part, signal, axes=(1, 0)) for part in turns)
-    return np.asarray(2.0 * (real + 1j * imaginary))
+    columns = signal.reshape(len(signal), -1)
+    real, imaginary = (2.0 * (part @ columns) for part in turns)
+    return np.asarray((real + 1j * imaginary).reshape(-1, *signal.shape[1:]))
 
 
 @record

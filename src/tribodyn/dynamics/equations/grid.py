@@ -49,7 +49,8 @@ class Grid:
     @cached_property
     def events(self) -> frozenset[float]:
         """Phases at which a value may jump [-]."""
-        return frozenset(self.segment_left.tolist())
+        changes = np.diff(self.segment_left, prepend=np.nan)
+        return frozenset(self.segment_left[np.flatnonzero(changes)].tolist())
 
     def rows(self, which: Index) -> Grid:
         """Some of the steps."""

@@ -121,7 +121,7 @@ def _radius_bound(matrices: Array) -> Array:
 def look_at(total: Array) -> tuple[Index, Index]:
     """Rows of tables (..., steps, 3) to examine, and where in its step each is stiffest."""
     spread = np.linspace(0, total.shape[-2] - 1, _SAMPLES).astype(np.int64)
-    stiffest = total.max(axis=-1).argmax(axis=-1)[..., None]
+    stiffest = total.reshape(*total.shape[:-2], -1).argmax(axis=-1)[..., None] // total.shape[-1]
     spread = np.broadcast_to(spread, (*stiffest.shape[:-1], _SAMPLES))
     rows = np.sort(np.concatenate((spread, stiffest), axis=-1), axis=-1)
     return rows, np.take_along_axis(total, rows[..., None], axis=-2).argmax(axis=-1)

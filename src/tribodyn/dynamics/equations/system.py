@@ -243,8 +243,7 @@ class System:
             remedy = "Give as many names as coordinates, or none"
             raise InputError(what, "System.names", "Every coordinate has one name", remedy)
         object.__setattr__(self, "names", names)
-        mass = matrices["mass"]
-        _sound.get((mass,), lambda: _refuse_singular(mass, names))
+        _inverse_of(matrices["mass"], names)
         _refuse_missing_contacts(self)
         if self.balance is not None:
             balance = real_numbers("System.balance", self.balance)
@@ -262,7 +261,7 @@ class System:
     @cached_property
     def inverse_mass(self) -> Array:
         """Inverse of the mass matrix, (n, n) [1/kg or 1/(kg*m^2)]."""
-        return np.linalg.inv(np.asarray(self.mass))
+        return _inverse_of(np.asarray(self.mass), tuple(self.names))
 
     def __repr__(self) -> str:
         """One line."""
@@ -271,8 +270,16 @@ class System:
 
 
 _MATRICES = ("mass", "damping", "stiffness")
-#: Mass matrices that were not refused: a study builds the same structure many times.
-_sound: Recent[None] = Recent(8)
+#: Inverses of mass matrices: a study builds the same structure many times.
+_inverses: Recent[Array] = Recent(8)
+
+
+def _inverse_of(mass: Array, names: tuple[str, ...]) -> Array:
+    def inverse() -> Array:
+        _refuse_singular(mass, names)
+        return np.asarray(np.linalg.inv(mass))
+
+    return _inverses.get((mass,), inverse)
 
 
 def _refuse_singular(mass: Array, names: tuple[str, ...]) -> None:

@@ -50,18 +50,16 @@ class OrbitCoordinates:
 
     @cached_property
     def _reducing(self) -> Array:
-        """Matrix (2 n, e + v) that reduces a state, without the weight of positions."""
-        size, count = self.elastic.shape
-        matrix = np.zeros((2 * size, count + self.moving.shape[1]))
-        matrix[:size, :count] = self.lower @ self.elastic
-        matrix[size:, count:] = self.lower @ self.moving
+        """Matrix (2 n, e + v) that reduces a state; one for each of several rates (..., 1, 1)."""
+        (size, count), rate = self.elastic.shape, np.asarray(self.rate)
+        matrix = np.zeros((*rate.shape[:-2], 2 * size, count + self.moving.shape[1]))
+        matrix[..., :size, :count] = rate * (self.lower @ self.elastic)
+        matrix[..., size:, count:] = self.lower @ self.moving
         return matrix
 
     def reduce(self, state: Array) -> Array:
         """State (..., 2 n) to reduced vector (..., e + v)."""
-        reduced = state @ self._reducing
-        reduced[..., : self.elastic.shape[1]] *= self.rate
-        return np.asarray(reduced)
+        return np.asarray(state @ self._reducing)
 
     def expand(self, reduced: Array) -> Array:
         """Reduced vector (..., e + v) to state (..., 2 n), with the free motions at rest."""

@@ -211,10 +211,13 @@ class _Group:
         """Images of many points (p, lanes, k) of each system; ``keep`` has their states first."""
 
         def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
+            width = self.whole.program.rows.shape[-1]
             for number, own in enumerate(state):
+                if number % width == 0:  # which reads a table once for all of its lanes
+                    tables = np.ascontiguousarray(self.whole.program.rows[number // width].T)
                 program, lanes = self.program_of(number), len(own)
                 times, forces = np.full(lanes, period[number]), load[number]
-                program = program._replace(rows=np.ascontiguousarray(program.rows))
+                program = program._replace(rows=tables[number % width])
                 blocks = [
                     _states(program, program.rows, times[at], forces[at], own[at])
                     for at in (slice(i, i + WIDTH) for i in range(0, lanes, WIDTH))
@@ -371,7 +374,8 @@ def _orbits(group: _Group) -> _Orbits:
     used = np.flatnonzero(direction)
 
     def beside(number: int, record: Array) -> None:
-        along[number] = sum(direction[i] * record[:, i, : k + 1] for i in used).T
+        # All lanes, which lie side by side, though the last ones are only there to fill the block.
+        along[number] = sum(direction[i] * record[:, i] for i in used)[:, : k + 1].T
 
     points = y + step * np.eye(-(-(k + 1) // WIDTH) * WIDTH, k, -1)
     image = group.beside(points, beside)[:, : k + 1]

@@ -90,8 +90,11 @@ def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
 
 def support_force(system: System, samples: FineSamples, number: int) -> Array:
     """Force of the bodies on the support of a coordinate, from springs and dampers together."""
-    stiffness, damping = np.asarray(system.stiffness), np.asarray(system.damping)
-    return np.asarray(samples.position @ stiffness[number] + samples.velocity @ damping[number])
+    springs, dampers = np.asarray(system.stiffness)[number], np.asarray(system.damping)[number]
+    # Of the other coordinates, most have no part in it.
+    parts = [springs[i] * samples.position[:, i] for i in np.flatnonzero(springs)]
+    parts += [dampers[i] * samples.velocity[:, i] for i in np.flatnonzero(dampers)]
+    return np.asarray(sum(parts, np.zeros(len(samples.position))))
 
 
 #: Most that the series of a motion take in a file [bytes].
