@@ -22,6 +22,8 @@ from tribodyn.types import Array, ComplexArray, Index
 _LEAST_INTERVALS = 4
 #: Sets of phases whose knots are remembered, and their sizes.
 _KEPT, _FEWEST_KEPT, _MOST_KEPT = 8, 64, 65536
+#: Values of a knot from which on it pays to read them together.
+_WIDE = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,9 +165,12 @@ class PhaseFunction:
     def __call__(self, phase: Array | float) -> Array:
         """Interpolate with the cubic through four knots; on an event the value after it."""
         knots, weights = self.grid._between(np.asarray(phase, dtype=float))
-        # Places last, so that every loop is long.
-        columns = np.ascontiguousarray(self.values.reshape(len(self.values), -1).T)
-        total = np.einsum("k...,ck...->c...", weights, columns.take(knots, axis=1))
+        rows = self.values.reshape(len(self.values), -1)
+        if rows.shape[1] < _WIDE:  # places last, so that every loop is long
+            columns = np.ascontiguousarray(rows.T).take(knots, axis=1)
+            total = np.einsum("k...,ck...->c...", weights, columns)
+        else:  # which reads all values of a knot at a time
+            total = np.einsum("k...,k...c->c...", weights, rows.take(knots, axis=0))
         found = np.moveaxis(total, 0, -1).reshape(knots.shape[1:] + self.values.shape[1:])
         return found if self.onto is None else np.asarray(found @ self.onto)
 

@@ -83,6 +83,17 @@ def test_knots_are_met_and_columns_kept_apart():
     assert found == pytest.approx(values[inner], rel=1e-14)
 
 
+@pytest.mark.parametrize("phase", [0.37, np.linspace(0.0, 2.0, 101), np.full((2, 3), 0.6)])
+def test_many_columns_are_those_of_single_functions(phase):
+    grid = phase_grid(EVENTS, 32)
+    values = np.sin(np.outer(grid.phase, np.arange(30))).reshape(-1, 10, 3)
+    found = PhaseFunction(grid, values)(phase)
+    assert found.shape == (*np.shape(phase), 10, 3)
+    for column in np.ndindex(10, 3):
+        single = PhaseFunction(grid, values[:, *column])(phase)
+        np.testing.assert_allclose(found[..., *column], single, rtol=1e-14, atol=1e-16)
+
+
 def test_cubics_are_interpolated_exactly():
     grid = phase_grid(EVENTS, 16)
     function = PhaseFunction(grid, grid.phase**3)
