@@ -78,17 +78,22 @@ def phase_portrait(portrait: PhasePortrait) -> Any:
     ]
     words = "Compression of the contact" if portrait.gap >= 0.0 else portrait.name.replace("_", " ")
     seen = np.append(portrait.position, [end for end in ends if lines and end > 0.0])
-    layout = {
-        "xaxis": {"title": {"text": f"{words} [{x_unit}]"}, "range": _around(x_factor * seen)},
-        "yaxis": {
-            "title": {"text": f"its velocity [{y_unit}]"},
-            "range": _around(y_factor * portrait.velocity),
-        },
-        "hovermode": "closest",
-        "height": 560,
-        "shapes": lines,
-    }
-    return figure(_portrait_title(portrait), traces, layout)
+    place = f"{words} [{x_unit}]", _around(x_factor * seen)
+    speed = f"its velocity [{y_unit}]", _around(y_factor * portrait.velocity)
+    return _over_place(_portrait_title(portrait), traces, place, speed, shapes=lines)
+
+
+def _over_place(
+    title: str,
+    traces: list[Trace],
+    place: tuple[str, list[float]],
+    speed: tuple[str, list[float]],
+    **more: Any,
+) -> Any:
+    """Draw velocities over places; both axes have a label and a range."""
+    x, y = ({"title": {"text": label}, "range": ends} for label, ends in (place, speed))
+    layout = {"xaxis": x, "yaxis": y, "hovermode": "closest", "height": 560, **more}
+    return figure(title, traces, layout)
 
 
 def _around(values: Any) -> list[float]:
@@ -174,19 +179,9 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
         "marker": {"size": 9 if last else 3.5, "color": PINION if last else TOTAL},
         "hovertemplate": f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>",
     }
-    layout = {
-        "xaxis": {
-            "title": {"text": f"{name.replace('_', ' ')} [{x_unit}]"},
-            "range": _window(x[shown], float(np.abs(x).max())),
-        },
-        "yaxis": {
-            "title": {"text": f"its velocity [{y_unit}]"},
-            "range": _window(y[shown], float(np.abs(y).max())),
-        },
-        "hovermode": "closest",
-        "height": 560,
-    }
-    return figure(_section_title(section), [trace], layout)
+    along = f"{name.replace('_', ' ')} [{x_unit}]", _window(x[shown], float(np.abs(x).max()))
+    across = f"its velocity [{y_unit}]", _window(y[shown], float(np.abs(y).max()))
+    return _over_place(_section_title(section), [trace], along, across)
 
 
 def _exponent_title(spectrum: LyapunovExponents) -> str:
