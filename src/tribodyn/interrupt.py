@@ -13,7 +13,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import copy_context
 from queue import SimpleQueue
 from types import TracebackType
@@ -180,7 +180,14 @@ def in_threads(
 
 def aside(work: Callable[[], Value]) -> Value:
     """Let a thread do several stoppable calls and what lies between them: it is begun once."""
-    return in_threads(lambda _: work(), (0,), 1)[0]
+    if not begins_thread():
+        return work()
+    with Threads(1) as threads:
+        future = threads.submit(work)
+        while not future.done():
+            with suppress(TimeoutError):
+                future.exception(_MOMENT)
+        return future.result()
 
 
 def stoppable(kernel: Callable[..., Any], *arguments: Any, brief: bool = False) -> Any:

@@ -20,13 +20,16 @@ from tribodyn.types import Array
 
 
 @nb.njit(**INNER)
-def twiddles(size: int, table: Array) -> None:
-    """Fill ``table[0]`` and ``table[1]`` with cosine and minus sine of 2 pi j/size."""
-    for j in range(size):
-        # The nearest of the eight directions first: cosine and sine of small angles are exact.
-        angle = 2.0 * math.pi * j / size
-        table[0, j] = math.cos(angle)
-        table[1, j] = -math.sin(angle)
+def _half_circle(size: int, cosine: Array, sine: Array) -> None:
+    """Fill in cosine and minus sine of pi j/size: the first quarter, and what reflects it."""
+    quarter, half = size // 4, size // 2
+    for j in range(quarter + 1):
+        angle = math.pi * j / size
+        cosine[j], sine[j] = math.cos(angle), -math.sin(angle)
+    for j in range(quarter + 1, half + 1):
+        cosine[j], sine[j] = -sine[half - j], -cosine[half - j]
+    for j in range(half + 1, size):
+        cosine[j], sine[j] = -cosine[size - j], sine[size - j]
 
 
 @nb.njit(**INNER)
@@ -139,10 +142,11 @@ def _antiderivative(x: float) -> float:
 @nb.njit(**OPEN)
 def influence(n: int, dx: float) -> Array:
     """Deflection at a distance of 0..n intervals from one node under unit pressure."""
-    kernel = np.empty(n + 1)
+    kernel, before = np.empty(n + 1), _antiderivative(-0.5 * dx)
     for m in range(n + 1):
-        difference = _antiderivative((m + 0.5) * dx) - _antiderivative((m - 0.5) * dx)
-        kernel[m] = -difference / math.pi
+        after = _antiderivative((m + 0.5) * dx)
+        kernel[m] = -(after - before) / math.pi
+        before = after
     return kernel
 
 
@@ -169,11 +173,12 @@ def film_plan(n: int, kernel: Array) -> Array:
     half = _half_size(n)
     plan = np.empty(2 * half + 2 * half + 2 * half + 2)
     table = plan[: 2 * half].reshape(2, half)
-    twiddles(half, table)
     turn = plan[2 * half : 4 * half].reshape(2, half)
-    for k in range(half):
-        angle = math.pi * k / half
-        turn[0, k], turn[1, k] = math.cos(angle), -math.sin(angle)
+    _half_circle(half, turn[0], turn[1])
+    # The rotations of the transform go twice as far in each step: once round.
+    for k in range(half // 2):
+        table[0, k], table[1, k] = turn[0, 2 * k], turn[1, 2 * k]
+        table[0, k + half // 2], table[1, k + half // 2] = -turn[0, 2 * k], -turn[1, 2 * k]
     # The influence is even: its transform of twice the length is real, and follows from the
     # packed transform of half of it.
     work = np.empty(4 * half)

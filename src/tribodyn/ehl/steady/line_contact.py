@@ -47,8 +47,10 @@ class SolverOptions:
     @classmethod
     def among(cls, arguments: Mapping[str, Any]) -> SolverOptions:
         """Options among the arguments of a function, by their names."""
-        names = {each.name for each in fields(cls)}
-        return cls(**{name: value for name, value in arguments.items() if name in names})
+        return cls(**{name: arguments[name] for name in _OPTIONS if name in arguments})
+
+
+_OPTIONS = tuple(each.name for each in fields(SolverOptions))
 
 
 def solve_line_contact(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 
@@ -202,27 +202,23 @@ def solve_problem(problem: ContactProblem, method: str) -> Verified:
 
 def _trials(
     problem: ContactProblem, method: str, engine: Engine
-) -> list[tuple[str, Callable[[], Outcome]]]:
+) -> Iterator[tuple[str, Callable[[], Outcome]]]:
     """What is tried, one after the other."""
+    yield method, partial(engine, problem)
     cold = replace(problem, start=None)
     first, last = first_intervals(cold), problem.nodes - 1
     other = "newton" if method == "multigrid" else "multigrid"
-    trials = [(method, lambda: engine(problem))]
     if problem.start is not None:
-        trials.append((method, lambda: engine(cold)))
+        yield method, partial(engine, cold)
     if first < last:
-        finer = replace(cold, coarsest=min(4 * first, last))
-        trials.append((method, lambda: engine(finer)))
+        yield method, partial(engine, replace(cold, coarsest=min(4 * first, last)))
     if first == last and problem.profile is None:
         # A grid may be too coarse to have any solution: see the inlet in `first_intervals`.
-        trials += [
-            (method, partial(engine, replace(cold, nodes=factor * last + 1)))
-            for factor in (2, 4, 8, 16)
-            if factor * last < MOST
-        ]
-    trials.append((other, lambda: ENGINES[other](cold)))
-    trials.append(("newton", lambda: continue_to(cold)))
-    return trials
+        for factor in (2, 4, 8, 16):
+            if factor * last < MOST:
+                yield method, partial(engine, replace(cold, nodes=factor * last + 1))
+    yield other, partial(ENGINES[other], cold)
+    yield "newton", partial(continue_to, cold)
 
 
 def _failure(problem: ContactProblem, log: list[str]) -> Problem:
