@@ -270,8 +270,6 @@ def _build(digest: str) -> Any:
             for item in range(states):
                 if not np.isfinite(w[item]):
                     return point
-        # Addresses hold only as long as their owners are in use.
-        kept[0] = work[0]
         if gathered is not None:
             for item in range(numbers):
                 gathered.moments[item] = moments[item]
@@ -281,6 +279,8 @@ def _build(digest: str) -> Any:
         if keep:
             for item in range(states):
                 kept_states[point * states + item] = w[item]
+        # Addresses hold only as long as their owners are in use: nothing is read after this.
+        kept[0] = work[0]
         return -1
 
     return march_block
