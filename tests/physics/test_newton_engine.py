@@ -49,6 +49,16 @@ def refined(n, dx, P, k, load, tail, fine):
     return refine(n, dx, P, k, load, tail, fine)
 
 
+@nb.njit
+def _coefficients_of(n, dx, lam, oil, P, H):
+    lneta, dlneta, rho, drho, eps = np.empty((5, n + 1))
+    cH, cP = np.empty((2, n + 1, 4))
+    oil_state(n, P, oil, lneta, dlneta, rho, drho)
+    mobility(n, H, lam, lneta, rho, eps)
+    coefficients(n, dx, 1.0, 0.0, P, H, dlneta, rho, drho, eps, cH, cP)
+    return cH, cP, eps, influence(n, dx)
+
+
 @pytest.fixture(scope="module")
 def contact():
     return solve_line_contact_moes(
@@ -59,12 +69,7 @@ def contact():
 def tangent(grid):
     """Coefficients, and the dense bordered tangent made of them."""
     n, k, dx = grid.n, grid.free, grid.dx
-    lneta, dlneta, rho, drho, eps = np.empty((5, n + 1))
-    cH, cP = np.empty((2, n + 1, 4))
-    oil_state(n, grid.P, grid.oil, lneta, dlneta, rho, drho)
-    mobility(n, grid.H, grid.lam, lneta, rho, eps)
-    coefficients(n, dx, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
-    K = influence(n, dx)
+    cH, cP, _, K = _coefficients_of(n, dx, grid.lam, grid.oil, grid.P, grid.H)
     J = np.zeros((k + 1, k + 1))
     columns = np.arange(1, k + 1)
     for i in range(1, k + 1):
@@ -122,13 +127,7 @@ def test_coarse_grid_saves_products(contact):
 
 
 def _coefficients(grid):
-    n = grid.n
-    lneta, dlneta, rho, drho, eps = np.empty((5, n + 1))
-    cH, cP = np.empty((2, n + 1, 4))
-    oil_state(n, grid.P, grid.oil, lneta, dlneta, rho, drho)
-    mobility(n, grid.H, grid.lam, lneta, rho, eps)
-    coefficients(n, grid.dx, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
-    return cH, cP, eps
+    return _coefficients_of(grid.n, grid.dx, grid.lam, grid.oil, grid.P, grid.H)[:3]
 
 
 @pytest.mark.slow

@@ -60,7 +60,8 @@ class Function:
     def compiled(self) -> bool:
         """Whether it is a compiled kernel."""
         return any(
-            re.search(r"\b(njit|jit|kept|guvectorize|vectorize|intrinsic)\b", d) for d in self.decorators
+            re.search(r"\b(njit|jit|kept|guvectorize|vectorize|intrinsic)\b", d)
+            for d in self.decorators
         )
 
     @property

@@ -25,10 +25,6 @@ JIT: dict[str, Any] = {
 #: For what only compiled functions call.
 INNER: dict[str, Any] = {**JIT, **INNER_OPTIONS}
 
-#: For what Python calls too.
-OPEN: dict[str, Any] = {**JIT, "no_cfunc_wrapper": True}
-
-
 #: Files whose code ends up in every compiled kernel of a film, beside its own.
 SOURCES: tuple[str, ...] = ("elementary", "reynolds", "film_sum", "factors", "linear_solver")
 SOURCES += ("transfer", "inlet", "newton")

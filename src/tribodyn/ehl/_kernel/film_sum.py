@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import INNER, OPEN
+from tribodyn.ehl._kernel.elementary import INNER
 from tribodyn.types import Array
 
 
@@ -139,7 +139,7 @@ def _antiderivative(x: float) -> float:
     return x * (math.log(abs(x)) - 1.0) if x != 0.0 else 0.0
 
 
-@nb.njit(**OPEN)
+@nb.njit(**INNER)
 def influence(n: int, dx: float) -> Array:
     """Deflection at a distance of 0..n intervals from one node under unit pressure."""
     kernel, before = np.empty(n + 1), _antiderivative(-0.5 * dx)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import INNER, OPEN, exp_, log_
+from tribodyn.ehl._kernel.elementary import INNER, exp_, log_
 from tribodyn.types import Array
 
 ISOVISCOUS, BARUS, ROELANDS = 0.0, 1.0, 2.0
@@ -22,7 +22,7 @@ ISOVISCOUS, BARUS, ROELANDS = 0.0, 1.0, 2.0
 LOWEST = -0.3
 
 
-@nb.njit(**OPEN)
+@nb.njit(**INNER)
 def oil_state(
     n: int, P: Array, oil: Array, lneta: Array, dlneta: Array, rho: Array, drho: Array
 ) -> None:
@@ -49,7 +49,7 @@ def oil_state(
 THINNEST = 1e-10
 
 
-@nb.njit(**OPEN)
+@nb.njit(**INNER)
 def mobility(n: int, H: Array, lam: float, lneta: Array, rho: Array, eps: Array) -> None:
     """``eps = rho H^3 / (eta lambda)``: flux per pressure gradient."""
     inverse = 1.0 / lam
@@ -83,7 +83,7 @@ def residual(
         G[i] = F[i] - F[i - 1] + squeeze * rho[i] * H[i] - history[i]
 
 
-@nb.njit(**OPEN)
+@nb.njit(**INNER)
 def coefficients(
     n: int,
     dx: float,

@@ -11,7 +11,7 @@ import numpy as np
 from tribodyn.compiled import announced, source_digest
 from tribodyn.compiled.kept import kept
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
-from tribodyn.ehl._kernel.film_sum import make_grid
+from tribodyn.ehl._kernel.film_sum import influence, make_grid
 from tribodyn.ehl._kernel.inlet import cold_start, free_nodes
 from tribodyn.ehl._kernel.linear_solver import (
     coarse_tangent,
@@ -29,7 +29,14 @@ from tribodyn.ehl._kernel.newton import (
     newton_level,
     newton_work,
 )
-from tribodyn.ehl._kernel.reynolds import fill_oil, fill_tangent, make_fields
+from tribodyn.ehl._kernel.reynolds import (
+    coefficients,
+    fill_oil,
+    fill_tangent,
+    make_fields,
+    mobility,
+    oil_state,
+)
 from tribodyn.ehl._kernel.transfer import central, refine
 from tribodyn.types import Array, Index
 
@@ -171,6 +178,35 @@ def _build_tangent(digest: str) -> Any:
     return tangent_of_film
 
 
+def _build_parts(digest: str) -> Any:
+    @kept(**JIT)
+    def linear_parts(
+        n: int, start: float, dx: float, lam: float, oil: Array, k: int, P: Array, H: Array
+    ) -> tuple[Array, ...]:
+        """What the equations of small vibrations are made of, dense.
+
+        Coefficients of the flow balance by film and by pressure, density and its slope, film at
+        every node by the pressures at 0..k and by the offset, and the central one of each.
+        """
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        lneta, dlneta, rho, drho, eps = np.empty((5, n + 1))
+        cH, cP = np.empty((2, n + 1, 4))
+        oil_state(n, P, oil, lneta, dlneta, rho, drho)
+        mobility(n, H, lam, lneta, rho, eps)
+        coefficients(n, dx, 1.0, 0.0, P, H, dlneta, rho, drho, eps, cH, cP)
+        pressed = influence(n, dx)
+        film, middle = np.ones((k + 2, n + 1)), np.empty(k + 2)
+        for j in range(k + 2):
+            if j <= k:
+                for i in range(n + 1):
+                    film[j, i] = pressed[abs(i - j)]
+            middle[j] = central(n, start, dx, film[j])
+        return cH, cP, rho, drho, film, middle
+
+    return linear_parts
+
+
 _DIGEST = source_digest(Path(__file__).parent, (*SOURCES, "steady"))
 newton_solve = announced(_build(_DIGEST), "the film solver", "half a minute")
 tangent_of_film = announced(_build_tangent(_DIGEST), "the tangent of a film", "ten seconds")
+linear_parts = announced(_build_parts(_DIGEST), "small vibrations of a film", "three seconds")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import INNER, OPEN
+from tribodyn.ehl._kernel.elementary import INNER
 from tribodyn.types import Array
 
 
@@ -76,7 +76,7 @@ def refine(n: int, dx: float, P: Array, k: int, load: float, tail: float, fine: 
     return last
 
 
-@nb.njit(**OPEN)
+@nb.njit(**INNER)
 def central(n: int, start: float, dx: float, H: Array) -> float:
     """Film at X = 0 by cubic interpolation on a grid that begins at ``start``."""
     t = -start / dx

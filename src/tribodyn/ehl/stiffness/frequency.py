@@ -103,20 +103,12 @@ class _Linear:
 
 
 def _linearize(grid: DiscreteContact, inlet: InletChange) -> _Linear:
-    from tribodyn.ehl._kernel.film_sum import influence
-    from tribodyn.ehl._kernel.reynolds import coefficients, mobility, oil_state
-    from tribodyn.ehl._kernel.transfer import central
+    from tribodyn.ehl._kernel.steady import linear_parts
 
     n, k, dx, start = grid.n, grid.free, grid.dx, float(grid.X[0])
-    lneta, dlneta, rho, drho, eps = np.empty((5, n + 1))
-    cH, cP = np.empty((2, n + 1, 4))
-    oil_state(n, grid.P, grid.oil, lneta, dlneta, rho, drho)
-    mobility(n, grid.H, grid.lam, lneta, rho, eps)
-    coefficients(n, dx, 1.0, 0.0, grid.P, grid.H, dlneta, rho, drho, eps, cH, cP)
-    node = np.arange(n + 1)
-    # Film at every node by the pressures at 0..k and by the offset.
-    pressed = influence(n, dx)[np.abs(node[:, None] - node[: k + 1])]
-    film = np.column_stack((pressed, np.ones(n + 1)))
+    parts = linear_parts(n, start, dx, grid.lam, grid.oil, k, grid.P, grid.H)
+    cH, cP, rho, drho, film, middle = parts
+    film = film.T
     rows = np.arange(1, k + 1)
     steady, squeeze = np.zeros((2, k + 2, k + 2))
     for s in range(4):
@@ -129,7 +121,6 @@ def _linearize(grid: DiscreteContact, inlet: InletChange) -> _Linear:
     steady[0, 0] = 1.0
     steady[-1, : k + 1] = dx
     steady[-1, 0] = 0.5 * dx
-    middle = np.array([central(n, start, dx, column.copy()) for column in film.T])
     return _Linear(steady, squeeze, middle, inlet)
 
 
