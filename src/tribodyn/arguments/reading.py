@@ -35,6 +35,9 @@ _HOMES = (str(Path(__file__).parents[1]), *_PATHS, "<")
 _PACKAGES = re.compile(r"[/\\](site|dist)-packages[/\\]")
 #: Parameters of functions that leave files behind.
 _WRITES = {"path", "directory", "folder", "place", "force"}
+#: What NumPy does about numbers out of range, whatever the user's script has set: what is computed
+#: here rounds to zero where it does so on purpose.
+_USUAL: dict[str, Any] = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
 _REFUSED = (TypeError, ValueError, OverflowError)
 #: Modules of the package, among those that call what is guarded.
 _INSIDE = f"{__name__.partition('.')[0]}."
@@ -222,7 +225,8 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
         try:
             if not reader.fitting(args, named):
                 args, named = reader.read(args, named)
-            return function(*args, **named)
+            with np.errstate(**_USUAL):
+                return function(*args, **named)
         except Exception as error:
             if _is_own(error):
                 raise

@@ -127,6 +127,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     arguments : sequence of str, optional
         Words after the program's name; those of the process by default.
     """
+    _open_streams()
     here = threading.current_thread() is threading.main_thread()
     before = signal.getsignal(signal.SIGINT)
     heard = here and before is signal.default_int_handler
@@ -140,6 +141,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
         # Called by a program, which goes on and listens to Ctrl-C as before.
         signal.signal(signal.SIGINT, before)
     sys.exit(code)
+
+
+def _open_streams() -> None:
+    """Have streams that take every text: where there is none, and where letters are missing."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # Python began with it closed.
+            setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115 -- for the whole process
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
 
 
 def call(arguments: Sequence[str]) -> int:

@@ -20,7 +20,8 @@ def say(text: str) -> None:
 
 def say_json(data: Any) -> None:
     """Write one JSON value to stdout."""
-    say(json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False))
+    every = (getattr(sys.stdout, "encoding", None) or "utf-8").lower().startswith("utf")
+    say(json.dumps(data, indent=2, ensure_ascii=not every, allow_nan=False))
 
 
 def tell(text: str) -> None:

@@ -1,0 +1,45 @@
+"""Where the words of the command line go: consoles without some letters, and none at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+_NO_OUTPUT = "import sys; sys.stdout = sys.stderr = None; from tribodyn.cli import main; main({!r})"
+
+
+def _run(folder: Path, *words: str, encoding: str) -> subprocess.CompletedProcess[bytes]:
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    call = [sys.executable, "-m", "tribodyn", *words]
+    return subprocess.run(call, env=environment, capture_output=True, check=False, cwd=folder)
+
+
+@pytest.mark.parametrize(("encoding", "shown"), [("ascii", b"R?der"), ("cp1252", b"R\xe4der")])
+def test_letters_that_a_console_lacks_are_replaced(
+    tmp_path: Path, encoding: str, shown: bytes
+) -> None:
+    done = _run(tmp_path, "new", "Räder.toml", encoding=encoding)
+    assert done.returncode == 0, done.stderr
+    assert shown in done.stdout
+    assert (tmp_path / "Räder.toml").is_file()
+
+
+def test_json_is_whole_on_every_console(tmp_path: Path) -> None:
+    told = [
+        _run(tmp_path, "check", "Räder.toml", "--json", encoding=encoding).stdout
+        for encoding in ("utf-8", "ascii")
+    ]
+    plain, ascii_ = (json.loads(text) for text in told)
+    assert plain == ascii_
+    assert "Räder.toml" in json.dumps(plain, ensure_ascii=False)
+
+
+@pytest.mark.parametrize(("words", "code"), [(["cases"], 0), (["run", "no-such-case"], 2)])
+def test_without_any_output_the_exit_code_remains(words: list[str], code: int) -> None:
+    done = subprocess.run([sys.executable, "-c", _NO_OUTPUT.format(words)], check=False)
+    assert done.returncode == code
