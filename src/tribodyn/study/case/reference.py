@@ -53,7 +53,7 @@ def reference_tables() -> str:
 
 def start_toml() -> str:
     """Write a short case file of no particular gears: required keys and recommended models."""
-    text = files("tribodyn.study.case").joinpath("start.toml").read_text(encoding="utf-8")
+    text = files("tribodyn.study.case").joinpath("texts", "start.toml").read_text(encoding="utf-8")
     lines: list[str] = []
     section: type[Section] | None = Case
     for line in text.splitlines():
@@ -106,7 +106,9 @@ def warning_meanings() -> Mapping[str, str]:
     """Meaning of every warning by its code."""
     import tomllib
 
-    text = files("tribodyn.study.case").joinpath("warnings.toml").read_text(encoding="utf-8")
+    text = (
+        files("tribodyn.study.case").joinpath("texts", "warnings.toml").read_text(encoding="utf-8")
+    )
     return tomllib.loads(text)["warnings"]  # type: ignore[no-any-return]
 
 
@@ -115,7 +117,7 @@ def explanations() -> Mapping[str, Mapping[str, str]]:
     """Equations, ranges of use, remedies and pages by name."""
     import tomllib
 
-    place = files("tribodyn.study.case").joinpath("explanations.toml")
+    place = files("tribodyn.study.case").joinpath("texts", "explanations.toml")
     return tomllib.loads(place.read_text(encoding="utf-8"))
 
 

@@ -33,7 +33,7 @@ class Word(NamedTuple):
 def _words() -> dict[str, Word]:
     import tomllib
 
-    text = files("tribodyn.study.case").joinpath("words.toml").read_text(encoding="utf-8")
+    text = files("tribodyn.study.case").joinpath("texts", "words.toml").read_text(encoding="utf-8")
     entries = tomllib.loads(text).values()
     return {
         word: Word(**{k: v for k, v in entry.items() if k != "words"})
