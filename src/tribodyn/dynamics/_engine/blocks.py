@@ -16,7 +16,7 @@ from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import Failed, newmark_failure, runaway, unparted_step
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.program import lane_load
+from tribodyn.dynamics.equations.program import LaneRows, lane_load
 from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
@@ -235,10 +235,11 @@ class Run:
 
         index = block.index
         program = self.programs[self.member[index[0]]]
-        rows = program.rows
+        rows: Array | LaneRows = program.rows
         width, double = state.shape
         if self.compiled.members and width > 1:
-            rows = np.stack([self.programs[number].rows for number in self.member[index]], axis=-1)
+            tables = [self.programs[number].rows for number in self.member[index]]
+            rows = LaneRows.of(tables, int(program.code[2]))
         states = np.zeros((0, double, width)) if record is None else record
         sums = BlockMoments(statistics, block)
         lanes = (0.0,) * width, self.method, program, rows, self.period[index], self.load[index]

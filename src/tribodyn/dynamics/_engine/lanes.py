@@ -185,21 +185,6 @@ def _indicator(comparison: str) -> Any:
 
 
 @intrinsic
-def open_rows(typing: Any, rows: Any) -> Any:
-    """Tell where a row table begins, so that its type tells whether lanes have their own rows."""
-    place = types.CPointer(rows.dtype)
-    kind = place if rows.ndim == 1 else types.UniTuple(place, 1)
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        data = _data(context, builder, signature.args[0], arguments[0])
-        if isinstance(signature.return_type, types.CPointer):
-            return data
-        return context.make_tuple(builder, signature.return_type, [data])
-
-    return kind(rows), generate
-
-
-@intrinsic
 def entry(typing: Any, lanes: Any, rows: Any, item: Any) -> Any:
     """Read one item of a row table: a number, or one per lane where lanes have their own rows."""
     own = isinstance(rows, types.BaseTuple)

@@ -24,7 +24,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.crossing import WIDTH, most_splits, split_step
-from tribodyn.dynamics._engine.lanes import address, ahead, on_line, open_rows
+from tribodyn.dynamics._engine.lanes import address, ahead, load, on_line, store
 from tribodyn.dynamics._engine.method import (
     INNER,
     JIT,
@@ -44,7 +44,7 @@ from tribodyn.dynamics._engine.moments import (
     gather,
     gather_parts,
 )
-from tribodyn.dynamics.equations.program import Program
+from tribodyn.dynamics.equations.program import LaneRows, Program
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
@@ -65,6 +65,54 @@ def put_lane(lane: int, width: int, first: int, last: int, w: Array, single: Arr
     """Copy slots of one lane back into the block."""
     for slot in range(first, last):
         w[slot * width + lane] = single[slot]
+
+
+def _row_slots(columns: int, rows: Any) -> int:
+    """Slots for the rows of a step."""
+    raise TypeError("chosen by type where it is compiled")
+
+
+@overload(_row_slots, inline="always")
+def _choose_slots(columns, rows):  # type: ignore[no-untyped-def]
+    if isinstance(rows, types.BaseTuple):
+        return lambda columns, rows: 3 * columns
+    return lambda columns, rows: 0
+
+
+def _open_rows(rows: Any, three: Any) -> Any:
+    """What :func:`~tribodyn.dynamics._engine.lanes.entry` reads; its type tells whose rows."""
+    raise TypeError("chosen by type where it is compiled")
+
+
+@overload(_open_rows, inline="always")
+def _choose_table(rows, three):  # type: ignore[no-untyped-def]
+    if isinstance(rows, types.BaseTuple):
+        return lambda rows, three: (three,)
+    return lambda rows, three: address(rows)
+
+
+def _rows_at(lanes: Any, columns: int, rows: Any, step: int, three: Any) -> int:
+    """Where the rows of a step begin; steps that are looked at begin with the first."""
+    raise TypeError("chosen by type where it is compiled")
+
+
+@overload(_rows_at, inline="always")
+def _choose_place(lanes, columns, rows, step, three):  # type: ignore[no-untyped-def]
+    if not isinstance(rows, types.BaseTuple):
+        return lambda lanes, columns, rows, step, three: 3 * columns * step
+
+    def put_rows(lanes, columns, rows, step, three):  # type: ignore[no-untyped-def]
+        places, varying, count = address(rows.places), address(rows.varying), rows.places.size
+        if step == 0:
+            for item in range(3 * columns * len(lanes)):
+                three[item] = rows.first[item % rows.first.size]
+        for node in range(3):
+            row = (rows.nodes[0] * step + rows.nodes[1 + node]) * count
+            for item in range(count):
+                store(three, node * columns + places[item], load(lanes, varying, row + item))
+        return I64(0)
+
+    return put_rows
 
 
 def _rows_of_lane(law: Law, base: int, width: int, lane: int, gathered: Any) -> tuple[Law, int]:
@@ -150,7 +198,7 @@ def _build(digest: str) -> Any:
         lanes: Any,
         method: Any,
         program: Program,
-        rows: Array,
+        rows: Array | LaneRows,
         period: Array,
         load: Array,
         state: Array,
@@ -167,8 +215,11 @@ def _build(digest: str) -> Any:
         """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         share, again = program.width, program.restart
-        law = Law(address(program.code), address(program.reads), open_rows(rows))
-        s, n, columns, width = slots_of(law.code), law.code[0], law.code[2], len(lanes)
+        columns, width = program.code[2], len(lanes)
+        held = np.empty(_row_slots(columns, rows) * width + 8)
+        three = on_line(address(held))
+        law = Law(address(program.code), address(program.reads), _open_rows(rows, three))
+        s, n = slots_of(law.code), law.code[0]
         own, lasting, kinds = own_slots(method, law)
         # What statistics need of a step lies behind the slots of the method.
         seen = _seen_of(gathered, s.end + own)
@@ -189,9 +240,10 @@ def _build(digest: str) -> Any:
         parts = address(kept)
         search, others = ahead(parts, listed), ahead(parts, most)
         set_up(width, law.code, period, load, state, w)
+        base = _rows_at(lanes, columns, rows, I64(0), three)
         for lane in range(width if own > 0 else 0):
             take_lane(lane, width, slots, w, single)
-            alone, first = _rows_of_lane(law, I64(0), width, lane, room)
+            alone, first = _rows_of_lane(law, base, width, lane, room)
             for kind in range(kinds):
                 prepare(method, alone, first, period[lane], kind, single)
             put_lane(lane, width, s.end, slots, w, single)
@@ -206,7 +258,7 @@ def _build(digest: str) -> Any:
             for r in range(share.size):
                 if stop[0] != 0:
                     return STOPPED
-                base = 3 * columns * r
+                base = _rows_at(lanes, columns, rows, r, three)
                 for lane in range(width):
                     w[s.h * width + lane] = period[lane] * share[r]
                 if gathered is not None:
@@ -280,7 +332,7 @@ def _build(digest: str) -> Any:
             for item in range(states):
                 kept_states[point * states + item] = w[item]
         # Addresses hold only as long as their owners are in use: nothing is read after this.
-        kept[0] = work[0]
+        kept[0] = work[0] + held[0]
         return -1
 
     return march_block

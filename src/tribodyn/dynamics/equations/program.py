@@ -8,6 +8,7 @@ Lanes that scale their contacts have the same rows: the factors are numbers of t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -39,6 +40,50 @@ class Program(NamedTuple):
         """Where a lane keeps what in the work buffer."""
         contacts = int(self.code[1])
         return lay_out(int(self.code[0]), contacts, int(self.code[4 + 4 * contacts]))
+
+
+class LaneRows(NamedTuple):
+    """Rows of a block of lanes that have their own, in the order in which the kernel reads.
+
+    What does not vary along the cycle is there once: rows of many lanes stream from memory.
+    """
+
+    first: Array  #: a row of every lane, (columns, lanes)
+    places: Index  #: columns that vary
+    varying: Array  #: their factors, (nodes, places, lanes)
+    nodes: Index  #: number of nodes of a step, and which are its left end, middle and right end
+
+    @classmethod
+    def of(cls, tables: Sequence[Array], columns: int) -> LaneRows:
+        """Rows of lanes that have tables."""
+        rows = [table.reshape(-1, columns) for table in tables]
+        places = np.flatnonzero(np.any([np.any(own != own[0], axis=0) for own in rows], axis=0))
+        first = np.stack([own[0] for own in rows], axis=-1)
+        varying = np.stack([own[:, places] for own in rows], axis=-1)
+        return cls(first.ravel(), places, varying.ravel(), _EVERY)
+
+    def every_other(self) -> LaneRows:
+        """Rows of the steps of which these have the halves."""
+        return self._replace(nodes=_EVERY_OTHER)
+
+    def take(self, lanes: Index, width: int) -> LaneRows:
+        """Rows of some of the lanes, of which there are ``width``."""
+        first, varying = (part.reshape(-1, width)[:, lanes] for part in (self.first, self.varying))
+        return self._replace(first=first.ravel(), varying=varying.ravel())
+
+    def table(self, lane: int, width: int, steps: int, room: Room = np.empty) -> Array:
+        """Rows of one of ``width`` lanes with all that is in them."""
+        first, varying = (part.reshape(-1, width)[:, lane] for part in (self.first, self.varying))
+        cells = varying.reshape(steps, self.nodes[0], self.places.size)
+        rows = room((steps, 3, first.size))
+        rows.reshape(3 * steps, -1)[...] = first
+        for item, place in enumerate(self.places):
+            rows[:, :, place] = cells[:, self.nodes[1:], item]
+        return rows.reshape(-1)
+
+
+#: Nodes of all steps, and of those of which every two have been made of one.
+_EVERY, _EVERY_OTHER = np.array([3, 0, 1, 2]), np.array([6, 0, 2, 5])
 
 
 class Slots(NamedTuple):
@@ -120,32 +165,39 @@ class _Terms:
 
     def rows(self) -> Array:
         """All factors of a row side by side."""
-        wide = [np.broadcast_to(values, self.shape) for values in self.factors or [0.0]]
-        rows = np.empty((*self.shape, len(wide)))
-        for lead in np.ndindex(*self.shape[:-2]):
-            _fill(rows[lead], [values[lead] for values in wide])
-        return rows.reshape(*self.shape[:-2], -1)
+        columns = [np.broadcast_to(values, self.shape) for values in self.factors or [0.0]]
+        table = np.empty((*self.shape, len(columns)))
+        varying = [item for item, values in enumerate(columns) if any(values.strides)]
+        # Whole rows at a time, with what is constant in its place.
+        table.reshape(3 * len(table), -1)[...] = [values[0, 0] for values in columns]
+        for item in varying:
+            table[:, :, item] = columns[item]
+        return table.reshape(-1)
 
-    def rows_of_lanes(self, blocks: Sequence[Index], room: Room) -> Array:
-        """The same (blocks, items, lanes), each lane of a block with the rows of its system."""
-        wide = [np.broadcast_to(values, self.shape) for values in self.factors or [0.0]]
-        rows = room((len(blocks), *self.shape[1:], len(wide), len(blocks[0])))
-        for table, lanes in zip(rows, blocks, strict=True):
-            few = [once(values) for values in wide]
+    def rows_of_lanes(self, blocks: Sequence[Index], room: Room) -> list[LaneRows]:
+        """The same of blocks of lanes, each lane with the rows of its system."""
+        columns = [once(np.broadcast_to(values, self.shape)) for values in self.factors or [0.0]]
+        places = np.flatnonzero([_varies(values) for values in columns])
+        count = math.prod(self.shape[1:])
+        wide = [columns[place].reshape(-1, count) for place in places]
+        tables = room((len(blocks), count, places.size, len(blocks[0])))
+        rows = []
+        for table, lanes in zip(tables, blocks, strict=True):
             own = slice(lanes[0], lanes[-1] + 1) if np.all(np.diff(lanes) == 1) else lanes
-            some = [values[own] if len(values) > 1 else values for values in few]
-            shape = len(lanes), *self.shape[1:]
-            _fill(table, [np.moveaxis(np.broadcast_to(each, shape), 0, -1) for each in some])
-        return rows.reshape(len(blocks), -1, rows.shape[-1])
+            for item, values in enumerate(wide):
+                table[:, item] = (values[own] if len(values) > 1 else values).T
+            first = np.stack(
+                [np.broadcast_to(values[:, 0, 0], self.shape[:1]) for values in columns]
+            )
+            rows.append(LaneRows(first[:, lanes].ravel(), places, table.reshape(-1), _EVERY))
+        return rows
 
 
-def _fill(table: Array, columns: Sequence[Array]) -> None:
-    """Write columns (steps, 3, ...) into a table (steps, 3, columns, ...)."""
-    varying = [item for item, values in enumerate(columns) if any(values.strides[:2])]
-    # Whole rows at a time, with what is constant in its place.
-    table.reshape(3 * len(table), -1)[...] = np.stack([values[0, 0] for values in columns]).ravel()
-    for item in varying:
-        table[:, :, item] = columns[item]
+def _varies(values: Array) -> bool:
+    """Whether factors (systems, steps, 3) of a term change along the cycle."""
+    # Few rows tell it of most that do.
+    few = values[:, :: max(1, values.shape[1] // 16)]
+    return any(bool(np.any(some != values[:, :1, :1])) for some in (few, values))
 
 
 def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> list[int]:
@@ -220,33 +272,46 @@ def build_program(
     scaled: bool = False,
     split: bool = False,
     pattern: Mask | None = None,
-    blocks: Sequence[Index] = (),
-    room: Room = np.empty,
 ) -> Program:
-    """Flatten a system on its grid; or several alike, whose rows have a first axis more.
+    """Flatten a system on its grid."""
+    terms, program = _flattened(system, grid, nodes, scaled, split, pattern)
+    return program._replace(rows=terms.rows())
 
-    With the systems of lanes, in ``blocks``, that axis is one of the blocks, the last of the lanes;
-    ``room`` then gives the array for the rows.
+
+def program_of_lanes(
+    system: System, grid: Grid, nodes: Nodes, blocks: Sequence[Index], room: Room
+) -> tuple[Program, list[LaneRows]]:
+    """Flatten systems alike, whose rows have a first axis more; ``room`` gives the memory.
+
+    The program has no rows and a constant load for each system; blocks have the rows of their
+    lanes, whose systems are in ``blocks``.
     """
+    terms, program = _flattened(system, grid, nodes, False, False, None)
+    return program, terms.rows_of_lanes(blocks, room)
+
+
+def _flattened(
+    system: System, grid: Grid, nodes: Nodes, scaled: bool, split: bool, pattern: Mask | None
+) -> tuple[_Terms, Program]:
+    """Terms of a system, or of several alike, and the program without its rows."""
     size, contacts = system.size, len(system.contacts)
     slots = lay_out(size, contacts, len(system.frictions) + (contacts if split else 0))
     terms = _Terms(nodes.phase.shape, pattern)
     lists = _contact_terms(system, nodes, terms, 2 * int(scaled))
     lists += _friction_terms(system, nodes, terms, slots, split)
     own, varies = _coordinate_terms(system, nodes, terms, slots, split)
-    rows = terms.rows_of_lanes(blocks, room) if blocks else terms.rows()
     relative = np.array(terms.slots, dtype=np.int64)
     # State slots move with the buffer that a stage reads; all others stay.
     moving = (relative < 2 * size).astype(np.int64)
     reads = np.concatenate([relative + moving * buffer * 2 * size for buffer in range(3)])
     load = nodes.force[..., 0, 0, :] @ system.inverse_mass.T
-    return Program(
+    return terms, Program(
         code=np.array(
             [size, contacts, max(len(terms.factors), 1), relative.size, *lists, *own],
             dtype=np.int64,
         ),
         reads=reads,
-        rows=rows,
+        rows=np.empty(0),
         width=grid.width,
         restart=grid.after_event,
         constant_load=np.where(varies, 0.0, load),

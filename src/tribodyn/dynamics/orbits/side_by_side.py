@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import OWN_ROWS, WIDTH, LaneBlock, lane_blocks
+from tribodyn.dynamics._engine.blocks import WIDTH, LaneBlock, lane_blocks
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics.equations.alike import (
     evaluate_alike,
@@ -25,12 +25,11 @@ from tribodyn.dynamics.equations.alike import (
     groups_alike,
     rates_alike,
     rows_of,
-    rows_of_every_other,
 )
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, halved_grid
-from tribodyn.dynamics.equations.program import Program, Room, build_program
+from tribodyn.dynamics.equations.program import LaneRows, Program, Room, program_of_lanes
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import (
@@ -48,7 +47,7 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Steps of all systems that are marched side by side: rows of more are far from the core.
 _STEPS = 16384
-#: Systems from which on four march side by side: few are no reason to compile that.
+#: Systems that march side by side: fewer are no reason to compile that.
 _MANY = 8
 
 
@@ -102,31 +101,35 @@ def _new(name: str, shape: tuple[int, ...]) -> Array:
 class _Lanes(NamedTuple):
     """One motion of each of systems alike, several side by side as lanes of a block."""
 
-    program: Program  #: with rows (blocks, items, lanes) and constant loads (p, n)
+    program: Program  #: without rows, with constant loads (p, n)
+    rows: list[LaneRows]  #: of every block
     blocks: list[LaneBlock]
 
     @classmethod
     def of(cls, system: System, grid: Grid, nodes: Nodes, room: Room) -> _Lanes:
         """Lanes of systems alike on a grid."""
         count = len(nodes.stiffness)
-        blocks = lane_blocks(count, OWN_ROWS if count >= _MANY else 1)
+        blocks = lane_blocks(count, _MANY if count >= _MANY else 1)
         lanes = [block.index for block in blocks]
-        return cls(build_program(system, grid, nodes, blocks=lanes, room=room), blocks)
+        return cls(*program_of_lanes(system, grid, nodes, lanes, room), blocks)
 
-    def every_other(self, grid: Grid, room: Room) -> _Lanes:
+    def every_other(self, grid: Grid) -> _Lanes:
         """The same on the grid of which this one has the halves."""
-        rows = self.program.rows
-        each = rows.reshape(len(rows), 2 * grid.steps, 3, -1)
-        taken = rows_of_every_other(each, grid.steps, 1, room)
-        own = taken.reshape(len(rows), -1, rows.shape[-1])
-        program = self.program._replace(rows=own, width=grid.width, restart=grid.after_event)
-        return _Lanes(program, self.blocks)
+        program = self.program._replace(width=grid.width, restart=grid.after_event)
+        return _Lanes(program, [rows.every_other() for rows in self.rows], self.blocks)
+
+    def alone(self, number: int, room: Room = np.empty) -> Program:
+        """Program of one of the systems, with its rows."""
+        width = self.blocks[0].index.size
+        block, lane = divmod(number, width)
+        rows = self.rows[block].table(lane, width, self.program.width.size, room)
+        return self.program._replace(rows=rows, constant_load=self.program.constant_load[number])
 
     def march(self, period: Array, load: Array, state: Array, which: Index) -> Iterator[_Motion]:
         """Motions of some systems from states (p, 1, 2 n); NaN where one ends."""
         wanted = np.zeros(len(period), dtype=bool)
         wanted[which] = True
-        for rows, block in zip(self.program.rows, self.blocks, strict=True):
+        for rows, block in zip(self.rows, self.blocks, strict=True):
             asked = wanted[block.index]
             if not asked.any():
                 continue
@@ -141,14 +144,16 @@ class _Lanes(NamedTuple):
                 yield int(block.index[lane]), own
 
     def _marched(
-        self, rows: Array, lanes: Index, index: Index, period: Array, load: Array, state: Array
+        self, rows: LaneRows, lanes: Index, index: Index, period: Array, load: Array, state: Array
     ) -> Array:
         """States (rows, 2 n, lanes) of lanes of a block; NaN if any of them ends."""
-        program = self.program
-        flat = program._replace(rows=rows.reshape(-1), constant_load=program.constant_load[0])
-        own, numbers = rows if np.all(np.diff(lanes) == 1) else rows[:, lanes].copy(), index[lanes]
-        own = flat.rows if lanes.size == 1 else own
-        return _states(flat, own, period[numbers], load[numbers], state[numbers, 0])
+        numbers, program = index[lanes], self.program
+        if lanes.size == 1:
+            program = self.alone(int(numbers[0]))
+            return _states(program, program.rows, period[numbers], load[numbers], state[numbers, 0])
+        own = rows if np.all(np.diff(lanes) == 1) else rows.take(lanes, lanes.size)
+        program = program._replace(constant_load=program.constant_load[0])
+        return _states(program, own, period[numbers], load[numbers], state[numbers, 0])
 
 
 class _Group:
@@ -166,7 +171,7 @@ class _Group:
         fine = halved_grid(grid)
         nodes = evaluate_alike(systems, fine)
         self.halved = _Lanes.of(self.system, fine, nodes, partial(room, "halved"))
-        self.whole = self.halved.every_other(grid, partial(room, "whole"))
+        self.whole, self._room = self.halved.every_other(grid), partial(room, "alone")
         self.grid, self.nodes = grid, every_other(nodes, grid)
         self.step_numbers = self._step_numbers()
         shared = orbit_coordinates(self.compiled(0), 1.0)
@@ -175,17 +180,11 @@ class _Group:
         self.balance = Balance.of(self.system, shared)
 
     def compiled(self, number: int) -> Compiled:
-        """One of the systems."""
+        """One of the systems, without its rows, which nothing but a march reads."""
         step_number, nodes = float(self.step_numbers[number]), rows_of(self.nodes, number)
-        system, program = self.systems[number], self.program_of(number)
-        return Compiled(system, self.grid, nodes, program, step_number)
-
-    def program_of(self, number: int) -> Program:
-        """Program of one of the systems."""
         program = self.whole.program
-        block, lane = divmod(number, program.rows.shape[-1])
-        rows, load = program.rows[block, :, lane], program.constant_load[number]
-        return program._replace(rows=rows, constant_load=load)
+        program = program._replace(constant_load=program.constant_load[number])
+        return Compiled(self.systems[number], self.grid, nodes, program, step_number)
 
     def _step_numbers(self) -> Array:
         """Products ``omega_max * dt`` of the widest steps."""
@@ -211,13 +210,9 @@ class _Group:
         """Images of many points (p, lanes, k) of each system; ``keep`` has their states first."""
 
         def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
-            width = self.whole.program.rows.shape[-1]
             for number, own in enumerate(state):
-                if number % width == 0:  # which reads a table once for all of its lanes
-                    tables = np.ascontiguousarray(self.whole.program.rows[number // width].T)
-                program, lanes = self.program_of(number), len(own)
+                program, lanes = self.whole.alone(number, self._room), len(own)
                 times, forces = np.full(lanes, period[number]), load[number]
-                program = program._replace(rows=tables[number % width])
                 blocks = [
                     _states(program, program.rows, times[at], forces[at], own[at])
                     for at in (slice(i, i + WIDTH) for i in range(0, lanes, WIDTH))
@@ -256,7 +251,9 @@ class _Group:
         return np.concatenate((image, points[..., -1:] - gained[..., None]), axis=-1)
 
 
-def _states(program: Program, rows: Array, period: Array, load: Array, start: Array) -> Array:
+def _states(
+    program: Program, rows: Array | LaneRows, period: Array, load: Array, start: Array
+) -> Array:
     """States (rows, 2 n, lanes) of a block of lanes over a mesh cycle; NaN if any of them ends."""
     from tribodyn.dynamics._engine.marching import march_block
 
