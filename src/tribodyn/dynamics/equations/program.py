@@ -71,12 +71,11 @@ class LaneRows(NamedTuple):
         first, varying = (part.reshape(-1, width)[:, lanes] for part in (self.first, self.varying))
         return self._replace(first=first.ravel(), varying=varying.ravel())
 
-    def table(self, lane: int, width: int, steps: int, room: Room = np.empty) -> Array:
-        """Rows of one of ``width`` lanes with all that is in them."""
-        first, varying = (part.reshape(-1, width)[:, lane] for part in (self.first, self.varying))
-        cells = varying.reshape(steps, self.nodes[0], self.places.size)
-        rows = room((steps, 3, first.size))
-        rows.reshape(3 * steps, -1)[...] = first
+    def table(self, steps: int) -> Array:
+        """Rows of the only lane with all that is in them."""
+        rows = np.empty((steps, 3, self.first.size))
+        rows[...] = self.first
+        cells = self.varying.reshape(steps, self.nodes[0], self.places.size)
         for item, place in enumerate(self.places):
             rows[:, :, place] = cells[:, self.nodes[1:], item]
         return rows.reshape(-1)

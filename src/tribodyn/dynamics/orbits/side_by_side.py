@@ -46,7 +46,7 @@ from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Steps of all systems that are marched side by side: rows of more are far from the core.
-_STEPS = 16384
+_STEPS = 32768
 #: Systems that march side by side: fewer are no reason to compile that.
 _MANY = 8
 
@@ -118,12 +118,25 @@ class _Lanes(NamedTuple):
         program = self.program._replace(width=grid.width, restart=grid.after_event)
         return _Lanes(program, [rows.every_other() for rows in self.rows], self.blocks)
 
-    def alone(self, number: int, room: Room = np.empty) -> Program:
-        """Program of one of the systems, with its rows."""
-        width = self.blocks[0].index.size
-        block, lane = divmod(number, width)
-        rows = self.rows[block].table(lane, width, self.program.width.size, room)
-        return self.program._replace(rows=rows, constant_load=self.program.constant_load[number])
+    def each_alone(self, room: Room = np.empty) -> Iterator[Program]:
+        """Programs of all systems, with their rows, each in the memory of the one before."""
+        program, (places, nodes) = self.program, self.rows[0][1:4:2]
+        steps, columns, width = program.width.size, int(program.code[2]), self.blocks[0].index.size
+        table = room((steps, 3, columns))
+        constant = np.full(columns, np.nan)
+        for rows, block in zip(self.rows, self.blocks, strict=True):
+            firsts = rows.first.reshape(columns, width).T.copy()
+            firsts[:, places] = 0.0
+            cells = rows.varying.reshape(steps, int(nodes[0]), places.size, width)
+            varying = np.ascontiguousarray(cells[:, nodes[1:]].transpose(3, 2, 0, 1))
+            for lane, number in enumerate(block.lanes):
+                if not np.array_equal(firsts[lane], constant):
+                    constant = firsts[lane]
+                    table[...] = constant
+                for place, values in zip(places, varying[lane], strict=True):
+                    table[:, :, place] = values
+                load = program.constant_load[number]
+                yield program._replace(rows=table.reshape(-1), constant_load=load)
 
     def march(self, period: Array, load: Array, state: Array, which: Index) -> Iterator[_Motion]:
         """Motions of some systems from states (p, 1, 2 n); NaN where one ends."""
@@ -148,11 +161,12 @@ class _Lanes(NamedTuple):
     ) -> Array:
         """States (rows, 2 n, lanes) of lanes of a block; NaN if any of them ends."""
         numbers, program = index[lanes], self.program
-        if lanes.size == 1:
-            program = self.alone(int(numbers[0]))
-            return _states(program, program.rows, period[numbers], load[numbers], state[numbers, 0])
-        own = rows if np.all(np.diff(lanes) == 1) else rows.take(lanes, lanes.size)
         program = program._replace(constant_load=program.constant_load[0])
+        own: Array | LaneRows = rows
+        if lanes.size == 1:
+            own = rows.table(program.width.size)
+        elif np.any(np.diff(lanes) != 1):
+            own = rows.take(lanes, lanes.size)
         return _states(program, own, period[numbers], load[numbers], state[numbers, 0])
 
 
@@ -210,8 +224,8 @@ class _Group:
         """Images of many points (p, lanes, k) of each system; ``keep`` has their states first."""
 
         def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
-            for number, own in enumerate(state):
-                program, lanes = self.whole.alone(number, self._room), len(own)
+            for number, program in enumerate(self.whole.each_alone(self._room)):
+                own, lanes = state[number], state.shape[1]
                 times, forces = np.full(lanes, period[number]), load[number]
                 blocks = [
                     _states(program, program.rows, times[at], forces[at], own[at])
