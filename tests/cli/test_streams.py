@@ -6,9 +6,13 @@ import json
 import os
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
+
+from tribodyn.cli import entry
+from tribodyn.errors import warn
 
 _NO_OUTPUT = "import sys; sys.stdout = sys.stderr = None; from tribodyn.cli import main; main({!r})"
 
@@ -43,3 +47,19 @@ def test_json_is_whole_on_every_console(tmp_path: Path) -> None:
 def test_without_any_output_the_exit_code_remains(words: list[str], code: int) -> None:
     done = subprocess.run([sys.executable, "-c", _NO_OUTPUT.format(words)], check=False)
     assert done.returncode == code
+
+
+def test_model_warnings_have_no_line_of_the_program(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def dispatch(_: list[str]) -> int:
+        warn("friction-range", "The slip is small.")
+        return 0
+
+    monkeypatch.setattr(entry, "_dispatch", dispatch)
+    before = warnings.showwarning
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        assert entry.call([]) == 0
+    assert warnings.showwarning is before
+    assert capsys.readouterr().err == "warning [friction-range]: The slip is small.\n"

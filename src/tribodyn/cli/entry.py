@@ -12,6 +12,7 @@ import signal
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -167,7 +168,7 @@ def call(arguments: Sequence[str]) -> int:
         0 done, 1 computation failed, 2 bad input, 130 interrupted.
     """
     try:
-        with interruptible():
+        with interruptible(), _worded_warnings():
             code = _dispatch(list(arguments))
             sys.stdout.flush()
             return code
@@ -177,6 +178,27 @@ def call(arguments: Sequence[str]) -> int:
     except (Exception, KeyboardInterrupt) as error:
         with _deaf():
             return _failed(error, "--json" in arguments)
+
+
+@contextmanager
+def _worded_warnings() -> Iterator[None]:
+    """Show model warnings without the line of the program that they come from."""
+    before = warnings.showwarning
+
+    def show(message: Warning | str, *place: Any, **more: Any) -> None:
+        from tribodyn.cli.screen import show_warnings
+        from tribodyn.errors import ModelWarning
+
+        if isinstance(message, ModelWarning):
+            show_warnings([message])
+        else:
+            before(message, *place, **more)
+
+    warnings.showwarning = show
+    try:
+        yield
+    finally:
+        warnings.showwarning = before
 
 
 def _close_stdout() -> None:

@@ -68,33 +68,48 @@ class Job(NamedTuple):
 
     def _encoded(self, part: Part) -> bytes:
         """Result as netCDF; made in memory, since HDF5 takes a full disk badly."""
-        import h5netcdf
+        import h5py
 
         known, count = KINDS[self.kind].figures, len(part.failed)
         buffer = io.BytesIO()
-        with h5netcdf.File(buffer, "w") as file:
-            file.dimensions = {"member": count}
+        with h5py.File(buffer, "w") as file:
+            # A dimension without values, as netCDF marks it.
+            member = file.create_dataset("member", (count,), ">f4")
+            _scale(member, 0, f"This is a netCDF dimension but not a netCDF variable.{count:10}")
             for key, column in self.columns.items():
-                _put(file, key, ("member",), column)
-            _put(file, "failed", ("member",), part.failed)
-            _put(file, "warnings", ("member",), part.warned)
+                _put(file, key, column, member)
+            _put(file, "failed", part.failed, member)
+            _put(file, "warnings", part.warned, member)
             if part.figures:
-                file.dimensions["figure"] = len(part.figures)
-                _put(file, "figure", ("figure",), [*part.figures])
-                _put(file, "units", ("figure",), [known[name][0] for name in part.figures])
-                _put(file, "value", ("member", "figure"), np.stack([*part.figures.values()], 1))
+                figure = _put(file, "figure", [*part.figures])
+                _scale(figure, 1, "figure")
+                _put(file, "units", [known[name][0] for name in part.figures], figure)
+                _put(file, "value", np.stack([*part.figures.values()], 1), member, figure)
         return buffer.getvalue()
 
 
-def _put(file: Any, name: str, dimensions: tuple[str, ...], values: Any) -> None:
-    """Write one variable; netCDF has no logical values."""
+def _scale(dimension: Any, number: int, name: str) -> None:
+    """Let a data set be a dimension."""
+    dimension.attrs["_Netcdf4Dimid"] = np.int32(number)
+    dimension.make_scale(name)
+
+
+def _put(file: Any, name: str, values: Any, *dimensions: Any) -> Any:
+    """Write one variable; netCDF has no logical values.
+
+    h5netcdf would make a dimension first and then delete it for the variable of that name. Whether
+    HDF5 uses that place again depends on who still looks at it, be it a profiler, and chunks would
+    not be the same byte for byte.
+    """
     import h5py
 
     words = isinstance(values[0], str)
     data = np.array(values, dtype=object if words else None)
     data = data.astype(np.int8) if data.dtype.kind == "b" else data
-    kind = h5py.string_dtype() if words else data.dtype
-    file.create_variable(name, dimensions, dtype=kind, data=data)
+    made = file.create_dataset(name, data=data, dtype=h5py.string_dtype() if words else None)
+    for axis, dimension in enumerate(dimensions):
+        made.dims[axis].attach_scale(dimension)
+    return made
 
 
 def _each(compute: Callable[..., Part], columns: Columns, progress: Progress) -> Part:

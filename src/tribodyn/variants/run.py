@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import socket
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
 import tribodyn
-from tribodyn.errors import ComputationError, InputError
+from tribodyn.errors import ComputationError, InputError, warn
 from tribodyn.interrupt import alone
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.processes import helpers
@@ -24,7 +25,7 @@ Results = Iterator[tuple[Chunk, Stored | Exception]]
 
 #: Chunks that fail as a whole before any is finished, after which nothing else is tried.
 _HOPELESS = 3
-#: Time for a scheduler to answer [s].
+#: Time for a scheduler to answer, and for a worker to come before it is missed [s].
 _PATIENCE = 10.0
 
 
@@ -178,7 +179,9 @@ def _on_workers(client: Any, jobs: Jobs, progress: Progress) -> Results:
             ended.add(future)
 
     fill()
-    for future in ended:
+    while running:
+        _await_any(client, ended)
+        future = next(ended)
         chunk = running.pop(future)
         try:
             found: Stored | Exception = future.result()
@@ -189,3 +192,19 @@ def _on_workers(client: Any, jobs: Jobs, progress: Progress) -> Results:
             found = error
         yield chunk, found
         fill()
+
+
+def _await_any(client: Any, ended: Any) -> None:
+    """Wait for a chunk that has ended, and say so once when there is nobody to compute it."""
+    told, looked = False, time.monotonic()
+    while not ended.has_ready():
+        with ended.thread_condition:
+            ended.thread_condition.wait(timeout=0.1)
+        if time.monotonic() - looked < _PATIENCE:
+            continue
+        alone = not client.nthreads()
+        if alone and not told:
+            address = client.scheduler.address
+            text = f"the Dask scheduler at {address} has no workers; the study waits for them"
+            warn("no-workers", f"{text}. Start one with: dask worker {address} --nthreads 1.")
+        told, looked = alone, time.monotonic()

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import io
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray
 
 from tribodyn.analysis import parameter_map
 from tribodyn.errors import quiet
@@ -13,7 +16,7 @@ from tribodyn.interrupt import alone
 from tribodyn.study.pipeline.run import computed
 from tribodyn.study.studies.grid import built
 from tribodyn.variants import open_study, read_study, run_study
-from tribodyn.variants.compute import VERDICTS
+from tribodyn.variants.compute import VERDICTS, Job, Part
 
 QUICK = """
 [set]
@@ -74,3 +77,22 @@ force_scale = "0.05,0.3,1"
     for path in (tmp_path / "s").rglob("*.nc"):
         other = tmp_path / "alone" / path.relative_to(tmp_path / "s")
         assert path.read_bytes() == other.read_bytes()
+
+
+def test_a_chunk_does_not_depend_on_who_looks_at_its_making() -> None:
+    """A profiler holds frames, and with them files and data sets that would be gone."""
+    text = 'case = "fzg-roughness"\n[axes]\noperation.speed = "400..900 rpm:3"\n'
+    job = Job("summary", read_study(text).case, (), {"operation.speed": [40.0, 60.0, 90.0]})
+    part = Part({"rms_mesh_force": np.arange(3.0)}, ["", "failed", ""], [""] * 3)
+    alone, held = job._encoded(part), []
+    sys.setprofile(lambda frame, *_: held.append(frame))
+    try:
+        watched = job._encoded(part)
+    finally:
+        sys.setprofile(None)
+    assert held
+    assert watched == alone
+    with xarray.open_dataset(io.BytesIO(alone), engine="h5netcdf") as data:
+        assert data["value"].dims == ("member", "figure")
+        assert list(data["figure"].values) == ["rms_mesh_force"]
+        assert list(data["failed"].values) == part.failed

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import re
 import socket
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
+from threading import Timer
 
 import pytest
 
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, collected
 from tribodyn.mesh.film import tabled_film
-from tribodyn.variants import read_study, run_study
+from tribodyn.variants import read_study, run, run_study
 from tribodyn.variants.compute import KINDS, Job, Part
 from tribodyn.variants.run import compute_alone
 
@@ -30,6 +34,51 @@ def test_a_scheduler_that_does_not_answer_is_told(tmp_path: Path, address: str) 
     with pytest.raises(InputError, match=f"no Dask scheduler answers at {address}.*dask scheduler"):
         run_study(read_study(_STUDY), tmp_path / "s", scheduler=address)
     assert not (tmp_path / "s").exists()
+
+
+@pytest.mark.slow
+def test_a_cluster_without_workers_is_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(run, "_PATIENCE", 0.5)
+    nobody = {"n_workers": 0, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.LocalCluster(**nobody) as cluster, collected() as told:
+        Timer(2.0, cluster.scale, (1,)).start()
+        state = run_study(read_study(_STUDY), tmp_path / "s", scheduler=cluster.scheduler_address)
+        assert state.complete
+        assert [warning.code for warning in told] == ["no-workers"]
+        assert f"dask worker {cluster.scheduler_address}" in str(told[0])
+
+
+def _dask(log: Path, *words: str) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "distributed.cli.dask_scheduler", *words]
+    with log.open("wb") as sink:
+        return subprocess.Popen(command, stdout=sink, stderr=sink)
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_lost_is_told_in_one_line(tmp_path: Path) -> None:
+    """Dask writes pages of its own to the screen otherwise."""
+    pytest.importorskip("distributed")
+    (tmp_path / "s.toml").write_text(_STUDY)
+    log = tmp_path / "log"
+    scheduler = _dask(log, "--port", "0", "--no-dashboard")
+    try:
+        while not (found := re.search(r"Scheduler at: +(\S+)", log.read_text())):
+            assert scheduler.poll() is None, log.read_text()
+        words = ["study", "s.toml", "--scheduler", found[1].replace("0.0.0.0", "127.0.0.1")]
+        command = [sys.executable, "-m", "tribodyn", *words]
+        study = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+        while not (tmp_path / "s-study" / "members.jsonl").exists():
+            assert study.poll() is None
+    finally:
+        scheduler.kill()
+        scheduler.wait()
+    _, told = study.communicate(timeout=120)
+    assert study.returncode == 1
+    assert len(told.splitlines()) == 1, told
+    assert re.search("the Dask scheduler at .* is gone.*the same command goes on", told)
 
 
 def test_a_worker_of_another_version_refuses() -> None:

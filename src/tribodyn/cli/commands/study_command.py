@@ -6,7 +6,7 @@ import logging
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -60,7 +60,8 @@ def study(
         state = study_state(study if out is None and Path(study).is_dir() else place)
         _show(state, json)
         return 0
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what counts is told below
+    if scheduler:
+        _silence_dask()
     try:
         with quiet("leftover"), _progress() as progress:
             state = run_study(study, place, scheduler=scheduler, force=force, progress=progress)
@@ -75,6 +76,15 @@ def study(
         tell(f"Chunk {name} could not be computed; the same command tries again. {why}")
     tell(f"Store: {place}")
     return 1 if state.missing or state.failed == state.members else 0
+
+
+def _silence_dask() -> None:
+    """Keep the log of Dask off the screen: what counts of it is told in our words."""
+    with suppress(ImportError):
+        import distributed  # noqa: F401  # which sets levels of its own when it is imported
+    for name in list(logging.root.manager.loggerDict):
+        if name.startswith("distributed"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
 
 
 def _show(state: StudyState, as_json: bool) -> None:
