@@ -111,7 +111,9 @@ def alternating_rms(samples: FineSamples, signal: Array) -> Array:
 def moments(samples: FineSamples, signal: Array) -> tuple[Array, Array]:
     """Mean and alternating rms."""
     middle = samples.mean(_on(samples.phase.size, signal))
-    return middle, np.asarray(np.sqrt(samples.mean((signal - middle) ** 2)))
+    away = signal - middle
+    away *= away
+    return middle, np.asarray(np.sqrt(samples.mean(away)))
 
 
 def extremes(signal: Array) -> tuple[Array, Array]:

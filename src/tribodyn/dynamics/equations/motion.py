@@ -52,9 +52,13 @@ def has_gap(nodes: Nodes) -> Mask:
 
 
 def _times(values: Array, matrix: Array) -> Array:
-    """Matrix times vectors (..., n), in one product of two matrices."""
-    flat = values.reshape(-1, values.shape[-1]) @ np.ascontiguousarray(matrix.T)
-    return np.asarray(flat.reshape(*values.shape[:-1], len(matrix)))
+    """Matrix times vectors (..., n), in one product of two matrices and the same order."""
+    flat = values.reshape(-1, values.shape[-1])
+    if flat.flags.f_contiguous:
+        found = (np.asarray(matrix) @ flat.T).T
+    else:
+        found = flat @ np.ascontiguousarray(matrix.T)
+    return np.asarray(found.reshape(*values.shape[:-1], len(matrix)))
 
 
 def _along(direction: Array, vectors: Array) -> Array:
@@ -74,12 +78,14 @@ def _pushed(push: Array, force: Array) -> Array:
 
 def compression(rows: Nodes, q: Array, error: Any = 1.0) -> Array:
     """Compression of every contact."""
-    return np.asarray(_along(rows.direction, q) - error * rows.error)
+    return np.asarray(_along(rows.direction, q) - error * once(rows.error, 1))
 
 
 def compression_rate(rows: Nodes, beat: Any, q: Array, v: Array, error: Any = 1.0) -> Array:
     """Rate of every compression at the mesh frequency ``beat``."""
-    turning = _along(rows.direction_slope, q) - error * rows.error_slope
+    turning, slope = -error * once(rows.error_slope, 1), once(rows.direction_slope, 2)
+    if slope.any():
+        turning = turning + _along(rows.direction_slope, q)
     return np.asarray(_along(rows.direction, v) + beat * turning)
 
 
@@ -107,11 +113,11 @@ def forces(
     """Contact forces and accelerations; without ``side`` every contact is where it is pressed."""
     d = compression(rows, q, scales.error)
     rate = compression_rate(rows, beat, q, v, scales.error)
-    gap = scales.gap * rows.gap
+    gap = scales.gap * once(rows.gap, 1)
     if side is None and np.all(d > gap):
         side = np.broadcast_to(1.0, d.shape)
         contact = scales.stiffness * rows.stiffness * (d - gap)
-        contact = contact + scales.damping * rows.damping * rate
+        contact = contact + scales.damping * once(rows.damping, 1) * rate
     else:
         side = sides(d, gap, has_gap(rows)) if side is None else side
         in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
@@ -119,9 +125,9 @@ def forces(
         contact = contact + ((side != 0.0) | in_gap) * scales.damping * rows.damping * rate
     total = scales.force * once(rows.force, 1) + extra
     total = total - _times(q, np.asarray(system.stiffness))
-    total = total - _times(v, np.asarray(system.damping))
+    total -= _times(v, np.asarray(system.damping))
     if scales is _SAME:
-        total = total - _pushed(rows.force_direction, contact)
+        total -= _pushed(rows.force_direction, contact)
     else:
         total = total - _pushed(rows.direction, contact)
         rub = _pushed(rows.force_direction - rows.direction, contact)
@@ -175,15 +181,16 @@ def with_middles(duration: Array, state: Array) -> tuple[Array, Array]:
 
     ``state`` (..., steps + 1, 2 n) is known at the ends, ``duration`` (..., steps) in s.
     """
-    size = state.shape[-1] // 2
-    q, v = (np.ascontiguousarray(half) for half in (state[..., :size], state[..., size:]))
-    h = duration[..., None]
-    ends = q[..., :-1, :], v[..., :-1, :], q[..., 1:, :], v[..., 1:, :]
-    middle = cubic_middle(h, 1.0 / h, *ends)
-    return (
-        np.stack((ends[0], middle[0], ends[2]), axis=-2),
-        np.stack((ends[1], middle[1], ends[3]), axis=-2),
-    )
+    size, h = state.shape[-1] // 2, duration[..., None, :]
+    # Every coordinate by itself, so that all loops are long.
+    rows = np.ascontiguousarray(np.swapaxes(state, -1, -2))
+    left, right = rows[..., :-1], rows[..., 1:]
+    found = np.empty((*left.shape, 3))
+    found[..., 0], found[..., 2] = left, right
+    ends = left[..., :size, :], left[..., size:, :], right[..., :size, :], right[..., size:, :]
+    found[..., :size, :, 1], found[..., size:, :, 1] = cubic_middle(h, 1.0 / h, *ends)
+    found = np.moveaxis(found, -3, -1)
+    return found[..., :size], found[..., size:]
 
 
 def quadratic(rows: Array, step: Index, tau: Array) -> Array:

@@ -53,9 +53,12 @@ _MANY = 8
 
 def orbits_in_touch(
     systems: Sequence[System], mesh_frequency: Array, steps: int
-) -> list[Response | None]:
-    """Steady motions of one mesh cycle in which no flanks part; None where there is none such."""
-    found: list[Response | None] = [None] * len(systems)
+) -> list[Callable[[], Response] | None]:
+    """Steady motions of one mesh cycle in which no flanks part; None where there is none such.
+
+    Each is sampled where it is called for, as the samples of all would leave the nearest memory.
+    """
+    found: list[Callable[[], Response] | None] = [None] * len(systems)
     size, groups = max(1, _STEPS // steps), groups_alike(systems)
     parts = (group[at : at + size] for group in groups for at in range(0, len(group), size))
     for numbers in parts:
@@ -457,7 +460,7 @@ def _step_errors(group: _Group, orbits: _Orbits) -> Array:
     return _greatest(fine - known.reduced) / _greatest(fine)
 
 
-def _responses(group: _Group) -> list[Response | None]:
+def _responses(group: _Group) -> list[Callable[[], Response] | None]:
     orbits = _orbits(group)
     cost, cycles = _step_errors(group, orbits), orbits.cycles
     extra = group.extra(cycles.point)[:, 0]
@@ -478,4 +481,4 @@ def _responses(group: _Group) -> list[Response | None]:
         )
 
     good = orbits.good & (cost <= STEP_LIMIT) & (group.step_numbers <= LIMIT)
-    return [response(number) if good[number] else None for number in range(len(good))]
+    return [partial(response, number) if good[number] else None for number in range(len(good))]

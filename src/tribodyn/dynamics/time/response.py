@@ -63,6 +63,8 @@ class FineSamples:
         array
             In the unit of the signal.
         """
+        if signal.ndim == 1:
+            return np.asarray(self.weight @ signal)
         means = self.weight @ signal.reshape(len(signal), -1)
         return np.asarray(means.reshape(signal.shape[1:]))
 
@@ -225,7 +227,8 @@ def _step_samples(
 ) -> FineSamples:
     nodes, grid = compiled.nodes, compiled.grid
     cycles = (states.shape[0] - 1) // grid.steps
-    ends = np.stack([states[c * grid.steps : (c + 1) * grid.steps + 1] for c in range(cycles)])
+    parts = [states[c * grid.steps : (c + 1) * grid.steps + 1] for c in range(cycles)]
+    ends = np.stack(parts) if cycles > 1 else states[None]
     q, v = with_middles(grid.width / mesh_frequency, ends)
     moved = forces(compiled.system, nodes, mesh_frequency, q, v, extra=extra_force)
     phase = np.arange(cycles)[:, None, None] + nodes.phase

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -48,7 +48,9 @@ def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progr
     return response
 
 
-def motions_of(points: Sequence[tuple[Case, System, float]]) -> list[Response | None]:
+def motions_of(
+    points: Sequence[tuple[Case, System, float]],
+) -> list[Callable[[], Response] | None]:
     """Motions of cases at mesh frequencies, side by side; None where one is found by itself."""
     from tribodyn.dynamics.equations.alike import groups_alike, remember_rates
     from tribodyn.dynamics.orbits.side_by_side import orbits_in_touch
@@ -62,7 +64,7 @@ def motions_of(points: Sequence[tuple[Case, System, float]]) -> list[Response | 
             with suppress(InputError), collected():  # told where it is found by itself
                 if engine_arguments(case).get("backend") in (None, "cpu"):
                     alike.setdefault(steps_of(case, system, frequency), []).append(number)
-    found: list[Response | None] = [None] * len(points)
+    found: list[Callable[[], Response] | None] = [None] * len(points)
     for steps, numbers in alike.items():
         systems, frequencies = zip(*(points[number][1:] for number in numbers), strict=True)
         orbits = orbits_in_touch(systems, np.array(frequencies), steps)

@@ -125,7 +125,12 @@ class Begun:
     damping: Damping
     system: System
     told: list[ModelWarning]
-    response: Response | None = None  #: its motion, where it is known
+    motion: Callable[[], Response] | None = None  #: samples its motion, where that is known
+
+    @property
+    def response(self) -> Response | None:
+        """Its motion, where it is known, sampled anew."""
+        return None if self.motion is None else self.motion()
 
     def result(self, progress: Progress = SILENT) -> Result:
         """Find the motion if it is not known, and the result."""
@@ -202,5 +207,5 @@ def with_tables(asked: Sequence[Asked]) -> list[Asked]:
 def move_together(points: Sequence[Begun]) -> None:
     """Find motions side by side, of as many cases as that is possible for."""
     motions = motions_of([(each.case, each.system, each.mesh.mesh_frequency) for each in points])
-    for each, response in zip(points, motions, strict=True):
-        each.response = response
+    for each, motion in zip(points, motions, strict=True):
+        each.motion = motion

@@ -90,11 +90,13 @@ def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
 
 def support_force(system: System, samples: FineSamples, number: int) -> Array:
     """Force of the bodies on the support of a coordinate, from springs and dampers together."""
-    springs, dampers = np.asarray(system.stiffness)[number], np.asarray(system.damping)[number]
-    # Of the other coordinates, most have no part in it.
-    parts = [springs[i] * samples.position[:, i] for i in np.flatnonzero(springs)]
-    parts += [dampers[i] * samples.velocity[:, i] for i in np.flatnonzero(dampers)]
-    return np.asarray(sum(parts, np.zeros(len(samples.position))))
+    return np.asarray(support_forces(system, samples, [number])[0])
+
+
+def support_forces(system: System, samples: FineSamples, numbers: Sequence[int]) -> Array:
+    """The same of several coordinates, one row for each."""
+    springs, dampers = (np.asarray(each)[numbers] for each in (system.stiffness, system.damping))
+    return np.asarray(springs @ samples.position.T + dampers @ samples.velocity.T)
 
 
 #: Most that the series of a motion take in a file [bytes].

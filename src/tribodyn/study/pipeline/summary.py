@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from importlib.resources import files
 from itertools import product
@@ -25,7 +25,7 @@ from tribodyn.study.pipeline.series import (
     measured,
     mesh_force,
     one_sided_phase,
-    support_force,
+    support_forces,
     tooth_force,
     transmission_error,
 )
@@ -216,7 +216,7 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
         "minimum_film_load_share": mesh.film_load_share,
     }
     figures: dict[str, Any] = {
-        name: np.nanmin(column[mesh.in_contact])
+        name: np.fmin.reduce(column[mesh.in_contact])  # the least that is a number
         for name, column in least.items()
         if column is not None
     }
@@ -231,34 +231,32 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
 
 def _motion_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     """Figures of all signals of a motion, each of which is averaged once."""
-    from tribodyn.analysis import extremes, mesh_harmonics
-    from tribodyn.signals.indicators import moments
+    from tribodyn.signals.indicators import extremes, mesh_harmonics, moments
 
-    name, signals = "dynamic_transmission_error", _signals(result, samples)
-    # One after the other, as all of them would leave the nearest memory.
-    both = {signal: moments(samples, values) for signal, values in signals.items()}
-    means, swings = ({name: pair[i] for name, pair in both.items()} for i in range(2))
-    (least, greatest), ends = extremes(signals["mesh_force"]), extremes(signals[name])
-    amplitudes = np.abs(mesh_harmonics(samples, signals[name], _HARMONICS))
-    figures = {
-        "mean_mesh_force": means["mesh_force"],
-        "peak_mesh_force": greatest,
-        "minimum_mesh_force": least,
-        "contact_loss_share": means["contact_loss"],
-        f"mean_{name}": means[name],
-        f"rms_{name}": swings[name],
-        f"peak_to_peak_{name}": ends[1] - ends[0],
-        **{f"{name}_harmonic_{order}": size for order, size in enumerate(amplitudes, 1)},
-        "mean_friction_power": means["friction_power"],
-    }
-    for signal in signals:
-        if signal == "mesh_force" or signal.endswith("friction_force"):
-            figures[f"rms_{signal}"] = np.hypot(means[signal], swings[signal])
+    name, figures = "dynamic_transmission_error", dict[str, Any]()
+    # Each as soon as it is known, as all of them would leave the nearest memory.
+    for signal, values in _signals(result, samples):
+        mean, swing = (float(part) for part in moments(samples, values))
+        if signal == "mesh_force":
+            least, greatest = extremes(values)
+            figures |= {f"mean_{signal}": mean, f"rms_{signal}": np.hypot(mean, swing)}
+            figures |= {f"peak_{signal}": greatest, f"minimum_{signal}": least}
+        elif signal == name:
+            least, greatest = extremes(values)
+            amplitudes = np.abs(mesh_harmonics(samples, values, _HARMONICS))
+            figures |= {f"mean_{name}": mean, f"rms_{name}": swing}
+            figures[f"peak_to_peak_{name}"] = greatest - least
+            for order, size in enumerate(amplitudes, 1):
+                figures[f"{name}_harmonic_{order}"] = size
+        elif signal == "contact_loss":
+            figures["contact_loss_share"] = mean
+        elif signal.endswith("friction_force"):
+            figures[f"rms_{signal}"] = np.hypot(mean, swing)
         elif signal.startswith(_OF_CENTRES):
-            figures[f"rms_{signal}"] = swings[signal]
-            figures[f"mean_{signal}"] = abs(means[signal]) if "torque" in signal else means[signal]
-        elif signal.startswith("mesh_force_"):
-            figures[f"mean_{signal}"] = means[signal]
+            figures[f"rms_{signal}"] = swing
+            figures[f"mean_{signal}"] = abs(mean) if "torque" in signal else mean
+        else:
+            figures[f"mean_{signal}"] = mean
     return figures
 
 
@@ -266,21 +264,21 @@ def _motion_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
 _OF_CENTRES = ("bearing_force_", "acceleration_", "torque_shaft")
 
 
-def _signals(result: Computed, samples: FineSamples) -> dict[str, Array]:
+def _signals(result: Computed, samples: FineSamples) -> Iterator[tuple[str, Array]]:
     force, touch = mesh_force(samples), first_touch(result.system, samples)
+    yield "mesh_force", force
     apart = (compression(samples) <= touch) & (touch > 0.0)
+    yield "contact_loss", apart.astype(float)
+    yield "dynamic_transmission_error", transmission_error(result, samples)
     phase = one_sided_phase(samples)
-    signals = {
-        "mesh_force": force,
-        "contact_loss": apart.astype(float),
-        "dynamic_transmission_error": transmission_error(result, samples),
-        "friction_power": _friction_power(result, phase, force),
-        **{name: values for name, (values, *_) in friction_forces(result, samples).items()},
-    }
+    yield "friction_power", _friction_power(result, phase, force)
+    for name, (values, *_) in friction_forces(result, samples).items():
+        yield name, values
     in_space = tooth_force(result, phase, force)
     if in_space is not None and result.mesh.unloaded_transmission_error is not None:
-        signals |= {f"mesh_force_{axis}": in_space[:, i] for i, axis in enumerate("xyz")}
-    return signals | _support_signals(result, samples)
+        for number, axis in enumerate("xyz"):
+            yield f"mesh_force_{axis}", in_space[:, number]
+    yield from _support_signals(result, samples)
 
 
 def _friction_power(result: Computed, phase: Array, force: Array) -> Array:
@@ -303,22 +301,20 @@ def _less(speeds: tuple[float, float], moments: Iterable[Array]) -> Array:
     return pinion - wheel
 
 
-def _support_signals(result: Computed, samples: FineSamples) -> dict[str, Array]:
+def _support_signals(result: Computed, samples: FineSamples) -> Iterator[tuple[str, Array]]:
     """Forces on the supports, accelerations of the gear centres and torque in both shafts."""
-    names, signals = result.response.names, dict[str, Array]()
-    shafts, moves = "shaft1_theta" in names, centre_column(names, "pinion", "x") is not None
-    if not (shafts or moves):
-        return signals
-    for gear, (direction, (letter, _)) in product(_GEARS, directions_of(names).items()):
-        if moves and (number := centre_column(names, gear, letter)) is not None:
-            place = f"{direction}_{gear}"
-            signals[f"bearing_force_{place}"] = support_force(result.system, samples, number)
-            signals[f"acceleration_{place}"] = samples.acceleration[:, number].copy()
-    for shaft in (1, 2) if shafts else ():
+    names = result.response.names
+    supports: dict[str, int] = {}
+    if centre_column(names, "pinion", "x") is not None:
+        for gear, (direction, (letter, _)) in product(_GEARS, directions_of(names).items()):
+            if (number := centre_column(names, gear, letter)) is not None:
+                supports[f"bearing_force_{direction}_{gear}"] = number
+                yield f"acceleration_{direction}_{gear}", samples.acceleration[:, number].copy()
+    if "shaft1_theta" in names:
         # What twists a shaft turns its disc one way and the gear the other.
-        number = names.index(f"shaft{shaft}_theta")
-        signals[f"torque_shaft{shaft}"] = support_force(result.system, samples, number)
-    return signals
+        supports |= {f"torque_shaft{k}": names.index(f"shaft{k}_theta") for k in (1, 2)}
+    forces = support_forces(result.system, samples, list(supports.values()))
+    yield from zip(supports, forces, strict=True)
 
 
 def _hypoid_figures(result: Computed, in_space: bool) -> dict[str, Any]:
