@@ -106,8 +106,10 @@ def _choose_place(lanes, columns, rows, step, three):  # type: ignore[no-untyped
         if step == 0:
             for item in range(3 * columns * len(lanes)):
                 three[item] = rows.first[item % rows.first.size]
+        two = (rows.nodes.size - 4) // 3  # whether the order of every other step is another
+        first, place = rows.nodes[0] * (step >> two), 1 + 3 * (step & two)
         for node in range(3):
-            row = (rows.nodes[0] * step + rows.nodes[1 + node]) * count
+            row = (first + rows.nodes[place + node]) * count
             for item in range(count):
                 store(three, node * columns + places[item], load(lanes, varying, row + item))
         return I64(0)
@@ -209,6 +211,7 @@ def _build(digest: str) -> Any:
     ) -> int:
         """March every lane by ``cycles`` mesh cycles.
 
+        The record (points, items, lanes) holds as many items of the states as it has place for.
         Returns -1 when done, :data:`STOPPED` when stopped, else the step, counted from the start,
         after which a state is not finite; or, with ``step * contacts + contact`` times the lanes
         plus the lane on top of it, :data:`UNPARTED`; or :data:`UNFOUND` plus the step.
@@ -253,6 +256,7 @@ def _build(digest: str) -> Any:
                 moments[item] = gathered.moments[item]
         switching = has_dead_zones(law)
         keep, kept_states, states = record.shape[0] > 0, address(record), 2 * n * width
+        told = record.shape[1] * width
         point = 0
         for _cycle in range(cycles):
             for r in range(share.size):
@@ -268,8 +272,8 @@ def _build(digest: str) -> Any:
                         set_sides(lanes, law, base, I64(0), w)
                     restart(lanes, method, law, base, w)
                 if keep:
-                    for item in range(states):
-                        kept_states[point * states + item] = w[item]
+                    for item in range(told):
+                        kept_states[point * told + item] = w[item]
                 if not step(lanes, method, law, r, base, w, seen):
                     return UNFOUND + point + 1
                 gone = I64(0)
@@ -329,8 +333,8 @@ def _build(digest: str) -> Any:
             for i in range(2 * n):
                 state[lane, i] = w[i * width + lane]
         if keep:
-            for item in range(states):
-                kept_states[point * states + item] = w[item]
+            for item in range(told):
+                kept_states[point * told + item] = w[item]
         # Addresses hold only as long as their owners are in use: nothing is read after this.
         kept[0] = work[0] + held[0]
         return -1

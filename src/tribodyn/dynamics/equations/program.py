@@ -8,7 +8,6 @@ Lanes that scale their contacts have the same rows: the factors are numbers of t
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -51,7 +50,7 @@ class LaneRows(NamedTuple):
     first: Array  #: a row of every lane, (columns, lanes)
     places: Index  #: columns that vary
     varying: Array  #: their factors, (nodes, places, lanes)
-    nodes: Index  #: number of nodes of a step, and which are its left end, middle and right end
+    nodes: Index  #: nodes until their order repeats, and those of the one or two steps until then
 
     @classmethod
     def of(cls, tables: Sequence[Array], columns: int) -> LaneRows:
@@ -60,11 +59,11 @@ class LaneRows(NamedTuple):
         places = np.flatnonzero(np.any([np.any(own != own[0], axis=0) for own in rows], axis=0))
         first = np.stack([own[0] for own in rows], axis=-1)
         varying = np.stack([own[:, places] for own in rows], axis=-1)
-        return cls(first.ravel(), places, varying.ravel(), _EVERY)
+        return cls(first.ravel(), places, varying.ravel(), _ORDER)
 
-    def every_other(self) -> LaneRows:
+    def whole(self) -> LaneRows:
         """Rows of the steps of which these have the halves."""
-        return self._replace(nodes=_EVERY_OTHER)
+        return self._replace(varying=self.varying[: self.varying.size // 2], nodes=_ORDER)
 
     def take(self, lanes: Index, width: int) -> LaneRows:
         """Rows of some of the lanes, of which there are ``width``."""
@@ -75,14 +74,16 @@ class LaneRows(NamedTuple):
         """Rows of the only lane with all that is in them."""
         rows = np.empty((steps, 3, self.first.size))
         rows[...] = self.first
-        cells = self.varying.reshape(steps, self.nodes[0], self.places.size)
-        for item, place in enumerate(self.places):
-            rows[:, :, place] = cells[:, self.nodes[1:], item]
+        number = np.arange(steps)[:, None]
+        order = self.nodes[1:].reshape(-1, 3)
+        node = number // len(order) * self.nodes[0] + order[number[:, 0] % len(order)]
+        rows[..., self.places] = self.varying.reshape(-1, self.places.size)[node]
         return rows.reshape(-1)
 
 
-#: Nodes of all steps, and of those of which every two have been made of one.
-_EVERY, _EVERY_OTHER = np.array([3, 0, 1, 2]), np.array([6, 0, 2, 5])
+#: Order of nodes that follow one another, and nodes of two halves of a step: those that the whole
+#: step has, which lie side by side, and the others.
+_ORDER, _HALVES = np.array([3, 0, 1, 2]), ((0, 2, 5), (1, 3, 4))
 
 
 class Slots(NamedTuple):
@@ -173,22 +174,24 @@ class _Terms:
             table[:, :, item] = columns[item]
         return table.reshape(-1)
 
-    def rows_of_lanes(self, blocks: Sequence[Index], room: Room) -> list[LaneRows]:
-        """The same of blocks of lanes, each lane with the rows of its system."""
+    def rows_of_halves(self, blocks: Sequence[Index], room: Room) -> list[LaneRows]:
+        """The same, of halves of steps, of blocks of lanes each with the rows of its system."""
         columns = [once(np.broadcast_to(values, self.shape)) for values in self.factors or [0.0]]
         places = np.flatnonzero([_varies(values) for values in columns])
-        count = math.prod(self.shape[1:])
-        wide = [columns[place].reshape(-1, count) for place in places]
-        tables = room((len(blocks), count, places.size, len(blocks[0])))
+        steps, width = self.shape[1] // 2, len(blocks[0])
+        wide = [columns[place].reshape(-1, steps, 6) for place in places]
+        tables = room((len(blocks), 2, steps, 3, places.size, width))
         rows = []
         for table, lanes in zip(tables, blocks, strict=True):
             own = slice(lanes[0], lanes[-1] + 1) if np.all(np.diff(lanes) == 1) else lanes
             for item, values in enumerate(wide):
-                table[:, item] = (values[own] if len(values) > 1 else values).T
-            first = np.stack(
-                [np.broadcast_to(values[:, 0, 0], self.shape[:1]) for values in columns]
-            )
-            rows.append(LaneRows(first[:, lanes].ravel(), places, table.reshape(-1), _EVERY))
+                some = values[own] if len(values) > 1 else values
+                for part, nodes in zip(table, _HALVES, strict=True):
+                    for number, node in enumerate(nodes):
+                        part[:, number, item] = some[..., node].T
+            first = [np.broadcast_to(values[:, 0, 0], self.shape[:1])[lanes] for values in columns]
+            order = np.array([3, 0, 3 * steps, 1, 3 * steps + 1, 3 * steps + 2, 2])
+            rows.append(LaneRows(np.concatenate(first), places, table.reshape(-1), order))
         return rows
 
 
@@ -280,13 +283,13 @@ def build_program(
 def program_of_lanes(
     system: System, grid: Grid, nodes: Nodes, blocks: Sequence[Index], room: Room
 ) -> tuple[Program, list[LaneRows]]:
-    """Flatten systems alike, whose rows have a first axis more; ``room`` gives the memory.
+    """Flatten systems alike on halves of steps; ``room`` gives the memory.
 
     The program has no rows and a constant load for each system; blocks have the rows of their
-    lanes, whose systems are in ``blocks``.
+    lanes, whose systems are in ``blocks``: rows of nodes have a first axis more.
     """
     terms, program = _flattened(system, grid, nodes, False, False, None)
-    return program, terms.rows_of_lanes(blocks, room)
+    return program, terms.rows_of_halves(blocks, room)
 
 
 def _flattened(

@@ -4,6 +4,7 @@ The public names stand on the page of :mod:`tribodyn.dynamics`.
 
 | module | what it answers |
 |---|---|
+| ``alike_lanes`` | how systems alike march over one mesh cycle together |
 | ``continuation``, ``continuation_path`` | where a branch of orbits goes, stable or not |
 | ``coordinates`` | in which coordinates a motion closes |
 | ``orbit_map`` | where states are after one period, and which of them close |

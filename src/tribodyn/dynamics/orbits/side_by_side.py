@@ -8,8 +8,6 @@ anything else happens there is no answer here, and the system is looked at by it
 
 from __future__ import annotations
 
-import math
-import threading
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -17,8 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.blocks import WIDTH, LaneBlock, lane_blocks
-from tribodyn.dynamics._engine.method import RungeKutta4
+from tribodyn.dynamics._engine.blocks import WIDTH
 from tribodyn.dynamics.equations.alike import (
     evaluate_alike,
     every_other,
@@ -27,11 +24,17 @@ from tribodyn.dynamics.equations.alike import (
     rows_of,
 )
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
+from tribodyn.dynamics.equations.grid import build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, halved_grid
-from tribodyn.dynamics.equations.program import LaneRows, Program, Room, program_of_lanes
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.alike_lanes import (
+    AlikeLanes,
+    Memory,
+    kept_memory,
+    march_cycle,
+    new_memory,
+)
 from tribodyn.dynamics.orbits.coordinates import (
     OrbitCoordinates,
     balanced_position,
@@ -42,13 +45,10 @@ from tribodyn.dynamics.orbits.search import APART, GONE, HORIZON, NEWTON_LIMIT
 from tribodyn.dynamics.orbits.steady_state import CLOSE, OTHER, ROUNDS, STEP_LIMIT, TOLERANCE
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.errors import InputError, collected
-from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Steps of all systems that are marched side by side: rows of more are far from the core.
 _STEPS = 32768
-#: Systems that march side by side: fewer are no reason to compile that.
-_MANY = 8
 
 
 def orbits_in_touch(
@@ -65,7 +65,7 @@ def orbits_in_touch(
         with collected() as told:
             try:
                 alike = [systems[i] for i in numbers]
-                group = _Group(alike, mesh_frequency[numbers], steps, _kept.room)
+                group = _Group(alike, mesh_frequency[numbers], steps, kept_memory)
                 orbits = _responses(group)
             except InputError:  # which is told where each is looked at by itself
                 continue
@@ -75,102 +75,8 @@ def orbits_in_touch(
     return found
 
 
-#: A motion (rows, 2 n, lanes) of the system with a number.
-_Motion = tuple[int, Array]
-
-
-class _Kept(threading.local):
-    """Memory for the largest arrays of a group, which costs time to get anew for every group."""
-
-    def __init__(self) -> None:
-        self._arrays: dict[str, Array] = {}
-
-    def room(self, name: str, shape: tuple[int, ...]) -> Array:
-        """An array that lasts until this thread asks for that name again."""
-        size = math.prod(shape)
-        if name not in self._arrays or self._arrays[name].size < size:
-            self._arrays[name] = np.empty(size)
-        return self._arrays[name][:size].reshape(shape)
-
-
-_kept = _Kept()
-
-
-def _new(name: str, shape: tuple[int, ...]) -> Array:
-    """An array of its own, as :meth:`_Kept.room` gives one that lasts until the next."""
-    return np.empty(shape)
-
-
-class _Lanes(NamedTuple):
-    """One motion of each of systems alike, several side by side as lanes of a block."""
-
-    program: Program  #: without rows, with constant loads (p, n)
-    rows: list[LaneRows]  #: of every block
-    blocks: list[LaneBlock]
-
-    @classmethod
-    def of(cls, system: System, grid: Grid, nodes: Nodes, room: Room) -> _Lanes:
-        """Lanes of systems alike on a grid."""
-        count = len(nodes.stiffness)
-        blocks = lane_blocks(count, _MANY if count >= _MANY else 1)
-        lanes = [block.index for block in blocks]
-        return cls(*program_of_lanes(system, grid, nodes, lanes, room), blocks)
-
-    def every_other(self, grid: Grid) -> _Lanes:
-        """The same on the grid of which this one has the halves."""
-        program = self.program._replace(width=grid.width, restart=grid.after_event)
-        return _Lanes(program, [rows.every_other() for rows in self.rows], self.blocks)
-
-    def each_alone(self, room: Room = np.empty) -> Iterator[Program]:
-        """Programs of all systems, with their rows, each in the memory of the one before."""
-        program, (places, nodes) = self.program, self.rows[0][1:4:2]
-        steps, columns, width = program.width.size, int(program.code[2]), self.blocks[0].index.size
-        table = room((steps, 3, columns))
-        constant = np.full(columns, np.nan)
-        for rows, block in zip(self.rows, self.blocks, strict=True):
-            firsts = rows.first.reshape(columns, width).T.copy()
-            firsts[:, places] = 0.0
-            cells = rows.varying.reshape(steps, int(nodes[0]), places.size, width)
-            varying = np.ascontiguousarray(cells[:, nodes[1:]].transpose(3, 2, 0, 1))
-            for lane, number in enumerate(block.lanes):
-                if not np.array_equal(firsts[lane], constant):
-                    constant = firsts[lane]
-                    table[...] = constant
-                for place, values in zip(places, varying[lane], strict=True):
-                    table[:, :, place] = values
-                load = program.constant_load[number]
-                yield program._replace(rows=table.reshape(-1), constant_load=load)
-
-    def march(self, period: Array, load: Array, state: Array, which: Index) -> Iterator[_Motion]:
-        """Motions of some systems from states (p, 1, 2 n); NaN where one ends."""
-        wanted = np.zeros(len(period), dtype=bool)
-        wanted[which] = True
-        for rows, block in zip(self.rows, self.blocks, strict=True):
-            asked = wanted[block.index]
-            if not asked.any():
-                continue
-            # A lane that is not asked for marches with one that is.
-            lanes = np.where(asked, np.arange(asked.size), int(np.argmax(asked)))
-            record = self._marched(rows, lanes, block.index, period, load, state)
-            for lane in np.flatnonzero(asked[: block.count]):
-                own = record[..., lane : lane + 1]
-                if np.isnan(own[0, 0, 0]):  # some lane ended, and the block with it
-                    again = np.full(asked.size, lane)
-                    own = self._marched(rows, again, block.index, period, load, state)[..., :1]
-                yield int(block.index[lane]), own
-
-    def _marched(
-        self, rows: LaneRows, lanes: Index, index: Index, period: Array, load: Array, state: Array
-    ) -> Array:
-        """States (rows, 2 n, lanes) of lanes of a block; NaN if any of them ends."""
-        numbers, program = index[lanes], self.program
-        program = program._replace(constant_load=program.constant_load[0])
-        own: Array | LaneRows = rows
-        if lanes.size == 1:
-            own = rows.table(program.width.size)
-        elif np.any(np.diff(lanes) != 1):
-            own = rows.take(lanes, lanes.size)
-        return _states(program, own, period[numbers], load[numbers], state[numbers, 0])
+#: A motion (rows, items, lanes) of the system with a number, and its last states (lanes, 2 n).
+_Motion = tuple[int, Array, Array]
 
 
 class _Group:
@@ -181,14 +87,14 @@ class _Group:
         systems: Sequence[System],
         beat: Array,
         steps: int,
-        room: Callable[[str, tuple[int, ...]], Array] = _new,
+        room: Memory = new_memory,
     ) -> None:
         self.systems, self.system, self.beat = systems, systems[0], beat
         grid = build_grid(system_events(self.system), steps)
         fine = halved_grid(grid)
         nodes = evaluate_alike(systems, fine)
-        self.halved = _Lanes.of(self.system, fine, nodes, partial(room, "halved"))
-        self.whole, self._room = self.halved.every_other(grid), partial(room, "alone")
+        self.halved = AlikeLanes.of(self.system, fine, nodes, room)
+        self.whole = self.halved.every_other(grid)
         self.grid, self.nodes = grid, every_other(nodes, grid)
         self.step_numbers = self._step_numbers()
         shared = orbit_coordinates(self.compiled(0), 1.0)
@@ -224,27 +130,32 @@ class _Group:
         return np.asarray(points[..., -1:] * self.beat[:, None, None] * self.balance.force)
 
     def beside(self, points: Array, keep: Callable[[int, Array], None]) -> Array:
-        """Images of many points (p, lanes, k) of each system; ``keep`` has their states first."""
+        """Images of many points (p, lanes, k) of each system; ``keep`` has their places first."""
 
         def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
-            for number, program in enumerate(self.whole.each_alone(self._room)):
-                own, lanes = state[number], state.shape[1]
-                times, forces = np.full(lanes, period[number]), load[number]
-                blocks = [
-                    _states(program, program.rows, times[at], forces[at], own[at])
-                    for at in (slice(i, i + WIDTH) for i in range(0, lanes, WIDTH))
-                ]
-                yield number, blocks[0] if len(blocks) == 1 else np.concatenate(blocks, axis=-1)
+            lanes, size = state.shape[1], self.system.size
+            parts = [slice(first, first + WIDTH) for first in range(0, lanes, WIDTH)]
+            for number, program in enumerate(self.whole.each_alone()):
+                own, times = state[number], np.full(lanes, period[number])
+                records: list[Array] = []
+                for at in parts:
+                    given = program, program.rows, times[at], load[number, at], own[at]
+                    shape = self.grid.steps + 1, size, len(own[at])
+                    records.append(self.whole.room(f"record {len(records)}", shape))
+                    own[at] = march_cycle(*given, records[-1])
+                record = records[0] if len(parts) == 1 else np.concatenate(records, axis=-1)
+                yield number, record, own
 
         return self._images(points, motions, keep)
 
     def march(
-        self, on: _Lanes, points: Array, which: Index, keep: Callable[[int, Array], None]
+        self, on: AlikeLanes, points: Array, which: Index, keep: Callable[[int, Array], None]
     ) -> Array:
         """Images of a point (p, 1, k) of some systems; ``keep`` has its states first."""
 
         def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
-            return on.march(period, load[:, 0], state, which)
+            for number, record in on.march(period, load[:, 0], state, which):
+                yield number, record, record[-1].T
 
         return self._images(points, motions, keep)
 
@@ -258,29 +169,14 @@ class _Group:
         y = points if self.balance is None else points[..., :-1]
         state, pushed = self.coordinates.expand(y), self.extra(points) @ self.system.inverse_mass.T
         load = self.whole.program.constant_load[:, None] + pushed
-        for number, record in motions(1.0 / self.beat, load, state):
+        for number, record, end in motions(1.0 / self.beat, load, state):
             keep(number, record)
-            state[number] = record[-1].T
+            state[number] = end
         image = self.coordinates.reduce(state)
         if self.balance is None:
             return image
         gained = self.coordinates.free_velocity(state) @ self.balance.direction
         return np.concatenate((image, points[..., -1:] - gained[..., None]), axis=-1)
-
-
-def _states(
-    program: Program, rows: Array | LaneRows, period: Array, load: Array, start: Array
-) -> Array:
-    """States (rows, 2 n, lanes) of a block of lanes over a mesh cycle; NaN if any of them ends."""
-    from tribodyn.dynamics._engine.marching import march_block
-
-    state, width = np.array(start), len(start)
-    record = np.empty((program.width.size + 1, state.shape[1], width))
-    lanes = (0.0,) * width, RungeKutta4(), program, rows, period, load
-    code = refuse_stopped(int(march_block(*lanes, state, 1, record, None, stop_flag())))
-    if code >= 0:
-        record[:] = np.nan
-    return record
 
 
 class _Touch(NamedTuple):
