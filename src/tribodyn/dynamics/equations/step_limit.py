@@ -109,12 +109,13 @@ def _radius_bound(matrices: Array) -> Array:
 
     Source: Gelfand (1941), Mat. Sbornik 9, 3-24: the root of the norm tends to the largest modulus.
     """
-    power, bound = matrices, np.ones(matrices.shape[:-2])
+    power, bound = matrices.copy(), np.ones(matrices.shape[:-2])
     for squaring in range(_SQUARINGS + 1):
         power = power if squaring == 0 else power @ power
-        norm = np.sqrt(np.einsum("...ij,...ij->...", power, power))
+        flat = power.reshape(*bound.shape, -1)
+        norm = np.sqrt(np.einsum("...i,...i->...", flat, flat))
         bound *= norm ** (0.5**squaring)
-        power = power / np.maximum(norm, np.finfo(float).tiny)[..., None, None]
+        power /= np.maximum(norm, np.finfo(float).tiny)[..., None, None]
     return bound
 
 

@@ -285,7 +285,10 @@ def _orbits(group: _Group) -> _Orbits:
 
     def beside(number: int, record: Array) -> None:
         # All lanes, which lie side by side, though the last ones are only there to fill the block.
-        along[number] = sum(direction[i] * record[:, i] for i in used)[:, : k + 1].T
+        total = direction[used[0]] * record[:, used[0]]
+        for i in used[1:]:
+            total += direction[i] * record[:, i]
+        along[number] = total[:, : k + 1].T
 
     points = y + step * np.eye(-(-(k + 1) // WIDTH) * WIDTH, k, -1)
     image = group.beside(points, beside)[:, : k + 1]
@@ -296,9 +299,11 @@ def _orbits(group: _Group) -> _Orbits:
     slope = np.eye(k) - matrix
     inverse = np.linalg.pinv(slope)
     touch = _Touch.of(nodes, along[:, 0])
-    moved = touch.flank[..., None] * (along[:, 1:] - along[:, :1])
-    good = touch.kept & np.all(touch.room[:, None] + moved > 0.0, axis=(1, 2))
-    rates = moved / step
+    rates = along[:, 1:]
+    rates -= along[:, :1]
+    rates *= touch.flank[..., None]
+    good = touch.kept & np.all(touch.room + rates.min(axis=1) > 0.0, axis=1)
+    rates /= step
     point = y + _times(inverse, (image[:, :1] - y)[:, 0])[:, None]
     cycles, marched = _Cycles.of(group, point, every, slope, inverse), np.full(count, 2)
     left = good.copy()
