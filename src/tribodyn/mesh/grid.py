@@ -252,6 +252,15 @@ class MonotonePhaseFunction:
     grid: PhaseGrid
     values: Array
 
+    @property
+    def event_phases(self) -> tuple[float, ...]:
+        """Phases at which it may jump."""
+        return self.grid.event_phases
+
+    def _of_columns(self, columns: Array) -> MonotonePhaseFunction:
+        """Several such functions on the same knots as one, which looks them up together."""
+        return MonotonePhaseFunction(self.grid, columns)
+
     @cached_property
     def _pieces(self) -> list[Callable[[Array], Array]]:
         return [

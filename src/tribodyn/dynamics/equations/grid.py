@@ -7,8 +7,10 @@ the fourth order of the integrator survives, and nothing is interpolated in the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -137,6 +139,24 @@ class RowEvaluator:
             refuse_chance(where, entry, self.nodes.reshape(-1), flat)
             refuse_jumps(where, entry, self.nodes, values)
         return values
+
+    def joined(self, entries: Sequence[Any], into: Array) -> frozenset[int]:
+        """Look up tables on the same knots together; numbers of the entries that are ``into``."""
+        tables = {j: each for j, each in enumerate(entries) if hasattr(each, "_of_columns")}
+        grids = {each.grid for each in tables.values()}
+        whole = all(each.values.ndim == 1 for each in tables.values())
+        if (
+            len(tables) < 2
+            or len(grids) > 1
+            or not (whole and self.is_smooth(entries[min(tables)]))
+        ):
+            return frozenset()
+        columns = np.stack([each.values for each in tables.values()], axis=1)
+        if not np.isfinite(columns).all():  # which is told of each by itself
+            return frozenset()
+        table: Any = next(iter(tables.values()))._of_columns(columns)
+        into[..., list(tables)] = table(self.nodes.reshape(-1)).reshape(*self.nodes.shape, -1)
+        return frozenset(tables)
 
     def is_smooth(self, entry: Entry) -> bool:
         """Whether it is a table that jumps nowhere but at events of this grid."""

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics.equations.entry import varies
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, once, system_events
 from tribodyn.dynamics.equations.system import LoadFriction, System, no_direction
 from tribodyn.errors import InputError, real_numbers
@@ -140,23 +141,27 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     contacts = tuple(system.contacts)
 
     def scalar(name: str, take: Callable[..., Array]) -> Array:
-        columns = [
-            take(f"contacts[{j}].{name}", getattr(contact, name))[..., 0]
-            for j, contact in enumerate(contacts)
-        ]
-        if len(columns) == 1:  # a constant stays one number
-            return columns[0][..., None]
-        return np.stack(columns, axis=-1) if columns else np.zeros((grid.steps, 3, 0))
+        entries = [getattr(contact, name) for contact in contacts]
+        if len(entries) == 1:
+            return take(f"contacts[0].{name}", entries[0])
+        still = not any(map(varies, entries))
+        found = np.empty((1 if still else grid.steps, 3, len(entries)))
+        together = rows.joined(entries, found) if take == rows.values else frozenset[int]()
+        for j, entry in enumerate(entries):
+            if j not in together:
+                found[..., j] = take(f"contacts[{j}].{name}", entry)[: len(found), :, 0]
+        return _one_row(found[0, 0], grid) if still else found
 
     def vector(name: str, take: Callable[..., Array]) -> Array:
         if len(contacts) == 1 and (entry := getattr(contacts[0], name)) is not None:
             return take(f"contacts[0].{name}", entry, size)[:, :, None]
-        out = np.zeros((grid.steps, 3, len(contacts), size))
-        for j, contact in enumerate(contacts):
-            entry = getattr(contact, name)
+        entries = [getattr(contact, name) for contact in contacts]
+        still = not any(map(varies, entries))
+        found = np.zeros((1 if still else grid.steps, 3, len(entries), size))
+        for j, entry in enumerate(entries):
             if entry is not None:
-                out[:, :, j] = take(f"contacts[{j}].{name}", entry, size)
-        return out
+                found[:, :, j] = take(f"contacts[{j}].{name}", entry, size)[: len(found)]
+        return _one_row(found[0, 0], grid) if still else found
 
     direction = vector("direction", rows.values)
     for j in np.flatnonzero(~once(direction, 2).any(axis=(0, 1, 3))):
@@ -182,6 +187,11 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     if grid.width.sum() > 0.99:
         object.__setattr__(system, "_checked", min(widest, system._checked))
     return nodes
+
+
+def _one_row(row: Array, grid: Grid) -> Array:
+    """A row that is the same at all nodes of a grid."""
+    return np.broadcast_to(row, (grid.steps, 3, *row.shape))
 
 
 def refuse_negative_gap(gap: Array) -> None:
@@ -211,6 +221,8 @@ def halved_nodes(system: System, grid: Grid, nodes: Nodes) -> tuple[Grid, Nodes]
     )
 
     def joined(old: Array, new: Array) -> Array:
+        if old.strides[:2] == new.strides[:2] == (0, 0):
+            return _one_row(old[0, 0], fine)
         rows = np.empty((count, 2, *old.shape[1:]))
         rows[:, 0, 0], rows[:, 0, 1], rows[:, 0, 2] = old[:, 0], new[:, 0], old[:, 1]
         rows[:, 1, 0], rows[:, 1, 1], rows[:, 1, 2] = old[:, 1], new[:, 2], old[:, 2]
