@@ -7,6 +7,7 @@ The compiled law is :mod:`tribodyn.dynamics._engine.contact_forces`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -232,15 +233,30 @@ class WithinSteps:
         rows = rows_within(self.nodes, step, tau)
         return forces(self.system, rows, self.beat, q, v, side, extra=self.extra)
 
-    def contacts(
-        self, step: Index, tau: Array, q: Array, which: slice = slice(None)
-    ) -> tuple[Array, Array]:
-        """Compressions and gaps of some contacts at fractions of steps."""
+    def contacts(self, step: Index, tau: Array, q: Array) -> tuple[Array, Array]:
+        """Compressions and gaps of all contacts at fractions of steps."""
         direction, error, gap = (
-            quadratic(rows[:, :, which], step, tau)
+            quadratic(rows, step, tau)
             for rows in (self.nodes.direction, self.nodes.error, self.nodes.gap)
         )
         return compression(self.nodes._replace(direction=direction, error=error), q), gap
+
+    def contact_of_each(
+        self, step: Index, contact: Index
+    ) -> Callable[[Array, Array], tuple[Array, Array]]:
+        """Compression and gap of one contact in each of some steps, at fractions of these."""
+        every = np.arange(step.size)
+        direction, error, gap = (
+            rows[step % self.grid.steps, :, contact]
+            for rows in (self.nodes.direction, self.nodes.error, self.nodes.gap)
+        )
+
+        def at(tau: Array, q: Array) -> tuple[Array, Array]:
+            along, off, play = (quadratic(rows, every, tau) for rows in (direction, error, gap))
+            here = self.nodes._replace(direction=along[:, None], error=off[:, None])
+            return compression(here, q)[:, 0], play
+
+        return at
 
     def advance(self, step: Index, begin: Array, end: Array, y: Array, side: Array) -> Array:
         """March states (m, 2 n) over parts of steps by one Runge-Kutta step each."""

@@ -353,27 +353,27 @@ def _with_neighbours(crossed: Mask, after_event: Mask) -> tuple[Index, Mask]:
 def _crossing(points: WithinSteps, step: Index, state: Array, before: Array, after: Array) -> Array:
     """Fraction of each step at which its contacts leave their sides; 0 if not one place."""
     end = points.advance(step, np.zeros(step.size), np.ones(step.size), state, before)
-    (q0, v0), (q1, v1) = np.split(state, 2, axis=1), np.split(end, 2, axis=1)
-    h = points.duration(step)[:, None]
+    of, contact = np.nonzero(before != after)  # every crossing, all of them side by side
+    ends = (each[of] for each in (*np.split(state, 2, axis=1), *np.split(end, 2, axis=1)))
+    (q0, v0, q1, v1), h = ends, points.duration(step)[of, None]
+    pressed = points.contact_of_each(step[of], contact)
+    own = before[of, contact], after[of, contact]
 
-    def distance(j: int, of: Index, tau: Array) -> Array:
-        """Clearance of one contact at fractions of the steps in which it crosses."""
+    def distance(tau: Array) -> Array:
+        """Clearance of the contacts at fractions of the steps in which they cross."""
         t = tau[:, None]
-        q = (1.0 + 2.0 * t) * (1.0 - t) ** 2 * q0[of] + t**2 * (3.0 - 2.0 * t) * q1[of]
-        q = q + h[of] * t * (1.0 - t) * ((1.0 - t) * v0[of] - t * v1[of])
-        pressed, gap = points.contacts(step[of], tau, q, slice(j, j + 1))
-        return clearance(pressed[:, 0], gap[:, 0], before[of, j], after[of, j])
+        q = (1.0 + 2.0 * t) * (1.0 - t) ** 2 * q0 + t**2 * (3.0 - 2.0 * t) * q1
+        q = q + h * t * (1.0 - t) * ((1.0 - t) * v0 - t * v1)
+        return clearance(*pressed(tau, q), *own)
 
+    low, high = np.zeros(of.size), np.ones(of.size)
+    beyond = distance(low) <= 0.0
+    for _ in range(_HALVINGS):
+        tau = 0.5 * (low + high)
+        inside = distance(tau) > 0.0
+        low, high = np.where(inside, tau, low), np.where(inside, high, tau)
     places = np.full(before.shape, np.nan)
-    for j in map(int, np.flatnonzero(np.any(before != after, axis=0))):
-        of = np.flatnonzero(before[:, j] != after[:, j])
-        low, high = np.zeros(of.size), np.ones(of.size)
-        beyond = distance(j, of, low) <= 0.0
-        for _ in range(_HALVINGS):
-            tau = 0.5 * (low + high)
-            inside = distance(j, of, tau) > 0.0
-            low, high = np.where(inside, tau, low), np.where(inside, high, tau)
-        places[of, j] = np.where(beyond, 0.0, low)
+    places[of, contact] = np.where(beyond, 0.0, low)
     first, last = np.nanmin(places, axis=1), np.nanmax(places, axis=1)
     return np.where(last - first < _TOGETHER, first, 0.0)
 
