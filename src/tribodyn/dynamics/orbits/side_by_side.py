@@ -47,8 +47,9 @@ from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.errors import InputError, collected
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
-#: Steps of all systems that are marched side by side: rows of more are far from the core.
-_STEPS = 32768
+#: Steps of all systems that are found together, and the fewest systems that are: rows of more are
+#: far from the core, and fewer march one by one.
+_STEPS, _FEWEST = 16384, 8
 
 
 def orbits_in_touch(
@@ -59,7 +60,7 @@ def orbits_in_touch(
     Each is sampled where it is called for, as the samples of all would leave the nearest memory.
     """
     found: list[Callable[[], Response] | None] = [None] * len(systems)
-    size, groups = max(1, _STEPS // steps), groups_alike(systems)
+    size, groups = max(_FEWEST, _STEPS // steps), groups_alike(systems)
     parts = (group[at : at + size] for group in groups for at in range(0, len(group), size))
     for numbers in parts:
         with collected() as told:

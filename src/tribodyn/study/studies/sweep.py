@@ -160,7 +160,7 @@ def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[
 
 
 #: Points at most whose motions are found side by side, and groups of them for each processor.
-_TOGETHER, _GROUPS = 8, 4
+_TOGETHER, _GROUPS = 16, 4
 #: Points for which it pays to begin a process.
 _WORTH = 50
 
