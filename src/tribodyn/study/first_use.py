@@ -16,18 +16,29 @@ from tribodyn.interrupt import STOPPED, processors, refuse_stopped, stop_flag
 from tribodyn.study.processes import aside
 
 if TYPE_CHECKING:
+    from tribodyn.dynamics import System
     from tribodyn.study.case.case import Case
 
 #: Whether a first run may begin a process; those that compile for others begin none.
 allowed = True
 #: Motions side by side that fill a block of the engine.
 _BLOCK = 16
+#: What a study comes to last, first: it begins with the other end itself.
+_JOBS = {
+    "run": ("loads", "one motion", "motions"),
+    "map": ("loads", "rows of motions"),
+    "bifurcation": ("followed motion",),
+    "run-up": ("followed motion", "one motion"),
+}
 
 
 @contextmanager
-def compiled_beside(case: Case) -> Iterator[None]:
-    """Share what a run of the case compiles inside the block with a process beside it."""
-    jobs = _missing(case) if allowed and processors() > 1 else []
+def compiled_beside(case: Case, study: str = "run") -> Iterator[bool]:
+    """Share what a study of the case compiles inside the block with a process beside it.
+
+    The block is told whether there is anything to compile.
+    """
+    jobs = _missing(case, study) if allowed and processors() > 1 else []
     with ExitStack() as stack:
         if jobs:
             with suppress(OSError):  # Where no folder can be made, this process compiles alone.
@@ -36,7 +47,7 @@ def compiled_beside(case: Case) -> Iterator[None]:
                 busy = stack.enter_context(aside(_compile, [(folder, job) for job in jobs]))
                 agreement = Agreement(Path(folder), partial(_interruptibly, busy))
                 stack.enter_context(agreed(agreement))
-        yield
+        yield bool(jobs)
 
 
 def _interruptibly(busy: Callable[[], bool]) -> bool:
@@ -44,31 +55,28 @@ def _interruptibly(busy: Callable[[], bool]) -> bool:
     return busy()
 
 
-def _missing(case: Case) -> Sequence[str]:
-    """What the run comes to last, first: it begins with the other end itself."""
+def _missing(case: Case, study: str = "run") -> Sequence[str]:
+    """The jobs that are left of a study."""
     from tribodyn.dynamics._engine.marching import march_block
     from tribodyn.dynamics.time.engines import ENGINES
 
     if not hasattr(march_block, "_cache"):  # Numba was told to compile nothing
         return []
-    jobs = []
+    absent = set()
     if case.gears.kind == "spur":
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
-        jobs += [] if cached(solve_loads) else ["loads"]
+        absent |= set() if cached(solve_loads) else {"loads"}
     if ENGINES[case.solver.engine].method == "rk4" and not cached(march_block):
-        jobs += ["one motion", "motions"]
-    return jobs
+        absent |= {job for jobs in _JOBS.values() for job in jobs} - {"loads"}
+    return [job for job in _JOBS[study] if job in absent]
 
 
 def _compile(order: tuple[str, str]) -> None:
     """Do a job for another process, unless that has begun to."""
     folder, job = order
     with suppress(ElsewhereError), agreed(Agreement(Path(folder))):
-        if job == "loads":
-            _loads()
-        else:
-            _march(_BLOCK if job == "motions" else 1)
+        _WORK[job]()
 
 
 def _loads() -> None:
@@ -80,11 +88,36 @@ def _loads() -> None:
     solve_loads(none, none[0:, :, 0], 0.0, none, np.zeros(1), *loads, stop_flag())
 
 
-def _march(lanes: int) -> None:
-    """A march that takes no time."""
-    from tribodyn.dynamics import System
+def _march(lanes: int, followed: bool = False) -> None:
+    """A march that takes no time, and statistics of it."""
+    from tribodyn.dynamics._engine.statistics import Statistics
     from tribodyn.dynamics.time.engines import Setting, prepare
 
-    system, frequency = System([[1.0]], [[1.0]], [[1e4]], [0.0]), np.full(lanes, 10.0)
-    setting = Setting(system, frequency, 1, 64, np.zeros((lanes, 1)))
-    prepare("rk4", setting).march(np.zeros((lanes, 2)), 1)
+    system, frequency = _system(), np.full(lanes, 10.0)
+    motions = prepare("rk4", Setting(system, frequency, 1, 64, np.zeros((lanes, 1))))
+    gathered = Statistics.of(motions.compiled, np.zeros((1, 2)), lanes) if followed else None
+    motions.march(np.zeros((lanes, 2)), 1, statistics=gathered)
+
+
+def _rows() -> None:
+    """Motions of as many systems as an operating map has side by side, which take no time."""
+    from tribodyn.dynamics.orbits.side_by_side import _Group
+
+    group = _Group([_system()] * _BLOCK, np.full(_BLOCK, 10.0), 64)
+    group.march(group.whole, group.start(), np.arange(_BLOCK), lambda number, states: None)
+
+
+def _system() -> System:
+    from tribodyn.dynamics import Contact, System
+
+    contact = Contact([1.0], 1e4, 10.0)
+    return System([[1.0]], [[1.0]], [[1e4]], [1.0], contacts=[contact])
+
+
+_WORK: dict[str, Callable[[], None]] = {
+    "loads": _loads,
+    "one motion": partial(_march, 1),
+    "motions": partial(_march, _BLOCK),
+    "followed motion": partial(_march, 1, followed=True),
+    "rows of motions": _rows,
+}

@@ -38,16 +38,31 @@ import tribodyn
 _JOBS = """
 import os
 from tribodyn.study import first_use
-case = tribodyn.load_case("fzg-roughness")
-for job in first_use._missing(case):
+case, study = tribodyn.load_case("fzg-roughness"), sys.argv[2]
+for job in first_use._missing(case, study):
     first_use._compile((sys.argv[1], job))
-assert first_use._missing(case) == []
+assert first_use._missing(case, study) == []
 """
 _RUN = """
 from tribodyn.study import first_use
 first_use.allowed = sys.argv[1] == "allowed"
 tribodyn.run(tribodyn.load_case("fzg-roughness")).save(sys.argv[2])
 """
+#: What a study compiles itself and what it loads.
+_STUDY = """
+from tribodyn.dynamics._engine.marching import march_block
+from tribodyn.stiffness.loaded.kernel import solve_loads
+from tribodyn.study import first_use
+first_use.allowed = False
+case = tribodyn.load_case("fzg-roughness")
+{}
+compiled = [len(compiled), sum(map(len, (k.stats.cache_hits for k in (march_block, solve_loads))))]
+"""
+_STUDIES = {
+    "map": 'tribodyn.sweep(case, between=("900 rpm", "1500 rpm"), points=64)',
+    "bifurcation": 'tribodyn.bifurcation(case, between=("900 rpm", "1500 rpm"), points=20)',
+    "run-up": 'tribodyn.run_up(case, between=("900 rpm", "1000 rpm"), duration=0.05, tables=2)',
+}
 _SAY = "print(json.dumps(compiled))"
 
 
@@ -62,10 +77,22 @@ def _compiled(script: str, cache: Path, *words: str) -> list[str]:
 def test_the_jobs_compile_what_a_run_needs_and_nothing_else(tmp_path: Path) -> None:
     marks, cache = tmp_path / "marks", tmp_path / "cache"
     marks.mkdir()
-    jobs = _compiled(_JOBS, cache, str(marks))
+    jobs = _compiled(_JOBS, cache, str(marks), "run")
     assert sorted(jobs) == ["march_block", "march_block", "solve_loads"]
     assert len(list(marks.iterdir())) == len(jobs)
     assert _compiled(_RUN, cache, "alone", str(tmp_path / "report")) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("study", _STUDIES)
+def test_the_jobs_of_a_study_are_among_what_it_loads(tmp_path: Path, study: str) -> None:
+    (tmp_path / "marks").mkdir()
+    cache = tmp_path / "cache"
+    jobs = _compiled(_JOBS, cache, str(tmp_path / "marks"), study)
+    own, loaded = _compiled(_STUDY.format(_STUDIES[study]), cache)
+    assert len(jobs) == len(first_use._JOBS[study])
+    assert loaded == len(jobs)
+    assert len([*cache.glob("*/*.nbc")]) == len(jobs) + own
 
 
 @pytest.mark.slow
@@ -86,7 +113,7 @@ def test_where_no_folder_can_be_made_a_run_compiles_alone(monkeypatch: pytest.Mo
     asked: list[object] = []
     monkeypatch.setattr(first_use, "TemporaryDirectory", refuses)
     monkeypatch.setattr(first_use, "aside", lambda *given: asked.append(given))
-    monkeypatch.setattr(first_use, "_missing", lambda case: ["loads"])
+    monkeypatch.setattr(first_use, "_missing", lambda *_: ["loads"])
     monkeypatch.setattr(first_use, "processors", lambda: 2)
     with first_use.compiled_beside(load_case("fzg-roughness")):
         asked.append("run")

@@ -13,6 +13,7 @@ from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import spec_of
+from tribodyn.study.first_use import compiled_beside
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.axes import Axis, ends_of
 from tribodyn.study.studies.grid import contact_without_speed, identity, varied
@@ -91,18 +92,19 @@ def bifurcation(
     values = _values(case, over, between, points, by)
     told = identity("bifurcation", case, [over, values.tolist()], steps=steps, **options)
     members = (Members() if members is None else members).begin(told)
-    systems, frequency, counts = _systems(case, over, values, steps, progress, members)
-    return compute(
-        systems,
-        frequency,
-        parameter=values,
-        parameter_name=over,
-        parameter_unit=_unit(case, over),
-        steps=counts,
-        progress=progress,
-        members=members,
-        **options,
-    )
+    with compiled_beside(case, "bifurcation"):
+        systems, frequency, counts = _systems(case, over, values, steps, progress, members)
+        return compute(
+            systems,
+            frequency,
+            parameter=values,
+            parameter_name=over,
+            parameter_unit=_unit(case, over),
+            steps=counts,
+            progress=progress,
+            members=members,
+            **options,
+        )
 
 
 def _systems(

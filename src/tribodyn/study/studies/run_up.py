@@ -10,6 +10,7 @@ from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import effective
+from tribodyn.study.first_use import compiled_beside
 from tribodyn.study.studies.axes import read_axes
 from tribodyn.study.studies.grid import varied
 
@@ -84,7 +85,7 @@ def run_up(
         what = f"tables = {tables}"
         raise InputError(what, "argument tables", "A whole number >= 1", "Give 1 or more")
     speeds = np.geomspace(low, high, count) if count > 1 else np.array([np.sqrt(low * high)])
-    with placed(case), collected():
+    with placed(case), collected(), compiled_beside(case, "run-up"):
         systems, per_speed = speed_systems(case, speeds, progress)
         first = next(iter(systems.values()))
         profile = speed_ramp(low * per_speed, high * per_speed, duration, hold=hold, down=down)

@@ -19,6 +19,7 @@ from tribodyn.members import Members
 from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.first_use import compiled_beside
 from tribodyn.study.pipeline.run import Asked, Begun, begin, move_together, with_tables
 from tribodyn.study.processes import helpers
 from tribodyn.study.studies.axes import Axis, read_axes
@@ -188,6 +189,8 @@ def _over_points(
                 done[index] = point
                 progress.advance()
 
+    first = _first_use(asked, places, partial(keep_group, 0))
+    del groups[:first], places[:first]
     abroad = _abroad(asked)
     with helpers(len(left) // _WORTH if abroad else 0) as others:
         if abroad and others.count:
@@ -195,6 +198,25 @@ def _over_points(
         else:
             numbers = range(len(groups))
             in_threads(lambda i: keep_group(i, _points(asked, places[i])), numbers, count)
+
+
+def _first_use(
+    asked: Callable[..., Asked],
+    places: Sequence[Sequence[tuple[Any, ...]]],
+    keep: Callable[[Sequence[SweepPoint]], None],
+) -> int:
+    """Compute the first group by itself where kernels are to be compiled; how many groups that are.
+
+    Several groups at a time, be it in threads or processes, would wait for the same kernels.
+    """
+    known = _tried(partial(asked, *places[0][0])) if places else None
+    if not isinstance(known, Asked):
+        return 0
+    study = "map" if len(places[0]) == _TOGETHER else "run"
+    with compiled_beside(known.case, study) as compiles:
+        if compiles:
+            keep(_points(asked, places[0]))
+    return int(compiles)
 
 
 def _abroad(asked: Callable[..., Asked]) -> bytes:
