@@ -160,8 +160,10 @@ def _asked(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[
     return over
 
 
-#: Points at most whose motions are found side by side, and groups of them for each processor.
+#: Points at most that are computed together, and groups of them for each processor.
 _TOGETHER, _GROUPS = 16, 4
+#: Motions that march side by side.
+_ABREAST = 8
 #: Points for which it pays to begin a process.
 _WORTH = 50
 
@@ -177,6 +179,7 @@ def _over_points(
     left = [index for index in range(len(grid)) if index not in done]
     count = os.cpu_count() or 1
     size = min(_TOGETHER, max(1, len(left) // (_GROUPS * count)))
+    size -= size % _ABREAST if size > _ABREAST else 0
     groups = [left[first : first + size] for first in range(0, len(left), size)]
     places = [[grid[index] for index in members] for members in groups]
     lock = threading.Lock()
@@ -212,7 +215,7 @@ def _first_use(
     known = _tried(partial(asked, *places[0][0])) if places else None
     if not isinstance(known, Asked):
         return 0
-    study = "map" if len(places[0]) == _TOGETHER else "run"
+    study = "map" if len(places[0]) >= _ABREAST else "run"
     with compiled_beside(known.case, study) as compiles:
         if compiles:
             keep(_points(asked, places[0]))
