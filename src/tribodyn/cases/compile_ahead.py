@@ -19,7 +19,8 @@ from tribodyn.checks import require_whole
 from tribodyn.errors import ComputationError
 from tribodyn.progress import SILENT, Progress
 
-#: The job that needs no case: one march. A process beside it begins with teeth and films.
+#: The job that needs no case: the marches of all studies. A process beside it begins with teeth
+#: and films.
 _ENGINE = ""
 _CALL = "import sys; from {0} import compile_for; compile_for(sys.argv[1])"
 
@@ -138,10 +139,11 @@ def compile_for(job: str) -> None:
 
     event.register("numba:compile", Compiling())
     warnings.simplefilter("ignore")
+    from tribodyn.study import first_use
+
     if job == _ENGINE:
-        _march()
+        first_use.compile_marches()
     else:
-        from tribodyn.study import first_use
         from tribodyn.study.pipeline.run import run
 
         first_use.allowed = False  # Another process is beside this one already.
@@ -153,16 +155,3 @@ def compile_for(job: str) -> None:
 
 def _name(kernel: Any) -> str:
     return f"{kernel.py_func.__module__.removeprefix('tribodyn.')}.{kernel.py_func.__name__}"
-
-
-def _march() -> None:
-    """The orbit of a system that takes no time, and those of as many as an operating map has."""
-    import numpy as np
-
-    from tribodyn.dynamics import Contact, System, steady_state
-    from tribodyn.dynamics.orbits.side_by_side import orbits_in_touch
-
-    teeth, count = Contact([1.0], 1e4, 10.0), 16
-    system = System([[1.0]], [[1.0]], [[1e4]], [1.0], contacts=[teeth])
-    steady_state(system, 10.0, steps=64)
-    orbits_in_touch([system] * count, np.full(count, 10.0), 64)

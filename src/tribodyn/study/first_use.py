@@ -79,6 +79,13 @@ def _compile(order: tuple[str, str]) -> None:
         _WORK[job]()
 
 
+def compile_marches() -> None:
+    """Do the jobs of all studies that march in this process; teeth come with the run of a case."""
+    for job, work in _WORK.items():
+        if job != "loads":
+            work()
+
+
 def _loads() -> None:
     """Loads of tooth pairs at no phase."""
     from tribodyn.stiffness.loaded.kernel import solve_loads

@@ -98,6 +98,16 @@ def test_the_jobs_of_a_study_are_among_what_it_loads(tmp_path: Path, study: str)
 
 
 @pytest.mark.slow
+def test_after_the_jobs_of_all_studies_none_compiles_anything(tmp_path: Path) -> None:
+    cache = tmp_path / "cache"
+    work = "from tribodyn.study import first_use; first_use.compile_marches(); first_use._loads();"
+    jobs = _compiled(work, cache)
+    assert len(jobs) == len([*cache.glob("*/*.nbc")]) == len(first_use._WORK)
+    own, _ = _compiled(_STUDY.format("; ".join(_STUDIES.values())), cache)
+    assert own == 0
+
+
+@pytest.mark.slow
 @pytest.mark.skipif(os.cpu_count() == 1, reason="one processor compiles alone")
 def test_a_first_run_compiles_only_a_part_itself(tmp_path: Path) -> None:
     cache = tmp_path / "cache"
