@@ -7,6 +7,7 @@ import re
 import tomllib
 from typing import Any
 
+import numpy as np
 import pytest
 from broken import SOUND
 
@@ -256,8 +257,9 @@ def test_the_centre_distance_that_is_advised_leaves_the_backlash(distance: float
 def test_numbers_in_the_place_of_numbers_make_the_case_that_reading_it_anew_makes(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    case = td.load_case(name)
-    changes = [{"operation.speed": 100.0}, {"operation.torque": 70.0, "operation.speed": 90.0}]
+    case, speed = td.load_case(name), np.linspace(90.0, 100.0, 2)  # items of an array as well
+    changes = [{"operation.speed": speed[1]}, {"operation.torque": 70.0, "operation.speed": 90.0}]
+    assert all(case._with_numbers(each) is not None for each in changes)
     quick = [case.replace(changes[0]), case.replace(changes[0]).replace(changes[1])]
     monkeypatch.setattr(type(case), "_with_numbers", lambda *_: None)
     whole = [case.replace(changes[0]), case.replace(changes[0]).replace(changes[1])]

@@ -159,6 +159,8 @@ class Case(CaseData, whole=True):
         found: Case = object.__new__(type(self))
         vars(found).update(self.__getstate__(), _shared=vars(self).setdefault("_shared", {}))
         numbers = {}
+        # An item of an array is a number like any other.
+        changes = {key: float(v) if isinstance(v, float) else v for key, v in changes.items()}
         for key, value in changes.items():
             table, _, name = key.partition(".")
             spec, old = spec_of(self, key), self._given.get(key)
