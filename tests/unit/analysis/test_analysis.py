@@ -95,3 +95,15 @@ def test_what_the_step_cannot_resolve_is_refused(motion):
         mesh_harmonics(motion, _wave(motion), 100)
     with pytest.raises(InputError, match="one signal"):
         amplitude_spectrum(motion, np.ones((3, 3)))
+
+
+@pytest.mark.parametrize("shape", [(), (2,), (2, 3)])
+def test_extremes_are_those_of_the_parabolas_of_all_steps(shape):
+    steps = np.random.default_rng(6).standard_normal((40, 3, *shape))
+    tau = np.linspace(0.0, 1.0, 2001).reshape(-1, *(1,) * (steps.ndim - 1))
+    left, middle, right = np.moveaxis(steps, 1, 0)
+    weights = (1 - tau) * (1 - 2 * tau), 4 * tau * (1 - tau), tau * (2 * tau - 1)
+    along = weights[0] * left + weights[1] * middle + weights[2] * right
+    low, high = extremes(steps.reshape(-1, *shape))
+    assert low == pytest.approx(along.min(axis=(0, 1)), rel=1e-6)
+    assert high == pytest.approx(along.max(axis=(0, 1)), rel=1e-6)

@@ -71,11 +71,17 @@ class FineSamples:
 
 def sample_extremes(signal: Array) -> tuple[Array, Array]:
     """Least and greatest value of (3 s, ...), with the vertices of the parabolas of the steps."""
-    left, middle, right = np.moveaxis(signal.reshape(-1, 3, *signal.shape[1:]), 1, 0)
-    slope, bend = right - left, left - 2.0 * middle + right
+    steps = signal.reshape(-1, 3, *signal.shape[1:])
+    least, greatest = signal.min(axis=0), signal.max(axis=0)
+    bend = steps[:, 0] - 2.0 * steps[:, 1] + steps[:, 2]
+    reach = 0.5 * np.abs(bend)  # a vertex within a step is no farther from its middle
+    beyond = (steps[:, 1] + reach > greatest) | (steps[:, 1] - reach < least)
+    rows = np.flatnonzero(beyond.any(axis=tuple(range(1, beyond.ndim))))
+    (left, middle, right), bend = np.moveaxis(steps[rows], 1, 0), bend[rows]
+    slope = right - left
     inside = np.abs(slope) < 2.0 * np.abs(bend)
     vertex = np.where(inside, middle - slope**2 / (8.0 * np.where(inside, bend, 1.0)), middle)
-    values = np.concatenate((signal, vertex))
+    values = np.concatenate((least[None], greatest[None], vertex))
     return values.min(axis=0), values.max(axis=0)
 
 

@@ -230,28 +230,27 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
 
 
 def _motion_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
-    """Figures of all signals of a motion, each of which is averaged once."""
+    """Figures of all signals of a motion, which are averaged together."""
     from tribodyn.signals.indicators import extremes, mesh_harmonics, moments
 
     name, figures = "dynamic_transmission_error", dict[str, Any]()
-    # Each as soon as it is known, as all of them would leave the nearest memory.
-    for signal, values in _signals(result, samples):
-        mean, swing = (float(part) for part in moments(samples, values))
-        if signal == "mesh_force":
-            least, greatest = extremes(values)
-            figures |= {f"mean_{signal}": mean, f"rms_{signal}": np.hypot(mean, swing)}
-            figures |= {f"peak_{signal}": greatest, f"minimum_{signal}": least}
-        elif signal == name:
-            least, greatest = extremes(values)
-            amplitudes = np.abs(mesh_harmonics(samples, values, _HARMONICS))
+    signals, every = zip(*_signals(result, samples), strict=True)
+    averages = (part.tolist() for part in moments(samples, np.array(every).T))
+    both = [every[signals.index(each)] for each in ("mesh_force", name)]
+    (least, lowest), (greatest, highest) = extremes(np.array(both).T)
+    figures |= {"peak_mesh_force": greatest, "minimum_mesh_force": least}
+    figures[f"peak_to_peak_{name}"] = highest - lowest
+    for order, size in enumerate(np.abs(mesh_harmonics(samples, both[1], _HARMONICS)), 1):
+        figures[f"{name}_harmonic_{order}"] = size
+    for signal, mean, swing in zip(signals, *averages, strict=True):
+        if signal == name:
             figures |= {f"mean_{name}": mean, f"rms_{name}": swing}
-            figures[f"peak_to_peak_{name}"] = greatest - least
-            for order, size in enumerate(amplitudes, 1):
-                figures[f"{name}_harmonic_{order}"] = size
         elif signal == "contact_loss":
             figures["contact_loss_share"] = mean
         elif signal.endswith("friction_force"):
             figures[f"rms_{signal}"] = np.hypot(mean, swing)
+        elif signal == "mesh_force":
+            figures |= {f"mean_{signal}": mean, f"rms_{signal}": np.hypot(mean, swing)}
         elif signal.startswith(_OF_CENTRES):
             figures[f"rms_{signal}"] = swing
             figures[f"mean_{signal}"] = abs(mean) if "torque" in signal else mean
