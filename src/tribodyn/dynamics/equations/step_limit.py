@@ -22,15 +22,16 @@ from tribodyn.dynamics.equations.nodes import (
 )
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
-from tribodyn.types import Array, ComplexArray, Index
+from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Highest ``omega_max * dt``; the exact limit of the scheme on the imaginary axis is 2.828.
 LIMIT = 2.7
 
 #: Rows of the table that are examined at most, and lanes.
 _SAMPLES, _LANES = 32, 256
-#: Squarings after which the norm of a power tells the matrices that matter, and its rounding.
-_SQUARINGS, _ROUNDING = 12, 1e-9
+#: Squarings after which the norm of a power tells the matrices that matter, those after which it
+#: tells one that is likely to, and its rounding.
+_SQUARINGS, _FIRST, _ROUNDING = 12, 4, 1e-9
 #: Factors of stiffness, damping and friction of a system as it stands.
 _PLAIN = (1.0, 1.0, 1.0)
 _AS_IT_STANDS = np.array([_PLAIN])
@@ -89,34 +90,51 @@ def _state_matrix(elastic: Array, viscous: Array) -> Array:
 
 
 def _spectral_radius(matrices: Array) -> Array:
-    """Largest modulus of an eigenvalue of any of some matrices (..., m, n, n)."""
+    """Largest modulus of an eigenvalue of any of some matrices (..., m, n, n).
 
-    def modulus(some: Array) -> Array:
-        return np.asarray(np.abs(np.linalg.eigvals(some)).max(axis=-1))
-
-    bound = _radius_bound(matrices)
-    first = bound.argmax(axis=-1)[..., None]
-    largest = modulus(np.take_along_axis(matrices, first[..., None, None], axis=-3))
-    others = bound > (1.0 - _ROUNDING) * largest
-    np.put_along_axis(others, first, False, axis=-1)
-    found = np.broadcast_to(largest, bound.shape).copy()
-    found[others] = modulus(matrices[others])
-    return np.asarray(found.max(axis=-1))
-
-
-def _radius_bound(matrices: Array) -> Array:
-    """What no eigenvalue exceeds: the root of the norm of a power, little above the largest.
+    The root of the norm of a power bounds it, little above. Matrices that stay below what another
+    one reaches are left out as soon as the bound tells.
 
     Source: Gelfand (1941), Mat. Sbornik 9, 3-24: the root of the norm tends to the largest modulus.
     """
-    power, bound = matrices.copy(), np.ones(matrices.shape[:-2])
+    apart = _blocks(np.any(matrices, axis=tuple(range(matrices.ndim - 2))))
+    if len(apart) > 1:
+        found = [_spectral_radius(matrices[..., block[:, None], block]) for block in apart]
+        return np.asarray(np.max(found, axis=0))
+    if np.all(matrices == matrices[..., :1, :, :]):
+        matrices = matrices[..., :1, :, :]
+    lead, (count, size) = matrices.shape[:-3], matrices.shape[-3:-1]
+    every = matrices.reshape(-1, size, size)
+    left, largest = np.arange(len(every)), np.zeros(len(every) // count)
+    power, bound = every.copy(), np.ones(len(every))
     for squaring in range(_SQUARINGS + 1):
         power = power if squaring == 0 else power @ power
-        flat = power.reshape(*bound.shape, -1)
-        norm = np.sqrt(np.einsum("...i,...i->...", flat, flat))
+        flat = power.reshape(-1, size * size)
+        norm = np.sqrt(np.einsum("pi,pi->p", flat, flat))
         bound *= norm ** (0.5**squaring)
-        power /= np.maximum(norm, np.finfo(float).tiny)[..., None, None]
-    return bound
+        power /= np.maximum(norm, np.finfo(float).tiny)[:, None, None]
+        if squaring == _FIRST:
+            first = bound.reshape(-1, count).argmax(axis=1) + count * np.arange(largest.size)
+            largest = _modulus(every[first])
+            bound[first] = 0.0
+        if squaring >= _FIRST:
+            near = bound > (1.0 - _ROUNDING) * largest[left // count]
+            if not near.all():
+                left, power, bound = left[near], power[near], bound[near]
+    np.maximum.at(largest, left // count, _modulus(every[left]))
+    return largest.reshape(lead)
+
+
+def _blocks(pattern: Mask) -> list[Index]:
+    """Diagonal blocks of which a matrix that is triangular but for them has the eigenvalues."""
+    from scipy.sparse.csgraph import connected_components
+
+    count, block = connected_components(pattern, connection="strong")
+    return [np.flatnonzero(block == number) for number in range(count)]
+
+
+def _modulus(matrices: Array) -> Array:
+    return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1, initial=0.0))
 
 
 def look_at(total: Array) -> tuple[Index, Index]:
