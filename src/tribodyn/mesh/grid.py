@@ -10,18 +10,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tribodyn.arrays.monotone import monotone_cubic
+from tribodyn.arrays.products import times
 from tribodyn.arrays.recent import Recent
 from tribodyn.errors import InputError
 from tribodyn.types import Array, ComplexArray, Index
 
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
 _LEAST_INTERVALS = 4
 #: Sets of phases whose knots are remembered, and their sizes.
-_KEPT, _FEWEST_KEPT, _MOST_KEPT = 8, 64, 65536
+_KEPT, _FEWEST_KEPT, _MOST_KEPT = 8, 512, 65536
 #: Values of a knot from which on it pays to read them together.
 _WIDE = 12
 
@@ -70,15 +75,38 @@ class PhaseGrid:
         starts, counts = np.array(self.event_phases), np.array(self.intervals)
         return starts, counts, np.diff(starts, append=1.0), np.cumsum(counts + 1) - counts - 1
 
-    def _between(self, phase: Array) -> tuple[Index, Array]:
-        """The four knots about each phase, and the weights of their cubic."""
-        if not _FEWEST_KEPT <= phase.size <= _MOST_KEPT:
-            return self._located(phase)
-        # The tables of one case, and of all its operating points, are asked at the same phases.
-        return self._known.get((phase,), lambda: self._located(phase))
+    def _interpolated(self, phase: Array, columns: Array) -> Array:
+        """Values (c, ...) of columns (n, c) at phases: the cubic through the four knots about each.
+
+        Those of each column lie side by side.
+        """
+        if phase.size < _FEWEST_KEPT:
+            knots, weights = self._located(phase)
+            return np.asarray(np.einsum("k...,k...c->c...", weights, columns[knots]))
+        if phase.size <= _MOST_KEPT:
+            # The tables of one case, and of all its operating points, are asked at the same phases.
+            matrix = self._known.get((phase,), lambda: self._matrix(phase))
+        else:
+            matrix = self._matrix(phase)
+        if columns.shape[1] == 1:
+            found = matrix @ columns[:, 0]
+        elif columns.shape[1] < _WIDE:
+            found = np.array([matrix @ column for column in np.ascontiguousarray(columns.T)])
+        else:  # which reads all values of a knot at a time
+            found = (matrix @ columns).T
+        return np.ascontiguousarray(found).reshape(-1, *phase.shape)
+
+    def _matrix(self, phase: Array) -> csr_matrix:
+        """Matrix by which values at the knots become values at phases."""
+        from scipy.sparse import csr_matrix
+
+        knots, weights = (each.reshape(4, -1).T.ravel() for each in self._located(phase))
+        return csr_matrix(
+            (weights, knots, np.arange(0, weights.size + 1, 4)), (phase.size, self.phase.size)
+        )
 
     @cached_property
-    def _known(self) -> Recent[tuple[Index, Array]]:
+    def _known(self) -> Recent[csr_matrix]:
         return Recent(_KEPT)
 
     def _located(self, phase: Array) -> tuple[Index, Array]:
@@ -164,15 +192,10 @@ class PhaseFunction:
 
     def __call__(self, phase: Array | float) -> Array:
         """Interpolate with the cubic through four knots; on an event the value after it."""
-        knots, weights = self.grid._between(np.asarray(phase, dtype=float))
-        rows = self.values.reshape(len(self.values), -1)
-        if rows.shape[1] < _WIDE:  # places last, so that every loop is long
-            columns = np.ascontiguousarray(rows.T).take(knots, axis=1)
-            total = np.einsum("k...,ck...->c...", weights, columns)
-        else:  # which reads all values of a knot at a time
-            total = np.einsum("k...,k...c->c...", weights, rows.take(knots, axis=0))
-        found = np.moveaxis(total, 0, -1).reshape(knots.shape[1:] + self.values.shape[1:])
-        return found if self.onto is None else np.asarray(found @ self.onto)
+        at = np.asarray(phase, dtype=float)
+        found = self.grid._interpolated(at, self.values.reshape(len(self.values), -1))
+        found = np.moveaxis(found, 0, -1).reshape(at.shape + self.values.shape[1:])
+        return found if self.onto is None else times(found, self.onto.T)
 
 
 def phase_grid(event_phases: tuple[float, ...], steps: int = 512) -> PhaseGrid:

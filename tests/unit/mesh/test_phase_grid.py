@@ -122,3 +122,14 @@ def test_events_out_of_order_are_refused(events):
 def test_too_few_steps_are_refused():
     with pytest.raises(InputError, match="at least 16"):
         phase_grid(EVENTS, 8)
+
+
+@pytest.mark.parametrize("columns", [1, 3, 30])
+def test_many_phases_are_looked_up_as_each_by_itself(columns):
+    grid = phase_grid(EVENTS, 32)
+    values = np.sin(np.outer(grid.phase, np.arange(1, columns + 1)))
+    onto = np.random.default_rng(4).standard_normal((columns, 5))
+    phase = np.linspace(-0.5, 1.5, 200).reshape(20, 10)
+    for function in (PhaseFunction(grid, values), PhaseFunction(grid, values, onto)):
+        each = np.array([[function(one) for one in row] for row in phase])
+        assert function(phase) == pytest.approx(each, rel=1e-13, abs=1e-14)

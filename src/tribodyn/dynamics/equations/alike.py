@@ -7,10 +7,14 @@ at the same events. Rows in which they differ have a first axis more, for the sy
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from tribodyn.arrays.kept import Memory, new_memory
+from tribodyn.arrays.products import Room, times
 from tribodyn.dynamics.equations.entry import Entry, entry_values, varies
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, once, system_events
 from tribodyn.dynamics.equations.nodes import (
@@ -19,7 +23,6 @@ from tribodyn.dynamics.equations.nodes import (
     refuse_negative_gap,
     step_weights,
 )
-from tribodyn.dynamics.equations.program import Room
 from tribodyn.dynamics.equations.step_limit import FEWEST, look_at, rates_at
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array
@@ -49,8 +52,11 @@ def _structure(system: System) -> Hashable:
     return numbers, tuple(system.names), contacts[0].events, contacts[0].damping_in_gap
 
 
-def evaluate_alike(systems: Sequence[System], grid: Grid) -> Nodes:
-    """Evaluate every entry of systems alike, as :func:`evaluate_nodes` does of one system."""
+def evaluate_alike(systems: Sequence[System], grid: Grid, memory: Memory = new_memory) -> Nodes:
+    """Evaluate every entry of systems alike, as :func:`evaluate_nodes` does of one system.
+
+    What becomes another matrix on the way is in the memory that is given.
+    """
     widest, size = float(grid.width.max()), systems[0].size
     checked = max(system._checked for system in systems)
     rows = RowEvaluator(grid, checks=widest < 0.49 * checked)
@@ -59,13 +65,18 @@ def evaluate_alike(systems: Sequence[System], grid: Grid) -> Nodes:
 
     def own(name: str, size: int = 1) -> Array:
         entries = [getattr(contact, name) for contact in contacts]
-        return _values(rows, f"contacts[0].{name}", entries, size)
+        return _values(rows, f"contacts[0].{name}", entries, size, partial(memory, name))
 
     gap = own("gap")
     refuse_negative_gap(gap)
     direction = rows.values("contacts[0].direction", contacts[0].direction, size)
-    forces = [entry_values("force", system.force, rows.nodes[:1, 0], size) for system in systems]
-    friction = own("friction", size)
+    force = _constants("force", [system.force for system in systems], rows.nodes[:1, 0], size)
+    push = own("friction", size)
+    if push.flags.writeable:  # the rows of each, to which little is to be added
+        for item in np.flatnonzero(direction.any(axis=(0, 1))):
+            push[..., item] += direction[..., item]
+    else:
+        push = once(direction, 1) + once(push, 1)
     nodes = Nodes(
         phase=np.broadcast_to(grid.left[:, None] + grid.width[:, None] * [0.0, 0.5, 1.0], shape),
         stiffness=own("stiffness"),
@@ -75,8 +86,8 @@ def evaluate_alike(systems: Sequence[System], grid: Grid) -> Nodes:
         gap=gap,
         direction=np.broadcast_to(direction[:, :, None], (*shape, 1, size)),
         direction_slope=np.broadcast_to(0.0, (*shape[1:], 1, size)),
-        force_direction=(direction + friction)[..., None, :],
-        force=np.broadcast_to(np.stack(forces)[:, None], (*shape, size)),
+        force_direction=np.broadcast_to(push[..., None, :], (*shape, 1, size)),
+        force=np.broadcast_to(force, (*shape, size)),
         weight=step_weights(grid),
         friction_direction=np.zeros((grid.steps, 3, 0, size)),
         friction_coefficients=np.zeros((grid.steps, 3, 0, 1)),
@@ -97,22 +108,31 @@ def rows_of(nodes: Nodes, number: int) -> Nodes:
     return nodes._replace(**own)
 
 
-def _values(rows: RowEvaluator, where: str, entries: Sequence[Any], size: int) -> Array:
+def _values(
+    rows: RowEvaluator, where: str, entries: Sequence[Any], size: int, room: Room = np.empty
+) -> Array:
     """Values (systems, steps, 3, size) of an entry of each system."""
     first, shape = entries[0], (len(entries), *rows.nodes.shape, size)
     if all(each is first or (isinstance(each, float) and each == first) for each in entries):
         return np.broadcast_to(rows.values(where, 0.0 if first is None else first, size), shape)
     if not any(varies(each) for each in entries):
-        at = rows.nodes[:1, 0]
-        constants = [entry_values(where, each, at, size) for each in entries]
-        return np.broadcast_to(np.stack(constants)[:, None], shape)
-    joined = _joined(rows, entries, size)
+        return np.broadcast_to(_constants(where, entries, rows.nodes[:1, 0], size), shape)
+    joined = _joined(rows, entries, size, room)
     if joined is not None:
         return joined
     return np.stack([rows.values(where, 0.0 if e is None else e, size) for e in entries])
 
 
-def _joined(rows: RowEvaluator, entries: Sequence[Any], size: int) -> Array | None:
+def _constants(where: str, entries: Sequence[Any], at: Array, size: int) -> Array:
+    """Values (systems, 1, 1, size) of entries that do not vary."""
+    with suppress(ValueError):  # where their shapes differ
+        values = np.array(entries).reshape(len(entries), -1)
+        if values.dtype == float and values.shape[1] in (1, size) and np.isfinite(values).all():
+            return np.broadcast_to(values, (len(entries), size))[:, None, None]
+    return np.stack([entry_values(where, each, at, size) for each in entries])[:, None]
+
+
+def _joined(rows: RowEvaluator, entries: Sequence[Any], size: int, room: Room) -> Array | None:
     """Values of tables on the same knots, looked up together; None of other entries."""
     first, kind = entries[0], type(entries[0])
     if not hasattr(kind, "onto") or not all(type(each) is kind for each in entries):
@@ -129,7 +149,7 @@ def _joined(rows: RowEvaluator, entries: Sequence[Any], size: int) -> Array | No
         return None
     table = kind(first.grid, knots)
     found = np.moveaxis(table(rows.nodes.reshape(-1)), 1, 0)
-    found = found if first.onto is None else found @ first.onto
+    found = found if first.onto is None else times(found, first.onto.T, 1, room)
     return np.asarray(found).reshape(len(entries), *rows.nodes.shape, size)
 
 
@@ -156,10 +176,13 @@ def every_other(nodes: Nodes, grid: Grid) -> Nodes:
 
 def rows_of_every_other(values: Array, steps: int, lead: int, room: Room = np.empty) -> Array:
     """Values (..., 2 steps, 3, ...) at both ends and the middle of pairs of steps."""
-    shape = values.shape
-    pairs = values.reshape(*shape[:lead], steps, 6, *shape[lead + 2 :])
-    taken = room((*shape[:lead], steps, 3, *shape[lead + 2 :]))
-    return pairs.take([0, 2, 5], axis=lead + 1, out=taken, mode="clip")
+    # What there is of each row lies behind one another, as its items are taken one by one.
+    last = tuple(range(lead + 2, values.ndim))
+    first = tuple(range(lead, lead + len(last)))
+    apart = np.moveaxis(values, last, first)
+    pairs = apart.reshape(*apart.shape[:-2], steps, 6)
+    taken = room((*pairs.shape[:-1], 3))
+    return np.moveaxis(pairs.take([0, 2, 5], axis=-1, out=taken, mode="clip"), first, last)
 
 
 def rates_alike(systems: Sequence[System], nodes: Nodes) -> Array:

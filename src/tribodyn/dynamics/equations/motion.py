@@ -7,11 +7,13 @@ The compiled law is :mod:`tribodyn.dynamics._engine.contact_forces`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.products import times
 from tribodyn.dynamics.equations.grid import Grid, once
 from tribodyn.dynamics.equations.nodes import Nodes, friction_force
 from tribodyn.dynamics.equations.system import System
@@ -52,22 +54,25 @@ def has_gap(nodes: Nodes) -> Mask:
     return np.asarray(np.any(gap > 0.0, axis=tuple(range(gap.ndim - 1))))
 
 
-def _times(values: Array, matrix: Array) -> Array:
-    """Matrix times vectors (..., n), in one product of two matrices and the same order."""
-    flat = values.reshape(-1, values.shape[-1])
-    if flat.flags.f_contiguous:
-        found = (np.asarray(matrix) @ flat.T).T
-    else:
-        found = flat @ np.ascontiguousarray(matrix.T)
-    return np.asarray(found.reshape(*values.shape[:-1], len(matrix)))
+def _constant(direction: Array) -> Array | None:
+    """Directions (contacts, n) that are the same in all rows; None where they turn."""
+    few = once(direction, 2)
+    return few.reshape(few.shape[-2:]) if few.size == math.prod(few.shape[-2:]) else None
 
 
 def _along(direction: Array, vectors: Array) -> Array:
     """Parts of vectors (..., n) along directions (..., contacts, n)."""
-    few = once(direction, 2)
-    if few.shape[:-2] == (1,) * (few.ndim - 2):
-        return _times(vectors, few.reshape(few.shape[-2:]))
+    if (constant := _constant(direction)) is not None:
+        return times(vectors, constant)
     return np.asarray(np.einsum("...ji,...i->...j", direction, vectors))
+
+
+def _with_parts(matrix: Array, direction: Array, vectors: Array) -> tuple[Array, Array]:
+    """Matrix times vectors (..., n), and their parts along directions, at once where it goes."""
+    if (constant := _constant(direction)) is None:
+        return times(vectors, matrix), _along(direction, vectors)
+    both = times(vectors, np.concatenate((matrix, constant)))
+    return both[..., : len(matrix)], both[..., len(matrix) :]
 
 
 def _pushed(push: Array, force: Array) -> Array:
@@ -82,12 +87,17 @@ def compression(rows: Nodes, q: Array, error: Any = 1.0) -> Array:
     return np.asarray(_along(rows.direction, q) - error * once(rows.error, 1))
 
 
-def compression_rate(rows: Nodes, beat: Any, q: Array, v: Array, error: Any = 1.0) -> Array:
+def compression_rate(rows: Nodes, beat: Any, q: Array, v: Array) -> Array:
     """Rate of every compression at the mesh frequency ``beat``."""
+    return np.asarray(_along(rows.direction, v) + _turning(rows, beat, q))
+
+
+def _turning(rows: Nodes, beat: Any, q: Array, error: Any = 1.0) -> Array:
+    """Rate of every compression because the mesh turns at the mesh frequency ``beat``."""
     turning, slope = -error * once(rows.error_slope, 1), once(rows.direction_slope, 2)
     if slope.any():
         turning = turning + _along(rows.direction_slope, q)
-    return np.asarray(_along(rows.direction, v) + beat * turning)
+    return np.asarray(beat * turning)
 
 
 def sides(deflection: Array, gap: Array, dead: Mask) -> Array:
@@ -112,8 +122,11 @@ def forces(
     extra: Any = 0.0,
 ) -> Forces:
     """Contact forces and accelerations; without ``side`` every contact is where it is pressed."""
-    d = compression(rows, q, scales.error)
-    rate = compression_rate(rows, beat, q, v, scales.error)
+    inverse, (stiffness, damping) = system.inverse_mass, system.over_mass
+    held, along = _with_parts(stiffness, rows.direction, q)
+    damped, speed = _with_parts(damping, rows.direction, v)
+    d = along - scales.error * once(rows.error, 1)
+    rate = speed + _turning(rows, beat, q, scales.error)
     gap = scales.gap * once(rows.gap, 1)
     if side is None and np.all(d > gap):
         side = np.broadcast_to(1.0, d.shape)
@@ -124,19 +137,19 @@ def forces(
         in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
         contact = np.abs(side) * scales.stiffness * rows.stiffness * (d - side * gap)
         contact = contact + ((side != 0.0) | in_gap) * scales.damping * rows.damping * rate
-    total = scales.force * once(rows.force, 1) + extra
-    total = total - _times(q, np.asarray(system.stiffness))
-    total -= _times(v, np.asarray(system.damping))
+    total = times(scales.force * once(rows.force, 1) + extra, inverse) - held
+    total -= damped
     if scales is _SAME:
-        total -= _pushed(rows.force_direction, contact)
+        total -= _pushed(times(once(rows.force_direction, 2), inverse), contact)
     else:
-        total = total - _pushed(rows.direction, contact)
-        rub = _pushed(rows.force_direction - rows.direction, contact)
-        total = total - scales.friction * rub
+        total -= _pushed(times(once(rows.direction, 2), inverse), contact)
+        rub = times(rows.force_direction - rows.direction, inverse)
+        total = total - scales.friction * _pushed(rub, contact)
     if system.frictions:
         drag = friction_force(system, rows.friction_coefficients, contact)
-        total = total - scales.friction * _pushed(rows.friction_direction, drag)
-    return Forces(d, contact, side, _times(total, system.inverse_mass))
+        drag = _pushed(rows.friction_direction, drag)
+        total = total - scales.friction * times(drag, inverse)
+    return Forces(d, contact, side, total)
 
 
 def quadratic_weights(tau: Any) -> tuple[Any, Any, Any]:

@@ -8,19 +8,19 @@ Lanes that scale their contacts have the same rows: the factors are numbers of t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.kept import Memory, new_memory
+from tribodyn.arrays.products import Room, times
 from tribodyn.dynamics.equations.entry import varies as depends_on_phase
 from tribodyn.dynamics.equations.grid import Grid, build_grid, once, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
-
-#: Gives an array of a shape, whatever is in it.
-Room = Callable[[tuple[int, ...]], Array]
 
 
 class Program(NamedTuple):
@@ -156,8 +156,7 @@ class _Terms:
 
     def terms(self, values: Array, slot: int) -> int:
         """Append a term for each last item that is not zero throughout; returns how many."""
-        some = np.asarray(once(values, 1).any(axis=tuple(range(values.ndim - 1))))
-        present = [item for item in range(some.size) if self.keeps(some[item])]
+        present = [i for i in range(values.shape[-1]) if self.keeps(_holds(values[..., i]))]
         for item in present:
             self.factor(values[..., item])
             self.slots.append(slot + item)
@@ -195,11 +194,21 @@ class _Terms:
         return rows
 
 
+def _holds(values: Array) -> bool:
+    """Whether any of the factors (..., steps, 3) of a term is not zero."""
+    return any(some.any() for some in _few_first(once(values)))
+
+
 def _varies(values: Array) -> bool:
     """Whether factors (systems, steps, 3) of a term change along the cycle."""
-    # Few rows tell it of most that do.
-    few = values[:, :: max(1, values.shape[1] // 16)]
-    return any(bool(np.any(some != values[:, :1, :1])) for some in (few, values))
+    return any(bool(np.any(some != values[:, :1, :1])) for some in _few_first(values))
+
+
+def _few_first(values: Array) -> Iterator[Array]:
+    """Some rows of factors (..., steps, 3), which tell what they are of most terms, then all."""
+    if values.ndim > 1:
+        yield values[..., :: max(1, values.shape[-2] // 16), :]
+    yield values
 
 
 def _contact_terms(system: System, nodes: Nodes, terms: _Terms, scaled: int) -> list[int]:
@@ -236,7 +245,7 @@ def _friction_terms(
 
 
 def _coordinate_terms(
-    system: System, nodes: Nodes, terms: _Terms, slots: Slots, split: bool
+    system: System, nodes: Nodes, terms: _Terms, slots: Slots, split: bool, memory: Memory
 ) -> tuple[list[int], Mask]:
     """Number of terms of every coordinate, and whether its load varies."""
     inverse = system.inverse_mass
@@ -244,9 +253,8 @@ def _coordinate_terms(
     rub = nodes.friction_direction
     if split:
         rub = np.concatenate((rub, nodes.force_direction - nodes.direction), axis=-2)
-    reaction, drag = (
-        (part.reshape(-1, system.size) @ -inverse.T).reshape(part.shape) for part in (along, rub)
-    )
+    reaction = times(along, -inverse, along.ndim - 4, partial(memory, "reaction"))
+    drag = times(rub, -inverse, rub.ndim - 4)
     steps = slice(None if depends_on_phase(system.force) else 1)
     load = np.einsum("ik,...k->...i", inverse, once(nodes.force[..., steps, :, :], 1))
     state = -np.hstack([inverse @ np.asarray(part) for part in (system.stiffness, system.damping)])
@@ -281,19 +289,25 @@ def build_program(
 
 
 def program_of_lanes(
-    system: System, grid: Grid, nodes: Nodes, blocks: Sequence[Index], room: Room
+    system: System, grid: Grid, nodes: Nodes, blocks: Sequence[Index], memory: Memory
 ) -> tuple[Program, list[LaneRows]]:
-    """Flatten systems alike on halves of steps; ``room`` gives the memory.
+    """Flatten systems alike on halves of steps, in the memory that is given.
 
     The program has no rows and a constant load for each system; blocks have the rows of their
     lanes, whose systems are in ``blocks``: rows of nodes have a first axis more.
     """
-    terms, program = _flattened(system, grid, nodes, False, False, None)
-    return program, terms.rows_of_halves(blocks, room)
+    terms, program = _flattened(system, grid, nodes, False, False, None, memory)
+    return program, terms.rows_of_halves(blocks, partial(memory, "rows"))
 
 
 def _flattened(
-    system: System, grid: Grid, nodes: Nodes, scaled: bool, split: bool, pattern: Mask | None
+    system: System,
+    grid: Grid,
+    nodes: Nodes,
+    scaled: bool,
+    split: bool,
+    pattern: Mask | None,
+    memory: Memory = new_memory,
 ) -> tuple[_Terms, Program]:
     """Terms of a system, or of several alike, and the program without its rows."""
     size, contacts = system.size, len(system.contacts)
@@ -301,7 +315,7 @@ def _flattened(
     terms = _Terms(nodes.phase.shape, pattern)
     lists = _contact_terms(system, nodes, terms, 2 * int(scaled))
     lists += _friction_terms(system, nodes, terms, slots, split)
-    own, varies = _coordinate_terms(system, nodes, terms, slots, split)
+    own, varies = _coordinate_terms(system, nodes, terms, slots, split, memory)
     relative = np.array(terms.slots, dtype=np.int64)
     # State slots move with the buffer that a stage reads; all others stay.
     moving = (relative < 2 * size).astype(np.int64)

@@ -263,6 +263,12 @@ class System:
         """Inverse of the mass matrix, (n, n) [1/kg or 1/(kg*m^2)]."""
         return _inverse_of(np.asarray(self.mass), tuple(self.names))
 
+    @cached_property
+    def over_mass(self) -> tuple[Array, Array]:
+        """Inverse of the mass matrix times stiffness and damping, (n, n) [1/s^2] and [1/s]."""
+        inverse = self.inverse_mass
+        return inverse @ np.asarray(self.stiffness), inverse @ np.asarray(self.damping)
+
     def __repr__(self) -> str:
         """One line."""
         count = len(self.contacts)

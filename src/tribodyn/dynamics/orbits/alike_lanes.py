@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-import threading
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.kept import Memory
 from tribodyn.dynamics._engine.blocks import LaneBlock, lane_blocks
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics.equations.grid import Grid
@@ -21,31 +19,6 @@ from tribodyn.types import Array, Index
 
 #: Systems that march side by side: fewer are no reason to compile that.
 _MANY = 8
-#: Gives an array of a name and a shape, whatever is in it.
-Memory = Callable[[str, tuple[int, ...]], Array]
-
-
-class _Kept(threading.local):
-    """Memory for the largest arrays of a group, which costs time to get anew for every group."""
-
-    def __init__(self) -> None:
-        self._arrays: dict[str, Array] = {}
-
-    def room(self, name: str, shape: tuple[int, ...]) -> Array:
-        """An array that lasts until this thread asks for that name again."""
-        size = math.prod(shape)
-        if name not in self._arrays or self._arrays[name].size < size:
-            self._arrays[name] = np.empty(size)
-        return self._arrays[name][:size].reshape(shape)
-
-
-#: Memory of this thread.
-kept_memory: Memory = _Kept().room
-
-
-def new_memory(name: str, shape: tuple[int, ...]) -> Array:
-    """An array of its own, as :meth:`_Kept.room` gives one that lasts until the next."""
-    return np.empty(shape)
 
 
 class AlikeLanes(NamedTuple):
@@ -62,7 +35,7 @@ class AlikeLanes(NamedTuple):
         count = len(nodes.stiffness)
         blocks = lane_blocks(count, _MANY if count >= _MANY else 1)
         lanes = [block.index for block in blocks]
-        flat = program_of_lanes(system, grid, nodes, lanes, partial(room, "rows"))
+        flat = program_of_lanes(system, grid, nodes, lanes, room)
         return cls(*flat, blocks, room)
 
     def every_other(self, grid: Grid) -> AlikeLanes:
@@ -83,9 +56,9 @@ class AlikeLanes(NamedTuple):
             cells = rows.varying.reshape(steps, 3, places.size, width)
             varying = np.ascontiguousarray(cells.transpose(3, 2, 0, 1))
             for lane, number in enumerate(block.lanes):
-                if not np.array_equal(firsts[lane], constant):
-                    constant = firsts[lane]
-                    table[...] = constant
+                for place in np.flatnonzero(firsts[lane] != constant):
+                    table[:, :, place] = firsts[lane, place]
+                constant = firsts[lane]
                 for place, values in zip(places, varying[lane], strict=True):
                     table[:, :, place] = values
                 load = program.constant_load[number]

@@ -9,11 +9,12 @@ at mean stiffness.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from tribodyn.arrays.recent import Recent
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import once
 from tribodyn.dynamics.equations.motion import compression
@@ -77,16 +78,26 @@ class OrbitCoordinates:
 def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordinates:
     """Find the coordinates that matter."""
     system, nodes = compiled.system, compiled.nodes
-    lower = np.linalg.cholesky(np.asarray(system.mass))
+    used = _used_directions(nodes.direction, nodes.direction_slope)
+    matrices = (np.asarray(getattr(system, name)) for name in ("mass", "stiffness", "damping"))
+    given = (*matrices, used)
+    shared = _known.get(given, lambda: _coordinates(*given))
+    _warn_of_unbalanced(compiled, shared.inverse, shared.free)
+    return replace(shared, rate=2.0 * np.pi * mesh_frequency)
+
+
+#: Those of the last systems at 1 rad/s: a study builds the same structure many times.
+_known: Recent[OrbitCoordinates] = Recent(8)
+
+
+def _coordinates(mass: Array, stiffness: Array, damping: Array, used: Array) -> OrbitCoordinates:
+    lower = np.asarray(np.linalg.cholesky(mass), dtype=float)
     inverse = np.linalg.inv(lower)
-    used = _used_directions(nodes.direction, nodes.direction_slope) @ inverse.T
-    spring = inverse @ np.asarray(system.stiffness) @ inverse.T
-    damper = inverse @ np.asarray(system.damping) @ inverse.T
+    used = used @ inverse.T
+    spring, damper = inverse @ stiffness @ inverse.T, inverse @ damping @ inverse.T
     elastic = _row_space([spring, used])
     moving = _row_space([spring, used, damper])
-    free = _complement(moving)
-    _warn_of_unbalanced(compiled, inverse, free)
-    return OrbitCoordinates(lower, elastic, moving, free, 2.0 * np.pi * mesh_frequency)
+    return OrbitCoordinates(lower, elastic, moving, _complement(moving), 1.0)
 
 
 def _warn_of_unbalanced(compiled: Compiled, inverse: Array, free: Array) -> None:
@@ -200,16 +211,24 @@ def _equilibrium(compiled: Compiled, carrying: Array) -> Array:
 
 def balanced_position(system: System, nodes: Nodes, carrying: Array, push: Array) -> Array:
     """Position at rest if each newton of a contact pushes with ``push`` (..., contacts, n)."""
-    shape = (*push.shape[:-4], -1, system.size)
-    along = np.broadcast_to(nodes.direction, push.shape).reshape(shape)
-    shift = (nodes.error + nodes.gap).reshape(*shape[:-1], 1)
     weight = nodes.weight[..., None] * carrying
-    pushed = (weight[..., None] * push).reshape(shape)
-    sums = np.swapaxes(pushed, -1, -2) @ np.concatenate((along, shift), axis=-1)
-    stiffness = system.stiffness + sums[..., :-1]
-    force = np.einsum("...rs,...rsi->...i", nodes.weight, nodes.force) + sums[..., -1]
+    stiffness, pushed = _sums(push, weight, nodes.direction, nodes.error + nodes.gap)
+    stiffness = stiffness + np.asarray(system.stiffness)
+    force = np.einsum("...rs,...rsi->...i", nodes.weight, nodes.force) + pushed
     # Least squares in mass-weighted coordinates: free motions get no displacement.
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
-    matrix = np.asarray(stiffness, dtype=float) * np.outer(scale, scale)
+    matrix = stiffness * np.outer(scale, scale)
     inverse = np.linalg.pinv(matrix, rcond=1e-12)
     return np.asarray(scale * np.einsum("...ij,...j->...i", inverse, scale * force))
+
+
+def _sums(push: Array, weight: Array, along: Array, shift: Array) -> tuple[Array, Array]:
+    """Sums of ``weight push along`` (..., n, n) and of ``weight push shift`` (..., n)."""
+    lead, size = push.shape[:-4], push.shape[-1]
+    flat = np.swapaxes(push.reshape(*lead, -1, size), -1, -2)
+    factors = np.stack((weight, weight * shift), axis=-1).reshape(*lead, -1, 2)
+    if (constant := once(along, 1)).size == size:  # which can be taken out of the sum
+        sums = flat @ factors
+        return sums[..., :1] * constant.reshape(size), sums[..., 1]
+    held = factors[..., :1] * np.broadcast_to(along, push.shape).reshape(*lead, -1, size)
+    return flat @ held, (flat @ factors[..., 1:])[..., 0]

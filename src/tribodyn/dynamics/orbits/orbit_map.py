@@ -246,9 +246,13 @@ def take_drift_out(c: OrbitCoordinates, time: Array, states: Array) -> Array:
         still -= drift * time
         middle = still[..., :-1, :].mean(axis=-2, keepdims=True)
         back = basis.T @ c.inverse
-        states[..., :size] += (still - middle - place) @ back
+        moved = still - middle - place
+        for i in np.flatnonzero(back.any(axis=0)):  # the coordinates that a free motion has
+            states[..., i] += moved @ back[:, i]
         if basis is c.free:
-            states[..., size:] -= (rise * time + drift) @ back
+            drift = rise * time + drift
+            for i in np.flatnonzero(back.any(axis=0)):
+                states[..., size + i] -= drift @ back[:, i]
     return states
 
 

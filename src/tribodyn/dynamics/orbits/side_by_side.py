@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.kept import Memory, kept_memory, new_memory
 from tribodyn.dynamics._engine.blocks import WIDTH
 from tribodyn.dynamics.equations.alike import (
     evaluate_alike,
@@ -28,13 +29,7 @@ from tribodyn.dynamics.equations.grid import build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, halved_grid
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.alike_lanes import (
-    AlikeLanes,
-    Memory,
-    kept_memory,
-    march_cycle,
-    new_memory,
-)
+from tribodyn.dynamics.orbits.alike_lanes import AlikeLanes, march_cycle
 from tribodyn.dynamics.orbits.coordinates import (
     OrbitCoordinates,
     balanced_position,
@@ -93,7 +88,7 @@ class _Group:
         self.systems, self.system, self.beat = systems, systems[0], beat
         grid = build_grid(system_events(self.system), steps)
         fine = halved_grid(grid)
-        nodes = evaluate_alike(systems, fine)
+        nodes = evaluate_alike(systems, fine, room)
         self.halved = AlikeLanes.of(self.system, fine, nodes, room)
         self.whole = self.halved.every_other(grid)
         self.grid, self.nodes = grid, every_other(nodes, grid)
@@ -243,7 +238,8 @@ class _Cycles(NamedTuple):
     @classmethod
     def of(cls, group: _Group, point: Array, which: Index, slope: Array, inverse: Array) -> _Cycles:
         """Cycles of some systems; ``slope`` is one less the matrix of each map (p, k, k)."""
-        states = np.zeros((len(point), group.grid.steps + 1, 2 * group.system.size))
+        states = np.empty((len(point), group.grid.steps + 1, 2 * group.system.size))
+        states[np.delete(np.arange(len(point)), which)] = 0.0
 
         def motion(number: int, record: Array) -> None:
             states[number] = record[..., 0]
@@ -280,7 +276,7 @@ def _orbits(group: _Group) -> _Orbits:
     count, steps, size = len(every), group.grid.steps, group.system.size
     k = y.shape[-1]
     step = APART * np.linalg.norm(y, axis=-1, keepdims=True)
-    along = np.empty((count, k + 1, steps + 1))
+    along = group.whole.room("along", (count, k + 1, steps + 1))
     direction = nodes.direction[0, 0, 0, 0]
     used = np.flatnonzero(direction)
 
@@ -302,9 +298,8 @@ def _orbits(group: _Group) -> _Orbits:
     touch = _Touch.of(nodes, along[:, 0])
     rates = along[:, 1:]
     rates -= along[:, :1]
-    rates *= touch.flank[..., None]
-    good = touch.kept & np.all(touch.room + rates.min(axis=1) > 0.0, axis=1)
-    rates /= step
+    rates *= touch.flank[..., None] / step
+    good = touch.kept & np.all(touch.room + step[:, 0] * rates.min(axis=1) > 0.0, axis=1)
     point = y + _times(inverse, (image[:, :1] - y)[:, 0])[:, None]
     cycles, marched = _Cycles.of(group, point, every, slope, inverse), np.full(count, 2)
     left = good.copy()
@@ -332,7 +327,8 @@ def _step_errors(group: _Group, orbits: _Orbits) -> Array:
     known = orbits.cycles
     at, left = known.point.copy(), np.flatnonzero(orbits.good)
     fine, moved = np.full_like(known.reduced, np.nan), np.zeros_like(known.point)
-    states, way = np.zeros_like(known.states), np.full(len(at), np.inf)
+    states, way = group.whole.room("states", known.states.shape), np.full(len(at), np.inf)
+    states[~orbits.good] = 0.0
 
     def every_other(number: int, record: Array) -> None:
         states[number] = record[::2, :, 0]
