@@ -53,7 +53,8 @@ _MOST = 50
 _CONTROL = re.compile(
     "[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-_LONG_QUOTE = re.compile(f'"[^"]{{{_QUOTED + 1},}}"?|[^\\s"]{{{_QUOTED + 1},}}')
+#: A long value: from a quote that opens, and so follows no word, or without a blank.
+_LONG_QUOTE = re.compile(f'(?<![^\\s(\\[=,:])"[^"]{{{_QUOTED + 1},}}"?|[^\\s"]{{{_QUOTED + 1},}}')
 
 
 def shortened(text: str, most: int = _QUOTED) -> str:
@@ -155,8 +156,9 @@ class Problem:
     def __str__(self) -> str:
         """Join the parts into one readable paragraph."""
         head = f"{self.where}: {self.what}" if self.where else self.what
-        parts = (part.rstrip(".") for part in (head, self.why, self.remedy) if part)
-        return " ".join(part if part.endswith("?") else f"{part}." for part in parts)
+        parts = (part for part in (head, self.why, self.remedy) if part)
+        ends = "?", "..."
+        return " ".join(p if p.endswith(ends) else f"{p.rstrip('.')}." for p in parts)
 
 
 class TribodynError(Exception):

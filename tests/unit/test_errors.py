@@ -155,3 +155,15 @@ def test_whole_numbers_numbers_and_flags_have_one_too(check):
 def test_a_resonance_is_told_in_the_units_of_engineers():
     met = Resonance(100.0 * math.pi, 1250.0, 2500.0, 2, 3, 0.4, 0.02)
     assert repr(met) == "Resonance(order 2 meets mode 3 of 2500 Hz at 3000 rpm)"
+
+
+def test_what_follows_a_quoted_word_is_told_whole():
+    names = ", ".join(f"figure_{number}" for number in range(60))
+    told = str(InputError("no figure", why=f'compute = "summary" gives {names}'))
+    assert told.endswith("figure_59.")
+
+
+def test_a_long_value_is_cut_and_told_to_be():
+    told = str(InputError(f'name = "{"ab " * 200}"'))
+    assert len(told) < 230
+    assert told.endswith("...")

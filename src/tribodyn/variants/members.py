@@ -59,7 +59,7 @@ class Grid:
             for value in old["values"]:
                 near = [n for n, each in enumerate(values) if _same(each, value)]
                 if not near:
-                    what = f"{axis.key} has no longer the value {axis.show(value)}"
+                    what = f"{axis.key} no longer has the value {axis.show(value)}"
                     raise InputError(Problem(what, where, *_ONLY_GROWS))
                 values[near[0]] = value
             axes.append(replace(axis, values=tuple(values)))
@@ -119,7 +119,7 @@ def listed(values: Mapping[str, Sequence[Any]], units: Mapping[str, str]) -> Lis
 _ONLY_GROWS = (
     "A study in a store may get more members and keeps those that it has; a Latin hypercube of "
     "another size has other members",
-    "Keep the earlier ones, or choose another place",
+    "Keep the earlier ones, choose another place, or start anew with --force",
 )
 
 Layout = Grid | Listed

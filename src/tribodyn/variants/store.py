@@ -87,6 +87,9 @@ def read_chunk(folder: Path, name: str, facts: Mapping[str, Any]) -> bytes | Non
     return None
 
 
+_GIVE = "Give the directory that tribodyn study wrote"
+
+
 class Manifest:
     """What a store tells, for those who read it."""
 
@@ -103,7 +106,8 @@ class Manifest:
             "stage 0" not in values
         ):
             what, why = f"{path} is no store of a study", f"It has no {NAME} of one"
-            remedy = "Give the directory that tribodyn study wrote"
+            near = Path(str(path).removesuffix(".toml") + "-study")  # that of a study file
+            remedy = f'Did you mean "{near}"?' if near.is_dir() else _GIVE
             raise InputError(what, Argument("path"), why, remedy)
         self.kind = str(lines[0]["study"]).removeprefix("study ")
         self.facts: Mapping[str, Any] = values["facts"]

@@ -66,6 +66,8 @@ _FACTOR: Option = number(
 _VARIES = ("axes", "samples", "cases", "table")
 _EXAMPLE = 'Write for example [axes] with operation.speed = "400..3500 rpm:60"'
 _SPREAD = 'Write for example operation.speed = "400 rpm .. 3500 rpm"'
+#: Names that a message lists at most.
+_LISTED = 12
 #: Tables that hold keys of the case.
 _KEYED = ("set", "axes", "samples.over")
 
@@ -213,8 +215,9 @@ class _Reader:
             self.put("keep", Problem(f"keep = {written(names)}", "", "It is a list", remedy))
             return ()
         for name in (name for name in names if name not in known):
-            remedy = did_you_mean(name, known, "Leave it out")
-            why = f'compute = "{kind}" gives {", ".join(known)}'
+            remedy = did_you_mean(name, known, "tribodyn run CASE --json tells them by name")
+            gives = ", ".join(known) if len(known) <= _LISTED else "the figures of a summary"
+            why = f'compute = "{kind}" gives {gives}'
             self.put("keep", Problem(f'there is no figure "{name}"', "", why, remedy))
         return tuple(name for name in known if name in names)
 

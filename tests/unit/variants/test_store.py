@@ -105,7 +105,7 @@ def test_a_study_grows_while_it_is_unfinished_and_never_shrinks(tmp_path: Path) 
     assert study_state(place).done == 12
     assert run_study(read_study(grid(torques="60,70,75,50 N*m")), place).complete
     same(open_study(place)["power"], power([60.0, 70.0, 75.0, 50.0]))
-    with pytest.raises(InputError, match="no longer the value 50 N"):
+    with pytest.raises(InputError, match="no longer has the value 50 N"):
         run_study(read_study(grid()), place)
 
 
@@ -229,6 +229,16 @@ def test_force_replaces_another_study(tmp_path: Path) -> None:
         run_study(other, place)
     assert run_study(other, place, force=True).complete
     assert "12" in open_study(place).attrs["title"]
+
+
+@pytest.mark.parametrize("given", ["map", "map.toml"])
+def test_the_store_beside_a_study_file_is_named(tmp_path: Path, given: str) -> None:
+    (tmp_path / "map.toml").write_text("")
+    with pytest.raises(InputError, match="the directory that tribodyn study wrote"):
+        open_study(tmp_path / given)
+    (tmp_path / "map-study").mkdir()
+    with pytest.raises(InputError, match=r'Did you mean ".*map-study"\?'):
+        open_study(tmp_path / given)
 
 
 def test_what_the_machine_lacks_is_no_fault_of_a_member(

@@ -22,6 +22,7 @@ BROKEN = {
     _CASE + "chunk = 0\n" + _AXES: r"s.toml:2: chunk: chunk = 0\. Allowed: 1 to 1000000",
     _CASE + 'compute = "motion"\n' + _AXES: "Allowed: summary, motions",
     _CASE + 'keep = ["rms_mesh_forc"]\n' + _AXES: 'Did you mean "rms_mesh_force"',
+    _CASE + 'keep = ["loudness"]\n' + _AXES: "tribodyn run CASE --json tells them by name.",
     _CASE + "keep = 5\n" + _AXES: "keep = 5. It is a list",
     _CASE + _AXES + _DRAWN: "axes and samples are given",
     _CASE + "axes = 5\n": "axes: 5. It is a table",
