@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 import subprocess
@@ -14,6 +15,7 @@ import pytest
 
 import tribodyn
 from tribodyn.cli import call
+from tribodyn.cli.app import COMMANDS
 from tribodyn.study import SUMMARY
 
 CHECKED = {
@@ -303,3 +305,15 @@ def test_the_way_of_a_result_may_be_blocked_by_a_file(
     assert "a file is in the way" in capsys.readouterr().err
     assert call(["run", "fzg-roughness", "--out", "thing/inner"]) == 2
     assert "a file, not a directory" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [name for name, *_ in COMMANDS])
+def test_lines_of_help_are_as_long_as_the_screen_lets_them(
+    command: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    assert call([command, "--help"]) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("│")]
+    for line, following in itertools.pairwise(line[1:-1].rstrip() for line in lines):
+        more = re.match(r"^ {8,}(\S+)", following)  # goes on with the line before
+        assert more is None or len(line) + 1 + len(more[1]) > 76

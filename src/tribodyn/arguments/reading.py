@@ -85,12 +85,17 @@ def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict
     return wants
 
 
+#: What documentation marks up, and a message does not.
+_MARKUP = re.compile(r"(?::\w+:)?`+~?([^`]+)`+")
+
+
 @functools.cache
 def _entries(documented: Any) -> dict[str, str]:
     """What a docstring says of its parameters."""
     pattern = r"^ *(?=((?:\w+, )*\w+) : (.*\n +.*(?:\n +[a-z(].*)*))"
     entries: dict[str, str] = {}
-    for names, text in re.findall(pattern, inspect.getdoc(documented) or "", re.MULTILINE):
+    whole = _MARKUP.sub(r"\1", inspect.getdoc(documented) or "")
+    for names, text in re.findall(pattern, whole, re.MULTILINE):
         for name in names.split(", "):
             entries.setdefault(name, re.sub(r"\s+", " ", text.replace("\n", "|", 1)))
     return entries

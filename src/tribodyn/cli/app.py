@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import App, Parameter
 
@@ -104,6 +104,32 @@ def _welcome(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
         say(WELCOME)
 
 
+class _Help:
+    """Help as cyclopts draws it, but lines of a docstring run on: the screen breaks them."""
+
+    def __call__(self, console: Any, options: Any, panel: Any) -> None:
+        from cyclopts.help import DefaultFormatter
+        from rich.text import Text
+
+        for entry in panel.entries:
+            shown = getattr(entry.description, "primary_renderable", None)
+            if isinstance(shown, Text):
+                entry.description.primary_renderable = Text(" ".join(shown.plain.split()))
+        DefaultFormatter()(console, options, panel)
+
+    def render_usage(self, console: Any, options: Any, usage: Any) -> None:
+        """Draw the line of usage."""
+        from cyclopts.help import DefaultFormatter
+
+        DefaultFormatter().render_usage(console, options, usage)
+
+    def render_description(self, console: Any, options: Any, description: Any) -> None:
+        """Draw what a command is for."""
+        from cyclopts.help import DefaultFormatter
+
+        DefaultFormatter().render_description(console, options, description)
+
+
 def make_app() -> App:
     """Build the command line; nothing heavy is imported."""
     app = App(
@@ -114,6 +140,7 @@ def make_app() -> App:
         suppress_keyboard_interrupt=False,
         result_action="return_value",
         help_format="plaintext",
+        help_formatter=_Help(),
     )
     app.default(_welcome)
     app.register_install_completion_command(

@@ -231,6 +231,12 @@ def test_force_replaces_another_study(tmp_path: Path) -> None:
     assert "12" in open_study(place).attrs["title"]
 
 
+def test_a_wrong_path_is_told_in_plain_words() -> None:
+    with pytest.raises(InputError) as told:
+        open_study(5)  # type: ignore[arg-type]
+    assert "Directory that run_study or tribodyn study wrote" in str(told.value)
+
+
 @pytest.mark.parametrize("given", ["map", "map.toml"])
 def test_the_store_beside_a_study_file_is_named(tmp_path: Path, given: str) -> None:
     (tmp_path / "map.toml").write_text("")
