@@ -36,3 +36,15 @@ def test_few_matrices_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
         2.0 * np.abs(eigenvalues(RANDOM[0, 0])).max(), rel=1e-12
     )
     assert sum(asked) == 1
+
+
+@pytest.mark.parametrize("stronger", [0, 1])
+def test_blocks_that_are_coupled_one_way_are_looked_at_by_themselves(stronger: int) -> None:
+    matrices = RANDOM.copy()
+    matrices[..., :4, 4:] = 0.0
+    matrices[..., :4, :4] *= 10.0 if stronger == 0 else 0.1
+    order = np.array([5, 0, 3, 1, 4, 2])  # the blocks are found wherever they lie
+    matrices = matrices[..., order[:, None], order]
+    every = np.abs(np.linalg.eigvals(matrices)).max(axis=-1)
+    found = step_limit._spectral_radius(matrices)
+    assert found == pytest.approx(every.max(axis=-1), rel=1e-12)
