@@ -7,7 +7,7 @@ The public names stand on the page of :mod:`tribodyn.analysis`.
 | ``attractors`` | how many motions are marched side by side until they repeat |
 | ``basins``, ``basins_attractors`` | which motion a start comes to, and which motions there are |
 | ``bifurcation``, ``bifurcation_sweep`` | how motions change over a parameter, up and down |
-| ``lyapunov``, ``lyapunov_tangent`` | how fast motions that begin side by side part |
+| ``lyapunov``, ``lyapunov_tangent``, ``lyapunov_products`` | how fast neighbouring motions part |
 | ``parameter_map`` | how motions change over two parameters |
 | ``poincare`` | after how many mesh cycles a motion repeats, and its phase plane |
 | ``survey`` | how motions are marched, measured and judged by half the step |

@@ -348,7 +348,7 @@ def _exponents(values: Points, steps: Index, last: Array, force: Array, cycles: 
                     steps=int(steps[number]),
                     extra_force=force[number],
                     verdict=False,
-                ).vibrating[0]
+                ).largest
         exponents.append(float(largest))
     return exponents
 

@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,14 +19,21 @@ from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import static_start
+from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates, static_start
 from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import ComputationError, InputError
+from tribodyn.nonlinear.lyapunov_products import (
+    floquet_growth,
+    grouped_products,
+    repeats_after,
+    safe_length,
+    share_in,
+)
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 #: Numbers kept at a time while disturbances are carried.
 _ROOM = 6_000_000
@@ -44,12 +49,10 @@ _SURE = 3.0
 #: Largest exponents agree within this many standard errors of their difference, or this share, or
 #: this share of the mesh frequency, which is how well an exponent of zero is known.
 _ERRORS, _EXPONENT, _ZERO = 3.0, 0.05, 1e-3
-#: Mesh cycles after which matrices may repeat, and how closely.
-_PERIODS, _REPEATS = 16, 1e-8
-#: Blocks of the frame are apart when they exchange less than this.
-_APART = 1e-10
-#: A product whose singular values differ by more loses the small disturbances to rounding.
-_SPREAD = 1e6
+#: Mean share of a disturbance in a braked free rotation above which its exponent belongs to it.
+_BELONGS = 0.5
+#: Amplitude, relative to the largest, above which a coordinate takes part in a free rotation.
+_TURNS = 1e-6
 
 
 @record
@@ -74,10 +77,16 @@ class LyapunovExponents(Record):
     repeats : int
         Mesh cycles after which the linear equations of a disturbance repeat; 0 if they do not.
     growth : (cycles, 2 n - free) array
-        Growth of the orthogonal disturbances in every mesh cycle [1/s].
+        Growth of the orthogonal disturbances in every mesh cycle, in the order of the exponents
+        [1/s].
     verdict : "physical", "step-limited", "undecided" or ""
         What half the step says of it, see
         :func:`~tribodyn.nonlinear.lyapunov.exponent_verdict`; empty where it was not asked.
+    free_rotation : (2 n,) bool array, optional
+        Which exponents belong to free rotations, a pair for each: that of its angle, which is
+        zero, and that of its speed, which is zero without dampers and minus their rate with them.
+    rotating : tuple of str, optional
+        Coordinates that turn in free rotations; empty where the structure has none.
     """
 
     exponents: Array = quantity("exponent", unit="1/s", name="lyapunov_exponent")
@@ -89,23 +98,53 @@ class LyapunovExponents(Record):
     repeats: int
     growth: Array
     verdict: str = fact(default="")
+    free_rotation: Mask = quantity("exponent", default=None)
+    rotating: tuple[str, ...] = fact(default=())
+
+    def __post_init__(self) -> None:
+        """Take the exact zeros for the free rotations where it is not given which they are."""
+        if self.free_rotation is None:
+            zero = self.exponents == 0.0
+            object.__setattr__(self, "free_rotation", zero & (np.cumsum(zero) <= self.free))
 
     @property
     def largest(self) -> float:
-        """Largest exponent [1/s]."""
-        return float(self.exponents[0])
+        """Largest exponent, those of free rotations left out [1/s]."""
+        return float(self.vibrating[0])
+
+    @property
+    def largest_error(self) -> float:
+        """Standard error of the largest exponent [1/s]."""
+        return float(self.standard_error[~self.free_rotation][0])
 
     @property
     def vibrating(self) -> Array:
-        """Exponents without those of the free rotation, the largest first [1/s]."""
-        zeros = np.flatnonzero(self.exponents == 0.0)[: self.free]
-        return np.delete(self.exponents, zeros)
+        """Exponents without those of free rotations, the largest first [1/s]."""
+        return np.asarray(self.exponents[~self.free_rotation])
+
+    @property
+    def vibrating_growth(self) -> Array:
+        """Growth in every mesh cycle without that of braked free rotations [1/s]."""
+        zeros = np.flatnonzero(self.free_rotation & (self.exponents == 0.0))[: self.free]
+        return np.asarray(self.growth[:, ~np.delete(self.free_rotation, zeros)])
 
     @property
     def chaotic(self) -> bool:
         """Whether nothing repeats and the largest exponent is three standard errors above zero."""
-        above = self.exponents[0] > _SURE * self.standard_error[0]
-        return bool(above and self.exponents[0] > 0.0 and self.repeats == 0)
+        above = self.largest > _SURE * self.largest_error
+        return bool(above and self.largest > 0.0 and self.repeats == 0)
+
+    @property
+    def left_out(self) -> str:
+        """Exponents of free rotations in words; empty where the structure has none."""
+        count = int(self.free_rotation.sum())
+        if not count:
+            return ""
+        values = ", ".join(f"{value:.4g}" for value in self.exponents[self.free_rotation])
+        return (
+            f"free rotation of {', '.join(self.rotating)} left out: "
+            f"{count} exponent{'s' if count > 1 else ''}, {values} 1/s"
+        )
 
     @property
     def kaplan_yorke_dimension(self) -> float:
@@ -120,15 +159,22 @@ class LyapunovExponents(Record):
     def __repr__(self) -> str:
         """One line."""
         kind = "chaotic" if self.chaotic else "not chaotic"
-        return (
-            f"LyapunovExponents(largest {self.largest:.5g} +- {self.standard_error[0]:.1g} 1/s, "
-            f"sum {self.exponents.sum():.6g} 1/s, {self.cycles} mesh cycles, {kind}"
-            f"{', ' + self.verdict if self.verdict else ''})"
-        )
+        parts = [
+            f"largest {self.largest:.5g} +- {self.largest_error:.1g} 1/s",
+            self.left_out,
+            f"sum {self.exponents.sum():.6g} 1/s",
+            f"{self.cycles} mesh cycles",
+            kind,
+            self.verdict,
+        ]
+        return f"LyapunovExponents({', '.join(part for part in parts if part)})"
 
     def _parts(self) -> Parts:
         parts = super()._parts()
         parts.coordinates["exponent"] = np.arange(self.exponents.size)
+        parts.attributes["rotating"] = ", ".join(self.rotating)
+        parts.attributes["largest"] = self.largest
+        parts.attributes["largest_error"] = self.largest_error
         return parts
 
 
@@ -185,6 +231,12 @@ def lyapunov_exponents(
     and Yorke, Nonlinearity 30, 2017); its error is half the difference of the two halves. The
     saltation matrix is that of Mueller, Chaos, Solitons and Fractals 5 (1995).
 
+    Free rotations follow from the structure, not from exponents that are small: they are the
+    motions that no spring strains and no contact direction feels at any mesh phase. The exponent
+    of the speed of one that dampers brake is that of the disturbances that lie, on the average,
+    for more than half in it; where dampers tie it so closely to the vibration that there are
+    none, it stays among the others.
+
     Examples
     --------
     >>> free = System([[1.0]], [[0.2]], [[4.0]], [0.0])
@@ -196,8 +248,8 @@ def lyapunov_exponents(
     require_whole("transient", transient, 0)
     compiled = compile_for(system, mesh_frequency, steps)
     tables = TangentTables(compiled, mesh_frequency)
-    if tables.size == 0:
-        what = "no coordinate is held by a spring, a damper or a contact"
+    if tables.coordinates.elastic.shape[1] == 0:
+        what = "no coordinate is held by a spring or a contact"
         why = "Nothing vibrates, so that every exponent is zero"
         raise InputError(what, "System.stiffness", why, "Hold at least one coordinate")
     extra = read_force(system, extra_force)
@@ -238,6 +290,10 @@ class _Carrier:
         self.state = state[None, :]
         k = tables.size
         self.frame = np.linalg.qr(np.random.default_rng(0).standard_normal((k, k)))[0]
+        braked = tables.coordinates.braked
+        #: Directions of the speeds of braked free rotations, and how far disturbances lie in them.
+        self.braked = np.vstack((np.zeros((k - len(braked), braked.shape[1])), braked))
+        self.share = np.zeros(k)
         self.length = self.elapsed = 0
         self.last: deque[Array] = deque(maxlen=_KEPT)
 
@@ -266,7 +322,7 @@ class _Carrier:
         """Growth of every disturbance and mean trace in each mesh cycle [1/s]."""
         k, steps = self.tables.size, self.tables.compiled.grid.steps
         chunk = max(1, _ROOM // (steps * (k * k + self.state.shape[1])))
-        growth, divergence = np.zeros((cycles, k)), np.zeros(cycles)
+        growth, divergence, share = np.zeros((cycles, k)), np.zeros(cycles), np.zeros(k)
         for first in range(0, cycles, chunk):
             count = min(chunk, cycles - first)
             record = np.empty((count * steps + 1, self.state.shape[1], 1))
@@ -279,8 +335,10 @@ class _Carrier:
                 for product in group:
                     self.frame, upper = np.linalg.qr(product @ self.frame)
                     growth[first + cycle] += np.log(np.abs(np.diag(upper)))
+                share += share_in(self.braked, self.frame)
                 self.last.append(group.copy())
             progress.advance(count)
+        self.share = share / max(1, cycles)
         return growth * self.tables.mesh_frequency, divergence * self.tables.mesh_frequency
 
     def _matrices(self, states: Array) -> tuple[Array, Array]:
@@ -318,18 +376,23 @@ def _summarize(
     carrier: _Carrier, growth: Array, divergence: Array, count: int
 ) -> LyapunovExponents:
     mesh_frequency = carrier.tables.mesh_frequency
-    values, errors = growth.mean(axis=0), _block_error(growth)
+    values, errors, share = growth.mean(axis=0), _block_error(growth), carrier.share
     mean = float(divergence.mean())
     period, apart = repeats_after(carrier.last)
     if period:
         span = period / mesh_frequency
-        values = floquet_growth(list(carrier.last)[-period:], carrier.frame) / span
+        repeated = list(carrier.last)[-period:]
+        values, share = floquet_growth(repeated, carrier.frame, carrier.braked)
+        values = values / span
         errors, mean = np.full_like(values, apart / span), float(divergence[-period:].mean())
     elif not np.nanmax(values) > _SURE * np.nan_to_num(errors[int(values.argmax())]):
         half = (len(growth) + 1) // 2
         values, mean = _windowed(growth), float(_windowed(divergence[:, None])[0])
         errors = 0.5 * np.abs(_windowed(growth[:half]) - _windowed(growth[-half:]))
-    free = count - values.size
+    growth = growth[:, np.argsort(-values, kind="stable")]
+    free, braked = count - values.size, np.zeros(values.size, dtype=bool)
+    braked[np.argsort(-share, kind="stable")[: carrier.braked.shape[1]]] = True
+    braked &= share > _BELONGS
     values, errors = np.append(values, np.zeros(free)), np.append(errors, np.zeros(free))
     order = np.argsort(-values, kind="stable")
     return LyapunovExponents(
@@ -337,11 +400,21 @@ def _summarize(
         standard_error=errors[order],
         divergence=mean,
         free=free,
+        free_rotation=np.append(braked, np.ones(free, dtype=bool))[order],
+        rotating=_rotating(carrier.tables.coordinates, carrier.tables.compiled.system),
         mesh_frequency=mesh_frequency,
         cycles=len(growth),
         repeats=period,
         growth=growth,
     )
+
+
+def _rotating(coordinates: OrbitCoordinates, system: System) -> tuple[str, ...]:
+    """Coordinates that take part in free rotations."""
+    shape = coordinates.inverse.T @ coordinates.rotations
+    size = np.sqrt(np.diag(np.asarray(system.mass))) * np.linalg.norm(shape, axis=1)
+    least = _TURNS * size.max(initial=0.0)
+    return tuple(name for name, each in zip(system.names, size, strict=True) if each > least)
 
 
 def _block_error(growth: Array) -> Array:
@@ -366,8 +439,8 @@ def exponent_verdict(spectrum: LyapunovExponents, refined: LyapunovExponents) ->
     both_repeat = spectrum.repeats > 0 and refined.repeats > 0
     if spectrum.chaotic != refined.chaotic or (both_repeat and spectrum.repeats != refined.repeats):
         return "step-limited"
-    largest, refined_largest = float(spectrum.vibrating[0]), float(refined.vibrating[0])
-    errors = (float(item.standard_error[0]) for item in (spectrum, refined))
+    largest, refined_largest = spectrum.largest, refined.largest
+    errors = (item.largest_error for item in (spectrum, refined))
     spread = math.hypot(*(0.0 if math.isnan(error) else error for error in errors))
     allowed = max(
         _EXPONENT * max(abs(largest), abs(refined_largest)),
@@ -375,61 +448,3 @@ def exponent_verdict(spectrum: LyapunovExponents, refined: LyapunovExponents) ->
         _ZERO * spectrum.mesh_frequency,
     )
     return "physical" if abs(largest - refined_largest) <= allowed else "undecided"
-
-
-def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:
-    """Tell after how many mesh cycles the matrices repeat."""
-    known = np.asarray(cycles)
-    size = np.linalg.norm(known, axis=(-2, -1))
-    for period in range(1, min(_PERIODS, len(known) // 2) + 1):
-        apart = np.linalg.norm(known[period:] - known[:-period], axis=(-2, -1)) / size[period:]
-        if apart.max() <= _REPEATS:
-            return period, float(apart.max())
-    return 0, float("nan")
-
-
-def floquet_growth(cycles: Sequence[Array], frame: Array) -> Array:
-    """Growth of disturbances over one period, from matrices and a frame that has turned in."""
-    old, uppers = frame, []
-    for product in (product for groups in cycles for product in groups):
-        frame, upper = np.linalg.qr(product @ frame)
-        uppers.append(upper)
-    turn = old.T @ frame
-    size = turn.shape[0]
-    edges = [0, *(i for i in range(1, size) if np.abs(turn[i:, :i]).max() < _APART), size]
-    growth = np.zeros(size)
-    for first, last in pairwise(edges):
-        block, scale = np.eye(last - first), 0.0
-        for upper in uppers:
-            block = upper[first:last, first:last] @ block
-            norm = float(np.linalg.norm(block))
-            block, scale = block / norm, scale + float(np.log(norm))
-        values = np.linalg.eigvals(turn[first:last, first:last] @ block)
-        growth[first:last] = np.log(np.abs(values)) + scale
-    return np.asarray(np.sort(growth)[::-1])
-
-
-def _pairwise(matrices: Array) -> Array:
-    """Products of neighbours (cycles, steps, k, k), the later step on the left."""
-    if matrices.shape[1] % 2:
-        unit = np.broadcast_to(np.eye(matrices.shape[-1]), (len(matrices), 1, *matrices.shape[2:]))
-        matrices = np.concatenate((matrices, unit), axis=1)
-    return np.asarray(matrices[:, 1::2] @ matrices[:, ::2])
-
-
-def safe_length(matrices: Array) -> int:
-    """Steps that may be multiplied before disturbances are made orthogonal again."""
-    product, length = matrices[None], 1
-    while product.shape[1] > 1:
-        longer = _pairwise(product)
-        if not np.all(np.linalg.cond(longer) <= _SPREAD):
-            break
-        product, length = longer, 2 * length
-    return length
-
-
-def grouped_products(matrices: Array, length: int) -> Array:
-    """Products of every ``length`` steps of every mesh cycle."""
-    while length > 1:
-        matrices, length = _pairwise(matrices), length // 2
-    return matrices

@@ -50,6 +50,16 @@ class OrbitCoordinates:
         return np.asarray(np.linalg.inv(self.lower))
 
     @cached_property
+    def rotations(self) -> Array:
+        """Free motions of the drive, whose position no spring or contact feels (n, r)."""
+        return _complement(self.elastic)
+
+    @cached_property
+    def braked(self) -> Array:
+        """Those of them whose velocity a damper feels, in the basis ``moving`` (v, b)."""
+        return _complement(self.moving.T @ self.elastic)
+
+    @cached_property
     def _reducing(self) -> Array:
         """Matrix (2 n, e + v) that reduces a state; one for each of several rates (..., 1, 1)."""
         (size, count), rate = self.elastic.shape, np.asarray(self.rate)

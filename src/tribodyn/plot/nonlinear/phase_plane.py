@@ -185,7 +185,7 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
 
 
 def _exponent_title(spectrum: LyapunovExponents) -> str:
-    value, error = spectrum.vibrating[0], spectrum.standard_error[0]
+    value, error = spectrum.largest, spectrum.largest_error
     words = f"{value:.4g} 1/s, standard error {error:.1g} 1/s"
     if spectrum.verdict == "step-limited":
         return f"Made by the step, not by physics: the largest exponent is {words}"
@@ -199,7 +199,8 @@ def _exponent_title(spectrum: LyapunovExponents) -> str:
     heading="Lyapunov exponents",
     caption="Mean growth of a small disturbance up to each mesh cycle. The band is the standard "
     "error of a mean over so many cycles, the dotted line the result. A largest exponent that "
-    "stays above zero means chaos.",
+    "stays above zero means chaos. Free rotations of the drive are no vibration: their exponents "
+    "are left out.",
     of="LyapunovExponents",
     made_by="Call tribodyn.analysis.lyapunov_exponents(...) and its plot method.",
 )
@@ -208,10 +209,10 @@ def lyapunov(spectrum: LyapunovExponents) -> Any:
     cycles = len(spectrum.growth)
     count = np.arange(1, cycles + 1)
     kept = np.unique(np.linspace(0, cycles - 1, min(cycles, _KEPT)).astype(int))
-    means = np.cumsum(spectrum.growth, axis=0) / count[:, None]
+    rotation = spectrum.free_rotation
+    means = np.cumsum(spectrum.vibrating_growth, axis=0) / count[:, None]
     order = np.argsort(-means[-1])[:_DRAWN]
-    zeros = np.flatnonzero(spectrum.exponents == 0.0)[: spectrum.free]
-    errors = np.delete(spectrum.standard_error, zeros)
+    errors = spectrum.standard_error[~rotation]
     traces: list[Trace] = []
     x = count[kept]
     for number, column in enumerate(order):
@@ -230,6 +231,10 @@ def lyapunov(spectrum: LyapunovExponents) -> Any:
         traces.append({**dotted, "showlegend": False})
     zero = line(x[[0, -1]], [0.0, 0.0], "zero", MUTED, width=1.0)
     traces.append({**zero, "showlegend": False, "hoverinfo": "skip"})
+    for number, value in enumerate(spectrum.exponents[rotation]):
+        name = "free rotation, left out"
+        mark = line(x[[0, -1]], [value, value], name, MUTED, unit="1/s", dash="dash", width=1.6)
+        traces.append({**mark, "showlegend": number == 0})
     late = means[kept][x >= max(1, cycles // 50)][:, order]
     span = np.append(late.ravel(), 0.0)
     margin = 0.1 * float(np.ptp(span)) or 1.0
