@@ -9,6 +9,7 @@ interrupted.
 from __future__ import annotations
 
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -16,7 +17,7 @@ from concurrent.futures import Future, wait
 from contextlib import contextmanager, suppress
 from contextvars import copy_context
 from queue import SimpleQueue
-from types import TracebackType
+from types import FrameType, TracebackType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -28,6 +29,7 @@ __all__ = [
     "alone",
     "aside",
     "begins_thread",
+    "deferred",
     "in_threads",
     "processors",
     "refuse_stopped",
@@ -58,6 +60,24 @@ def refuse_stopped(code: int) -> int:
     if code == STOPPED:
         raise KeyboardInterrupt
     return code
+
+
+@contextmanager
+def deferred() -> Iterator[None]:
+    """Raise an interruption after the block: in HDF5 it may leave a lock that nobody releases."""
+    main_thread = threading.current_thread() is threading.main_thread()
+    handler = signal.getsignal(signal.SIGINT) if main_thread else None
+    if not callable(handler):
+        yield
+        return
+    received: list[tuple[int, FrameType | None]] = []
+    signal.signal(signal.SIGINT, lambda *signal_and_frame: received.append(signal_and_frame))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+        if received:
+            handler(*received[0])
 
 
 class Threads:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from tribodyn.errors import ComputationError, InputError
-from tribodyn.files import cannot_write, lock
+from tribodyn.files import absolute_target, cannot_write, lock
 
 __all__ = ["NAME", "Members", "read_lines"]
 
@@ -49,7 +49,7 @@ class Members:
         """Say which study it is; members of the same one are there already."""
         if self.target is None:
             return self
-        place = self.target.absolute()
+        place = absolute_target(self.target)
         folder = place if self.inside else place.with_name(f".{place.name}.members")
         try:
             self._hold(folder)

@@ -30,7 +30,7 @@ import numpy as np
 
 from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError
-from tribodyn.files import check_new, whole
+from tribodyn.files import atomic_write, check_new
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.stored import write_dataset
 
@@ -233,7 +233,7 @@ class Record:
             If the file exists.
         """
         target = check_new(path, Argument("path"))
-        with whole(target) as partial:
+        with atomic_write(target) as partial:
             write_dataset(self._stored(), partial)
         return target
 

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn.errors import InputError
+from tribodyn.interrupt import deferred
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -109,6 +110,7 @@ def _content(data: Any) -> _Content:
     return _Content(found, set(data.coordinates), data.attributes)
 
 
+@deferred()
 def write_dataset(data: Any, path: str | PathLike[str]) -> None:
     """Write labelled arrays to a netCDF file, with the checksum of what they hold."""
     import h5py
@@ -162,6 +164,7 @@ def _write(content: _Content, path: str | PathLike[str]) -> None:
             file.attrs["coordinates"] = " ".join(sorted(alone))
 
 
+@deferred()
 def read_dataset(path: str | PathLike[str], where: Any = "argument path") -> xarray.Dataset:
     """Read a netCDF file that this library may have written; a changed one is refused."""
     import h5py

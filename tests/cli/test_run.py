@@ -16,6 +16,7 @@ from tribodyn.cli import call
 from tribodyn.study.pipeline.save import RESULT_FILES
 
 _TRIBODYN = (sys.executable, "-m", "tribodyn.cli")
+_SWEEP = "operation.speed=900,1000 rpm"
 _FAST = ("--set", "solver.steps_per_mesh_cycle=256")
 
 
@@ -106,6 +107,36 @@ def test_a_failed_computation_exits_with_one(
     monkeypatch.setattr("tribodyn.study.pipeline.run.run", fail)
     assert call(["run", "fzg-roughness", "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["error"]["exit_code"] == 1
+    assert os.listdir(folder) == []
+
+
+def test_the_root_directory_is_no_place_for_a_result(capsys: pytest.CaptureFixture[str]) -> None:
+    for command in ("run", "modes"):
+        assert call([command, "fzg-roughness", "--out", "/"]) == 2
+        error = capsys.readouterr().err
+        assert error.startswith("error: /: this is the root directory. ")
+        assert error.endswith("Choose a directory in it.\n")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no such locks")
+def test_two_runs_do_not_write_one_directory(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    codes: list[int] = []
+
+    def compute(*_: object) -> None:
+        """Start another command while this one computes."""
+        others = [["run", "fzg-roughness", "--force"], ["sweep", "fzg-roughness", _SWEEP]]
+        for words in others:
+            command = [*_TRIBODYN, *words, "--out", "r"]
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            codes.append(done.returncode)
+            assert "r: this directory is in use. Another run" in done.stderr
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tribodyn.study.pipeline.run.run", compute)
+    assert call(["run", "fzg-roughness", "--out", "r"]) == 130
+    assert codes == [2, 2]
     assert os.listdir(folder) == []
 
 

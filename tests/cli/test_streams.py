@@ -63,3 +63,29 @@ def test_model_warnings_have_no_line_of_the_program(
         assert entry.call([]) == 0
     assert warnings.showwarning is before
     assert capsys.readouterr().err == "warning [friction-range]: The slip is small.\n"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+@pytest.mark.parametrize(
+    ("words", "full", "code"),
+    [
+        (["cases"], "stdout", 1),
+        (["cases", "--json"], "stdout", 1),
+        (["explain", "epsilon_alpha"], "stdout", 1),
+        (["check", "no-such-case", "--json"], "stdout", 2),
+        (["check", "no-such-case", "--json"], "stderr", 2),
+    ],
+)
+def test_a_full_disk_ends_in_one_message(words: list[str], full: str, code: int) -> None:
+    command = [sys.executable, "-m", "tribodyn", *words]
+    streams = dict.fromkeys(("stdout", "stderr"), subprocess.PIPE)
+    with open("/dev/full", "w") as device:
+        done = subprocess.run(command, text=True, check=False, **{**streams, full: device})
+    assert done.returncode == code
+    if full == "stderr":
+        assert json.loads(done.stdout)["error"]["exit_code"] == code
+    else:
+        assert done.stderr.startswith("error: ")
+        assert done.stderr.count("\n") == 1
+        if code == 1:
+            assert "standard output: cannot write: no space left" in done.stderr

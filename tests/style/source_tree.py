@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
+import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -18,19 +20,27 @@ __all__ = [
     "TESTS",
     "Function",
     "Module",
+    "expected_files",
     "listed_names",
     "modules",
     "parse_entries",
     "read",
+    "repository_files",
     "text_files",
+    "tracked_files",
 ]
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "src" / "tribodyn"
 TESTS = ROOT / "tests"
 
-#: Folders that are made, not written.
-_MADE = {"__pycache__", "build", "dist", "runs", "node_modules"}
+#: Folders and files of the repository; anything else in the folder was left there by its user.
+_FOLDERS = (".ci", "benchmarks", "docs", "examples", "src", "tests")
+_FILES = (
+    ".gitignore", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "README.md",
+    "pyproject.toml",
+)  # fmt: skip
+_GENERATED = {"__pycache__", "_generated"}
 _TEXT = {".py", ".toml", ".md", ".cff", ".yml", ".yaml", ".j2", ".html", ".css", ".js", ".txt", ""}
 
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
@@ -197,16 +207,40 @@ def modules(folder: Path = PACKAGE) -> tuple[Module, ...]:
     return tuple(found)
 
 
-def text_files() -> list[Path]:
-    """All files of the repository that somebody wrote and that hold text."""
-    found = []
-    for path in sorted(ROOT.rglob("*")):
-        parts = path.relative_to(ROOT).parts
-        made = any(part in _MADE or part.endswith(".egg-info") for part in parts)
-        hidden = parts[0].startswith(".") and parts[0] not in {".ci", ".importlinter", ".gitignore"}
-        if path.is_file() and not made and not hidden and path.suffix in _TEXT:
-            found.append(path)
-    return found
+def tracked_files(root: Path = ROOT) -> list[Path] | None:
+    """All files under version control; None outside of a clone, as in an unpacked archive."""
+    if not (root / ".git").exists():
+        return None
+    command = ["git", "-c", "safe.directory=*", "ls-files", "-z"]
+    try:
+        listing = subprocess.run(command, cwd=root, capture_output=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    paths = (root / os.fsdecode(name) for name in listing.split(b"\0") if name)
+    return sorted(path for path in paths if path.is_file())
+
+
+def repository_files(root: Path = ROOT) -> list[Path]:
+    """All files of the repository, without what users and programs left in its folder."""
+    tracked = tracked_files(root)
+    return expected_files(root) if tracked is None else tracked
+
+
+def expected_files(root: Path) -> list[Path]:
+    """All files at the places where the repository has its files."""
+    files = [root / name for name in _FILES if (root / name).is_file()]
+    for folder in _FOLDERS:
+        for path in (root / folder).rglob("*"):
+            parts = path.relative_to(root).parts
+            generated = any(part in _GENERATED or part.endswith(".egg-info") for part in parts)
+            if path.is_file() and not generated:
+                files.append(path)
+    return sorted(files)
+
+
+def text_files(root: Path = ROOT) -> list[Path]:
+    """All text files of the repository."""
+    return [path for path in repository_files(root) if path.suffix in _TEXT]
 
 
 def parse_entries(docstring: str, section: str) -> dict[str, str]:

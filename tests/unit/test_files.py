@@ -7,13 +7,15 @@ import os
 import signal
 import subprocess
 import sys
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import tribodyn.files as files
 from tribodyn.errors import ComputationError, InputError, collected
-from tribodyn.files import clear_leftovers, lock, whole
+from tribodyn.files import atomic_write, clear_leftovers, lock, reserved
 
 #: Publishes "new" over "old" and is killed when it calls os.NAME or the exchange.
 _KILLED = """
@@ -40,7 +42,7 @@ else:
         exchange(*names)
         die()
     files._exchange = then
-with files.whole(place, folder=True) as partial:
+with files.atomic_write(place, folder=True) as partial:
     (partial / "summary.json").write_text("new")
 """
 
@@ -85,7 +87,7 @@ def test_without_exchange_a_failing_rename_brings_the_old_result_back(
     monkeypatch.setattr(Path, "rename", second_fails)
     with (
         pytest.raises(ComputationError, match="cannot write"),
-        whole(place, folder=True) as partial,
+        atomic_write(place, folder=True) as partial,
     ):
         (partial / "summary.json").write_text("new")
     assert (place / "summary.json").read_text() == "old"
@@ -94,7 +96,7 @@ def test_without_exchange_a_failing_rename_brings_the_old_result_back(
 
 def test_what_a_living_process_writes_is_left_alone(tmp_path: Path) -> None:
     place = tmp_path / "r"
-    with whole(place, folder=True) as partial:
+    with atomic_write(place, folder=True) as partial:
         clear_leftovers(place)
         assert partial.is_dir()
     stopped = tmp_path / ".r.0123abcd.part"
@@ -137,12 +139,100 @@ def test_a_copy_of_the_user_is_no_leftover(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["x" * 300, "a\0b"])
 def test_a_name_that_no_disk_takes_is_told(tmp_path: Path, name: str) -> None:
-    with pytest.raises(InputError, match="cannot write"), whole(tmp_path / name):
+    with pytest.raises(InputError, match="cannot write"), atomic_write(tmp_path / name):
         pass
 
 
 def test_a_full_disk_is_told_with_the_place(tmp_path: Path) -> None:
     told = pytest.raises(ComputationError, match="r: cannot write: no space")
-    with told, whole(tmp_path / "r", folder=True):
+    with told, atomic_write(tmp_path / "r", folder=True):
         raise OSError(errno.ENOSPC, "no space left on device")
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("root", ["/", "//", "/.."])
+def test_the_root_directory_is_refused_as_a_result(root: str) -> None:
+    writers = (clear_leftovers, lambda path: atomic_write(path).__enter__())
+    for write in (*writers, lambda path: reserved(path).__enter__()):
+        with pytest.raises(InputError, match="root directory"):
+            write(Path(root))
+
+
+#: Reserves a folder, reports it, and waits until it is told to write the result.
+_WRITER = """
+import sys
+from pathlib import Path
+from tribodyn.files import atomic_write, reserved
+target = Path(sys.argv[1])
+with reserved(target):
+    print("reserved", flush=True)
+    sys.stdin.readline()
+    with atomic_write(target, folder=True) as partial:
+        (partial / "summary.json").write_text("first")
+"""
+
+
+@pytest.fixture
+def writer(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
+    """Process that has reserved the folder ``r``."""
+    command = [sys.executable, "-c", _WRITER, str(tmp_path / "r")]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "reserved\n"
+        yield process
+        process.kill()
+
+
+def _write_second(target: Path) -> None:
+    with atomic_write(target, folder=True) as partial:
+        (partial / "summary.json").write_text("second")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no such locks")
+def test_a_second_writer_of_a_folder_is_refused(
+    tmp_path: Path, writer: subprocess.Popen[str]
+) -> None:
+    target = tmp_path / "r"
+    with pytest.raises(InputError, match=r"r: this directory is in use.*still active.*Wait"):
+        _write_second(target)
+    clear_leftovers(target)
+    with pytest.raises(InputError, match="in use"):
+        _write_second(target)
+    writer.communicate("\n")
+    assert (target / "summary.json").read_text() == "first"
+    assert os.listdir(tmp_path) == ["r"]
+    _write_second(target)
+    assert (target / "summary.json").read_text() == "second"
+    assert os.listdir(tmp_path) == ["r"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no such locks")
+def test_a_killed_writer_leaves_no_stale_lock(
+    tmp_path: Path, writer: subprocess.Popen[str]
+) -> None:
+    writer.kill()
+    writer.wait()
+    assert os.listdir(tmp_path) == [".r.lock"]
+    _write_second(tmp_path / "r")
+    assert os.listdir(tmp_path) == ["r"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no such locks")
+def test_two_threads_do_not_write_one_folder(tmp_path: Path) -> None:
+    failures: list[BaseException] = []
+
+    def write() -> None:
+        try:
+            _write_second(tmp_path / "r")
+        except InputError as error:
+            failures.append(error)
+
+    with reserved(tmp_path / "r"):
+        thread = threading.Thread(target=write)
+        thread.start()
+        thread.join()
+        _write_second(tmp_path / "r")
+    assert len(failures) == 1
+    assert "in use" in str(failures[0])

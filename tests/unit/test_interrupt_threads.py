@@ -17,7 +17,7 @@ from known_marches import march_newmark, march_one
 from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.interrupt import Threads, in_threads, stop_flag
+from tribodyn.interrupt import Threads, deferred, in_threads, stop_flag
 
 _SYSTEM = System([[1.0]], [[0.05]], [[0.0]], [0.3], [Contact([1.0], 1.0, damping=0.05, gap=1.0)])
 #: Mesh cycles that nobody waits for: they take hours.
@@ -136,3 +136,28 @@ def test_a_failure_ends_what_has_not_begun_and_is_raised():
     with pytest.raises(ValueError, match="no"):
         in_threads(work, range(1000), 2)
     assert len(begun) < 1000
+
+
+def test_a_deferred_interruption_is_raised_after_the_block():
+    steps = []
+
+    @deferred()
+    @deferred()
+    def interrupted():
+        signal.raise_signal(signal.SIGINT)
+        steps.append("after the signal")
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert steps == ["after the signal"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_an_ignored_interruption_stays_ignored():
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with deferred():
+            signal.raise_signal(signal.SIGINT)
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)

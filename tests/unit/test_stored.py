@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import os
+import signal
 import socket
 from pathlib import Path
 from typing import Any
@@ -133,3 +135,31 @@ def test_the_size_is_limited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     (tmp_path / "a").write_bytes(b"0123456789a")
     with pytest.raises(OSError, match="larger than"):
         read_bytes(tmp_path / "a", "case")
+
+
+@pytest.mark.parametrize("access", [1, 2, 10, 30])
+def test_an_interruption_waits_until_a_netcdf_file_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, access: int
+) -> None:
+    """Inside HDF5 it would print a traceback, pass for a damaged file, or leave a lock behind."""
+    write_dataset(_data(), tmp_path / "a.nc")
+    dropped: list[object] = []
+    monkeypatch.setattr("sys.unraisablehook", dropped.append)
+    accesses: list[str] = []
+
+    class Interrupted(io.BytesIO):
+        def readinto(self, buffer: Any) -> int:
+            accesses.append("read")
+            if len(accesses) == access:
+                signal.raise_signal(signal.SIGINT)
+            return super().readinto(buffer)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(stored.io, "BytesIO", Interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            read_dataset(tmp_path / "a.nc")
+    assert len(accesses) > access
+    assert not dropped
+    handler = signal.getsignal(signal.SIGINT)
+    assert handler is signal.default_int_handler
+    xarray.testing.assert_equal(read_dataset(tmp_path / "a.nc"), _data())

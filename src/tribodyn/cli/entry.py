@@ -15,7 +15,7 @@ import time
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from tribodyn.errors import Problem
@@ -173,7 +173,7 @@ def call(arguments: Sequence[str]) -> int:
             sys.stdout.flush()
             return code
     except BrokenPipeError:
-        _close_stdout()
+        _redirect_to_null(sys.stdout)
         return 0
     except (Exception, KeyboardInterrupt) as error:
         with _deaf():
@@ -201,21 +201,24 @@ def _worded_warnings() -> Iterator[None]:
         warnings.showwarning = before
 
 
-def _close_stdout() -> None:
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+def _redirect_to_null(stream: TextIO) -> None:
+    """Let Python flush the rest of a buffer at exit where nothing can fail."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _dispatch(arguments: list[str]) -> int:
     from cyclopts.exceptions import CycloptsError
 
     from tribodyn.cli.app import COMMANDS, make_app
+    from tribodyn.cli.settings import reserved_outputs
     from tribodyn.errors import InputError
 
     names = [name for name, _, _ in COMMANDS]
     if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
         raise InputError(_no_command(arguments[0], names))
     try:
-        result: Any = make_app()(arguments, exit_on_error=False, print_error=False)
+        with reserved_outputs:
+            result: Any = make_app()(arguments, exit_on_error=False, print_error=False)
     except CycloptsError as error:
         what = re.sub(r"^Unused Tokens: \[(.*)\]", r"too many words: \1", str(error).strip())
         why = "Commands take the words and options that their help lists"
@@ -245,7 +248,7 @@ def _failed(error: BaseException, as_json: bool) -> int:
     """Tell a failure on stderr and, if asked for, as one JSON object on stdout."""
     from tribodyn.cli.screen import say_json, show_problems
     from tribodyn.errors import Problem, TribodynError
-    from tribodyn.files import FAULTS_OF_THE_PLACE, cannot_write
+    from tribodyn.files import LOCATION_ERRNOS, cannot_write
 
     if isinstance(error, TribodynError):
         code, problems = error.exit_code, list(error.problems)
@@ -260,22 +263,31 @@ def _failed(error: BaseException, as_json: bool) -> int:
                 )
             ],
         )
-    elif isinstance(error, OSError) and error.errno in FAULTS_OF_THE_PLACE:
+    elif isinstance(error, OSError) and error.errno in LOCATION_ERRNOS:
         code, problems = 1, [cannot_write(error.filename or "standard output", error)]
     else:
         code, problems = 1, [_unexpected(error)]
-    show_problems(problems)
-    if as_json:
-        told = [
-            {"what": p.what, "where": str(p.where), "why": p.why, "remedy": p.remedy}
-            for p in problems
-        ]
-        say_json({"error": {"exit_code": code, "problems": told}})
-    try:
-        sys.stdout.flush()
-    except OSError:  # What is left in the buffer has nowhere to go.
-        _close_stdout()
+    with _unwritable_stream_closed(sys.stderr):
+        show_problems(problems)
+    with _unwritable_stream_closed(sys.stdout):
+        sys.stdout.flush()  # data of the command that are still buffered
+        if as_json:
+            fields = [
+                {"what": p.what, "where": str(p.where), "why": p.why, "remedy": p.remedy}
+                for p in problems
+            ]
+            say_json({"error": {"exit_code": code, "problems": fields}})
     return code
+
+
+@contextmanager
+def _unwritable_stream_closed(stream: TextIO) -> Iterator[None]:
+    """Drop what a stream cannot take (full disk, closed pipe); the exit code stays as it is."""
+    try:
+        yield
+        stream.flush()
+    except OSError:
+        _redirect_to_null(stream)
 
 
 def _unexpected(error: BaseException) -> Problem:

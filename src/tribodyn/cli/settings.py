@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -29,12 +30,20 @@ Settings = Annotated[
     ),
 ]
 
+#: Directories that the running command writes, released when it ends.
+reserved_outputs = ExitStack()
+
 
 def check_place(target: Path, force: bool) -> None:
-    """Clear what killed runs left beside a result, and refuse a place before any work is done."""
-    from tribodyn.files import clear_leftovers
-    from tribodyn.study.pipeline.save import check_target
+    """Reserve the directory of a result until the command ends; refuse it before any work is done.
 
+    What killed runs left next to it is removed.
+    """
+    from tribodyn.files import clear_leftovers, reserved
+    from tribodyn.study.pipeline.save import check_parent, check_target
+
+    check_parent(target)
+    reserved_outputs.enter_context(reserved(target))
     with collected() as told:
         clear_leftovers(target)
     show_warnings(told)

@@ -13,7 +13,7 @@ import numpy as np
 
 from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.files import whole
+from tribodyn.files import atomic_write
 from tribodyn.record import Record
 from tribodyn.stored import csv_text
 from tribodyn.study import SUMMARY, Result
@@ -52,7 +52,7 @@ def write_tables(result: Result | Record, folder: str | PathLike[str]) -> Path:
         raise OutputExistsError("this exists already", str(folder), "", "Choose another name")
     if not target.absolute().parent.is_dir():
         raise InputError("there is no such directory", str(target.parent), "", "Create it")
-    with whole(target, folder=True) as place:
+    with atomic_write(target, folder=True) as place:
         place.mkdir(exist_ok=True)
         for name, table in _tables(result):
             (place / f"{name}.csv").write_text(_as_csv(table), encoding="utf-8")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.files import whole
+from tribodyn.files import atomic_write
 from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def write_rexs(case: Case, path: str | PathLike[str], *, force: bool = False) ->
     if target.exists() and (target.is_dir() or not force):
         raise OutputExistsError("this exists already", str(path), "", "Choose another name")
     content = writer(case)
-    with whole(target) as place:
+    with atomic_write(target) as place:
         place.write_bytes(content)
 
 

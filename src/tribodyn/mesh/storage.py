@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.files import whole
+from tribodyn.files import atomic_write
+from tribodyn.interrupt import deferred
 from tribodyn.mesh.columns import FILM_COLUMNS, MIXED_COLUMNS, MeshColumns
 from tribodyn.mesh.gears import NoGears, coordinates_of, read_pair
 from tribodyn.mesh.grid import PhaseGrid
@@ -39,6 +40,7 @@ _OF_THE_FORCE = (
 _MOST_KNOTS = 10**6
 
 
+@deferred()
 def is_mesh_table(path: Path) -> bool:
     """Whether this library wrote a netCDF file."""
     import h5py
@@ -231,5 +233,5 @@ def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
     lines = [f"# {name} = {value!r} {FACTS[name]}" for name, value in facts.items()]
     lines.append(",".join(columns))
     lines += [",".join(repr(float(v)) for v in row) for row in np.stack([*columns.values()], 1)]
-    with whole(place) as partial:
+    with atomic_write(place) as partial:
         partial.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn.errors import Problem, TribodynError, quiet
+from tribodyn.interrupt import deferred
 from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.summary import SUMMARY
@@ -66,6 +67,7 @@ class Job(NamedTuple):
         part = self.compute(progress)
         return Stored(self._encoded(part), part.failed, [*part.figures])
 
+    @deferred()
     def _encoded(self, part: Part) -> bytes:
         """Result as netCDF; made in memory, since HDF5 takes a full disk badly."""
         import h5py

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import Argument, InputError
+from tribodyn.interrupt import deferred
 from tribodyn.variants.compute import KINDS
 from tribodyn.variants.members import Grid
 from tribodyn.variants.store import Manifest, chunk_path, read_chunk
@@ -107,6 +108,7 @@ def _absent(name: str, dtype: np.dtype[Any]) -> Any:
     return {"failed": _NOT_YET}.get(name, "" if dtype.kind == "O" else 0)
 
 
+@deferred()
 def _column(manifest: Manifest, chunk: str, name: str) -> Any:
     """One variable of a chunk; None where it has none of that name."""
     import h5py

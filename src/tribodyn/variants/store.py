@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import Argument, InputError, OutputExistsError, quiet
-from tribodyn.files import lock, whole
+from tribodyn.files import atomic_write, lock
 from tribodyn.members import NAME, Members, read_lines
 from tribodyn.stored import read_bytes
 from tribodyn.study.studies.grid import identity
@@ -237,9 +237,9 @@ class Store:
         """Write a chunk, then tell that it is there."""
         path = chunk_path(self.folder, chunk.name)
         with quiet("leftover"):
-            with suppress(OSError):  # whole() tells what is wrong
+            with suppress(OSError):  # atomic_write() reports what is wrong
                 path.parent.mkdir(exist_ok=True)
-            with whole(path) as partial:
+            with atomic_write(path) as partial:
                 partial.write_bytes(found.content)
         told: dict[str, int] = {}
         for reason in filter(None, found.failed):

@@ -12,7 +12,7 @@ import numpy as np
 
 from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, require_one_of, shortened, warn
-from tribodyn.files import whole
+from tribodyn.files import atomic_write
 from tribodyn.gear.hypoid.blank import HypoidBlank
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks
 from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap, working_depth
@@ -186,7 +186,7 @@ def _written(path: str | os.PathLike[str], text: str) -> Path:
         what = f"path = {shortened(repr(path))}"
         why = "Wanted: the name of a file"
         raise InputError(what, Argument("path"), why, "Give it as a text or a Path")
-    with whole(Path(path)) as partial:
+    with atomic_write(Path(path)) as partial:
         partial.write_text(text, "utf-8")
     return Path(path)
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError
+from tribodyn.interrupt import deferred
 from tribodyn.measurement.readers.content import Content, from_arrays, rate_of, refuse_table, tells
 from tribodyn.stored import read_dataset
 from tribodyn.types import Array
@@ -126,6 +127,7 @@ def _properties(before: str, holder: Any) -> dict[str, Any]:
     return {before + name: value for name, value in holder.properties.items() if tells(name)}
 
 
+@deferred()
 def hdf5(path: Path) -> Content:
     """Vectors of an HDF5 or netCDF file, with attributes that tell rates and units."""
     import h5py

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tribodyn.errors import InputError, OutputExistsError, Problem
-from tribodyn.files import cannot_write, clear_leftovers, whole
+from tribodyn.files import absolute_target, atomic_write, cannot_write, clear_leftovers
 
 #: What a result directory holds; only such a directory may be replaced.
 RESULT_FILES = ("case.toml", "summary.json", "mesh.nc", "response.nc", "report.html")
@@ -29,7 +29,7 @@ _KINDS = {
 
 def write_file(path: Path, text: str) -> None:
     """Write a text file at once: it appears complete or not at all."""
-    with whole(path) as partial:
+    with atomic_write(path) as partial:
         partial.write_text(text, encoding="utf-8")
 
 
@@ -37,21 +37,7 @@ def check_target(
     target: Path, force: bool, *, remedy: str = "Choose another directory, or set force=True"
 ) -> None:
     """Refuse a directory that cannot or must not be written, before any work is done."""
-    parent = target.absolute().parent
-    try:
-        target.absolute().lstat()
-    except (FileNotFoundError, NotADirectoryError):
-        pass
-    except (OSError, ValueError) as error:
-        raise InputError(cannot_write(target, error)) from None
-    if parent.exists() and not parent.is_dir():
-        raise InputError(
-            "this is a file, not a directory", str(target.parent), "", "Choose another"
-        )
-    if not parent.is_dir():
-        raise InputError("there is no such directory", str(target.parent), "", "Create it first")
-    if not os.access(parent, os.W_OK):
-        raise InputError("no permission to write", str(target.parent), "", "Choose another place")
+    check_parent(target)
     if not (target.exists() or target.is_symlink()):
         return
     if target.is_file():
@@ -64,6 +50,26 @@ def check_target(
         raise OutputExistsError(problem)
     if not force:
         raise OutputExistsError("this exists already", str(target), "", remedy)
+
+
+def check_parent(target: Path) -> None:
+    """Refuse a directory whose parent does not exist or cannot be written to."""
+    path = absolute_target(target)
+    parent = path.parent
+    try:
+        path.lstat()
+    except (FileNotFoundError, NotADirectoryError):
+        pass
+    except (OSError, ValueError) as error:
+        raise InputError(cannot_write(target, error)) from None
+    if parent.exists() and not parent.is_dir():
+        raise InputError(
+            "this is a file, not a directory", str(target.parent), "", "Choose another"
+        )
+    if not parent.is_dir():
+        raise InputError("there is no such directory", str(target.parent), "", "Create it first")
+    if not os.access(parent, os.W_OK):
+        raise InputError("no permission to write", str(target.parent), "", "Choose another place")
 
 
 def _strangers(target: Path) -> str:
@@ -83,6 +89,6 @@ def new_directory(target: Path, *, force: bool = False) -> Iterator[Path]:
     """Fill a directory beside its place and move it there when it is complete."""
     clear_leftovers(target)
     check_target(target, force)
-    with whole(target, folder=True) as place:
+    with atomic_write(target, folder=True) as place:
         yield place
         check_target(target, force)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tribodyn.errors import Argument, InputError
-from tribodyn.files import check_new, whole
+from tribodyn.files import atomic_write, check_new
 from tribodyn.record import Parts, Record, fact, record
 from tribodyn.stored import read_dataset
 from tribodyn.types import Array, Mask
@@ -92,7 +92,7 @@ class DataSet(Record):
         table = pyarrow.table(self.columns).replace_schema_metadata(
             {name: str(value) for name, value in facts.items()}
         )
-        with whole(target) as partial:
+        with atomic_write(target) as partial:
             pyarrow.parquet.write_table(table, partial)
         return target
 
