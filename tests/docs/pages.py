@@ -4,9 +4,10 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+_AT_THE_TOP = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 PAGES = sorted(
     page
-    for page in (*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"))
+    for page in (*(ROOT / name for name in _AT_THE_TOP), *(ROOT / "docs").rglob("*.md"))
     if "_generated" not in page.parts
 )
 
