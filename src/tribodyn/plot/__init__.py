@@ -11,11 +11,14 @@ from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.dynamics import film_response, film_transient
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
 from tribodyn.plot.film.lubrication import film_over_operation, lubrication, lubrication_map
+from tribodyn.plot.film.mixed_contact import mixed_line_contact
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
+from tribodyn.plot.gear.heat import heat_balance
 from tribodyn.plot.gear.hypoid import ease_off, hypoid_blank, hypoid_contact, hypoid_pair
 from tribodyn.plot.gear.hypoid_loaded import hypoid_friction, hypoid_load, hypoid_pressure
+from tribodyn.plot.gear.hypoid_motion import hypoid_kinematics
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
@@ -38,21 +41,34 @@ from tribodyn.plot.motion.courses import (
 from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
 from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
 from tribodyn.plot.motion.motion import result_comparison
+from tribodyn.plot.motion.response import adaptive_solution, response
 from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
 from tribodyn.plot.motion.sweeps import speed_sweep, sweep
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
+from tribodyn.plot.papers import paper_comparison
 from tribodyn.plot.signals.bands import bands
 from tribodyn.plot.signals.learned import ensemble, surrogate
+from tribodyn.plot.signals.lines import (
+    harmonic_spectrum,
+    order_cut,
+    overall_level,
+    sidebands,
+    signal_spectrum,
+)
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
 from tribodyn.plot.signals.recorded import comparison, order_spectrum, recording, tracked_orders
+from tribodyn.plot.signals.revolution import synchronous_average
 from tribodyn.plot.signals.run_up import run_up, run_up_map
+from tribodyn.plot.signals.uncertain import band, data_set, sobol_indices
 
 __all__ = [
     "FIGURES",
     "Drawing",
     "acceleration",
+    "adaptive_solution",
+    "band",
     "bands",
     "basins",
     "bearing_force",
@@ -64,6 +80,7 @@ __all__ = [
     "comprehensive_stiffness",
     "continuation",
     "coupling",
+    "data_set",
     "drawing",
     "ease_off",
     "ensemble",
@@ -85,10 +102,13 @@ __all__ = [
     "friction_from_loss",
     "friction_harmonics",
     "gear_pair",
+    "harmonic_spectrum",
     "harris_map",
+    "heat_balance",
     "hypoid_blank",
     "hypoid_contact",
     "hypoid_friction",
+    "hypoid_kinematics",
     "hypoid_load",
     "hypoid_pair",
     "hypoid_pressure",
@@ -103,18 +123,26 @@ __all__ = [
     "mesh_deformation",
     "mesh_force",
     "mesh_stiffness",
+    "mixed_line_contact",
     "mode_shapes",
+    "order_cut",
     "order_map",
     "order_spectrum",
+    "overall_level",
+    "paper_comparison",
     "parameter_map",
     "path_of_contact",
     "phase_portrait",
     "poincare",
     "power_flow",
     "recording",
+    "response",
     "result_comparison",
     "run_up",
     "run_up_map",
+    "sidebands",
+    "signal_spectrum",
+    "sobol_indices",
     "spectrogram",
     "spectrum",
     "speed_sweep",
@@ -122,6 +150,7 @@ __all__ = [
     "static_transmission_error",
     "surrogate",
     "sweep",
+    "synchronous_average",
     "tip_relief_map",
     "tooth_force",
     "tracked_orders",

@@ -25,7 +25,7 @@ _OIL, _METAL = PAIR_COLORS[2], WHEEL
 FILLS = ("#f9dfcc", "#fdf5e5", "#e1f1fb")
 #: Film ratios that the axis shows at least.
 _SHOWN = (0.1, 4.0)
-_TICKS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]
+RATIO_TICKS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]
 has_ratio = Need(
     "film_ratio",
     "There is no film ratio: it needs an oil film and rough flanks. Choose film.model, for example "
@@ -72,7 +72,7 @@ def lubrication(mesh: MeshTable) -> Any:
     axis = {
         "type": "log",
         "range": [float(np.log10(low)), float(np.log10(high))],
-        "tickvals": _TICKS,
+        "tickvals": RATIO_TICKS,
     }
     shares = [
         line(path.angle, share, "oil film", _OIL),

@@ -7,6 +7,7 @@ module       what it draws
 ``spectra``  their mesh harmonics
 ``linear``   natural modes, Campbell diagram, response to a harmonic error
 ``friction`` what friction changes, and claims about it judged
+``response`` contact forces, compressions, coordinates of a structure over the time
 ``sweeps``   steady motions over the speed, a figure of the summary over keys
 ``motion``   a response as curves: over mesh cycles, or over time for a transient
 ===========  ====================================================================

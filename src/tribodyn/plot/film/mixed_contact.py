@@ -1,0 +1,87 @@
+"""Rough line contacts in which film and asperities share the load."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.film.lubrication import LIMITS_IN_WORDS, RATIO_TICKS
+from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, WHEEL, Trace, line
+
+if TYPE_CHECKING:
+    from tribodyn.ehl import MixedLineContact
+
+
+@drawing(
+    "mixed_line_contact",
+    heading="Film and asperities",
+    caption=f"Every contact over its film ratio. {LIMITS_IN_WORDS} The gap is the mean distance "
+    "of the rough flanks; where asperities carry, it is wider than the film of smooth flanks "
+    "under the same load, because less of the load presses on the oil.",
+    of="MixedLineContact",
+    made_by="Call tribodyn.ehl.mixed_line_contact(...) and its plot method.",
+)
+def mixed_line_contact(contact: MixedLineContact) -> Any:
+    """Draw load shares, gap and pressures over the film ratio."""
+    ratio = np.ravel(contact.film_ratio)
+    order = np.argsort(ratio, kind="stable")
+    place = ratio[order]
+
+    def curve(values: Any, name: str, color: str, unit: str, dash: str = "solid") -> Trace:
+        drawn = line(place, np.ravel(values)[order], name, color, unit=unit, dash=dash)
+        return {**drawn, "mode": "lines+markers"}
+
+    share = contact.film_load_share
+    film, pressure = display_unit("film_thickness"), display_unit("hertz_pressure")
+    panels = [
+        Panel(
+            "Part of the load [%]",
+            [
+                curve(100.0 * share, "oil film", PAIR_COLORS[2], "%"),
+                curve(100.0 * (1.0 - share), "asperities", WHEEL, "%", "dash"),
+            ],
+            {"range": [-2.0, 102.0]},
+        ),
+        Panel(
+            axis_label("film_thickness", "Thickness"),
+            [
+                curve(displayed("film_thickness", contact.gap), "gap of rough flanks", TOTAL, film),
+                curve(
+                    displayed("film_thickness", contact.smooth_film),
+                    "film of smooth flanks",
+                    MUTED,
+                    film,
+                    "dash",
+                ),
+            ],
+            {"rangemode": "tozero"},
+        ),
+        Panel(
+            axis_label("hertz_pressure", "Pressure"),
+            [
+                curve(
+                    displayed("hertz_pressure", contact.hertz_pressure),
+                    "greatest, dry smooth contact",
+                    MUTED,
+                    pressure,
+                    "dash",
+                ),
+                curve(
+                    displayed("hertz_pressure", contact.asperity_pressure),
+                    "mean of the asperities",
+                    WHEEL,
+                    pressure,
+                ),
+            ],
+            {"rangemode": "tozero"},
+        ),
+    ]
+    low, high = (significant(100.0 * float(f(share))) for f in (np.min, np.max))
+    carried = f"{low} %" if low == high else f"{low} to {high} %"
+    log = {"type": "log", "tickvals": RATIO_TICKS}
+    layout = {"xaxis": log} if place[0] > 0.0 and place[-1] > 4.0 * place[0] else {}
+    return stack(f"The oil film carries {carried} of the load", "Film ratio", panels, layout)

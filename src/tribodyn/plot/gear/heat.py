@@ -1,0 +1,58 @@
+"""The temperature at which the surroundings take up what the gearbox loses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.look.labels import axis_label, engineering, significant
+from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.style import PINION, TOTAL, WHEEL, line, marked
+from tribodyn.units import ZERO_CELSIUS
+
+if TYPE_CHECKING:
+    from tribodyn.study.heat_balance import HeatBalance
+
+
+@drawing(
+    "heat_balance",
+    heading="Heat balance",
+    caption="The loss at every temperature that was computed, and the straight line of the heat "
+    "that the surroundings take up. Gears and oil take on the temperature at which both meet.",
+    of="HeatBalance",
+    made_by="Result.heat of a case with lubricant.heat_transfer holds one.",
+)
+def heat_balance(balance: HeatBalance) -> Any:
+    """Draw power loss and dissipated heat over the temperature of gears and oil."""
+    order = np.argsort(balance.temperature, kind="stable")
+    celsius = balance.temperature - ZERO_CELSIUS
+    ambient = balance.ambient_temperature - ZERO_CELSIUS
+    top = max(float(celsius.max()), ambient + 1.0)
+    ends = np.array([ambient, top + 0.1 * (top - ambient)])
+    given_off = balance.heat_transfer * (ends - ambient)
+    loss = line(celsius[order], balance.power_loss[order], "loss of the gearbox", WHEEL, unit="W")
+    state = marked(
+        celsius[-1:], balance.power_loss[-1:], "balance", TOTAL, size=11, symbol="circle-open",
+        unit="W",
+    )  # fmt: skip
+    number, unit = engineering(float(balance.power_loss[-1]), "W", 4)
+    return stack(
+        f"Gears and oil come to {significant(float(celsius[-1]), 4)} °C, where "
+        f"{number} {unit} are lost",
+        axis_label("temperature", "Temperature of gears and oil"),
+        [
+            Panel(
+                axis_label("power", "Power"),
+                [
+                    {**loss, "mode": "lines+markers"},
+                    line(ends, given_off, "given off", PINION, unit="W", dash="dash"),
+                    state,
+                ],
+                {"rangemode": "tozero"},
+                1.4,
+            )
+        ],
+        {"hovermode": "closest"},
+    )

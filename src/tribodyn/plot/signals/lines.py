@@ -1,0 +1,253 @@
+"""Spectra of a signal, its sidebands, one order and the overall level over the speed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.look.labels import (
+    axis_label,
+    display_unit,
+    displayed,
+    readable,
+    rounded,
+    significant,
+)
+from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
+from tribodyn.plot.signals.maps import amplitude_label, with_unit
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.analysis import OrderCut, OverallLevel, Sidebands, SignalSpectrum, Spectrum
+
+#: Most lines of a spectrum on the screen, peaks that are marked, and their least share of the top.
+_LINES, _PEAKS, _LEAST = 8000, 5, 0.02
+#: Decades below the largest line of a power or density spectrum.
+_DECADES = 8.0
+
+
+def strongest_lines(place: Array, size: Array, most: int = _LINES) -> tuple[Array, Array]:
+    """Largest line of every stretch of a spectrum, so that no peak is lost."""
+    if size.size <= most:
+        return place, size
+    length = -(-size.size // most)
+    starts = np.arange(0, size.size, length)
+    ends = np.append(starts[1:], size.size)
+    largest = [a + int(np.argmax(size[a:b])) for a, b in zip(starts, ends, strict=True)]
+    return place[largest], size[largest]
+
+
+def spectrum_panel(spectrum: SignalSpectrum, label: str = "") -> Panel:
+    """Lines above zero, with the largest peaks marked where they are amplitudes."""
+    above = spectrum.frequency > 0.0
+    frequency, size = strongest_lines(spectrum.frequency[above], spectrum.amplitude[above])
+    unit = readable(spectrum.value_unit)
+    curve = line(frequency, size, "spectrum", TOTAL, unit=unit, width=1.2)
+    if spectrum.scaling == "amplitude":
+        return Panel(
+            label or amplitude_label(spectrum.value_unit),
+            [curve, *_peaks(spectrum, unit)],
+            {"rangemode": "tozero"},
+            1.4,
+        )
+    words = "Mean square" if spectrum.scaling == "power" else "Spectral density"
+    top = float(np.log10(size.max())) if size.max() > 0.0 else 0.0
+    low = float(np.log10(max(size[size > 0.0].min(initial=1.0), 1e-300)))
+    axis = {
+        "type": "log",
+        "exponentformat": "power",
+        "range": [max(low, top - _DECADES) - 0.2, top + 0.3],
+    }
+    return Panel(label or (f"{words} [{unit}]" if unit else words), [curve], axis, 1.4)
+
+
+def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:
+    if not spectrum.window_length:
+        return []
+    peaks = [each for each in spectrum.peaks(2 * _PEAKS) if each.frequency > 0.0][:_PEAKS]
+    peaks = [each for each in peaks if each.amplitude > _LEAST * peaks[0].amplitude]
+    if not peaks:
+        return []
+    points = marked(
+        np.array([each.frequency for each in peaks]),
+        np.array([each.amplitude for each in peaks]),
+        "largest peaks",
+        WHEEL,
+        size=8,
+        symbol="circle-open",
+        unit=unit,
+    )
+    return [{**points, "hovertemplate": f"%{{x:.6g}} Hz: %{{y:.4g}} {unit}<extra></extra>"}]
+
+
+@drawing(
+    "signal_spectrum",
+    heading="Spectrum",
+    caption="How strong each frequency of the signal is; circles mark the largest peaks, between "
+    "the lines. The mean of the signal, the line at zero, is left out. The mean square and the "
+    "density are drawn on a logarithmic scale.",
+    of="SignalSpectrum",
+    made_by="Call tribodyn.analysis.spectrum on a signal and its plot method.",
+)
+def signal_spectrum(spectrum: SignalSpectrum) -> Any:
+    """Draw the lines of a spectrum over the frequency."""
+    return stack(
+        spectrum_title(spectrum),
+        axis_label("frequency"),
+        [spectrum_panel(spectrum)],
+        {"hovermode": "closest"},
+    )
+
+
+def spectrum_title(spectrum: SignalSpectrum) -> str:
+    """Name the largest line above zero."""
+    above = spectrum.frequency > 0.0
+    frequency, size = spectrum.frequency[above], spectrum.amplitude[above]
+    top = int(np.argmax(size))
+    if not size[top] > 0.0:
+        return f"No line above zero up to {significant(float(frequency[-1]), 4)} Hz"
+    return (
+        f"Strongest at {significant(float(frequency[top]), 4)} Hz: "
+        f"{with_unit(float(size[top]), spectrum.value_unit)}"
+    )
+
+
+@drawing(
+    "harmonic_spectrum",
+    heading="Harmonics",
+    caption="Peak amplitude of every line over the multiples of the mesh frequency. Lines between "
+    "whole numbers belong to a motion that repeats only after several mesh cycles.",
+    of="Spectrum",
+    made_by="Call tribodyn.analysis.amplitude_spectrum(response, signal) and its plot method.",
+)
+def harmonic_spectrum(spectrum: Spectrum) -> Any:
+    """Draw the amplitudes over the mesh harmonics as bars."""
+    top = int(np.argmax(spectrum.amplitude))
+    unit = readable(spectrum.unit)
+    bars: Trace = {
+        "type": "bar",
+        "x": spectrum.order,
+        "y": spectrum.amplitude,
+        "name": "amplitude",
+        "marker": {"color": TOTAL},
+        "customdata": spectrum.frequency,
+        "hovertemplate": f"%{{y:.4g}} {unit} at %{{customdata:.5g}} Hz<extra></extra>",
+    }
+    return stack(
+        f"Harmonic {spectrum.order[top]:.4g} ({significant(float(spectrum.frequency[top]))} Hz) "
+        f"is the strongest: {with_unit(float(spectrum.amplitude[top]), spectrum.unit)}",
+        "Mesh harmonic",
+        [Panel(amplitude_label(spectrum.unit), [bars], {"rangemode": "tozero"}, 1.4)],
+    )
+
+
+@drawing(
+    "sidebands",
+    heading="Sidebands",
+    caption="The carrier and the lines on both sides of it. Equal sidebands come of a load that "
+    "changes with the shaft (amplitude modulation), unequal ones of an uneven rotation on top of "
+    "it (phase modulation).",
+    of="Sidebands",
+    made_by="Call tribodyn.analysis.sidebands(signal, rate, carrier, modulation) and its plot "
+    "method.",
+)
+def sidebands(lines: Sidebands) -> Any:
+    """Draw the amplitudes of the carrier and of its sidebands over the frequency."""
+    unit = readable(lines.unit)
+    width = 0.25 * lines.modulation
+    traces: list[Trace] = []
+    for name, chosen, color in (
+        ("carrier", lines.number == 0, TOTAL),
+        ("sidebands", lines.number != 0, PINION),
+    ):
+        hover = f"line %{{customdata:d}} at %{{x:.6g}} Hz: %{{y:.4g}} {unit}<extra></extra>"
+        traces.append(
+            {
+                "type": "bar",
+                "x": lines.frequency[chosen],
+                "y": lines.amplitude[chosen],
+                "width": width,
+                "name": name,
+                "marker": {"color": color},
+                "customdata": lines.number[chosen],
+                "hovertemplate": hover,
+            }
+        )
+    return stack(
+        f"Around {significant(lines.carrier, 4)} Hz: amplitude modulation "
+        f"{significant(100.0 * lines.amplitude_modulation)} %, phase modulation "
+        f"{significant(lines.phase_modulation)} rad",
+        axis_label("frequency"),
+        [Panel(amplitude_label(lines.unit), traces, {"rangemode": "tozero"}, 1.4)],
+        {"hovermode": "closest", "bargap": 0.0},
+    )
+
+
+def _over_speed(speed: Array, values: Array, name: str, unit: str) -> Trace:
+    curve = line(displayed("speed", speed), values, name, TOTAL, unit=readable(unit))
+    points = {"mode": "lines+markers"} if speed.size < 40 else {}
+    return {**curve, **points}
+
+
+@drawing(
+    "order_cut",
+    heading="One order over the speed",
+    caption="Amplitude of one multiple of the rotation at every speed. A peak is a speed at which "
+    "the order meets a natural frequency.",
+    of="OrderCut",
+    made_by="Call .cut(order) of an order map, or tribodyn.analysis.order_cut, and its plot "
+    "method.",
+)
+def order_cut(cut: OrderCut) -> Any:
+    """Draw the amplitude of an order over the speed."""
+    top = int(np.argmax(cut.amplitude))
+    return stack(
+        f"Order {cut.order:.4g} reaches {with_unit(float(cut.amplitude[top]), cut.unit)} at "
+        f"{rounded('speed', float(cut.speed[top]), 4)}",
+        axis_label("speed"),
+        [
+            Panel(
+                amplitude_label(cut.unit),
+                [_over_speed(cut.speed, cut.amplitude, f"order {cut.order:.4g}", cut.unit)],
+                {"rangemode": "tozero"},
+                1.4,
+            )
+        ],
+    )
+
+
+@drawing(
+    "overall_level",
+    heading="Overall level",
+    caption="Alternating rms of the signal over the speed; the circle marks the loudest block.",
+    of="OverallLevel",
+    made_by="Call tribodyn.analysis.overall_level(run_up) and its plot method.",
+)
+def overall_level(level: OverallLevel) -> Any:
+    """Draw the alternating rms over the speed."""
+    top = int(np.argmax(level.rms))
+    unit = readable(level.unit)
+    curve = _over_speed(level.speed, level.rms, "level", level.unit)
+    hover = f"%{{y:.4g}} {unit} at %{{x:.5g}} {display_unit('speed')}, after %{{customdata:.4g}} s"
+    curve |= {"customdata": level.time, "hovertemplate": f"{hover}<extra></extra>"}
+    loudest = marked(
+        displayed("speed", level.speed[[top]]),
+        level.rms[[top]],
+        "largest",
+        MUTED,
+        size=9,
+        symbol="circle-open",
+        unit=unit,
+    )
+    label = f"Alternating rms [{unit}]" if unit else "Alternating rms"
+    curves = [{**each, "showlegend": False} for each in (curve, loudest)]
+    return stack(
+        f"Loudest at {rounded('speed', float(level.speed[top]), 4)}: "
+        f"{with_unit(float(level.rms[top]), level.unit)} rms",
+        axis_label("speed"),
+        [Panel(label, curves, {"rangemode": "tozero"}, 1.4)],
+        {"hovermode": "closest"},
+    )

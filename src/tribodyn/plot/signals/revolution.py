@@ -1,0 +1,83 @@
+"""The mean revolution of a shaft: what repeats with it, and what damage leaves in it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.look.labels import readable, significant
+from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.style import FILLS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.signals.maps import with_unit
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.analysis import SynchronousAverage
+
+#: Most points of a curve; a mean revolution has 2.6 to a mesh harmonic.
+_POINTS = 6000
+#: Points to a period of the highest order that is drawn.
+_FINE = 4
+
+
+def _fine(values: Array) -> Array:
+    """The same wave at more angles: its Fourier series, which no straight pieces cut."""
+    from scipy.signal import resample
+
+    return np.asarray(resample(values, min(_FINE * values.size, max(_POINTS, values.size))))
+
+
+@drawing(
+    "synchronous_average",
+    heading="Mean revolution",
+    caption="What repeats with the shaft, over its angle from the first sample. Above, the mean "
+    "revolution with a band of two standard errors; below, the residual, without the mesh "
+    "harmonics and the lowest shaft orders, and the difference, without their first sidebands "
+    "too. A local bump of the difference is a tooth unlike the others.",
+    of="SynchronousAverage",
+    made_by="Call tribodyn.analysis.time_synchronous_average(...) and its plot method.",
+)
+def synchronous_average(average: SynchronousAverage) -> Any:
+    """Draw mean revolution, residual and difference over the angle of the shaft."""
+    unit = readable(average.unit)
+
+    def label(words: str) -> str:
+        return f"{words} [{unit}]" if unit else words
+
+    mean = _fine(average.signal)
+    angle = 360.0 * np.arange(mean.size) / mean.size
+    error = 2.0 * np.interp(angle, np.degrees(average.angle), average.scatter, period=360.0)
+    edge: Trace = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
+    band = [
+        {**edge, "x": angle, "y": mean + error, "showlegend": False, "name": "standard error"},
+        {**edge, "x": angle, "y": mean - error, "fill": "tonexty", "fillcolor": FILLS[PINION],
+         "name": "2 standard errors"},
+    ]  # fmt: skip
+    residual, difference = average.residual(), average.difference()
+    curve = line(angle, mean, "mean revolution", PINION, unit=unit, width=1.4)
+    zero = {"zeroline": True, "zerolinecolor": "#c5ccd3"}
+    panels = [
+        Panel(label("Mean"), [*band, curve], height=1.2),
+        Panel(
+            label("Residual"),
+            [line(angle, _fine(residual), "residual", TOTAL, unit=unit, width=1.4)],
+            zero,
+        ),
+        Panel(
+            label("Difference"),
+            [line(angle, _fine(difference), "difference", WHEEL, unit=unit, width=1.4)],
+            zero,
+        ),
+    ]
+    top = int(np.argmax(np.abs(difference)))
+    swing, bump = float(np.ptp(average.signal)), float(abs(difference[top]))
+    return stack(
+        f"{average.revolutions} revolutions: {with_unit(swing, average.unit)} peak to peak, "
+        f"difference up to {with_unit(bump, average.unit)} "
+        f"at {significant(float(np.degrees(average.angle[top])))}°",
+        "Angle of the shaft [°]",
+        panels,
+        {"xaxis": {"range": [0.0, 360.0], "dtick": 45}},
+    )
