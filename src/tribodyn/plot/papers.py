@@ -18,8 +18,8 @@ _LEAST = 1e-3
 _COLORS = {"value": PINION, "trend": MUTED, "cannot-reproduce": WHEEL}
 
 
-def _no_numbers(found: PaperComparison) -> str:
-    if any(row["deviation"] is not None for row in found.rows):
+def _no_numbers(comparison: PaperComparison) -> str:
+    if any(row["deviation"] is not None for row in comparison.rows):
         return ""
     return "No row of these tables has both a printed and a computed number."
 
@@ -40,9 +40,9 @@ def _symbol(percent: float) -> str:
     made_by="Call tribodyn.cases.compare_with_paper(name) and its plot method.",
     missing=_no_numbers,
 )
-def paper_comparison(found: PaperComparison) -> Any:
+def paper_comparison(comparison: PaperComparison) -> Any:
     """Draw the deviation of every printed number on a logarithmic scale."""
-    rows = [row for row in found.rows if row["deviation"] is not None]
+    rows = [row for row in comparison.rows if row["deviation"] is not None]
     traces: list[Trace] = []
     for verdict, color in _COLORS.items():
         chosen = [(number, row) for number, row in enumerate(rows, 1) if row["verdict"] == verdict]

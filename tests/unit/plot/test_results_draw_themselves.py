@@ -41,13 +41,13 @@ TURN = 2.0 * np.pi * 12.5 * TIME
 
 def classes() -> Iterator[type[Any]]:
     """All records of the package, and what stands on a page and has a plot method."""
-    found: dict[type[Any], None] = {}
+    types: dict[type[Any], None] = {}
     for module in pkgutil.walk_packages(tribodyn.__path__, "tribodyn."):
         if module.name.split(".")[1] in ("app", "cli", "__main__"):
             continue
         names = vars(importlib.import_module(module.name))
-        found |= {each: None for each in names.values() if isinstance(each, type)}
-    for each in found:
+        types |= {each: None for each in names.values() if isinstance(each, type)}
+    for each in types:
         drawable = issubclass(each, Record) or callable(getattr(each, "plot", None))
         if drawable and each.__module__.startswith("tribodyn.") and each is not Record:
             yield each
@@ -113,9 +113,9 @@ def test_a_density_is_drawn_on_a_logarithmic_scale() -> None:
 def test_a_long_spectrum_loses_no_peak() -> None:
     time = np.arange(200_000) / RATE
     figure = spectrum(np.cos(2 * np.pi * 333.325 * time), RATE).plot()
-    shown = curve(figure, "spectrum")
-    assert len(shown.x) <= 8000
-    assert max(shown.y) == pytest.approx(1.0, rel=2e-3)
+    lines = curve(figure, "spectrum")
+    assert len(lines.x) <= 8000
+    assert max(lines.y) == pytest.approx(1.0, rel=2e-3)
 
 
 def test_harmonics_are_bars_over_the_order() -> None:
@@ -168,8 +168,8 @@ def test_the_mean_revolution_shows_where_a_tooth_differs() -> None:
         ("residual", average.residual(), "y2"),
         ("difference", average.difference(), "y3"),
     ):
-        drawn = curve(figure, name, axis)
-        assert np.asarray(drawn.y)[::step] == pytest.approx(values, abs=1e-9)
+        trace = curve(figure, name, axis)
+        assert np.asarray(trace.y)[::step] == pytest.approx(values, abs=1e-9)
     bump = curve(figure, "difference", "y3")
     assert np.asarray(bump.x)[np.argmax(np.abs(bump.y))] == pytest.approx(200.0, abs=2.0)
     band = [np.asarray(each.y) for each in figure.data if each.name in ("standard error",

@@ -32,8 +32,8 @@ def mixed_line_contact(contact: MixedLineContact) -> Any:
     place = ratio[order]
 
     def curve(values: Any, name: str, color: str, unit: str, dash: str = "solid") -> Trace:
-        drawn = line(place, np.ravel(values)[order], name, color, unit=unit, dash=dash)
-        return {**drawn, "mode": "lines+markers"}
+        points = line(place, np.ravel(values)[order], name, color, unit=unit, dash=dash)
+        return {**points, "mode": "lines+markers"}
 
     share = contact.film_load_share
     film, pressure = display_unit("film_thickness"), display_unit("hertz_pressure")

@@ -20,7 +20,7 @@ _COLORS = (PINION, WHEEL, *PAIR_COLORS, TOTAL, MUTED)
 _CURVES, _POINTS = 8, 4000
 
 
-def _kept(values: Array) -> Array:
+def _extremes(values: Array) -> Array:
     """Samples of one curve: the smallest and the largest of every stretch."""
     if values.size <= _POINTS:
         return np.arange(values.size)
@@ -31,22 +31,29 @@ def _kept(values: Array) -> Array:
     return np.unique(np.array(ends).ravel())
 
 
-def _panel(words: str, unit: str, time: Array, columns: dict[str, Array]) -> list[Panel]:
+def _panel(quantity: str, unit: str, time: Array, columns: dict[str, Array]) -> list[Panel]:
     """Curves of one kind over the time; none where there are no such columns."""
     chosen = dict(list(columns.items())[:_CURVES])
     if not chosen:
         return []
-    factor, shown = scaled(np.stack(list(chosen.values())), unit)
+    factor, display_unit = scaled(np.stack(list(chosen.values())), unit)
     curves: list[Trace] = []
     for color, (name, values) in zip(_COLORS, chosen.items(), strict=False):
-        kept = _kept(values)
+        samples = _extremes(values)
         label = name.replace("_", " ")
         curves.append(
-            line(time[kept], factor * values[kept], label, color, unit=readable(shown), width=1.4)
+            line(
+                time[samples],
+                factor * values[samples],
+                label,
+                color,
+                unit=readable(display_unit),
+                width=1.4,
+            )
         )
     left_out = len(columns) - len(chosen)
     more = f"<br>(and {left_out} more)" if left_out else ""
-    return [Panel(f"{words} [{readable(shown)}]{more}", curves)]
+    return [Panel(f"{quantity} [{readable(display_unit)}]{more}", curves)]
 
 
 def _coordinates(names: tuple[str, ...], values: Array, kind: str) -> dict[str, Array]:

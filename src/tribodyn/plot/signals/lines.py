@@ -53,7 +53,7 @@ def spectrum_panel(spectrum: SignalSpectrum, label: str = "") -> Panel:
             {"rangemode": "tozero"},
             1.4,
         )
-    words = "Mean square" if spectrum.scaling == "power" else "Spectral density"
+    scaling = "Mean square" if spectrum.scaling == "power" else "Spectral density"
     top = float(np.log10(size.max())) if size.max() > 0.0 else 0.0
     low = float(np.log10(max(size[size > 0.0].min(initial=1.0), 1e-300)))
     axis = {
@@ -61,7 +61,7 @@ def spectrum_panel(spectrum: SignalSpectrum, label: str = "") -> Panel:
         "exponentformat": "power",
         "range": [max(low, top - _DECADES) - 0.2, top + 0.3],
     }
-    return Panel(label or (f"{words} [{unit}]" if unit else words), [curve], axis, 1.4)
+    return Panel(label or (f"{scaling} [{unit}]" if unit else scaling), [curve], axis, 1.4)
 
 
 def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:

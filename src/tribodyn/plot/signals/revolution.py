@@ -43,8 +43,8 @@ def synchronous_average(average: SynchronousAverage) -> Any:
     """Draw mean revolution, residual and difference over the angle of the shaft."""
     unit = readable(average.unit)
 
-    def label(words: str) -> str:
-        return f"{words} [{unit}]" if unit else words
+    def label(quantity: str) -> str:
+        return f"{quantity} [{unit}]" if unit else quantity
 
     mean = _fine(average.signal)
     angle = 360.0 * np.arange(mean.size) / mean.size

@@ -42,11 +42,11 @@ def sobol_indices(indices: SobolIndices) -> Any:
             "orientation": "h",
             "x": 100.0 * values[order],
             "y": names,
-            "name": words,
+            "name": label,
             "marker": {"color": color},
-            "hovertemplate": f"%{{y}}, {words}: %{{x:.3g}} %<extra></extra>",
+            "hovertemplate": f"%{{y}}, {label}: %{{x:.3g}} %<extra></extra>",
         }
-        for words, values, color in (
+        for label, values, color in (
             ("total order", indices.total_order, WHEEL),
             ("first order", indices.first_order, PINION),
         )
@@ -186,6 +186,6 @@ def _column(data: DataSet, name: str, rows: Array) -> tuple[Array, str]:
     """Values of a column in a unit that is read easily, and the label of its axis."""
     values = np.asarray(data[name], dtype=float)
     factor, unit = scaled(values, readable(data.units.get(name, "")))
-    words = name.replace("_", " ")
-    words = words[:1].upper() + words[1:]
-    return factor * values[rows], words if unit in ("", "-", "1") else f"{words} [{unit}]"
+    label = name.replace("_", " ")
+    label = label[:1].upper() + label[1:]
+    return factor * values[rows], label if unit in ("", "-", "1") else f"{label} [{unit}]"
