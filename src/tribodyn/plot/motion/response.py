@@ -10,7 +10,7 @@ from tribodyn.drawing import drawing
 from tribodyn.plot.look.labels import readable, scaled, significant, unit_of
 from tribodyn.plot.look.panels import Panel, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import AdaptiveSolution, Response
@@ -20,7 +20,7 @@ _COLORS = (PINION, WHEEL, *PAIR_COLORS, TOTAL, MUTED)
 _CURVES, _POINTS = 8, 4000
 
 
-def _extremes(values: Array) -> Array:
+def _extremes(values: Array) -> Index:
     """Samples of one curve: the smallest and the largest of every stretch."""
     if values.size <= _POINTS:
         return np.arange(values.size)
