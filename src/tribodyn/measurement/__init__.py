@@ -4,6 +4,7 @@
 |---|---|
 | ``recording`` | what a file of a test rig holds; ``readers`` know the formats |
 | ``tacho`` | how far the shaft has turned at each sample |
+| ``mesh_speed`` | the same from the mesh lines of a recording without a tachometer |
 | ``orders`` | how strong each order is, over a whole record and over the speed |
 | ``vold_kalman`` | how single orders change with time |
 | ``comparison`` | how far a computed motion is from a measured one |
@@ -12,6 +13,7 @@
 
 from tribodyn.arguments import guard
 from tribodyn.measurement.comparison import Comparison, compare
+from tribodyn.measurement.mesh_speed import MeshSpeed, mesh_speed
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, read
 from tribodyn.measurement.synthetic import synthetic_run_up
@@ -20,10 +22,12 @@ from tribodyn.measurement.vold_kalman import TrackedOrders, track_orders
 
 __all__ = [
     "Comparison",
+    "MeshSpeed",
     "OrderSpectrum",
     "Recording",
     "TrackedOrders",
     "compare",
+    "mesh_speed",
     "order_map",
     "order_spectrum",
     "read",

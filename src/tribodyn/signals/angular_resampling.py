@@ -220,7 +220,7 @@ def angular_resampling(
     kept = slice(None, None, factor)
     return AngularSignal(
         grid[kept] - angle[0],
-        _decimated(even, factor),
+        decimated(even, factor),
         when[kept],
         np.asarray(turning(when[kept], 1)),
         samples_per_revolution,
@@ -250,7 +250,7 @@ def _refined(moments: Array, values: Array, highest: float) -> tuple[Array, Arra
     return grid[inside], fine[inside]
 
 
-def _decimated(values: Array, factor: int) -> Array:
+def decimated(values: Array, factor: int) -> Array:
     """Every so many samples, after a filter without delay that removes what would fold."""
     return values if factor == 1 else _resampled(values, 1, factor)
 
