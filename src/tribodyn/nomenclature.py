@@ -107,6 +107,7 @@ mesh_frequency | f_m | Hz | Hz | tooth engagements per second
 mesh_phase | phi | | | fraction of the mesh cycle since a tooth pair entered contact at A
 load_per_width | w | N/m | N/mm | normal load of a tooth pair per face width
 normal_force | F_n | N | N | force along the line of action
+contact_ratio_under_load | | | | mean number of tooth pairs that carry load: mesh cycles during which one pair carries
 load_share | | | | part of the total normal force that a tooth pair carries
 hertz_pressure | p_H | Pa | GPa | maximum Hertzian pressure
 half_width | a | m | um | half width of the Hertzian contact
@@ -138,6 +139,7 @@ mesh_stiffness_tangent | | N/m | N/um | slope of the force of all tooth pairs ov
 maximum_single_pair_stiffness | | N/m | N/um | greatest stiffness of one tooth pair that carries the load alone
 ramp_deflection | | m | um | deflection at which a straight piece of the force law of the mesh begins
 ramp_stiffness | | N/m | N/um | stiffness that a straight piece adds to the force law of the mesh
+film_offset | | m | um | distance before perfect rigid flanks touch at which the first oil film begins to carry
 corner_share | | | | part of the load on tip corners beyond the path of contact
 mesh_force | N | N | N | dynamic force along the line of action
 friction_force | F_f | N | N | dynamic friction force of all tooth pairs

@@ -113,6 +113,14 @@ class MeshColumns(Record):
         :func:`tribodyn.ehl.film_load_share` at the film ratio.
     asperity_friction_coefficient : array (n, pairs) or None
         Part of the friction coefficient that the asperities cause, where the friction law tells.
+    tooth_load_share, tooth_corner_share : array (n, pairs), (n, 2) or None
+        ``load_share`` and ``corner_share`` of the teeth alone, without the oil film. None where no
+        film is in series with the teeth: there they are the same.
+    tooth_transmission_error : array (n,) [m] or None
+        Static transmission error of the teeth alone; None as above.
+    film_offset : float [m]
+        Distance before perfect rigid flanks touch at which the first oil film in series begins to
+        carry; ``static_transmission_error`` and the force law are counted from there.
     """
 
     grid: PhaseGrid
@@ -157,6 +165,12 @@ class MeshColumns(Record):
     unloaded_transmission_error: Array | None = quantity("knot", default=None)
     film_load_share: Array | None = quantity("knot", "pair", default=None)
     asperity_friction_coefficient: Array | None = quantity("knot", "pair", default=None)
+    tooth_load_share: Array | None = quantity("knot", "pair", of="load_share", default=None)
+    tooth_corner_share: Array | None = quantity("knot", "end", of="corner_share", default=None)
+    tooth_transmission_error: Array | None = quantity(
+        "knot", of="static_transmission_error", default=None
+    )
+    film_offset: float = fact(default=0.0)
 
     def __post_init__(self) -> None:
         if self.gears is not None:
@@ -226,9 +240,7 @@ class MeshColumns(Record):
 
     @cached_property
     def _mesh_stiffness(self) -> Array:
-        known, columns = sum_of_few(self.stiffness), (self.corner_share, self.load_share)
-        corners, share = map(sum_of_few, columns)
-        return np.asarray(known + known * corners / share)
+        return whole_stiffness(self.stiffness, self.load_share, self.corner_share)
 
     @property
     def lubrication_regime(self) -> Array | None:
@@ -309,6 +321,13 @@ class MeshColumns(Record):
         share, corners = self.load_share, self.corner_share
         levers = self.pinion_curvature_radius, self.wheel_curvature_radius
         return plane_friction(self._directed_friction, levers, share, corners, self._last_touch)
+
+
+def whole_stiffness(stiffness: Array, share: Array, corners: Array) -> Array:
+    """Stiffness of all pairs together (n,), tip corners included, from those on the path."""
+    known, columns = sum_of_few(stiffness), (corners, share)
+    carried, on_path = map(sum_of_few, columns)
+    return np.asarray(known + known * carried / on_path)
 
 
 def sum_of_few(columns: Array) -> Array:

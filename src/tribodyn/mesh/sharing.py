@@ -153,6 +153,13 @@ class Teeth:
         inner = force[:, 1:-1] if self._extended else force
         on_path = np.where(self.in_contact, inner, 0.0)
         deflection = solved.approach[0] - problem.least_gap
+        if film is not None and film.lead is not None:
+            # The approach is counted from the first film. Each pair stands off by its own film: the
+            # load deflects teeth and films from where the flanks touch, each pair by its share.
+            lead = self._of_all(film.lead)
+            stand_off = (force * lead).sum(axis=1) / np.ravel(self.force)
+            from_flanks = solved.approach[0] - self.problem.film_offset(lead)
+            deflection = from_flanks - self.problem.least_gap + stand_off
         places, contact = problem.places, problem.places.contact
         early = places.direction * (2.0 * places.path - contact.A - contact.E) < 0.0
         corners = force.copy()
@@ -188,6 +195,10 @@ class Teeth:
             return self.problem
         lead = None if film.lead is None else self._of_all(film.lead)
         return self.problem.with_film(self._of_all(film.stiffness), lead)
+
+    def film_offset(self, film: FilmSprings) -> float:
+        """Distance before the flanks meet at which the first film begins to carry [m]."""
+        return 0.0 if film.lead is None else self.problem.film_offset(self._of_all(film.lead))
 
     def _of_all(self, on_path: Array) -> Array:
         """Values of the pairs on the path, and those of its ends for pairs beyond them."""
@@ -328,6 +339,14 @@ def shared_load_columns(
     """Columns of the mesh table that follow from teeth and films under load, its own copies."""
     ramps = teeth.ramps(shared, film, fitted=force_law)
     without_film = shared if film is None else teeth.shared_load()
+    alone: dict[str, Any] = {}
+    if film is not None:
+        alone = {
+            "tooth_load_share": without_film.share,
+            "tooth_corner_share": without_film.corner_share,
+            "tooth_transmission_error": without_film.transmission_error,
+            "film_offset": teeth.film_offset(film),
+        }
     columns: dict[str, Any] = {
         "stiffness": shared.stiffness,
         "tooth_stiffness": without_film.stiffness,
@@ -339,6 +358,7 @@ def shared_load_columns(
         "ramp_stiffness": ramps[1],
         "load_share": shared.share,
         "normal_force": teeth.force * shared.share,
+        **alone,
     }
     return {name: np.copy(values)[()] for name, values in columns.items()}
 

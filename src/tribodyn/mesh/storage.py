@@ -32,6 +32,8 @@ FORMAT, FORMAT_WITHOUT_GEARS = "tribodyn mesh table 3", "tribodyn mesh table 4"
 _EARLIER = ("tribodyn mesh table 1", "tribodyn mesh table 2")
 #: Films that are not known everywhere, and all that a table of another program has to know.
 FILMS = (*FILM_COLUMNS, *MIXED_COLUMNS)
+#: What only tables have whose films are in series with the teeth.
+OF_TEETH_ALONE = ("tooth_load_share", "tooth_corner_share", "tooth_transmission_error")
 _OF_THE_FORCE = (
     "stiffness", "tooth_stiffness", "corner_share", "static_transmission_error", "ramp_deflection",
     "mesh_stiffness_tangent", "ramp_stiffness", "load_share", "normal_force", "sliding_direction",
@@ -181,6 +183,7 @@ OF_THE_MESH = (
     "phase",
     "static_transmission_error",
     "unloaded_transmission_error",
+    "tooth_transmission_error",
     "mesh_stiffness_tangent",
 )
 OF_RAMPS, DIRECTIONS = ("ramp_deflection", "ramp_stiffness"), ("direction", "friction_direction")
@@ -201,8 +204,15 @@ _OF_THE_FILE = (
     "pinion_torque",
     "pinion_speed",
     "maximum_single_pair_stiffness",
+    "film_offset",
 )
 FACTS = {name: QUANTITIES[name].unit for name in _OF_THE_FILE}
+
+
+def facts_of(table: MeshColumns) -> dict[str, float]:
+    """What holds for the whole table; without films in series there is no offset of them."""
+    facts = {name: float(getattr(table, name)) for name in FACTS}
+    return {name: value for name, value in facts.items() if name != "film_offset" or value > 0.0}
 
 
 def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
@@ -212,7 +222,7 @@ def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
         why = "An existing file is never overwritten"
         what = f"{path} exists already"
         raise OutputExistsError(what, "argument path", why, "Give another path, or overwrite=True")
-    facts = {name: float(getattr(table, name)) for name in FACTS}
+    facts = facts_of(table)
     columns: dict[str, Array] = {"phase": table.phase}
     for name, unit in UNITS.items():
         values = table.phase if name == "phase" else getattr(table, name)

@@ -10,10 +10,11 @@ from typing import ClassVar
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.columns import MeshColumns, whole_stiffness
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction
+from tribodyn.mesh.loaded_intervals import contact_ratio, teeth_shares
 from tribodyn.mesh.storage import FORMAT, FORMAT_WITHOUT_GEARS, stored_values, write_csv
 from tribodyn.record import Labels, Parts, drawn, record
 from tribodyn.types import Array
@@ -39,6 +40,42 @@ class MeshTable(MeshColumns):
     def mean_mesh_stiffness(self) -> float:
         """Mean of the mesh stiffness over the cycle [N/m]."""
         return float(self.grid.mean(self.mesh_stiffness))
+
+    @property
+    def transmission_error_at_rest(self) -> Array:
+        """Static transmission error from where perfect rigid flanks touch without oil (n,) [m].
+
+        The oil film holds the flanks apart: a film in series lowers it by about its thickness.
+        """
+        return self.static_transmission_error - self.film_offset
+
+    @property
+    def tooth_mesh_stiffness(self) -> Array:
+        """Secant stiffness of the teeth of all pairs together, without oil films (n,) [N/m]."""
+        return whole_stiffness(self.tooth_stiffness, *teeth_shares(self))
+
+    @property
+    def contact_ratio_under_load(self) -> float:
+        """Mean number of tooth pairs that carry load over the mesh cycle, oil films left out.
+
+        The mesh cycles during which one pair carries. Teeth that deflect touch before A and after E
+        and raise it above the transverse contact ratio; relief that keeps flanks apart lowers it.
+        """
+        return contact_ratio(self.grid, *teeth_shares(self))
+
+    @property
+    def film_mesh_stiffness(self) -> Array | None:
+        """Stiffness of the films of all loaded pairs together (n,) [N/m]; None if not in series.
+
+        In series with the teeth: ``1/K = sum f^2/K_i`` of the load shares ``f`` and the stiffness
+        ``K_i`` of each film.
+        """
+        if self.tooth_transmission_error is None or self.film_stiffness is None:
+            return None
+        known = (self.load_share > 0.0) & np.nan_to_num(self.film_stiffness > 0.0)
+        film = np.where(known, self.film_stiffness, 1.0)
+        compliance = np.where(known, self.load_share**2 / film, 0.0).sum(axis=1)
+        return np.asarray(1.0 / compliance)
 
     @property
     def mean_friction_coefficient(self) -> float:

@@ -32,8 +32,10 @@ from tribodyn.mesh.storage import (
     FILMS,
     OF_CONTACTS,
     OF_RAMPS,
+    OF_TEETH_ALONE,
     OF_THE_MESH,
     UNITS,
+    facts_of,
     is_mesh_table,
 )
 from tribodyn.mesh.table import MeshTable
@@ -126,6 +128,7 @@ class TableFile:
             friction_law=law,
             film_model="none",
             film_stiffness_kind="none",
+            film_offset=self.facts.get("film_offset", 0.0),
         )
 
     def _complete(self, columns: dict[str, Any], normal_force: float) -> dict[str, Any]:
@@ -143,6 +146,8 @@ class TableFile:
         if moved:
             touch = at_rest(*ramps, 0.0)[0]
             columns["stiffness"] = share * (normal_force / (deflection - touch))[:, None]
+            for name in OF_TEETH_ALONE:
+                columns.pop(name, None)
         columns.setdefault("in_contact", (stiffness > 0.0) | (share > 0.0))
         columns["in_contact"] = np.asarray(columns["in_contact"]) > 0.5
         columns.setdefault("tooth_stiffness", columns["stiffness"])
@@ -152,7 +157,8 @@ class TableFile:
         for name in ("friction_coefficient", *_FRICTION):
             columns.setdefault(name, np.zeros(shape))
         for name in names.intersection(OF_CONTACTS):
-            columns.setdefault(name, np.full(shape, np.nan) if name not in FILMS else None)  # type: ignore[arg-type]
+            lacks = name in (*FILMS, *OF_TEETH_ALONE)
+            columns.setdefault(name, None if lacks else np.full(shape, np.nan))  # type: ignore[arg-type]
         columns.setdefault("friction_direction", None)  # type: ignore[arg-type]
         columns.setdefault("unloaded_transmission_error", None)  # type: ignore[arg-type]
         most = self.facts.get("maximum_single_pair_stiffness", float(columns["stiffness"].max()))
@@ -208,7 +214,7 @@ def _own(place: Path) -> TableFile:
     }
     if table.gears is not None:
         del columns["direction"]
-    facts = {name: float(getattr(table, name)) for name in FACTS}
+    facts = facts_of(table)
     return TableFile(str(place), table.grid, columns, facts, table.gears)
 
 

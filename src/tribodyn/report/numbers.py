@@ -18,6 +18,7 @@ HEADLINES = (
     "line_load",
     "maximum_hertz_pressure",
     "transverse_contact_ratio",
+    "contact_ratio_under_load",
     "mesh_frequency",
     "mesh_natural_frequency",
     "resonance_speed",

@@ -105,7 +105,8 @@ def _under(case: Case, nominal: MeshTable, loading: Array) -> MeshTable:
     ).table(settings)
     return replace(
         table,
-        static_transmission_error=nominal.static_transmission_error,
+        static_transmission_error=nominal.transmission_error_at_rest + table.film_offset,
+        tooth_transmission_error=nominal.tooth_transmission_error,
         mesh_stiffness_tangent=nominal.mesh_stiffness_tangent,
     )
 

@@ -374,7 +374,7 @@ def _table_of(rubbed: HypoidFriction) -> MeshTable:
     )
 
 
-def _contact_columns(rubbed: HypoidFriction) -> dict[str, Array]:
+def _contact_columns(rubbed: HypoidFriction) -> dict[str, Any]:
     """Columns that tell of the cells of each pair: means by their force, and least films."""
     loaded, touch = rubbed.loaded, rubbed.loaded.cells.in_contact
     force, carries = loaded.cell_force, loaded.cell_force > 0.0
@@ -406,7 +406,7 @@ def _force_law(loaded: HypoidLoadedContact) -> MeshForceLaw:
     return MeshForceLaw.through(loaded.grid, (lever * turn).T, (torque / lever).T)
 
 
-def _friction_columns(rubbed: HypoidFriction) -> dict[str, Array]:
+def _friction_columns(rubbed: HypoidFriction) -> dict[str, Any]:
     """Coefficient of each pair, what a newton of its friction does, and the levers of that.
 
     Without any friction the direction is that of one coefficient in all cells.

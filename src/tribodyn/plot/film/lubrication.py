@@ -9,11 +9,11 @@ import numpy as np
 from tribodyn.drawing import Need, drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
 from tribodyn.plot.film.path import Path
-from tribodyn.plot.gear.path import roll_label, sharing_words
+from tribodyn.plot.gear.path import roll_label
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, figure, line
-from tribodyn.plot.mesh.cycle import TABLE, roll_angle_positions
+from tribodyn.plot.mesh.cycle import TABLE, roll_angle_positions, sharing_under_load
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def _caption(mesh: MeshTable) -> str:
     )
     return (
         f"The least film of one tooth pair over the composite roughness. {LIMITS_IN_WORDS} The "
-        f"load share of the film is {whose}. {sharing_words(mesh.transverse_contact_ratio)}"
+        f"load share of the film is {whose}. {sharing_under_load(mesh)}"
     )
 
 

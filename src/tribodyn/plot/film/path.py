@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import Need
-from tribodyn.plot.gear.path import roll_label, sharing_words
+from tribodyn.plot.gear.path import roll_label
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
@@ -15,6 +15,7 @@ from tribodyn.plot.mesh.cycle import (
     driving_roll_angle,
     pair_life,
     roll_angle_positions,
+    sharing_under_load,
     table_drawing,
 )
 from tribodyn.types import Array
@@ -83,11 +84,17 @@ class Path:
         return line(self.angle, np.full_like(self.angle, value), name, MUTED, unit=unit, dash="dot")
 
 
+def _reversal(mesh: MeshTable, what: str) -> str:
+    """Where sliding and what follows it change their sign."""
+    if mesh.gears is not None and mesh.gears.pitch_point_age is None:
+        return f"The pitch point C lies beyond A or E: {what} has the same sign everywhere."
+    return f"At the pitch point C the surfaces roll without sliding: {what} changes its sign there."
+
+
 def _path_caption(mesh: MeshTable) -> str:
     return (
-        "What one tooth pair meets from A, where it enters, to E, where it leaves. At the pitch "
-        "point C the surfaces roll without sliding; the sliding speed changes its sign there, and "
-        f"so does the friction. {sharing_words(mesh.transverse_contact_ratio)}"
+        "What one tooth pair meets from A to E, the ends of the path of contact of perfect rigid "
+        f"flanks. {_reversal(mesh, 'the sliding speed')} {sharing_under_load(mesh)}"
     )
 
 
@@ -113,9 +120,8 @@ def path_of_contact(mesh: MeshTable) -> Any:
 def _friction_caption(mesh: MeshTable) -> str:
     return (
         "The friction coefficient of one tooth pair from its entry to its exit, and the friction "
-        "force that it causes under the static load. The force turns round where the sliding does, "
-        "at the pitch point C. Its other steps come from the load. "
-        + sharing_words(mesh.transverse_contact_ratio)
+        f"force that it causes under the static load. {_reversal(mesh, 'the force')} Its other "
+        f"changes come from the load. {sharing_under_load(mesh)}"
     )
 
 
@@ -195,7 +201,7 @@ def _pressure_caption(mesh: MeshTable) -> str:
         "the pressure of the dry contact under the same load. The film exceeds it where a spike "
         "stands at its outlet, and stays below it where a thick film spreads the load. A spike is "
         "narrower than the grid: its height is a lower bound, and uneven by some percent. "
-        + sharing_words(mesh.transverse_contact_ratio)
+        + sharing_under_load(mesh)
     )
 
 

@@ -203,8 +203,8 @@ def _caption(pair: SpurPair) -> str:
     ratio = path_of_contact(pair).contact_ratio
     return (
         "Both gears to scale, with two flanks touching. On the right the mesh zone enlarged: a "
-        f"tooth pair enters at A and leaves at E. {sharing_words(ratio)} C is the pitch point, "
-        "where the flanks roll without sliding. The arrows show how the gears turn."
+        f"tooth pair of perfect rigid flanks enters at A and leaves at E. {sharing_words(ratio)} C "
+        "is the pitch point, where flanks roll without sliding. The arrows show how the gears turn."
     )
 
 
@@ -230,6 +230,6 @@ def gear_pair(pair: SpurPair) -> Any:
     }
     title = (
         f"{pair.pinion.teeth} teeth against {pair.wheel.teeth}: on average "
-        f"{path.contact_ratio:.2f} tooth pairs share the load"
+        f"{path.contact_ratio:.2f} tooth pairs are between A and E"
     )
     return figure(title, [*traces, *_arrows(pair), *enlarged], layout)

@@ -97,14 +97,19 @@ def further_changes(contact_ratio: float) -> dict[str, float]:
 
 
 def sharing_words(contact_ratio: float) -> str:
-    """Say in one sentence how many tooth pairs carry the load where."""
+    """State in one sentence how many tooth pairs are between A and E where: geometry alone."""
     least = math.floor(contact_ratio)
     if least == contact_ratio:
-        return f"The number of pairs that carry the load is the same everywhere: {least}."
+        return f"The number of pairs between A and E is the same everywhere: {least}."
     if least == 1:
-        return "Before B and after D two pairs share the load; between them one carries it alone."
-    few, many = (_WORDS.get(number, str(number)) for number in (least, least + 1))
+        return "Before B and after D two pairs are between A and E, in the middle one is alone."
+    few, many = (number_word(number) for number in (least, least + 1))
     return (
-        f"{few.capitalize()} or {many} pairs share the load everywhere; their number changes at "
-        "the marks other than C: another pair enters at each D and leaves at each B."
+        f"{few.capitalize()} or {many} pairs are between A and E everywhere; their number changes "
+        "at the marks other than C: another pair enters at each D and leaves at each B."
     )
+
+
+def number_word(number: int) -> str:
+    """A small number in letters."""
+    return _WORDS.get(number, str(number))

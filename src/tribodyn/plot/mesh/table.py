@@ -20,6 +20,8 @@ from tribodyn.plot.mesh.cycle import (
     mesh_events,
     pair_life,
     pair_lives,
+    sharing_under_load,
+    stiffness_jump,
     table_drawing,
 )
 from tribodyn.types import Array
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
 _PAIR = "one tooth pair"
 #: Mesh cycles shown before A and after E.
 _MARGIN = 0.12
+#: Step of the stiffness over its mean that counts as a jump.
+_STEP = 0.01
 #: Part of the total force that counts as load on a tip corner.
 _LOADED = 1e-6
 _QUANTITY = "static_transmission_error"
@@ -40,13 +44,36 @@ _COLORS = (TOTAL, *PAIR_COLORS)
 _POINTS, _BEYOND = 241, 1.3
 
 
-@table_drawing(
-    "mesh_stiffness",
-    heading="Mesh stiffness",
-    caption="The stiffness jumps whenever a tooth pair enters or leaves the contact. These jumps "
-    "excite the vibration: the higher they are, the louder the gears. The coloured curves are "
-    "the single tooth pairs that add up to the total.",
-)
+def _stiffness_caption(mesh: MeshTable) -> str:
+    mean, jump = mesh.mean_mesh_stiffness, stiffness_jump(mesh)
+    swing = float(np.ptp(mesh.mesh_stiffness))
+
+    def amount(value: float) -> str:
+        return f"{rounded('mesh_stiffness', value)} ({100.0 * value / mean:.3g} % of its mean)"
+
+    if jump > _STEP * mean:
+        events = "at an event" if mesh.gears is None else "where a tooth pair enters or leaves"
+        change = (
+            f"The stiffness jumps by up to {amount(jump)} {events}. Jumps excite the vibration: "
+            "the higher they are, the louder the gears."
+        )
+    elif swing > _STEP * mean:
+        change = (
+            f"The stiffness does not jump: pairs take over the load gradually. It varies by "
+            f"{amount(swing)}, which excites the vibration."
+        )
+    else:
+        change = f"The stiffness is the same all over the mesh cycle to {amount(swing)}."
+    pairs = "The coloured curves are the single tooth pairs that add up to the total."
+    if np.any(mesh.corner_share > _LOADED):
+        pairs = (
+            "The coloured curves are the single tooth pairs between A and E; tip corners that "
+            "carry before A or after E count in the total."
+        )
+    return f"{change} {sharing_under_load(mesh, ends=True)} {pairs}"
+
+
+@table_drawing("mesh_stiffness", heading="Mesh stiffness", caption=_stiffness_caption)
 def mesh_stiffness(mesh: MeshTable) -> Any:
     """Draw the stiffness of the tooth pairs and their sum."""
     unit = display_unit("mesh_stiffness")
@@ -133,13 +160,13 @@ def whole_life(mesh: MeshTable) -> tuple[Array, Array]:
 
 
 def _caption(mesh: MeshTable) -> str:
-    words = "How much of the load one tooth pair carries from where it comes in to where it leaves."
+    caption = (
+        "How much of the load one tooth pair carries from where it comes in to where it leaves. "
+        + sharing_under_load(mesh, ends=True)
+    )
     if np.any(mesh.corner_share > _LOADED):
-        return (
-            f"{words} The loaded teeth bend: where the background is grey, before A or after E, a "
-            "tip corner bears."
-        )
-    return words
+        return f"{caption} The loaded teeth bend: where the background is grey, a tip corner bears."
+    return caption
 
 
 @table_drawing("load_sharing", heading="Load sharing", caption=_caption)
@@ -171,7 +198,7 @@ def load_sharing(mesh: MeshTable) -> Any:
 def _course(mesh: MeshTable, mean: float) -> Row:
     """Transmission error over the mesh cycles, and its mean."""
     unit = display_unit(_QUANTITY)
-    phase, shown = cycles(mesh.phase, displayed(_QUANTITY, mesh.static_transmission_error))
+    phase, shown = cycles(mesh.phase, displayed(_QUANTITY, mesh.transmission_error_at_rest))
     level = np.full(2, displayed(_QUANTITY, mean))
     curves = [
         line(phase, shown, "under load", TOTAL, unit=unit),
@@ -204,16 +231,28 @@ def _bars(mesh: MeshTable) -> Row:
     )
 
 
+def _error_caption(mesh: MeshTable) -> str:
+    caption = (
+        "How far the gears approach along the line of action when they turn very slowly under "
+        "load, counted from where perfect rigid flanks touch. What varies excites the vibration; "
+        "the bars show how much of it falls on each harmonic of the mesh frequency."
+    )
+    teeth = mesh.tooth_transmission_error
+    if teeth is None:
+        return caption
+    mean, total = (float(mesh.grid.mean(e)) for e in (teeth, mesh.transmission_error_at_rest))
+    return (
+        f"{caption} The teeth alone approach by {rounded(_QUANTITY, mean)} on average; the oil "
+        f"film in series changes that by {rounded(_QUANTITY, total - mean)}."
+    )
+
+
 @table_drawing(
-    "static_transmission_error",
-    heading="Static transmission error",
-    caption="How far the gears approach along the line of action when they turn very slowly under "
-    "load. What varies is the excitation of the vibration; the bars show how much of it falls on "
-    "each harmonic of the mesh frequency.",
+    "static_transmission_error", heading="Static transmission error", caption=_error_caption
 )
 def static_transmission_error(mesh: MeshTable) -> Any:
     """Draw the static transmission error over two mesh cycles, and its mesh harmonics."""
-    mean = float(mesh.grid.mean(mesh.static_transmission_error))
+    mean = float(mesh.grid.mean(mesh.transmission_error_at_rest))
     swing = float(np.ptp(mesh.static_transmission_error))
     return stack_rows(
         f"At rest the transmission error is {rounded(_QUANTITY, mean)} on average and varies by "
@@ -237,13 +276,20 @@ def _phases(mesh: MeshTable) -> list[tuple[str, float]]:
     return found
 
 
-@table_drawing(
-    "force_law",
-    heading="Force law of the mesh",
-    caption="Force over the approach of the gears at places of the mesh cycle. The curve bends "
-    "upwards where the flanks flatten and where a further pair comes to bear; the marks are the "
-    "working load. To the left of a curve's foot the flanks are apart.",
-)
+def _law_caption(mesh: MeshTable) -> str:
+    straight = mesh.ramp_deflection.shape[1] == 1
+    shape = (
+        "Each is a straight line: the stiffness does not depend on the load."
+        if straight
+        else "A curve bends upwards where flanks flatten and where a further pair comes to bear."
+    )
+    return (
+        f"Force over the approach of the gears at places of the mesh cycle. {shape} The marks are "
+        "the working load. To the left of a curve's foot the flanks are apart."
+    )
+
+
+@table_drawing("force_law", heading="Force law of the mesh", caption=_law_caption)
 def force_law(mesh: MeshTable) -> Any:
     """Draw the force on the mesh over its deflection for several mesh phases."""
     law, load = mesh.force_law, mesh.total_normal_force

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 GEARS = (("pinion", PINION), ("wheel", WHEEL))
 #: Axis of the coordinate and the words for it.
 DIRECTIONS = (("y", "along the line of action"), ("x", "across the line of action"))
+#: Shift of a mean over the mean that is reported.
+_SHIFTED = 1e-3
 _ALONG = "along the line of action"
 
 
@@ -69,18 +71,28 @@ def _below_zero(result: Result) -> str:
 
 def _force_caption(result: Result) -> str:
     motion = Motion(result)
-    friction = (
-        "Friction carries a part of the torque, so the mean of the dynamic force differs from the "
-        "static one."
-    )
+    lost = result.summary().get("contact_loss_share", 0.0) > 0.0
     sentences = (
         "The force between the gears while they run, against the force that the torque alone "
-        "would cause. Where the curve stays at zero, the flanks have lost contact.",
-        friction if np.any(result.mesh.friction_coefficient) else "",
+        "would cause.",
+        "Where the curve stays at zero, the flanks have lost contact." if lost else "",
+        _mean_shift(result, motion) if motion.periodic else "",
         _below_zero(result),
         motion.settling(motion.mesh_force),
     )
     return " ".join(filter(None, sentences))
+
+
+def _mean_shift(result: Result, motion: Motion) -> str:
+    """How far friction moves the mean of the force from the static one."""
+    mean = float(result.response.fine.weight @ motion.mesh_force)
+    shift = mean / result.mesh.total_normal_force - 1.0
+    if abs(shift) < _SHIFTED or not np.any(result.mesh.friction_coefficient):
+        return ""
+    return (
+        f"Its mean is {100.0 * abs(shift):.2g} % {'above' if shift > 0.0 else 'below'} the static "
+        "force, because friction carries a part of the torque."
+    )
 
 
 @run_drawing("mesh_force", heading="Mesh force", caption=_force_caption)
@@ -169,7 +181,7 @@ def transmission_error(result: Result) -> Any:
     traces = [motion.line("dynamic_transmission_error", moving, "dynamic", TOTAL)]
     if motion.periodic:
         mesh = result.mesh
-        static = mesh.static_transmission_error + result.static_error(mesh.phase)
+        static = mesh.transmission_error_at_rest + result.static_error(mesh.phase)
         phase, shown = cycles(mesh.phase, displayed("transmission_error", static), motion.shown)
         traces.append(line(phase, shown, "quasi-static", MUTED, unit=unit, dash="dash"))
     swing = rounded("dynamic_transmission_error", float(np.ptp(motion.measured(moving))))
@@ -183,9 +195,8 @@ def _settling(result: Result, quantity: str) -> str:
 
 
 def _shake_caption(result: Result) -> str:
-    planar = (
-        "Along the line of action the jumps of the stiffness act, across it only friction does: "
-        "without friction the lower panel is flat. "
+    planar = "Along the line of action the mesh force acts, across it only friction does" + (
+        ". " if np.any(result.mesh.friction_coefficient) else ", and this case has none. "
     )
     told = planar if _along(result) == _ALONG else ""
     return ("How the two gear centres shake. " + told + _settling(result, "acceleration")).rstrip()

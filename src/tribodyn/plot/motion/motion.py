@@ -84,7 +84,7 @@ class Motion:
 
     @property
     def transmission_error(self) -> Array:
-        """Dynamic transmission error, counted from first contact of the driving flank."""
+        """Dynamic transmission error, counted from where perfect rigid driving flanks touch."""
         return series.transmission_error(self._result, self._response.fine)
 
     def of_gear(self, quantity: str, gear: str, axis: str) -> Array:

@@ -256,9 +256,23 @@ class ContactProblem:
         structure[:, pairs, pairs] += self.widths.sum() / film_stiffness
         gaps = self.gaps
         if lead is not None:
-            gaps = gaps - lead[:, None]
-            gaps += self.gaps.min() - gaps.min()
+            gaps = gaps - lead[:, None] + self.film_offset(lead)
         return replace(self, compliance=replace(self.compliance, structure=structure), gaps=gaps)
+
+    def film_offset(self, lead: Array) -> float:
+        """Distance before the flanks meet from which the approach with films is counted [m].
+
+        Parameters
+        ----------
+        lead : array (p, n) [m]
+            As :meth:`with_film` takes it.
+
+        Returns
+        -------
+        float [m]
+            Approaches of :meth:`with_film` are larger by it than those from the rigid flanks.
+        """
+        return float(self.gaps.min() - (self.gaps - lead[:, None]).min())
 
     @property
     def least_gap(self) -> Array:

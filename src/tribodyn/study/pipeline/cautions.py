@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 _STEEL = 3e9
 #: Relief over the deflection of one pair under the whole load that is told.
 _RELIEVED = 3.0
+#: Part of the contact ratio whose loss to modified flanks is reported.
+_LOST_CONTACT = 0.1
 #: Friction coefficient above which friction is the first suspect where a motion runs away.
 _RUBS = 0.3
 #: What to do about asperities that the friction law does not count.
@@ -138,9 +140,10 @@ def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
     return (*load_cautions(mesh), *_mixed(mesh))
 
 
-def load_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
-    """The same of the load alone."""
-    return (*_pressure(mesh), *_relieved(mesh))
+def load_cautions(mesh: MeshTable, contact_ratio: float | None = None) -> tuple[ModelWarning, ...]:
+    """The same of the load alone; a mesh with few knots needs the contact ratio under load."""
+    ratio = mesh.contact_ratio_under_load if contact_ratio is None else contact_ratio
+    return (*_pressure(mesh), *_relieved(mesh), *_parted(mesh, ratio))
 
 
 @contextmanager
@@ -201,6 +204,24 @@ def _relieved(mesh: MeshTable) -> Iterator[ModelWarning]:
             f"{mesh.transverse_contact_ratio:.3g}. Usual is about once this deflection; check the "
             "unit",
         )
+
+
+def _parted(mesh: MeshTable, under_load: float) -> Iterator[ModelWarning]:
+    """Modified profiles that keep pairs apart for much of their path under this load."""
+    if mesh.gears is None or not mesh.gear_pair.has_profile_modification:
+        return
+    ratio = mesh.transverse_contact_ratio
+    if under_load >= (1.0 - _LOST_CONTACT) * ratio:
+        return
+    yield ModelWarning(
+        "contact-ratio-reduced",
+        f"under this load {under_load:.3g} tooth pairs carry on average, and the transverse "
+        f"contact ratio is {ratio:.3g}: modified flanks take off "
+        f"{100.0 * (1.0 - under_load / ratio):.2g} % "
+        f"of it (limit {100.0 * _LOST_CONTACT:g} %). A pair begins to carry after A and ceases "
+        "before E. Shorten or reduce the relief, or give the load for which it was made; tribodyn "
+        "relief finds one for a range of loads",
+    )
 
 
 def _pressure(mesh: MeshTable) -> Iterator[ModelWarning]:

@@ -29,7 +29,13 @@ from tribodyn.study.pipeline.cautions import (
 from tribodyn.study.pipeline.computed import Coupling
 from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
 from tribodyn.study.pipeline.result import Result
-from tribodyn.study.pipeline.tooth_contact import alike, load_friction_of, mesh_of, meshes_of
+from tribodyn.study.pipeline.tooth_contact import (
+    alike,
+    load_friction_of,
+    mesh_of,
+    meshes_of,
+    teeth_contact_ratio,
+)
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
@@ -97,7 +103,7 @@ def rehearse(case: Case) -> tuple[ModelWarning, ...]:
         system = system_of(case, mesh, damping_of(case, mesh))
         steps = steps_of(case, system, mesh.mesh_frequency)
         compile_for(system, mesh.mesh_frequency, steps)
-    return load_cautions(mesh)
+    return load_cautions(mesh, teeth_contact_ratio(case))
 
 
 def computed(

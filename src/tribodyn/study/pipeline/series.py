@@ -12,6 +12,7 @@ import numpy as np
 
 from tribodyn.mesh.gears import SPATIAL_COORDINATES
 from tribodyn.record import Parts
+from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -72,9 +73,17 @@ def first_touch(system: System, samples: FineSamples) -> Array:
 
 
 def transmission_error(result: Computed, samples: FineSamples) -> Array:
-    """Dynamic transmission error, counted from first contact of the driving flank."""
+    """Dynamic transmission error, counted from where perfect rigid driving flanks touch."""
     error = compression(samples) + result.static_error(samples.phase)
-    return np.asarray(error - result.half_backlash)
+    return np.asarray(error - result.half_backlash - film_offset(result))
+
+
+def film_offset(result: Computed) -> float:
+    """Distance before the flanks touch at which the first oil film carries, from where laws count.
+
+    A plain stiffness begins at the flanks.
+    """
+    return 0.0 if mesh_law_of(result.case) == "stiffness" else result.mesh.film_offset
 
 
 def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
@@ -157,6 +166,7 @@ def signals(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]
     """Signals that figures draw, on the samples: values, unit and meaning by name."""
     force, phase = mesh_force(samples), _sided(samples)
     static = result.mesh.at("static_transmission_error", phase) + result.static_error(phase)
+    static -= result.mesh.film_offset
     found = {
         "mesh_force": (force, "N", "force along the line of action of all tooth pairs"),
         "dynamic_transmission_error": (

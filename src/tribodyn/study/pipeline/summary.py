@@ -168,10 +168,36 @@ def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
         "mean_mesh_stiffness": mesh.mean_mesh_stiffness,
         "mean_mesh_stiffness_secant": mesh.mean_mesh_stiffness,
         "mean_mesh_stiffness_tangent": mesh.mean_mesh_stiffness_tangent,
+        **_stiffness_apart(mesh),
+        "contact_ratio_under_load": mesh.contact_ratio_under_load,
         "maximum_single_pair_stiffness": mesh.maximum_single_pair_stiffness,
         "mean_friction_coefficient": mesh.mean_friction_coefficient,
         "mean_asperity_friction_coefficient": mesh.mean_asperity_friction_coefficient,
         **_pressure(mesh),
+    }
+
+
+def _stiffness_apart(mesh: MeshTable) -> dict[str, Any]:
+    """Mean stiffness of the teeth and of the oil films, where these are in series."""
+    if mesh.tooth_transmission_error is None:
+        return {}
+    figures = {"mean_mesh_stiffness_teeth": mesh.grid.mean(mesh.tooth_mesh_stiffness)}
+    film = mesh.film_mesh_stiffness
+    if film is not None:
+        figures["mean_mesh_stiffness_film"] = 1.0 / mesh.grid.mean(1.0 / film)
+    return figures
+
+
+def _error_apart(mesh: MeshTable) -> dict[str, Any]:
+    """Transmission error at rest of the teeth alone, and what oil films in series change of it."""
+    teeth = mesh.tooth_transmission_error
+    if teeth is None:
+        return {}
+    name, mean = "static_transmission_error", mesh.grid.mean(teeth)
+    return {
+        f"mean_{name}_teeth": mean,
+        f"mean_{name}_film": mesh.grid.mean(mesh.transmission_error_at_rest) - mean,
+        f"peak_to_peak_{name}_teeth": np.ptp(teeth),
     }
 
 
@@ -193,14 +219,20 @@ def _static_error_figures(result: Computed) -> dict[str, Any]:
             loaded.transmission_error_harmonics(_HARMONICS),
         )
     else:
-        error = result.mesh.static_transmission_error
+        error = result.mesh.transmission_error_at_rest
         figures = (
             result.mesh.grid.mean(error),
             np.ptp(error),
             result.mesh.harmonics(name, _HARMONICS),
         )
     mean, most, amplitudes = figures
+    apart = _error_apart(result.mesh)
+    if apart and result.case.gear_pair.teeth_differ:
+        # The loaded contact of all teeth has no film.
+        apart |= {f"mean_{name}_teeth": mean, f"peak_to_peak_{name}_teeth": most}
+        mean = mean + apart[f"mean_{name}_film"]
     return {
+        **apart,
         f"mean_{name}": mean,
         f"peak_to_peak_{name}": most,
         **{f"{name}_harmonic_{order}": size for order, size in enumerate(amplitudes, 1)},

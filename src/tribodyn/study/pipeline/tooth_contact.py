@@ -102,6 +102,19 @@ def mesh_of(
     )
 
 
+def teeth_contact_ratio(case: Case) -> float | None:
+    """Contact ratio under load on the knots of a run; None where a mesh table alone knows it."""
+    from tribodyn.mesh.build import known_teeth
+    from tribodyn.mesh.loaded_intervals import contact_ratio
+
+    if case.gears.kind != "spur" or not case.gear_pair.has_profile_modification:
+        return None
+    settings = contact_settings(case)
+    cycle, teeth = known_teeth(case.gear_pair, settings, case.pinion_torque, None, None)
+    shared = teeth.shared_load()
+    return contact_ratio(cycle.grid, shared.share, shared.corner_share)
+
+
 def alike(case: Case) -> object:
     """What cases share whose tooth contacts differ by speed and load alone; None of others."""
     if case.gears.kind != "spur" or case._named_files():

@@ -30,6 +30,8 @@ _ENDINGS = (
     (re.compile(r"_nominal_friction$"), "friction of the nominal load", "{}"),
     (re.compile(r"_harmonic_(\d+)$"), "mesh harmonic {}", "in {}"),
     (re.compile(r"_(pinion|wheel|shaft[12])$"), "{}", "of the {}"),
+    (re.compile(r"_teeth$"), "teeth alone", "of the {}"),
+    (re.compile(r"(?:(?<=_error)|(?<=_stiffness))_film$"), "oil film", "of the {}"),
     (re.compile(r"_(loa)$"), "along the line of action", "{}"),
     (re.compile(r"_(oloa)$"), "across the line of action", "{}"),
     (re.compile(r"_([A-E])$"), "at {}", "{}"),
