@@ -32,7 +32,7 @@ from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError
 from tribodyn.files import atomic_write, check_new
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.stored import write_dataset
+from tribodyn.validated_files import write_dataset
 
 T = TypeVar("T")
 _KEY = "tribodyn"

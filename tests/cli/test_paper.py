@@ -10,9 +10,9 @@ import pytest
 
 from tribodyn.cases import compare_with_paper
 from tribodyn.cases.papers import printed
+from tribodyn.checkpoints import Members
 from tribodyn.cli import call
 from tribodyn.errors import ModelWarning
-from tribodyn.members import Members
 
 _KEYS = ["table", "row", "printed", "computed", "deviation", "expected", "verdict", "reason"]
 

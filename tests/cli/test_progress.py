@@ -11,17 +11,17 @@ from rich.console import Console
 
 from tribodyn.analysis import bifurcation
 from tribodyn.cli.bar import Bar, counted, left
-from tribodyn.compiled import telling
+from tribodyn.compiled import announcing_to
 from tribodyn.dynamics import System
 
 _KERNEL = """
 import sys
 import numba as nb
-from tribodyn.compiled import announced, telling
+from tribodyn.compiled import announced, announcing_to
 
 told = []
 double = announced(nb.njit(cache=True)(lambda x: 2.0 * x), "the doubling", "no time")
-with telling(told.append):
+with announcing_to(told.append):
     double(1.0)
     double(2)
 print(told)
@@ -78,7 +78,7 @@ def test_a_diagram_of_many_steps_says_beforehand_how_long_it_takes(
     transient: int, times: int
 ) -> None:
     mass = System([[1.0]], [[0.5]], [[1.0]], [0.0], [])
-    with telling((told := []).append):
+    with announcing_to((told := []).append):
         bifurcation(mass, [0.1, 0.2], steps=512, transient=transient, cycles=8, keep=8, signal="q0")
     estimates = [text for text in told if "2 motions with up to 512 steps" in text]
     assert len(estimates) == times

@@ -9,7 +9,7 @@ from pathlib import Path
 #: Makes a command quick to start, and kills it at a call of the system that changes a place.
 _AIMED = """
 import os, signal, sys
-import tribodyn.files, tribodyn.members
+import tribodyn.files, tribodyn.checkpoints
 at = int(sys.argv.pop(1))
 def counted(function):
     def call(*arguments, **options):

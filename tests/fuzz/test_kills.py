@@ -13,7 +13,7 @@ from threading import Timer
 import pytest
 from killed import started
 
-from tribodyn.stored import read_dataset
+from tribodyn.validated_files import read_dataset
 
 Draws = Callable[[int], Iterator[random.Random]]
 

@@ -10,6 +10,7 @@ import pytest
 
 from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
 from tribodyn.ehl._kernel.film_sum import influence, make_grid
+from tribodyn.ehl._kernel.grid_transfer import refine
 from tribodyn.ehl._kernel.linear_solver import (
     coarse_tangent,
     linear_solve,
@@ -19,7 +20,6 @@ from tribodyn.ehl._kernel.linear_solver import (
 )
 from tribodyn.ehl._kernel.newton import Equation, Limits, newton_level, newton_work
 from tribodyn.ehl._kernel.reynolds import coefficients, mobility, oil_state
-from tribodyn.ehl._kernel.transfer import refine
 from tribodyn.lubricant import Lubricant
 
 OIL = Lubricant(0.082, 880.0, 2.19e-8)

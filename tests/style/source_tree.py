@@ -70,7 +70,7 @@ class Function:
     def compiled(self) -> bool:
         """Whether it is a compiled kernel."""
         return any(
-            re.search(r"\b(njit|jit|kept|guvectorize|vectorize|intrinsic)\b", d)
+            re.search(r"\b(njit|jit|cached_njit|guvectorize|vectorize|intrinsic)\b", d)
             for d in self.decorators
         )
 

@@ -15,10 +15,10 @@ from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
-from tribodyn.stored import plain_number
 from tribodyn.study.beside import differing
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
+from tribodyn.validated_files import plain_number
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case

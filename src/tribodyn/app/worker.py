@@ -88,12 +88,12 @@ def _get_ready(wanted: Callable[[], bool]) -> None:
 
 
 def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
-    from tribodyn.compiled import telling
+    from tribodyn.compiled import announcing_to
     from tribodyn.errors import TribodynError
 
     folder = Path(order["folder"])
     try:
-        with telling(lambda text: tell(task=text[:1].upper() + text[1:], done=0, total=None)):
+        with announcing_to(lambda text: tell(task=text[:1].upper() + text[1:], done=0, total=None)):
             _KINDS[order["kind"]](order, folder, tell)
     except TribodynError as error:
         tell(state="failed", problems=[str(problem) for problem in error.problems])

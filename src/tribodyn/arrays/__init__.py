@@ -1,10 +1,10 @@
-"""Functions of arrays that any part may use.
+"""Functions of arrays that any package may use.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| ``cubic`` | cubics through points, with slopes given or with steady bends |
-| ``kept`` | memory that lasts from one use to the next |
-| ``monotone`` | cubics through points that swing beyond none of them |
+| ``cubic`` | cubic splines: with prescribed slopes, or with continuous curvature |
+| ``memo`` | cache of the last values of a function of arrays, by their content |
+| ``monotone`` | monotone cubics, which do not overshoot |
 | ``products`` | products of a small matrix and many vectors |
-| ``recent`` | the last values of a function of arrays, found by what is in them |
+| ``workspace`` | work arrays that are reused from call to call |
 """

@@ -56,13 +56,13 @@ def warm_up(
     --------
     >>> warm_up("fzg-roughness")  # doctest: +SKIP
     """
-    from tribodyn.compiled.agreement import is_kept
+    from tribodyn.compiled.cache_lock import has_disk_cache
     from tribodyn.dynamics._engine.marching import march_block
 
     most = min(os.cpu_count() or 1, 4) if jobs is None else require_whole("jobs", jobs)
     if case is not None:
         load_case(case)
-    if not is_kept(march_block) and hasattr(march_block, "_cache"):
+    if not has_disk_cache(march_block) and hasattr(march_block, "_cache"):
         what, why = "compiled kernels cannot be kept", "No folder takes them"
         raise ComputationError(what, "", why, "Set NUMBA_CACHE_DIR to one that can be written")
     # A solved film takes longest.

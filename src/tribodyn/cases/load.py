@@ -35,8 +35,8 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     90.0
     """
     from tribodyn.cases.catalogue import with_known_reasons
-    from tribodyn.stored import file_kind
     from tribodyn.study.case.read import read_case, read_text
+    from tribodyn.validated_files import file_kind
 
     named = case_files()
     asked = os.fspath(name_or_path)

@@ -63,7 +63,7 @@ def load_result(directory: str | os.PathLike[str]) -> Result:
 Give the directory that tribodyn run or Result.save wrote.
     """
     from tribodyn.mesh import MeshTable
-    from tribodyn.stored import read_dataset
+    from tribodyn.validated_files import read_dataset
 
     folder = Path(directory)
     summary = read_summary(folder)
@@ -100,7 +100,7 @@ def _compare(folder: Path, summary: Mapping[str, float], data: xarray.Dataset) -
 
     Results of an earlier version do not tell of their case.
     """
-    from tribodyn.stored import read_bytes
+    from tribodyn.validated_files import read_bytes
 
     case = hashlib.sha256(read_bytes(folder / "case.toml", "case")).hexdigest()
     changed = ["case.toml"] if data.attrs.get("case", case) != case else []
@@ -118,7 +118,7 @@ def read_summary(folder: Path) -> dict[str, float]:
     if lacking:
         why = f"It holds no {lacking[0]}" if folder.is_dir() else "There is no such directory"
         raise InputError("this is no result", str(folder), why, _REMEDY)
-    from tribodyn.stored import read_bytes
+    from tribodyn.validated_files import read_bytes
 
     place = folder / "summary.json"
     try:

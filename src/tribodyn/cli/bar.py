@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
 from tribodyn.cli.screen import tell
-from tribodyn.compiled import telling
+from tribodyn.compiled import announcing_to
 from tribodyn.progress import SILENT, Progress
 
 
@@ -62,7 +62,7 @@ class Bar:
 
         self._screen = Rich(*_columns(), console=Console(stderr=True), transient=True)
         self._task: Any = None
-        self._telling = telling(lambda text: self._screen.console.print(f"{text} ..."))
+        self._telling = announcing_to(lambda text: self._screen.console.print(f"{text} ..."))
 
     def __enter__(self) -> Progress:
         """Start drawing."""
@@ -95,7 +95,7 @@ class Bar:
 @contextmanager
 def _no_bar() -> Iterator[Progress]:
     """Where stderr is no terminal: only what is compiled is told, for that takes minutes."""
-    with telling(tell):
+    with announcing_to(tell):
         yield SILENT
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import ModelWarning, Problem
 
 if TYPE_CHECKING:
-    from tribodyn.members import Members
+    from tribodyn.checkpoints import Members
 
 
 def say(text: str) -> None:

@@ -1,4 +1,4 @@
-"""How compiled kernels are kept on disk, by the content of all their sources, and announced."""
+"""Compiled kernels: disk cache keyed by their sources, and messages while they compile."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from tribodyn.compiled import agreement
+from tribodyn.compiled import cache_lock
 
-__all__ = ["announced", "source_digest", "tell", "telling"]
+__all__ = ["announce", "announced", "announcing_to", "source_digest"]
 
 Kernel = TypeVar("Kernel")
 
-#: What is told of a kernel when it is first compiled; by kernel.
+#: Message of each kernel that has not been compiled yet.
 _texts: dict[Any, str] = {}
 
-#: All that were announced.
+#: All kernels that announce their compilation.
 kernels: list[Any] = []
 
 
@@ -32,39 +32,39 @@ def source_digest(folder: str | Path, names: Sequence[str]) -> str:
     return hashlib.sha256(b"".join(content)).hexdigest()
 
 
-def announced(kernel: Kernel, what: str, time: str) -> Kernel:
-    """Say so whenever a kernel is compiled, once on a machine: else it looks like a hang."""
+def announced(kernel: Kernel, description: str, time: str) -> Kernel:
+    """Announce the compilation of a kernel, which otherwise looks like a hang."""
     kernels.append(kernel)
-    once = "once on this machine" if agreement.is_kept(kernel) else "for this process"
-    _texts[kernel] = f"compiling {what}, {once}, about {time}"
+    scope = "once on this machine" if cache_lock.has_disk_cache(kernel) else "for this process"
+    _texts[kernel] = f"compiling {description}, {scope}, about {time}"
     _listen()
-    agreement.share(kernel, lambda: _tell_of(kernel))
+    cache_lock.use_lock(kernel, lambda: _announce_kernel(kernel))
     return kernel
 
 
-def _tell_of(kernel: Any) -> None:
-    """Say that a kernel is compiled, once."""
+def _announce_kernel(kernel: Any) -> None:
+    """Announce the compilation of a kernel once."""
     text = _texts.pop(kernel, None)
     if text is not None:
-        tell(text)
+        announce(text)
 
 
 @cache
 def _listen() -> None:
-    """Listen to Numba, once."""
+    """Register for the events of Numba's compiler, once."""
     from numba.core import event
 
     class Compiling(event.Listener):  # type: ignore[misc]
         depth = 0
 
         def on_start(self, event: Any) -> None:
-            # The compiler makes millions of objects: the search for circles among them takes a
-            # part of its time and finds next to nothing.
+            # The compiler creates millions of objects: garbage collection takes a noticeable part
+            # of its time and frees next to nothing.
             if self.depth == 0:
                 self.collects = gc.isenabled()
                 gc.disable()
             self.depth += 1
-            _tell_of(event.data["dispatcher"])
+            _announce_kernel(event.data["dispatcher"])
 
         def on_end(self, event: Any) -> None:
             self.depth -= 1
@@ -75,24 +75,24 @@ def _listen() -> None:
 
 
 def _to_terminal(text: str) -> None:
-    """Write to whoever sits before a terminal or a notebook."""
+    """Write to an interactive terminal or a notebook."""
     if sys.stderr.isatty() or hasattr(sys, "ps1"):
         sys.stderr.write(f"tribodyn: {text}\n")
 
 
-_tellers: list[Callable[[str], None]] = [_to_terminal]
+_receivers: list[Callable[[str], None]] = [_to_terminal]
 
 
-def tell(text: str) -> None:
-    """Say what will take long to whoever listens."""
-    _tellers[-1](text)
+def announce(text: str) -> None:
+    """Pass a message about a long computation to the active receiver."""
+    _receivers[-1](text)
 
 
 @contextmanager
-def telling(teller: Callable[[str], None]) -> Iterator[None]:
-    """Let a function tell what is compiled or takes long inside the block."""
-    _tellers.append(teller)
+def announcing_to(receiver: Callable[[str], None]) -> Iterator[None]:
+    """Let a function receive the messages about compilation and long computations in the block."""
+    _receivers.append(receiver)
     try:
         yield
     finally:
-        _tellers.remove(teller)
+        _receivers.remove(receiver)

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import Argument, InputError, require_one_of, require_positive, warn
-from tribodyn.stored import plain_number, read_bytes
 from tribodyn.types import Array
 from tribodyn.units import convert
+from tribodyn.validated_files import plain_number, read_bytes
 
 #: What lies beyond the ends of a profile.
 BEYOND = ("refuse", "periodic", "level")

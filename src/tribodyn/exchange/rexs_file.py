@@ -20,7 +20,7 @@ from xml.etree import ElementTree
 
 from tribodyn import units
 from tribodyn.errors import Argument, InputError, Problem
-from tribodyn.stored import LARGEST, read_bytes
+from tribodyn.validated_files import LARGEST, read_bytes
 
 #: Spellings of units that differ from ours, without blanks.
 _UNITS = {

@@ -15,8 +15,8 @@ from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import atomic_write
 from tribodyn.record import Record
-from tribodyn.stored import csv_text
 from tribodyn.study import SUMMARY, Result
+from tribodyn.validated_files import csv_text
 
 #: Arrays of a curve of a figure that become columns.
 _COLUMNS = ("x", "y", "z")

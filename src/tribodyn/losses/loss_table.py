@@ -25,9 +25,9 @@ from tribodyn.errors import (
 )
 from tribodyn.friction.mesh_means.measured import FZG_POINTS
 from tribodyn.losses.gearbox import gear_loss_factor
-from tribodyn.stored import plain_number, read_bytes
 from tribodyn.types import Array
 from tribodyn.units import RPM
+from tribodyn.validated_files import plain_number, read_bytes
 
 #: Columns of a table and their units.
 COLUMNS = {"speed": "rad/s", "torque": "N*m", "torque_loss": "N*m"}

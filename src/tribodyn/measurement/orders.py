@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.compiled.kept import kept
+from tribodyn.compiled.cache import cached_njit
 from tribodyn.errors import Argument, InputError, require_between, require_one_of, require_positive
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import checked_signal
@@ -298,7 +298,7 @@ def _grid(count: int) -> tuple[int, Array]:
     return size, np.asarray(waves @ (_HALF * shares * kernel))
 
 
-@kept(nogil=True)
+@cached_njit(nogil=True)
 def _spread(strength: Array, place: Array, grid: Array) -> None:
     """Add each strength to the points of a periodic grid around its place, which is 0 to 1."""
     size = grid.size

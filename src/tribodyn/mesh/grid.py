@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.arrays.memo import Memo
 from tribodyn.arrays.monotone import monotone_cubic
 from tribodyn.arrays.products import times
-from tribodyn.arrays.recent import Recent
 from tribodyn.errors import InputError
 from tribodyn.types import Array, ComplexArray, Index
 
@@ -106,8 +106,8 @@ class PhaseGrid:
         )
 
     @cached_property
-    def _known(self) -> Recent[csr_matrix]:
-        return Recent(_KEPT)
+    def _known(self) -> Memo[csr_matrix]:
+        return Memo(_KEPT)
 
     def _located(self, phase: Array) -> tuple[Index, Array]:
         folded = np.mod(phase, 1.0)

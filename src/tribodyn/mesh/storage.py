@@ -20,8 +20,8 @@ from tribodyn.mesh.gears import NoGears, coordinates_of, read_pair
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.record import labels_of
-from tribodyn.stored import read_bytes, read_dataset
 from tribodyn.types import Array
+from tribodyn.validated_files import read_bytes, read_dataset
 
 if TYPE_CHECKING:
     import xarray

@@ -39,8 +39,8 @@ from tribodyn.mesh.storage import (
     is_mesh_table,
 )
 from tribodyn.mesh.table import MeshTable
-from tribodyn.stored import file_kind, plain_number, read_bytes, read_dataset
 from tribodyn.types import Array
+from tribodyn.validated_files import file_kind, plain_number, read_bytes, read_dataset
 
 #: Columns that only tell of the contact and may hold NaN.
 _TOLD = (*FILMS, "hertz_pressure", "path")

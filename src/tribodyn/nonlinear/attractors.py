@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.checkpoints import Members
 from tribodyn.dynamics._engine.blocks import march, marching_on, on_gpu
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
@@ -22,7 +23,6 @@ from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
 from tribodyn.dynamics.orbits.orbit_map import Balance
 from tribodyn.errors import ComputationError
 from tribodyn.interrupt import in_threads
-from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index, Mask
 

@@ -10,12 +10,12 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.compiled import tell
+from tribodyn.checkpoints import Members
+from tribodyn.compiled import announce
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start, simulate
 from tribodyn.errors import ComputationError, InputError, require_one_of, require_positive
-from tribodyn.members import Members
 from tribodyn.nonlinear.bifurcation_sweep import march_sweeps
 from tribodyn.nonlinear.lyapunov import lyapunov_exponents
 from tribodyn.nonlinear.survey import (
@@ -106,7 +106,7 @@ def bifurcation(
         Return what is finished when interrupted (Ctrl-C): the rest is NaN, see ``finished``.
     progress : Progress
         Told about the motions.
-    members : tribodyn.members.Members, optional
+    members : tribodyn.checkpoints.Members, optional
         Keeps every motion as it is finished, and has those that a killed process finished.
 
     Returns
@@ -274,7 +274,7 @@ def _announce(values: Points, cycles: int) -> None:
         with suppress(ComputationError):
             simulate(system, float(values.mesh_frequency[0]), 1, (rest, rest), steps=count)
     minutes = steps * (perf_counter() - begin) / count / 60.0
-    tell(
+    announce(
         f"following {values.count} motions with up to {values.steps.max()} steps in each mesh "
         f"cycle, {minutes:.2g} min at most; fewer steps or a shorter transient take less"
     )

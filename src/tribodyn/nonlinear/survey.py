@@ -15,6 +15,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.checkpoints import Members
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
 from tribodyn.dynamics.equations.step_limit import LIMIT
@@ -23,7 +24,6 @@ from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.orbits.periods import open_period
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import in_threads
-from tribodyn.members import Members
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record

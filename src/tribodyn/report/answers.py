@@ -50,7 +50,7 @@ def _title(picture: Picture) -> str:
 
 def save_answer(kind: str, case: Case, target: Path, found: Answer, force: bool = False) -> None:
     """Write the directory of a study."""
-    from tribodyn.stored import write_dataset
+    from tribodyn.validated_files import write_dataset
 
     with new_directory(target, force=force) as place:
         (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
@@ -72,7 +72,7 @@ def save_bifurcation(
     found: Bifurcation, case: Case, findings: Findings, target: Path, force: bool = False
 ) -> None:
     """Write the directory of a bifurcation diagram."""
-    from tribodyn.stored import write_dataset
+    from tribodyn.validated_files import write_dataset
 
     head, rows = findings.rows()
     with new_directory(target, force=force) as place:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.arrays.recent import Recent
+from tribodyn.arrays.memo import Memo
 from tribodyn.dynamics.time.response import FineSamples, Response, sample_extremes
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.record import Record, quantity, record
@@ -343,7 +343,7 @@ def mesh_harmonics(
 _KEPT = 10**6
 
 
-_recent: Recent[tuple[Array, Array]] = Recent(2)
+_recent: Memo[tuple[Array, Array]] = Memo(2)
 
 
 def _turns(orders: Array, phase: Array, weight: Array) -> tuple[Array, Array]:

@@ -13,11 +13,6 @@
 from tribodyn.arguments import guard
 from tribodyn.stiffness.loaded import ContactProblem, LoadedContact, loaded_contact, mesh_problem
 from tribodyn.stiffness.model import MODELS, StiffnessModel
-from tribodyn.stiffness.models.given import (
-    fourier_mesh_stiffness,
-    rectangular_stiffness,
-    tabulated_stiffness,
-)
 from tribodyn.stiffness.models.iso6336 import (
     iso6336_mesh_stiffness,
     iso6336_pair_stiffness,
@@ -27,6 +22,11 @@ from tribodyn.stiffness.models.potential_energy import (
     potential_energy_influence,
     potential_energy_stiffness,
     single_pair_stiffness,
+)
+from tribodyn.stiffness.models.prescribed import (
+    fourier_mesh_stiffness,
+    rectangular_stiffness,
+    tabulated_stiffness,
 )
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.tooth_bending import (

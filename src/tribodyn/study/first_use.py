@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.compiled.agreement import Agreement, ElsewhereError, agreed, cached
+from tribodyn.compiled.cache_lock import CacheLock, ElsewhereError, is_cached, locked
 from tribodyn.interrupt import STOPPED, processors, refuse_stopped, stop_flag
 from tribodyn.study.processes import aside
 
@@ -45,8 +45,8 @@ def compiled_beside(case: Case, study: str = "run") -> Iterator[bool]:
                 made = TemporaryDirectory(prefix="tribodyn-", ignore_cleanup_errors=True)
                 folder = stack.enter_context(made)
                 busy = stack.enter_context(aside(_compile, [(folder, job) for job in jobs]))
-                agreement = Agreement(Path(folder), partial(_interruptibly, busy))
-                stack.enter_context(agreed(agreement))
+                lock = CacheLock(Path(folder), partial(_interruptibly, busy))
+                stack.enter_context(locked(lock))
         yield bool(jobs)
 
 
@@ -66,8 +66,8 @@ def _missing(case: Case, study: str = "run") -> Sequence[str]:
     if case.gears.kind == "spur":
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
-        absent |= set() if cached(solve_loads) else {"loads"}
-    if ENGINES[case.solver.engine].method == "rk4" and not cached(march_block):
+        absent |= set() if is_cached(solve_loads) else {"loads"}
+    if ENGINES[case.solver.engine].method == "rk4" and not is_cached(march_block):
         absent |= {job for jobs in _JOBS.values() for job in jobs} - {"loads"}
     return [job for job in _JOBS[study] if job in absent]
 
@@ -75,7 +75,7 @@ def _missing(case: Case, study: str = "run") -> Sequence[str]:
 def _compile(order: tuple[str, str]) -> None:
     """Do a job for another process, unless that has begun to."""
     folder, job = order
-    with suppress(ElsewhereError), agreed(Agreement(Path(folder))):
+    with suppress(ElsewhereError), locked(CacheLock(Path(folder))):
         _WORK[job]()
 
 

@@ -12,11 +12,11 @@ import numpy as np
 from tribodyn.errors import Argument, InputError, real_numbers, warn
 from tribodyn.interrupt import in_threads
 from tribodyn.record import Parts, Record, fact, quantity, record
-from tribodyn.stored import read_dataset
 from tribodyn.surrogate.baselines import ErrorMeasures
 from tribodyn.surrogate.network import Network
 from tribodyn.surrogate.preparation import columns_of
 from tribodyn.types import Array
+from tribodyn.validated_files import read_dataset
 
 #: What a stored model calls itself.
 _KIND = "tribodyn surrogate"

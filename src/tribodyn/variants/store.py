@@ -19,11 +19,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tribodyn.checkpoints import NAME, Members, read_lines
 from tribodyn.errors import Argument, InputError, OutputExistsError, quiet
 from tribodyn.files import atomic_write, lock
-from tribodyn.members import NAME, Members, read_lines
-from tribodyn.stored import read_bytes
 from tribodyn.study.studies.grid import identity
+from tribodyn.validated_files import read_bytes
 from tribodyn.variants.compute import Job, Stored
 from tribodyn.variants.members import Chunk, Plan, layout_of
 

@@ -18,7 +18,6 @@ from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nonlinear.parameter_map import SCALES
-from tribodyn.stored import read_bytes
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.given import Source, unsound
 from tribodyn.study.case.provenance import spec_of
@@ -27,6 +26,7 @@ from tribodyn.study.case.values import FaultError, read_value, written
 from tribodyn.study.studies.axes import Axis, member_value, read_axis
 from tribodyn.study.studies.range_words import UnreadError, read_values, toml_value
 from tribodyn.study.uncertain.lanes import draw
+from tribodyn.validated_files import read_bytes
 from tribodyn.variants.compute import KINDS
 from tribodyn.variants.members import MOST, Grid, Layout, listed
 

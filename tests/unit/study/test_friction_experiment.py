@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.members import Members
+from tribodyn.checkpoints import Members
 from tribodyn.study import friction_experiment
 from tribodyn.study.studies import friction_experiment as module
 from tribodyn.study.studies import sweep as sweeps

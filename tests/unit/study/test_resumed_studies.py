@@ -10,7 +10,7 @@ import pytest
 import tribodyn.study.studies.grid as grid
 import tribodyn.study.studies.sweep as sweeps
 from tribodyn import load_case
-from tribodyn.members import Members
+from tribodyn.checkpoints import Members
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.study import bifurcation, sweep
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tribodyn.checkpoints import NAME
 from tribodyn.errors import ComputationError, InputError, OutputExistsError
-from tribodyn.members import NAME
 from tribodyn.variants import open_study, read_study, run_study, study_state
 from tribodyn.variants.store import Store
 

@@ -18,8 +18,8 @@ from tribodyn.cases.papers.printed import (
     series_of,
     verdicts,
 )
+from tribodyn.checkpoints import Members
 from tribodyn.drawing import write_report_of
-from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, record
 from tribodyn.study.pipeline.save import new_directory
@@ -147,7 +147,7 @@ def compare_with_paper(
         Return the rows that are done when the computation is interrupted with Ctrl-C.
     progress : Progress
         Told how many computations are done; silent by default.
-    members : tribodyn.members.Members, optional
+    members : tribodyn.checkpoints.Members, optional
         Keeps every computation as it is finished, and has those that a killed process finished.
 
     Returns

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.cases.load import load_case
 from tribodyn.cases.papers.computations import Figures, Meshes, figures_of, loads_of
 from tribodyn.cases.papers.printed import PrintedRow, course
+from tribodyn.checkpoints import Members
 from tribodyn.errors import ComputationError, InputError, quiet
-from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.studies.grid import over_cases
 from tribodyn.units import shown_in

@@ -52,8 +52,8 @@ def bifurcation(
     json : bool
         Write what was found in SI as one JSON object to stdout.
     """
+    from tribodyn.checkpoints import Members
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.members import Members
 
     key, (first, last, points) = _one(over)
     _check_lengths(cycles, transient)

@@ -10,7 +10,7 @@ from cyclopts import Parameter
 from tribodyn.cli.screen import say, say_json, table
 from tribodyn.cli.settings import Flag, check_place
 from tribodyn.errors import InputError
-from tribodyn.stored import plain_number
+from tribodyn.validated_files import plain_number
 
 Words = Annotated[list[str] | None, Parameter(negative="")]
 

@@ -172,8 +172,8 @@ def friction_from_loss(
     from tribodyn.losses import friction_from_power_loss
     from tribodyn.report import write_study_report
     from tribodyn.report.answers import pictured
-    from tribodyn.stored import csv_text, write_dataset
     from tribodyn.study.pipeline.save import new_directory
+    from tribodyn.validated_files import csv_text, write_dataset
 
     target = out if out is not None else Path(f"{Path(file).stem}-friction")
     check_place(target, force)

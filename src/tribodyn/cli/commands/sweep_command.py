@@ -72,8 +72,8 @@ def sweep(
 
 def kept_study(target: Path, force: bool, compute: Callable[..., Study]) -> Study:
     """Compute a study whose parts are kept as they are finished, and save what is done."""
+    from tribodyn.checkpoints import Members
     from tribodyn.cli.bar import progress_bar
-    from tribodyn.members import Members
 
     check_place(target, force)
     with Members(target, force) as members:

@@ -13,7 +13,7 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced
-from tribodyn.compiled.kept import kept
+from tribodyn.compiled.cache import cached_njit
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     Law,
@@ -310,7 +310,7 @@ def _advance_lane(
 
 
 def _build(digest: str) -> Any:
-    @kept(**JIT)
+    @cached_njit(**JIT)
     def march_adaptive_block(
         lanes: Any,
         table: PhaseTable,

@@ -10,7 +10,7 @@ from numba import types
 from numba.extending import overload
 
 from tribodyn.compiled import announced
-from tribodyn.compiled.kept import kept
+from tribodyn.compiled.cache import cached_njit
 from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
@@ -195,7 +195,7 @@ def _choose_seen(gathered, slot):  # type: ignore[no-untyped-def]
 
 
 def _build(digest: str) -> Any:
-    @kept(**JIT)
+    @cached_njit(**JIT)
     def march_block(
         lanes: Any,
         method: Any,
@@ -346,7 +346,7 @@ march_block = announced(_build(kernel_digest()), "the engine", "a quarter of a m
 
 
 def _build_gather(digest: str) -> Any:
-    @kept(**JIT)
+    @cached_njit(**JIT)
     def gather_record(
         lanes: Any,
         program: Program,

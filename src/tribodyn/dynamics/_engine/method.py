@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.compiled import source_digest
-from tribodyn.compiled.inner import INNER_OPTIONS
+from tribodyn.compiled.jit import INNER_OPTIONS
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.types import Array, Index
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.arrays.kept import Memory, new_memory
 from tribodyn.arrays.products import Room, times
+from tribodyn.arrays.workspace import Memory, new_memory
 from tribodyn.dynamics.equations.entry import Entry, entry_values, varies
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, once, system_events
 from tribodyn.dynamics.equations.nodes import (

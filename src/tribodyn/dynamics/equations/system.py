@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.arrays.recent import Recent
+from tribodyn.arrays.memo import Memo
 from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.errors import InputError, real_numbers, require_positive
@@ -277,7 +277,7 @@ class System:
 
 _MATRICES = ("mass", "damping", "stiffness")
 #: Inverses of mass matrices: a study builds the same structure many times.
-_inverses: Recent[Array] = Recent(8)
+_inverses: Memo[Array] = Memo(8)
 
 
 def _inverse_of(mass: Array, names: tuple[str, ...]) -> Array:

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tribodyn.arrays.recent import Recent
+from tribodyn.arrays.memo import Memo
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import once
 from tribodyn.dynamics.equations.motion import compression
@@ -97,7 +97,7 @@ def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordin
 
 
 #: Those of the last systems at 1 rad/s: a study builds the same structure many times.
-_known: Recent[OrbitCoordinates] = Recent(8)
+_known: Memo[OrbitCoordinates] = Memo(8)
 
 
 def _coordinates(mass: Array, stiffness: Array, damping: Array, used: Array) -> OrbitCoordinates:

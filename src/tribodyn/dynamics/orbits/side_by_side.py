@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.arrays.kept import Memory, kept_memory, new_memory
+from tribodyn.arrays.workspace import Memory, new_memory, reused_memory
 from tribodyn.dynamics._engine.blocks import WIDTH
 from tribodyn.dynamics.equations.alike import (
     evaluate_alike,
@@ -61,7 +61,7 @@ def orbits_in_touch(
         with collected() as told:
             try:
                 alike = [systems[i] for i in numbers]
-                group = _Group(alike, mesh_frequency[numbers], steps, kept_memory)
+                group = _Group(alike, mesh_frequency[numbers], steps, reused_memory)
                 orbits = _responses(group)
             except InputError:  # which is told where each is looked at by itself
                 continue

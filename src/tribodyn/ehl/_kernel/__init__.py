@@ -8,7 +8,7 @@
 | ``factors`` | elimination: of a band, of a dense matrix |
 | ``linear_solver`` | GMRES with the tangent, preconditioned by its band and a coarse grid |
 | ``newton`` | Newton's method on one grid, with the free outlet and with cavities |
-| ``transfer`` | free outlet, and a solution carried to other grids |
+| ``grid_transfer`` | free outlet, and a solution carried to other grids |
 | ``inlet`` | flooded inlet before the grid, and the start of Grubin |
 | ``steady`` | entries from Python: nested iteration; tangent of the film |
 | ``transient`` | entry from Python: the contact over time |

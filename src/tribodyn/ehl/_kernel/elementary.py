@@ -13,7 +13,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from tribodyn.compiled.inner import INNER_OPTIONS
+from tribodyn.compiled.jit import INNER_OPTIONS
 
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
 JIT: dict[str, Any] = {
@@ -27,7 +27,7 @@ INNER: dict[str, Any] = {**JIT, **INNER_OPTIONS}
 
 #: Files whose code ends up in every compiled kernel of a film, beside its own.
 SOURCES: tuple[str, ...] = ("elementary", "reynolds", "film_sum", "factors", "linear_solver")
-SOURCES += ("transfer", "inlet", "newton")
+SOURCES += ("grid_transfer", "inlet", "newton")
 
 #: Sums must keep their order: the rounding below would be optimised away. For the same reason
 #: the functions are inlined by the compiler's back end, which keeps these flags, never by Numba.

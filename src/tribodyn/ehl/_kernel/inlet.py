@@ -7,9 +7,9 @@ import numpy as np
 
 from tribodyn.ehl._kernel.elementary import INNER
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum
+from tribodyn.ehl._kernel.grid_transfer import scale_to_load
 from tribodyn.ehl._kernel.newton import Equation, NewtonWork
 from tribodyn.ehl._kernel.reynolds import BARUS, ROELANDS
-from tribodyn.ehl._kernel.transfer import scale_to_load
 from tribodyn.types import Array
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)

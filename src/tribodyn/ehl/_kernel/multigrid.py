@@ -14,9 +14,10 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
-from tribodyn.compiled.kept import kept
+from tribodyn.compiled.cache import cached_njit
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, film_sum, film_work_size, influence
+from tribodyn.ehl._kernel.grid_transfer import central, cut_negative, extend, refine
 from tribodyn.ehl._kernel.multigrid_levels import (
     LEFT,
     RIGHT,
@@ -36,7 +37,6 @@ from tribodyn.ehl._kernel.multigrid_levels import (
 )
 from tribodyn.ehl._kernel.newton import CONVERGED, NOT_FINITE, ROUNDED, STALLED
 from tribodyn.ehl._kernel.steady import SteadyContact
-from tribodyn.ehl._kernel.transfer import central, cut_negative, extend, refine
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
@@ -251,7 +251,7 @@ def _check(level: Level, k: int, load: float, work: LevelWork, line: Array) -> N
 
 
 def _build(digest: str) -> Any:
-    @kept(**JIT)
+    @cached_njit(**JIT)
     def multigrid_solve(
         n: int, count: int, first: int, contact: SteadyContact, limits: MultigridLimits,
         offset: float, free: int, P: Array, H: Array, shape: Array, films: Array, record: Array,

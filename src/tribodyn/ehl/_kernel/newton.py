@@ -13,6 +13,7 @@ import numpy as np
 
 from tribodyn.ehl._kernel.elementary import INNER
 from tribodyn.ehl._kernel.film_sum import Grid, film_sum
+from tribodyn.ehl._kernel.grid_transfer import cut_negative, extend
 from tribodyn.ehl._kernel.linear_solver import (
     CoarseTangent,
     LinearWork,
@@ -22,7 +23,6 @@ from tribodyn.ehl._kernel.linear_solver import (
     prepare,
 )
 from tribodyn.ehl._kernel.reynolds import Fields, fill_oil, fill_tangent, make_fields, residual
-from tribodyn.ehl._kernel.transfer import cut_negative, extend
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 

@@ -9,9 +9,10 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
-from tribodyn.compiled.kept import kept
+from tribodyn.compiled.cache import cached_njit
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import influence, make_grid
+from tribodyn.ehl._kernel.grid_transfer import central, refine
 from tribodyn.ehl._kernel.inlet import cold_start, free_nodes
 from tribodyn.ehl._kernel.linear_solver import (
     coarse_tangent,
@@ -37,7 +38,6 @@ from tribodyn.ehl._kernel.reynolds import (
     mobility,
     oil_state,
 )
-from tribodyn.ehl._kernel.transfer import central, refine
 from tribodyn.types import Array, Index
 
 #: Intervals from which on the linear solver has a coarse grid, and about how many that has.
@@ -75,7 +75,7 @@ class SteadyContact(NamedTuple):
 
 
 def _build(digest: str) -> Any:
-    @kept(**JIT)
+    @cached_njit(**JIT)
     def newton_solve(
         n: int, first: int, warm: bool, contact: SteadyContact, limits: Limits,
         film_tolerance: float, offset: float, free: int, P: Array, H: Array, films: Array,
@@ -145,7 +145,7 @@ _TOLERANCE = 1e-8
 
 
 def _build_tangent(digest: str) -> Any:
-    @kept(**JIT)
+    @cached_njit(**JIT)
     def tangent_of_film(
         n: int, start: float, dx: float, lam: float, oil: Array, k: int, tail: float,
         load: float, P: Array, H: Array,
@@ -179,7 +179,7 @@ def _build_tangent(digest: str) -> Any:
 
 
 def _build_parts(digest: str) -> Any:
-    @kept(**JIT)
+    @cached_njit(**JIT)
     def linear_parts(
         n: int, start: float, dx: float, lam: float, oil: Array, k: int, P: Array, H: Array
     ) -> tuple[Array, ...]:

@@ -13,9 +13,10 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
-from tribodyn.compiled.kept import kept
+from tribodyn.compiled.cache import cached_njit
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, influence
+from tribodyn.ehl._kernel.grid_transfer import central
 from tribodyn.ehl._kernel.inlet import flooded_inlet
 from tribodyn.ehl._kernel.linear_solver import no_coarse
 from tribodyn.ehl._kernel.newton import (
@@ -28,7 +29,6 @@ from tribodyn.ehl._kernel.newton import (
     newton_work,
 )
 from tribodyn.ehl._kernel.reynolds import oil_state
-from tribodyn.ehl._kernel.transfer import central
 from tribodyn.types import Array, Index
 
 # What calls the solver is inlined: every layer of calls would be optimised anew as a whole.
@@ -335,7 +335,7 @@ def _follow(
 
 
 def _build(digest: str) -> Any:
-    @kept(**JIT)
+    @cached_njit(**JIT)
     def follow_contact(
         contact: TransientContact, ratio: float, time: Array, table: Array, halvings: int,
         every: int, P: Array, H: Array, state: Instant, records: Array, pressures: Array,

@@ -9,5 +9,5 @@
 | ``grid`` | how far the grid reaches, the inlet before it, and how many nodes it has |
 | ``contact_problem`` | what an engine is asked, and what it answers |
 | ``newton_engine``, ``multigrid_engine`` | the two engines |
-| ``rescue`` | does a solution meet the equations, and what is tried when an engine fails |
+| ``fallbacks`` | verification of solutions, and the fallbacks when an engine fails |
 """

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, si_case
 from tribodyn.ehl.steady.contact_problem import ContactProblem
+from tribodyn.ehl.steady.fallbacks import Verified, solve_problem
 from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, cut_error, estimate_film
 from tribodyn.ehl.steady.grid_error import GridError, grid_error
-from tribodyn.ehl.steady.rescue import Verified, solve_problem
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
 from tribodyn.errors import InputError, real_numbers, require_between, warn
 from tribodyn.interrupt import aside

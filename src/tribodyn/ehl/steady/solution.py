@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 
 from tribodyn.ehl.steady.contact_case import ContactCase
 from tribodyn.ehl.steady.contact_problem import DiscreteContact
+from tribodyn.ehl.steady.fallbacks import Verified
 from tribodyn.ehl.steady.grid import Domain, regime_name
 from tribodyn.ehl.steady.grid_error import GridError
-from tribodyn.ehl.steady.rescue import Verified
 from tribodyn.ehl.stiffness.film_stiffness import film_stiffness
 from tribodyn.ehl.stiffness.frequency import frequency_response
 from tribodyn.lubricant import Lubricant

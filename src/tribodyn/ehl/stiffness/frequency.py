@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, SolvedContact
-from tribodyn.ehl.steady.rescue import solve_problem
+from tribodyn.ehl.steady.fallbacks import solve_problem
 from tribodyn.ehl.stiffness.film_stiffness import InletChange, film_slopes, inlet_change
 from tribodyn.errors import require_between, require_one_of, require_positive
 from tribodyn.types import Array, ComplexArray

@@ -13,8 +13,8 @@ import numpy as np
 from tribodyn.errors import InputError
 from tribodyn.interrupt import deferred
 from tribodyn.measurement.readers.content import Content, from_arrays, rate_of, refuse_table, tells
-from tribodyn.stored import read_dataset
 from tribodyn.types import Array
+from tribodyn.validated_files import read_dataset
 
 #: UFF 58: time histories among the kinds of function, time among the abscissas; HDF5: deepest
 #: group that is read.

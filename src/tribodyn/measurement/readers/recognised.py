@@ -11,7 +11,7 @@ from typing import NamedTuple
 from tribodyn.errors import Argument, InputError, TribodynError
 from tribodyn.measurement.readers import binary, text
 from tribodyn.measurement.readers.content import Content
-from tribodyn.stored import LARGEST, file_kind
+from tribodyn.validated_files import LARGEST, file_kind
 
 
 class Format(NamedTuple):

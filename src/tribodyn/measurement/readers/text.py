@@ -13,9 +13,9 @@ import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.measurement.readers.content import MEASURED, Content, in_seconds, is_time
-from tribodyn.stored import LARGEST
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, convert
+from tribodyn.validated_files import LARGEST
 
 _NUMBER = re.compile(r"[+-]?((\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?|nan|inf)", re.IGNORECASE)
 #: What loggers write where a sample is missing.

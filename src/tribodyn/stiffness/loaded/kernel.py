@@ -18,8 +18,8 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled import announced, source_digest
-from tribodyn.compiled.inner import INNER_OPTIONS
-from tribodyn.compiled.kept import kept
+from tribodyn.compiled.cache import cached_njit
+from tribodyn.compiled.jit import INNER_OPTIONS
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
@@ -228,7 +228,7 @@ def _approach(
 def _build(digest: str) -> tuple[Any, Any, Any]:
     """Make the kernels; the content of the sources is part of their cache key."""
 
-    @kept(**_JIT)
+    @cached_njit(**_JIT)
     def solve_loads(
         C: Array,
         A: Array,
@@ -265,7 +265,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                         force[t, p, s, i] = f[s, i]
         return 0
 
-    @kept(**_JIT)
+    @cached_njit(**_JIT)
     def solve_deflections(
         C: Array,
         A: Array,
@@ -294,7 +294,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                 tangent[d, p] = sums[1]
         return 0
 
-    @kept(**_JIT)
+    @cached_njit(**_JIT)
     def pickups(
         C: Array, A: Array, B: float, gaps: Array, most: Array, found: Array, flag: Index
     ) -> Any:

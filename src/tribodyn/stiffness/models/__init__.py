@@ -2,7 +2,7 @@
 
 | module | what it answers |
 | --- | --- |
-| `given` | stiffness that is given: constant in each zone, a Fourier series, a table |
+| `prescribed` | prescribed stiffness: constant in each zone, a Fourier series, a table |
 | `iso6336` | single and mesh stiffness of the standard, as a parabola over the path |
 | `potential_energy` | energy method with true fillets, foundation and local compression |
 """

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from tribodyn import units
 from tribodyn.errors import Argument, InputError
-from tribodyn.stored import plain_number, read_bytes
+from tribodyn.validated_files import plain_number, read_bytes
 
 if TYPE_CHECKING:
     from tribodyn.gear import ProfileMap

@@ -12,10 +12,10 @@ from typing import Any
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
-from tribodyn.stored import read_bytes
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.given import Source
 from tribodyn.study.case.section import file_keys
+from tribodyn.validated_files import read_bytes
 
 _SPACE = " \t\r"
 

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from tribodyn.drawing import FIGURES, draw, figures_of, write_report_of
 from tribodyn.errors import collected
 from tribodyn.record import Parts, html_table, record
-from tribodyn.stored import write_dataset
 from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.pipeline.computed import Computed
@@ -19,6 +18,7 @@ from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.series import parts_of, stored, to_csv
 from tribodyn.study.pipeline.summary import SUMMARY, by_topic, summarize
 from tribodyn.study.pipeline.words import in_words
+from tribodyn.validated_files import write_dataset
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, NaturalModes

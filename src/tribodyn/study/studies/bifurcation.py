@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.checkpoints import Members
 from tribodyn.errors import InputError, collected
-from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import spec_of
@@ -63,7 +63,7 @@ def bifurcation(
         What asks, for messages; then a bare number for a dimension is refused as in a file.
     progress : Progress
         Told how far the study has come; silent by default.
-    members : tribodyn.members.Members, optional
+    members : tribodyn.checkpoints.Members, optional
         Keeps what is finished as it comes, and has what a killed process finished.
     **options : object
         ``sweep``, ``cycles``, ``transient``, ``keep``, ``signal``, ``verdict``, ``exponents`` and

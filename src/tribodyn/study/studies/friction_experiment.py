@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.checkpoints import Members
 from tribodyn.errors import InputError, collected
-from tribodyn.members import Members
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import mesh_law_of, placed
 from tribodyn.study.pipeline.run import Asked
@@ -73,7 +73,7 @@ def friction_experiment(
         Return what is done when the computation is interrupted with Ctrl-C, in place of nothing.
     progress : Progress
         Told how many steady states are done; silent by default.
-    members : tribodyn.members.Members, optional
+    members : tribodyn.checkpoints.Members, optional
         Keeps every state as it is finished, and has those that a killed process finished.
 
     Returns

@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from tribodyn.checkpoints import Members
 from tribodyn.errors import InputError
 from tribodyn.interrupt import in_threads
-from tribodyn.members import Members
 from tribodyn.mesh import MeshTable
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.assembly import whole_system

@@ -13,9 +13,9 @@ from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from tribodyn.checkpoints import Members
 from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.interrupt import STOPPED, in_threads, refuse_stopped, stop_flag
-from tribodyn.members import Members
 from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
@@ -65,7 +65,7 @@ def sweep(
         What asks, for messages; then a bare number for a dimension is refused as in a file.
     progress : Progress
         Told how many values are done; silent by default.
-    members : tribodyn.members.Members, optional
+    members : tribodyn.checkpoints.Members, optional
         Keeps every value as it is finished, and has those that a killed process finished.
 
     Returns

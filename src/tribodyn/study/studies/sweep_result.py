@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import InputError, did_you_mean
 from tribodyn.record import Parts, Record, html_table, record
-from tribodyn.stored import csv_text, write_dataset
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.words import in_words
 from tribodyn.study.studies.axes import Axis
 from tribodyn.types import Array
+from tribodyn.validated_files import csv_text, write_dataset
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case

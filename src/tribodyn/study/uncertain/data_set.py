@@ -10,8 +10,8 @@ import numpy as np
 from tribodyn.errors import Argument, InputError
 from tribodyn.files import atomic_write, check_new
 from tribodyn.record import Parts, Record, fact, record
-from tribodyn.stored import read_dataset
 from tribodyn.types import Array, Mask
+from tribodyn.validated_files import read_dataset
 
 
 @record

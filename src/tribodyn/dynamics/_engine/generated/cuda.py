@@ -17,7 +17,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from tribodyn.compiled import tell
+from tribodyn.compiled import announce
 from tribodyn.dynamics._engine import contact_forces, crossing, middle, moments, runge_kutta
 from tribodyn.dynamics._engine.generated.source import write_source
 from tribodyn.dynamics._engine.statistics import Statistics
@@ -81,7 +81,7 @@ class _Kernel:
         self.march = cuda.jit(functions.pop("march_thread"))
         if not numba.config.ENABLE_CUDASIM:
             names |= {name: cuda.jit(device=True)(each) for name, each in functions.items()}
-            tell("compiling the engine for the graphics processor, about a quarter of a minute")
+            announce("compiling the engine for the graphics processor, about a quarter of a minute")
 
 
 _kernel = lru_cache(16)(_Kernel)

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 import xarray
 
-import tribodyn.stored as stored
+from tribodyn import validated_files
 from tribodyn.errors import InputError
 from tribodyn.record import Parts
-from tribodyn.stored import read_bytes, read_dataset, write_dataset
+from tribodyn.validated_files import read_bytes, read_dataset, write_dataset
 
 
 def _data() -> xarray.Dataset:
@@ -129,7 +129,7 @@ def test_only_regular_files_are_read(tmp_path: Path) -> None:
 
 
 def test_the_size_is_limited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(stored.LARGEST, "case", 10)
+    monkeypatch.setitem(validated_files.LARGEST, "case", 10)
     (tmp_path / "a").write_bytes(b"0123456789")
     assert len(read_bytes(tmp_path / "a", "case")) == 10
     (tmp_path / "a").write_bytes(b"0123456789a")
@@ -155,7 +155,7 @@ def test_an_interruption_waits_until_a_netcdf_file_is_read(
             return super().readinto(buffer)
 
     with monkeypatch.context() as patch:
-        patch.setattr(stored.io, "BytesIO", Interrupted)
+        patch.setattr(validated_files.io, "BytesIO", Interrupted)
         with pytest.raises(KeyboardInterrupt):
             read_dataset(tmp_path / "a.nc")
     assert len(accesses) > access

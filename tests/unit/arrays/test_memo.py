@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.arrays.recent import Recent
+from tribodyn.arrays.memo import Memo
 
 
 def test_a_value_is_computed_once_for_equal_arrays_and_anew_for_others() -> None:
-    known: Recent[float] = Recent(2)
+    known: Memo[float] = Memo(2)
     asked = []
 
     def total(array: np.ndarray) -> float:

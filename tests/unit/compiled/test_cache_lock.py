@@ -1,4 +1,4 @@
-"""Processes that fill one cache: what one of them begins to compile the others do not."""
+"""Processes that share one cache: a kernel that one of them compiles the others wait for."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from pathlib import Path
 
 import pytest
 
-from tribodyn.compiled import agreement as module
-from tribodyn.compiled.agreement import Agreement, ElsewhereError, agreed, share
+from tribodyn.compiled import cache_lock as module
+from tribodyn.compiled.cache_lock import CacheLock, ElsewhereError, locked, use_lock
 
 
 class _Cache:
-    """A cache on disk, as far as it matters here."""
+    """Stand-in for the disk cache of a kernel."""
 
     def __init__(self) -> None:
-        self.kept: dict[str, str] = {}
+        self.code: dict[str, str] = {}
 
     def load_overload(self, signature: str, context: object) -> str | None:
-        return self.kept.get(signature)
+        return self.code.get(signature)
 
     def save_overload(self, signature: str, data: str) -> None:
-        self.kept[signature] = data
+        self.code[signature] = data
 
 
 class _Kernel:
     def __init__(self, cache: _Cache) -> None:
         self._cache, self.py_func, self.told = cache, len, []
-        share(self, lambda: self.told.append("waits"))
+        use_lock(self, lambda: self.told.append("waits"))
 
     def wanted(self, signature: str, data: str) -> str:
         """What a dispatcher does: load, or compile and save."""
@@ -41,21 +41,21 @@ class _Kernel:
 
 def test_whoever_comes_first_compiles_and_the_other_waits_for_it(tmp_path: Path) -> None:
     kernel = _Kernel(_Cache())
-    with agreed(Agreement(tmp_path)):
+    with locked(CacheLock(tmp_path)):
         assert kernel.wanted("a", "first") == "first"
-        kernel._cache.kept.clear()
+        kernel._cache.code.clear()
         assert kernel.wanted("a", "again") == "again"  # its own mark does not bind it
-        kernel._cache.kept.clear()
-    with pytest.raises(ElsewhereError), agreed(Agreement(tmp_path)):
+        kernel._cache.code.clear()
+    with pytest.raises(ElsewhereError), locked(CacheLock(tmp_path)):
         kernel.wanted("a", "of another that waits for nobody")
 
     def writes_later() -> None:
         time.sleep(0.2)
-        kernel._cache.kept["a"] = "of the first"
+        kernel._cache.code["a"] = "of the first"
 
     writer = threading.Thread(target=writes_later)
     writer.start()
-    with agreed(Agreement(tmp_path, lambda: True)):
+    with locked(CacheLock(tmp_path, lambda: True)):
         assert kernel.wanted("a", "of the second") == "of the first"
         assert kernel.told
         assert kernel.wanted("b", "of the second") == "of the second"  # nobody came before
@@ -64,18 +64,18 @@ def test_whoever_comes_first_compiles_and_the_other_waits_for_it(tmp_path: Path)
 
 def test_what_an_ended_process_left_is_compiled_here(tmp_path: Path) -> None:
     kernel = _Kernel(_Cache())
-    assert not Agreement(tmp_path).look_again("builtins.len a", lambda: None)
-    with agreed(Agreement(tmp_path, lambda: False)):
+    assert not CacheLock(tmp_path).retry_load("builtins.len a", lambda: None)
+    with locked(CacheLock(tmp_path, lambda: False)):
         assert kernel.wanted("a", "of the second") == "of the second"
 
 
 def test_an_interruption_ends_the_wait(tmp_path: Path) -> None:
-    assert not Agreement(tmp_path).look_again("builtins.len a", lambda: None)
+    assert not CacheLock(tmp_path).retry_load("builtins.len a", lambda: None)
 
     def interrupted() -> bool:
         raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt), agreed(Agreement(tmp_path, interrupted)):
+    with pytest.raises(KeyboardInterrupt), locked(CacheLock(tmp_path, interrupted)):
         _Kernel(_Cache()).wanted("a", "of the second")
 
 
@@ -83,7 +83,7 @@ def test_files_are_written_one_after_the_other(tmp_path: Path) -> None:
     inside, most = [], []
 
     def write() -> None:
-        with Agreement(tmp_path).writing():
+        with CacheLock(tmp_path).writing():
             inside.append(1)
             most.append(len(inside))
             time.sleep(0.02)
@@ -101,15 +101,15 @@ def test_files_are_written_one_after_the_other(tmp_path: Path) -> None:
 def test_a_writer_that_was_killed_holds_nobody_for_long(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, "_WRITING", 0.1)
+    monkeypatch.setattr(module, "_WRITE_TIMEOUT", 0.1)
     (tmp_path / "writing").touch()
-    with Agreement(tmp_path).writing():
+    with CacheLock(tmp_path).writing():
         pass
     assert not list(tmp_path.iterdir())
 
 
 def test_a_place_that_takes_no_marks_binds_nobody(tmp_path: Path) -> None:
-    lost = Agreement(tmp_path / "nowhere", lambda: True)
-    assert not lost.look_again("builtins.len a", lambda: None)
+    lost = CacheLock(tmp_path / "nowhere", lambda: True)
+    assert not lost.retry_load("builtins.len a", lambda: None)
     with lost.writing():
         pass

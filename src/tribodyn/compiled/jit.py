@@ -1,7 +1,8 @@
-"""How functions are compiled that only compiled functions call: not by themselves.
+"""Compiler options of functions that only compiled functions call.
 
-Numba optimises every function and turns it into machine code where it is first called, and does
-both again with each of its callers. Here that is left to the outermost one, the only one that runs.
+Numba optimises every function and generates machine code where it is first called, and does both
+again with each of its callers. These options leave both to the outermost kernel, the only one that
+Python calls.
 """
 
 from __future__ import annotations
@@ -14,17 +15,17 @@ from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
 
 
-class _Nowhere:
-    """Where functions are that have no machine code."""
+class _NoCodegen:
+    """Code generator of functions without machine code of their own."""
 
     def set_env(self, name: str, env: Any) -> None:
         pass
 
 
 class _InnerLibrary(JITCodeLibrary):  # type: ignore[misc]
-    """Instructions of a function as they were lowered, for its callers to link."""
+    """Unoptimised instructions of a function, which its callers link."""
 
-    codegen = _Nowhere()
+    codegen = _NoCodegen()
 
     def _optimize_final_module(self) -> None:
         pass
@@ -39,7 +40,7 @@ class _InnerLibrary(JITCodeLibrary):  # type: ignore[misc]
 
 
 class _Flags(Flags):  # type: ignore[misc]
-    """Flags of the compiler that are compared by what was set, not by all that could be."""
+    """Compiler flags, compared by those that are set rather than by all that exist."""
 
     _hash = hash(Flags())
 
@@ -58,13 +59,13 @@ class _InnerLowering(NativeLowering):  # type: ignore[misc]
     def run_pass(self, state: Any) -> bool:
         codegen = state.targetctx.codegen()
         state.library = _InnerLibrary(codegen, state.func_id.func_qualname)
-        done: bool = super().run_pass(state)
-        return done
+        changed: bool = super().run_pass(state)
+        return changed
 
 
 class _InnerCompiler(CompilerBase):  # type: ignore[misc]
-    def __init__(self, *given: Any) -> None:
-        super().__init__(*given)
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
         self.state.flags = _Flags(self.state.flags)
 
     def define_pipelines(self) -> list[Any]:
@@ -74,12 +75,12 @@ class _InnerCompiler(CompilerBase):  # type: ignore[misc]
             for step, text in pipeline.passes
         ]
         pipeline.finalize()
-        # The last of the steps that change the code brings it in order for the ones that follow.
+        # The last pass that changes the code restores the invariants for the passes after it.
         pipeline._ENFORCING = False
         return [pipeline]
 
 
-#: Options of such a function: no entry from Python or C either.
+#: Options of an inner function: no entry point from Python or C either.
 INNER_OPTIONS: dict[str, Any] = {
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,

@@ -12,14 +12,14 @@ import pkgutil
 import pytest
 from numba.core.dispatcher import Dispatcher
 
-from tribodyn.compiled.agreement import is_kept
-from tribodyn.compiled.inner import INNER_OPTIONS
+from tribodyn.compiled.cache_lock import has_disk_cache
+from tribodyn.compiled.jit import INNER_OPTIONS
 
 _FOLDERS = "tribodyn.ehl._kernel", "tribodyn.dynamics._engine", "tribodyn.stiffness.loaded"
 
 
 @pytest.mark.parametrize("folder", _FOLDERS)
-def test_functions_of_kernels_are_inner_or_kept(folder: str) -> None:
+def test_functions_of_kernels_are_inner_or_cached(folder: str) -> None:
     package = importlib.import_module(folder)
     modules = [
         importlib.import_module(f"{folder}.{found.name}")
@@ -37,6 +37,6 @@ def test_functions_of_kernels_are_inner_or_kept(folder: str) -> None:
     others = {
         name
         for name, value in compiled.items()
-        if value._compiler.pipeline_class is not inner and not is_kept(value)
+        if value._compiler.pipeline_class is not inner and not has_disk_cache(value)
     }
     assert others == set()

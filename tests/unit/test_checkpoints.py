@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import importlib
 import os
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tribodyn.checkpoints import NAME, Members
 from tribodyn.errors import InputError
 from tribodyn.files import clear_leftovers
-from tribodyn.members import NAME, Members
 
 _STUDY = {"study": "sweep", "version": "1", "case": "a", "over": "b", "options": {"x": [1, 2.5]}}
 
@@ -93,3 +95,10 @@ def test_nothing_is_kept_without_a_place() -> None:
     members.keep("0", 1.0)
     assert members.get("0") is None
     members.discard()
+
+
+def test_the_earlier_module_name_still_works() -> None:
+    sys.modules.pop("tribodyn.members", None)
+    with pytest.warns(DeprecationWarning, match=r"tribodyn\.checkpoints"):
+        earlier = importlib.import_module("tribodyn.members")
+    assert earlier.Members is Members

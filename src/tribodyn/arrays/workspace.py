@@ -1,4 +1,4 @@
-"""Memory that lasts from one use to the next, as new memory is far from the processor."""
+"""Work arrays that are reused from call to call, so that their memory stays in the cache."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ import numpy as np
 
 from tribodyn.types import Array
 
-#: Gives an array of a name and a shape, whatever is in it.
+#: Returns an array of a name and a shape with undefined content.
 Memory = Callable[[str, tuple[int, ...]], Array]
 
 
-class _Kept(threading.local):
+class _Workspace(threading.local):
     def __init__(self) -> None:
         self._arrays: dict[str, Array] = {}
 
-    def room(self, name: str, shape: tuple[int, ...]) -> Array:
-        """An array that lasts until this thread asks for that name again."""
+    def array(self, name: str, shape: tuple[int, ...]) -> Array:
+        """An array that is valid until this thread requests the same name again."""
         size = math.prod(shape)
         if name not in self._arrays or self._arrays[name].size < size:
             self._arrays[name] = np.empty(size)
         return self._arrays[name][:size].reshape(shape)
 
 
-#: Memory of this thread.
-kept_memory: Memory = _Kept().room
+#: Reused memory of this thread.
+reused_memory: Memory = _Workspace().array
 
 
 def new_memory(name: str, shape: tuple[int, ...]) -> Array:
-    """An array of its own, as :data:`kept_memory` gives one that lasts until the next."""
+    """A new array, where :data:`reused_memory` would return one that is overwritten later."""
     return np.empty(shape)

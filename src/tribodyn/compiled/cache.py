@@ -1,0 +1,35 @@
+"""Compile kernels with Numba and cache them on disk where a folder can be written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numba as nb
+
+from tribodyn.compiled import announce
+
+
+def cached_njit(**options: Any) -> Callable[[Any], Any]:
+    """Compile a function at its first call, and cache the code on disk if that is possible."""
+
+    def compile_kernel(function: Any) -> Any:
+        try:
+            return nb.njit(cache=True, **options)(function)
+        except RuntimeError as error:
+            # Neither the source folder nor the home directory can be written: a container perhaps.
+            if "no locator" not in str(error):
+                raise
+            _announce_missing_cache()
+            return nb.njit(**options)(function)
+
+    return compile_kernel
+
+
+@cache
+def _announce_missing_cache() -> None:
+    announce(
+        "compiled kernels cannot be cached, so that every process compiles them again: set "
+        "NUMBA_CACHE_DIR to a folder that can be written"
+    )

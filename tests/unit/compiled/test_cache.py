@@ -1,0 +1,53 @@
+"""Kernels are cached where a folder can be written, else compiled by each process."""
+
+from __future__ import annotations
+
+import pytest
+from numba.core.caching import CompileResultCacheImpl
+
+import tribodyn.compiled.cache as module
+from tribodyn.cases import warm_up
+from tribodyn.compiled import announcing_to, cache_lock
+from tribodyn.compiled.cache import cached_njit
+from tribodyn.errors import ComputationError
+
+
+def _double(value: float) -> float:
+    return 2.0 * value
+
+
+def test_a_kernel_is_cached_on_disk() -> None:
+    compiled = cached_njit(nogil=True)(_double)
+    assert cache_lock.has_disk_cache(compiled)
+    assert not cache_lock.is_cached(compiled)
+
+
+def test_without_a_cache_folder_kernels_are_compiled_with_one_message(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(CompileResultCacheImpl, "_locator_classes", [])
+    module._announce_missing_cache.cache_clear()
+    messages: list[str] = []
+    with announcing_to(messages.append):
+        kernels = [cached_njit(nogil=True)(_double) for _ in range(2)]
+    assert len(messages) == 1
+    assert "NUMBA_CACHE_DIR" in messages[0]
+    for kernel in kernels:
+        assert kernel(21.0) == 42.0
+        assert not cache_lock.has_disk_cache(kernel)
+        assert cache_lock.is_cached(kernel)  # so that no process compiles it for another
+
+
+def test_another_failure_is_not_taken_for_a_missing_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise RuntimeError("something else")
+
+    monkeypatch.setattr(module.nb, "njit", fails)
+    with pytest.raises(RuntimeError, match="something else"):
+        cached_njit(nogil=True)(_double)
+
+
+def test_warm_up_is_refused_without_a_cache_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache_lock, "has_disk_cache", lambda kernel: False)
+    with pytest.raises(ComputationError, match="NUMBA_CACHE_DIR"):
+        warm_up("fzg-roughness")
