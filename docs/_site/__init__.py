@@ -1,4 +1,4 @@
-"""What the site has beyond the pages: contents, gallery, reference, glossary and cross-links.
+"""What the site has beyond the pages: contents, gallery, reference, glossary, links, llms.txt.
 
 The pages stand as they read in the repository. Here the links of the index become the tree of
 contents, links to examples lead to the gallery, those to packages to the reference, and names in
@@ -13,9 +13,10 @@ GENERATED = Path(__file__).resolve().parents[1] / "_generated"
 
 def setup(app: Any) -> dict[str, bool]:
     """Register everything with Sphinx."""
-    from _site import pages, reference
+    from _site import llms, pages, reference
 
     app.connect("builder-inited", _write)
+    app.connect("build-finished", llms.write)
     app.connect("source-read", pages.rewrite)
     app.connect("autodoc-process-docstring", reference.escape, priority=900)
     app.connect("missing-reference", reference.resolve)

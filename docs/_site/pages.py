@@ -21,6 +21,8 @@ def rewrite(_: Any, name: str, source: list[str]) -> None:
     text = _SOURCE.sub(r"\1", text)
     if name == "index":
         text += contents((DOCS / "index.md").read_text("utf-8"))
+    if name == "cookbook":
+        text += _tree("Recipes", re.findall(r"\]\((cookbook/[\w-]+)\.md\)", text))
     if name == "nomenclature":
         text = text[: text.index("| Name |")] + _glossary()
     source[0] = text

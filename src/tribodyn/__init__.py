@@ -8,7 +8,7 @@
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
 ``analysis``, ``measurement``, ``uncertainty``,
-``exchange``, ``study``, ``cases``, ``variants``, ``plot`` and ``report``.
+``exchange``, ``study``, ``cases``, ``cookbook``, ``variants``, ``plot`` and ``report``.
 """
 
 from __future__ import annotations
@@ -93,9 +93,9 @@ _ELSEWHERE = {
 }
 
 _ROOMS = (
-    "analysis", "cases", "contact", "dynamics", "ehl", "errors", "exchange", "friction", "gear",
-    "losses", "lubricant", "measurement", "mesh", "nomenclature", "plot", "progress", "report",
-    "stiffness", "study", "surrogate", "uncertainty", "units", "variants",
+    "analysis", "cases", "contact", "cookbook", "dynamics", "ehl", "errors", "exchange",
+    "friction", "gear", "losses", "lubricant", "measurement", "mesh", "nomenclature", "plot",
+    "progress", "report", "stiffness", "study", "surrogate", "uncertainty", "units", "variants",
 )  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """Record what the examples print and draw: ``python tests/docs/gallery.py [NUMBER ...]``."""
 
 import contextlib
+import functools
 import io
 import os
 import re
@@ -8,7 +9,7 @@ import runpy
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -99,30 +100,36 @@ def record(example: Path, shoot: Callable[[Path, Path], None]) -> None:
     (GALLERY / f"{example.stem}.txt").write_text(text, "utf-8")
 
 
-def main(numbers: list[str]) -> None:
-    """Record all examples, or those of some numbers."""
-    from PIL import Image
+@contextlib.contextmanager
+def open_browser() -> Iterator[Any]:
+    """Open a page of headless Chromium."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=shutil.which("chromium"), args=["--no-sandbox"]
         )
-        page = browser.new_page(viewport={"width": 960, "height": 640})
+        yield browser.new_page(viewport={"width": 960, "height": 640})
 
-        def shoot(source: Path, target: Path) -> None:
-            page.goto(source.as_uri())
-            page.wait_for_selector(".main-svg")
-            page.wait_for_timeout(500)
-            page.screenshot(path=target)
-            with Image.open(target) as image:
-                image.convert("P", palette=Image.Palette.ADAPTIVE, colors=64).save(
-                    target, optimize=True
-                )
 
+def save_screenshot(page: Any, source: Path, target: Path) -> None:
+    """Store a picture of a figure that was written as HTML."""
+    from PIL import Image
+
+    page.goto(source.as_uri())
+    page.wait_for_selector(".main-svg")
+    page.wait_for_timeout(500)
+    page.screenshot(path=target, full_page=True)
+    with Image.open(target) as image:
+        image.convert("P", palette=Image.Palette.ADAPTIVE, colors=64).save(target, optimize=True)
+
+
+def main(numbers: list[str]) -> None:
+    """Record all examples, or those of some numbers."""
+    with open_browser() as page:
         for example in EXAMPLES:
             if not numbers or example.name[:2] in numbers:
-                record(example, shoot)
+                record(example, functools.partial(save_screenshot, page))
                 print(example.name)
 
 

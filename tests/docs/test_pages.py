@@ -15,7 +15,12 @@ from registries import as_before
 README = (ROOT / "README.md").read_text("utf-8")
 # Their examples solve films and compile what few others need.
 SLOW = {"film.md", "stiffness.md", "dynamics.md", "hypoid.md"}
-WITH_PYTHON = [path for path in PAGES if blocks(path.read_text("utf-8"), "python")]
+# Those of the cookbook run in test_cookbook.py.
+WITH_PYTHON = [
+    path
+    for path in PAGES
+    if path.parent.name != "cookbook" and blocks(path.read_text("utf-8"), "python")
+]
 
 
 def test_readme_has_exactly_the_two_commands() -> None:
@@ -73,6 +78,7 @@ def test_broken_links_are_noticed(tmp_path: Path) -> None:
 
 def test_every_page_is_reached_from_the_index() -> None:
     index = (ROOT / "docs" / "index.md").read_text("utf-8")
+    index += (ROOT / "docs" / "cookbook.md").read_text("utf-8")
     pages = {path.relative_to(ROOT / "docs").as_posix() for path in PAGES if "docs" in path.parts}
     assert {page for page in pages - {"index.md"} if f"({page})" not in index} == set()
 

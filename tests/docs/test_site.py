@@ -3,6 +3,7 @@
 import re
 
 from _site.gallery import entries, written
+from _site.llms import text as llms_text
 from _site.names import homes
 from _site.pages import contents
 from gallery import EXAMPLES, GALLERY, masked
@@ -50,3 +51,16 @@ def test_texts_are_compared_without_numbers_and_places() -> None:
     here = masked("rms  3.2e-05 N\nfiles in here/report: a.html\n")
     assert here == masked("rms 4 N\nfiles in elsewhere/report: a.html")
     assert here != masked("rms 4 m\nfiles in elsewhere/report: a.html")
+
+
+def test_llms_file_lists_recipes_pages_and_examples_that_exist() -> None:
+    text = llms_text()
+    assert text.startswith("# tribodyn\n\n> ")
+    linked = re.findall(r"\]\(([\w/-]+)\.html\)", text)
+    sources = [name for name in linked if not name.startswith("_generated")]
+    assert all((ROOT / "docs" / f"{name}.md").is_file() for name in sources)
+    assert {f"_generated/examples/{path.stem}" for path in EXAMPLES} <= set(linked)
+    assert set(re.findall(r"\]\(([\w-]+)\.md\)", INDEX.partition("## Conventions")[0])) <= set(
+        linked
+    )
+    assert sum(name.startswith("cookbook/") for name in linked) >= 25

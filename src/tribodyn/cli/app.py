@@ -80,6 +80,11 @@ COMMANDS = (
         "Write a case for other gear programs (REXS), or the tables of a result.",
     ),
     ("new", "case_commands:new", "Write a commented case file to start from."),
+    (
+        "cookbook",
+        "cookbook_command:cookbook",
+        "Print a short script for a common task, or list all of them.",
+    ),
     ("explain", "explain_commands:explain", "Explain a symbol, key, model or warning."),
     ("units", "explain_commands:units", "List the units and their spellings."),
     ("warm-up", "warm_up_command:warm_up", "Compile what runs need, ahead of the first one."),
