@@ -196,10 +196,12 @@ def _surfaces() -> dict[str, set[str]]:
 
 @lru_cache(maxsize=4)
 def modules(folder: Path = PACKAGE) -> tuple[Module, ...]:
-    """All modules under a folder."""
+    """All modules under a folder; recipes are scripts, in folders that are no packages."""
     surfaces = _surfaces()
     found = []
     for path in sorted(folder.rglob("*.py")):
+        if folder == PACKAGE and not (path.parent / "__init__.py").exists():
+            continue
         text, place = path.read_text("utf-8"), path.relative_to(ROOT)
         dotted = ".".join(place.with_suffix("").parts[1:])
         surface = frozenset(surfaces.get(dotted, ()))
