@@ -1,0 +1,121 @@
+"""A recipe, and where recipes are found."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from tribodyn.errors import InputError
+
+_FOLDER = Path(__file__).parent
+#: Folders of the recipes, in the order in which they are listed, with their headings.
+TOPICS = {
+    "gears": "Gears and their teeth",
+    "film_and_friction": "Oil film, friction and losses",
+    "vibration": "Vibration",
+    "data_and_studies": "Results, recordings and studies",
+}
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """A question and the script that answers it.
+
+    Parameters
+    ----------
+    name : str
+        Its name, with hyphens.
+    topic : str
+        Heading under which it is listed.
+    question : str
+        What a user wants to know or do.
+    notes : str
+        What else there is to know, in one paragraph.
+    pages : tuple of str
+        Pages of the documentation to read on, without their suffix.
+    script : str
+        The whole file: runs as it stands and writes one figure.
+    """
+
+    name: str
+    topic: str
+    question: str
+    notes: str
+    pages: tuple[str, ...]
+    script: str
+
+    @property
+    def code(self) -> str:
+        """Return the script without its opening text."""
+        return self.script.split('"""', 2)[2].strip("\n") + "\n"
+
+    @property
+    def file_name(self) -> str:
+        """Return the name of the script file."""
+        return f"{self.name.replace('-', '_')}.py"
+
+    @property
+    def figure_name(self) -> str:
+        """Return the name of the page with the figure that the script writes."""
+        return f"{self.name.replace('-', '_')}.html"
+
+
+@cache
+def recipes() -> dict[str, Recipe]:
+    """Read all recipes, in the order of their topics and names.
+
+    Returns
+    -------
+    dict of str to Recipe
+
+    Examples
+    --------
+    >>> recipes()["compare-oils"].question
+    'What does another oil change?'
+    """
+    scripts = (path for topic in TOPICS for path in sorted((_FOLDER / topic).glob("*.py")))
+    return {recipe.name: recipe for recipe in map(_read_recipe, scripts)}
+
+
+def _read_recipe(path: Path) -> Recipe:
+    script = path.read_text("utf-8")
+    docstring = ast.get_docstring(ast.parse(script)) or ""
+    question, notes, read_on = docstring.split("\n\n")
+    name, topic = path.stem.replace("_", "-"), TOPICS[path.parent.name]
+    pages = tuple(read_on.removeprefix("Read on: ").split(", "))
+    return Recipe(name, topic, question, " ".join(notes.split()), pages, script)
+
+
+def find_recipe(name: str) -> Recipe:
+    """Return the recipe of a name; hyphens and underscores are the same.
+
+    Parameters
+    ----------
+    name : str
+        For example ``"compare-oils"``.
+
+    Returns
+    -------
+    Recipe
+
+    Raises
+    ------
+    InputError
+        If no recipe has this name; the message names the nearest ones.
+
+    Examples
+    --------
+    >>> find_recipe("tip_relief").file_name
+    'tip_relief.py'
+    """
+    key = name.strip().lower().replace("_", "-").removesuffix(".py")
+    if key in recipes():
+        return recipes()[key]
+    similar = difflib.get_close_matches(key, recipes(), n=3, cutoff=0.5)
+    similar += [other for other in recipes() if key and key in other and other not in similar]
+    remedy = f"Did you mean {' or '.join(similar[:3])}? " if similar else ""
+    remedy += f"tribodyn cookbook lists all {len(recipes())}"
+    raise InputError(f'there is no recipe "{name}"', "", "", remedy)
