@@ -27,7 +27,15 @@ AMPLITUDES = (4.0, 0.0, 1.0, 0.25)
 NAMES = ("pinion_x", "pinion_y", "pinion_theta", "wheel_x", "wheel_y", "wheel_theta")
 
 
-class Result(SimpleNamespace):
+class Computed(SimpleNamespace):
+    """Stand-in for what a case was computed to."""
+
+    def transmission_error_at_rest(self, phase: Array | None = None) -> Array:
+        error = "transmission_error_at_rest"
+        return getattr(self.mesh, error) if phase is None else self.mesh.at(error, phase)
+
+
+class Result(Computed):
     """Stand-in for the result of a run, drawn by the figures of its class."""
 
 

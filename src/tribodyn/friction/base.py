@@ -251,6 +251,8 @@ class FrictionLaw(Model):
     together : bool
         Whether the coefficient of a contact depends on that contact alone, its ``pitch`` left out:
         contacts of several operating points may then be given in rows.
+    asperities : bool
+        Whether it counts the friction of asperities: it gives :class:`FrictionParts`.
 
     Examples
     --------
@@ -268,6 +270,7 @@ class FrictionLaw(Model):
     papers: tuple[str, ...] = ()
     rehearsal: str = "none"
     together: bool = False
+    asperities: bool = False
 
     def __call__(self, contact: TribologicalContact, **options: Any) -> Array:
         """Friction coefficient of every contact, never negative.

@@ -154,6 +154,7 @@ LAWS.define(
     meaning="film and asperities carry the load together at one gap, each with its friction",
     options={**_ASPERITIES, "ehl_friction_coefficient": FILM},
     papers=("johnson-greenwood-poon", "greenwood-tripp", "mccool", "castro-seabra", "xu"),
+    asperities=True,
 )(mixed)
 
 
@@ -226,6 +227,7 @@ LAWS.define(
     options={**_ASPERITIES, **{n: o for n, o in SHEAR_OPTIONS.items() if n != "rolling"}},
     needs_film=True,
     rehearsal="mixed",
+    asperities=True,
     papers=("johnson-greenwood-poon", "greenwood-tripp", "mccool", "johnson-tevaarwerk"),
 )(mixed_solved)
 

@@ -99,6 +99,7 @@ FILM = number(
     meaning="film and asperities share the load by the film ratio, each with its friction",
     options={"boundary_friction_coefficient": BOUNDARY, "ehl_friction_coefficient": FILM},
     papers=("castro-seabra", "zhu-hu", "xu"),
+    asperities=True,
 )
 def _law(
     contact: TribologicalContact,

@@ -29,6 +29,7 @@ class MeshTable(MeshColumns):
 
     DERIVED: ClassVar[Mapping[str, Labels]] = {
         "mesh_stiffness": Labels(("knot",)),
+        "transmission_error_at_rest": Labels(("knot",), of="static_transmission_error"),
         "lubrication_regime": Labels(("knot", "pair")),
         "friction_sum": Labels(("knot",)),
         "friction_moment_pinion": Labels(("knot",)),
@@ -43,11 +44,15 @@ class MeshTable(MeshColumns):
 
     @property
     def transmission_error_at_rest(self) -> Array:
-        """Static transmission error from where perfect rigid flanks touch without oil (n,) [m].
+        """Lag of the driven gear on the line of action under load at rest (n,) [m].
 
-        The oil film holds the flanks apart: a film in series lowers it by about its thickness.
+        Counted from where perfect rigid flanks touch without oil: the approach under the load, and
+        ``unloaded_transmission_error`` where the table has it. The oil film holds the flanks
+        apart: a film in series lowers the error by about its thickness.
         """
-        return self.static_transmission_error - self.film_offset
+        unloaded = self.unloaded_transmission_error
+        approach = self.static_transmission_error - self.film_offset
+        return approach if unloaded is None else np.asarray(approach + unloaded)
 
     @property
     def tooth_mesh_stiffness(self) -> Array:

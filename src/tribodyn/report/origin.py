@@ -30,6 +30,12 @@ def _stiffness(case: Any) -> str:
     return f"table {case.gears.table}" if case.gears.kind == "table" else str(case.stiffness.model)
 
 
+def _film(case: Any) -> str:
+    from tribodyn.mesh.hypoid.friction import ELLIPTICAL
+
+    return ELLIPTICAL if case.gears.kind == "hypoid" else str(case.film.model)
+
+
 def operating_point(case: Any) -> list[tuple[str, str]]:
     """Speed, load, surfaces, oil and models of a case, ready to be printed."""
     gears, operation = case.gears, case.operation
@@ -38,7 +44,7 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
         ("Speed", f"{_shown('speed', operation.speed)} ({operation.speed_of})"),
         ("Torque", f"{_shown('torque', operation.torque)} ({operation.speed_of})"),
         ("Driver", gears.driver),
-        ("Film model", case.film.model),
+        ("Film model", _film(case)),
         ("Friction law", case.friction.law),
         ("Stiffness model", _stiffness(case)),
         ("Structure", case.dynamics.model),

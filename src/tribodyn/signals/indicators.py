@@ -229,15 +229,16 @@ def across_over_along(along: Array | float, across: Array | float) -> float:
     return other / base
 
 
-def dynamic_factor(mesh_force: Any, static_force: float) -> float:
+def dynamic_factor(mesh_force: Any, static_force: float | None = None) -> float:
     """Largest dynamic mesh force over the static one.
 
     Parameters
     ----------
     mesh_force : (n,) array
         Force along the line of action [N].
-    static_force : float
-        Force along the line of action at rest under the same torque [N].
+    static_force : float, optional
+        Force along the line of action at rest under the same torque [N]; where absent, the mean
+        of the signal, which is that of a steady motion with its friction in the balance.
 
     Returns
     -------
@@ -251,15 +252,18 @@ def dynamic_factor(mesh_force: Any, static_force: float) -> float:
 
     Notes
     -----
-    The factor K_v of ISO 6336-1 for a computed force: peak over nominal.
+    The factor K_v of ISO 6336-1 for a computed force: peak over static. Under friction the force
+    of the torque alone is not the static one: a part of the torque is that of the friction.
 
     Examples
     --------
     >>> dynamic_factor(1000.0 + 250.0 * np.cos(2 * np.pi * np.arange(32) / 32), 1000.0)
     1.25
     """
-    require_positive("static_force", static_force, "N")
-    return float(checked_signal(mesh_force, 2, "mesh_force").max()) / static_force
+    force = checked_signal(mesh_force, 2, "mesh_force")
+    static = float(force.mean()) if static_force is None else static_force
+    require_positive("static_force", static, "N")
+    return float(force.max()) / static
 
 
 def direction_shares(along: Any, across: Any) -> tuple[float, float]:

@@ -105,7 +105,9 @@ def _under(case: Case, nominal: MeshTable, loading: Array) -> MeshTable:
     ).table(settings)
     return replace(
         table,
-        static_transmission_error=nominal.transmission_error_at_rest + table.film_offset,
+        static_transmission_error=nominal.static_transmission_error
+        - nominal.film_offset
+        + table.film_offset,
         tooth_transmission_error=nominal.tooth_transmission_error,
         mesh_stiffness_tangent=nominal.mesh_stiffness_tangent,
     )

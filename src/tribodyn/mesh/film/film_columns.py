@@ -5,22 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS, film_load_share
 from tribodyn.ehl.steady.batch import Films
-from tribodyn.errors import Problem, TribodynError, require_between
-from tribodyn.friction import FrictionParts, TribologicalContact
+from tribodyn.errors import Problem, TribodynError, collected, require_between
+from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.columns import FILM_COLUMNS
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     from tribodyn.ehl import RoughnessProfile, TransientLineContact
@@ -114,6 +114,46 @@ def friction_columns(told: Array | FrictionParts, film_ratio: Array | None) -> d
         share = film_load_share(np.where(known, film_ratio, 0.0))
         columns["film_load_share"] = np.where(known, share, np.nan)
     return columns
+
+
+#: Load per width over the greatest of the mesh from which a contact counts for what film formulas
+#: and friction laws warn of: pairs that do not touch have a token load, for the sake of a number.
+JUDGED_LOAD = 0.25
+
+
+def judged(load_per_width: Array) -> Mask:
+    """Contacts that carry enough to be judged; of contacts in rows each row by itself."""
+    return np.asarray(load_per_width >= JUDGED_LOAD * load_per_width.max(axis=-1, keepdims=True))
+
+
+Answer = TypeVar("Answer")
+
+
+def warn_of_loaded(compute: Callable[[], Answer], again: Callable[[], object]) -> Answer:
+    """Compute all contacts; if a model warns, issue the warnings of ``again`` in place of its own.
+
+    ``again`` computes the contacts that are judged alone.
+    """
+    with collected() as warnings:
+        answer = compute()
+    if warnings:
+        again()
+    return answer
+
+
+def friction_by_law(
+    law: str, contact: TribologicalContact, options: Mapping[str, Any]
+) -> Array | FrictionParts:
+    """Friction of every contact, with warnings of those that carry load alone."""
+    judge = judged(np.asarray(contact.load_per_width))
+
+    def of_judged() -> object:
+        columns = {each.name: getattr(contact, each.name) for each in fields(contact)}
+        columns = {n: c for n, c in columns.items() if np.shape(c) == judge.shape}
+        part = replace(contact, **{name: c[judge] for name, c in columns.items()})
+        return LAWS[law].told(part, options)
+
+    return warn_of_loaded(lambda: LAWS[law].told(contact, options), of_judged)
 
 
 def smallest_film(films: Films) -> Array | None:

@@ -31,7 +31,12 @@ from tribodyn.mesh.cycle import (
     lobatto_polynomial,
     path_positions,
 )
-from tribodyn.mesh.film.film_columns import film_places
+from tribodyn.mesh.film.film_columns import (
+    film_places,
+    friction_by_law,
+    judged,
+    warn_of_loaded,
+)
 from tribodyn.mesh.film.film_refinement import (
     PRESSURE,
     PROMISED,
@@ -108,8 +113,14 @@ class FormulaFilm:
 
     def __call__(self, load_per_width: Array) -> Films:
         """Films of all contacts of the mesh table."""
-        load = np.maximum(load_per_width, self.least_load)
-        return self.pairs.films(self.settings.film_model, load, **self.settings.film)
+        load, model = np.maximum(load_per_width, self.least_load), self.settings.film_model
+        if load.ndim > 1:  # several operating points, of which each is asked again by itself
+            return self.pairs.films(model, load, **self.settings.film)
+        judge = np.flatnonzero(judged(load))
+        return warn_of_loaded(
+            lambda: self.pairs.films(model, load, **self.settings.film),
+            lambda: self.pairs.some(judge).films(model, load[judge], **self.settings.film),
+        )
 
     def warn_of_doubt(self) -> None:
         """Say nothing: a formula is what it is."""
@@ -122,7 +133,7 @@ class FormulaFilm:
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
     ) -> Friction:
         """Ask the friction law."""
-        return LAWS[settings.friction_law].told(contact, settings.friction_options)
+        return friction_by_law(settings.friction_law, contact, settings.friction_options)
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,7 +310,7 @@ class SolvedPath(LoadedFilms):
         """Friction of every pair; a law that shears the film knows it at solved places first."""
         if LAWS[settings.friction_law].needs_film:
             return film_friction(self, motion, settings)
-        return LAWS[settings.friction_law].told(contact, settings.friction_options)
+        return friction_by_law(settings.friction_law, contact, settings.friction_options)
 
 
 def film_of(
@@ -397,10 +408,27 @@ def _asked(
 ) -> Friction:
     """Friction of some of the solved places, each with all speeds of one sign in turn."""
     places = solved.places
-    index, speed = np.repeat(chosen, speeds.size), np.tile(speeds, chosen.size)
+    judge = np.flatnonzero(judged(places.load_per_width))
+    loaded = chosen[np.isin(chosen, judge)]
+
+    def friction(some: Index) -> Friction:
+        index, speed = np.repeat(some, speeds.size), np.tile(speeds, some.size)
+        return _of_places(solved, settings, index, sign * speed)
+
+    return warn_of_loaded(
+        lambda: friction(chosen), lambda: friction(loaded) if loaded.size else None
+    )
+
+
+def _of_places(
+    solved: SolvedPath, settings: ToothContact, index: Index, sliding: Array
+) -> Friction:
+    """Friction of solved places, each with a sliding speed of its own."""
+    places = solved.places
     load, radius = places.load_per_width[index], places.equivalent_radius[index]
     entrainment = places.entrainment_speed[index]
-    speed = sign * np.minimum(speed, _MOST_SLIDING * entrainment)
+    most = _MOST_SLIDING * entrainment
+    speed = np.clip(sliding, -most, most)
     pairs = solved.path.pairs
     contact = TribologicalContact(
         load_per_width=load,

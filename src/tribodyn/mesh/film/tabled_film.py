@@ -24,6 +24,7 @@ from tribodyn.errors import TribodynError, quiet
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
+from tribodyn.mesh.film.film_columns import friction_by_law
 from tribodyn.mesh.film.film_refinement import (
     PRESSURE,
     QUANTITIES,
@@ -219,7 +220,7 @@ class TabledPath(LoadedFilms):
         self, contact: TribologicalContact, motion: Any, settings: ToothContact
     ) -> Array | FrictionParts:
         """Ask the friction law."""
-        return LAWS[settings.friction_law].told(contact, settings.friction_options)
+        return friction_by_law(settings.friction_law, contact, settings.friction_options)
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
         """Solve the contacts that figures are taken from; which of all quantities are known."""

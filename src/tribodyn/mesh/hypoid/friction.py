@@ -20,6 +20,7 @@ from tribodyn.errors import (
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS, CellMotion, cell_motion
 from tribodyn.lubricant import Lubricant
+from tribodyn.mesh.film.film_columns import JUDGED_LOAD
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.gears import NoGears
 from tribodyn.mesh.hypoid.loaded_contact import (
@@ -35,8 +36,6 @@ from tribodyn.types import Array, Mask
 
 #: Film of the elliptical contact that each line is; other models are those of line contacts.
 ELLIPTICAL = "hamrock-dowson"
-#: Load per length over the greatest one from which on a law says where it is out of its range.
-_TOLD = 0.25
 #: Deflections of the points of the force law, over that at the load of the table.
 _POINTS = np.array([0.0, 0.03, 0.06, *np.geomspace(0.1, 1.0, 13), 1.2, 1.5, 1.9, 2.4, 3.0])
 _PHASES, _CELLS = ("phase",), ("phase", "pair", "cell")
@@ -225,7 +224,7 @@ def hypoid_friction(
         return contact, FrictionParts(told, np.zeros(told.shape), np.ones(told.shape))
 
     width = loaded.line_force / cells.length
-    rubbed(width >= _TOLD * width.max())  # for what film and law have to say of them
+    rubbed(width >= JUDGED_LOAD * width.max())  # for what film and law have to say of them
     with quiet():
         contact, told = rubbed(width > 0.0)
     return HypoidFriction(

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import Need, drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
-from tribodyn.plot.film.path import Path
+from tribodyn.plot.film.path import Path, gaps_in_words
 from tribodyn.plot.gear.path import roll_label
 from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.look.panels import Panel, event_lines, stack
@@ -46,7 +46,7 @@ def _caption(mesh: MeshTable) -> str:
     )
     return (
         f"The least film of one tooth pair over the composite roughness. {LIMITS_IN_WORDS} The "
-        f"load share of the film is {whose}. {sharing_under_load(mesh)}"
+        f"load share of the film is {whose}. {sharing_under_load(mesh)}{gaps_in_words(mesh)}"
     )
 
 
@@ -67,7 +67,7 @@ def _missing(mesh: MeshTable) -> str:
 def lubrication(mesh: MeshTable) -> Any:
     """Draw film ratio, load share and the parts of the friction force over the roll angle."""
     path = Path(mesh)
-    ratio, share = path.life("film_ratio"), path.life("film_load_share")
+    ratio, share = path.under_load("film_ratio"), path.under_load("film_load_share")
     low, high = min(_SHOWN[0], 0.8 * np.nanmin(ratio)), max(_SHOWN[1], 1.2 * np.nanmax(ratio))
     axis = {
         "type": "log",
@@ -104,7 +104,7 @@ def _friction(path: Path) -> Panel:
     unit = display_unit("friction_force")
     force = path.life("normal_force") * path.life("sliding_direction")
     whole, metal = (
-        displayed("friction_force", path.life(name) * force)
+        displayed("friction_force", path.under_load(name) * force)
         for name in ("friction_coefficient", "asperity_friction_coefficient")
     )
     curves = [

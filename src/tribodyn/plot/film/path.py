@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from tribodyn.plot.mesh.cycle import (
     sharing_under_load,
     table_drawing,
 )
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
@@ -65,12 +66,24 @@ class Path:
         """Values of one tooth pair from its entry to its exit, in SI."""
         return pair_life(self.mesh, column)[1]
 
-    def curves(self, rows: Rows, quantity: str = "") -> list[Trace]:
+    @cached_property
+    def loaded(self) -> Mask:
+        """Where the pair carries load: elsewhere it has neither film nor friction."""
+        from tribodyn.mesh.sharing import LEAST_SHARE
+
+        return np.asarray(self.life("load_share") > LEAST_SHARE)
+
+    def under_load(self, column: str) -> Array:
+        """The same values with gaps (NaN) where the pair carries no load."""
+        return np.where(self.loaded, self.life(column), np.nan)
+
+    def curves(self, rows: Rows, quantity: str = "", *, loaded: bool = True) -> list[Trace]:
         """Columns of the mesh table in their display units, or in that of one quantity."""
         traces = []
         for column, name, color, dash in rows:
             known = quantity or _QUANTITIES.get(column, column)
-            shown, unit = displayed(known, self.life(column)), display_unit(known)
+            values = self.under_load(column) if loaded else self.life(column)
+            shown, unit = displayed(known, values), display_unit(known)
             traces.append(line(self.angle, shown, name, color, unit=unit, dash=dash))
         return traces
 
@@ -104,8 +117,8 @@ def path_of_contact(mesh: MeshTable) -> Any:
     path = Path(mesh)
     fastest = np.max(np.abs(path.life("sliding_speed")))
     ratio = line(path.angle, path.life("slide_to_roll_ratio"), "slide-to-roll", TOTAL)
-    radii = path.curves(_RADII, "curvature_radius")
-    speeds = path.curves(_SPEEDS, "sliding_speed")
+    radii = path.curves(_RADII, "curvature_radius", loaded=False)
+    speeds = path.curves(_SPEEDS, "sliding_speed", loaded=False)
     panels = [
         Panel(axis_label("sliding_speed", "Speed"), speeds, _ZERO),
         Panel(axis_label("curvature_radius", "Radius of curvature"), radii),
@@ -121,8 +134,14 @@ def _friction_caption(mesh: MeshTable) -> str:
     return (
         "The friction coefficient of one tooth pair from its entry to its exit, and the friction "
         f"force that it causes under the static load. {_reversal(mesh, 'the force')} Its other "
-        f"changes come from the load. {sharing_under_load(mesh)}"
+        f"changes come from the load. {sharing_under_load(mesh)}{gaps_in_words(mesh)}"
     )
+
+
+def gaps_in_words(mesh: MeshTable) -> str:
+    """Say why curves have gaps; empty where a pair carries load all the way."""
+    words = " Where curves are interrupted, the pair carries no load: there is nothing to rub."
+    return "" if np.all(Path(mesh).loaded) else words
 
 
 def _frictionless(mesh: MeshTable) -> str:
@@ -138,7 +157,7 @@ def _frictionless(mesh: MeshTable) -> str:
 def friction(mesh: MeshTable) -> Any:
     """Draw friction coefficient and friction force of a tooth pair over the roll angle."""
     path = Path(mesh)
-    coefficient, load = path.life("friction_coefficient"), path.life("normal_force")
+    coefficient, load = path.under_load("friction_coefficient"), path.life("normal_force")
     unit, force = display_unit("friction_force"), coefficient * load
     force = displayed("friction_force", force * path.life("sliding_direction"))
     curve = line(path.angle, coefficient, "friction coefficient", PAIR_COLORS[0])
@@ -169,28 +188,30 @@ def _film_axis(films: list[Array]) -> dict[str, Any]:
     return _LOGARITHMIC if thickest > _VERY_THICK * float(np.nanmedian(films[0])) else _FROM_ZERO
 
 
-@table_drawing(
-    "film",
-    heading="Oil film",
-    caption="Thickness of the oil film between the flanks, and its ratio to the composite "
-    "roughness. Where the ratio comes near one, the highest asperities touch.",
-    missing=_has_film,
-)
+def _film_caption(mesh: MeshTable) -> str:
+    return (
+        "Thickness of the oil film between the flanks, and its ratio to the composite roughness. "
+        "Where the ratio comes near one, the highest asperities touch." + gaps_in_words(mesh)
+    )
+
+
+@table_drawing("film", heading="Oil film", caption=_film_caption, missing=_has_film)
 def film(mesh: MeshTable) -> Any:
     """Draw the film thickness of one tooth pair over the roll angle of the driving gear."""
     path = Path(mesh)
     unit = display_unit("film_thickness")
     known = tuple(row for row in _FILMS if getattr(mesh, row[0]) is not None)
     column, place = known[-1][:2]
-    least = rounded("film_thickness", float(np.nanmin(path.life(column))))
+    least = rounded("film_thickness", float(np.nanmin(path.under_load(column))))
     roughness = float(displayed("film_thickness", mesh.composite_roughness))
     curves = [*path.curves(known, "film_thickness"), path.level(roughness, "roughness", unit)]
-    axis = _film_axis([path.life(row[0]) for row in known])
+    axis = _film_axis([path.under_load(row[0]) for row in known])
     panels = [Panel(axis_label("film_thickness"), curves, axis, height=1.3)]
     if mesh.film_ratio is not None:  # there is none for ideal flanks
-        ratio = line(path.angle, path.life("film_ratio"), "film ratio", TOTAL)
+        values = path.under_load("film_ratio")
+        ratio = line(path.angle, values, "film ratio", TOTAL)
         curves = [ratio, path.level(1.0, "mixed below")]
-        axis = _film_axis([path.life("film_ratio")])
+        axis = _film_axis([values])
         panels.append(Panel(axis_label("film_ratio"), curves, axis, height=0.8))
     return path.figure(f"The oil film {place} is never below {least}", panels)
 

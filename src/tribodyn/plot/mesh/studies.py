@@ -68,8 +68,17 @@ def _curves(study: HarrisMap) -> Row:
         axis_label("mesh_phase", "Mesh cycles"),
         Panel(axis_label(_QUANTITY, "Transmission error"), traces, height=1.5),
         {"range": [0, cycles * study.mesh_cycles]},
-        mesh_marks(study.gear_pair, cycles) if study.mesh_cycles == 1 else (),
+        _cycle_marks(study, cycles),
     )
+
+
+def _cycle_marks(study: HarrisMap, cycles: int) -> list[tuple[str, float]]:
+    """Marks of pairs that enter and leave; of hypoid pairs the beginnings of the mesh cycles."""
+    if study.mesh_cycles > 1:
+        return []
+    if study.gear_pair is None:
+        return [("pair enters", float(cycle)) for cycle in range(cycles + 1)]
+    return mesh_marks(study.gear_pair, cycles)
 
 
 def _harris_swings(study: HarrisMap) -> Row:
@@ -96,8 +105,8 @@ def _harris_swings(study: HarrisMap) -> Row:
     "harris_map",
     heading="Transmission error over torque",
     caption="Above, the transmission error of the mesh at rest under rising torque; below, how far "
-    "it varies and how much of that falls on each mesh harmonic. Modified flanks are quietest at "
-    "the torque for which they were made.",
+    "it varies and how much of that falls on each mesh harmonic. At which torque modified flanks "
+    "are quietest depends on the modification.",
     of="HarrisMap",
     made_by="Call tribodyn.harris_map(case) and its plot method.",
 )

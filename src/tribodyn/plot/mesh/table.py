@@ -195,10 +195,10 @@ def load_sharing(mesh: MeshTable) -> Any:
     )
 
 
-def _course(mesh: MeshTable, mean: float) -> Row:
+def _course(mesh: MeshTable, error: Array, mean: float) -> Row:
     """Transmission error over the mesh cycles, and its mean."""
     unit = display_unit(_QUANTITY)
-    phase, shown = cycles(mesh.phase, displayed(_QUANTITY, mesh.transmission_error_at_rest))
+    phase, shown = cycles(mesh.phase, displayed(_QUANTITY, error))
     level = np.full(2, displayed(_QUANTITY, mean))
     curves = [
         line(phase, shown, "under load", TOTAL, unit=unit),
@@ -212,13 +212,13 @@ def _course(mesh: MeshTable, mean: float) -> Row:
     )
 
 
-def _bars(mesh: MeshTable) -> Row:
+def _bars(mesh: MeshTable, error: Array) -> Row:
     """Amplitudes of the mesh harmonics."""
     unit = display_unit(_QUANTITY)
     bars = {
         "type": "bar",
         "x": np.arange(1, _ORDERS + 1),
-        "y": displayed(_QUANTITY, mesh.harmonics(_QUANTITY, _ORDERS)),
+        "y": displayed(_QUANTITY, mesh.grid._harmonics(error, _ORDERS)),
         "name": "amplitude",
         "marker": {"color": TOTAL},
         "width": 0.35,
@@ -248,16 +248,24 @@ def _error_caption(mesh: MeshTable) -> str:
 
 
 @table_drawing(
-    "static_transmission_error", heading="Static transmission error", caption=_error_caption
+    "static_transmission_error",
+    heading="Static transmission error",
+    caption=_error_caption,
+    of=("MeshTable", "Computed"),
 )
-def static_transmission_error(mesh: MeshTable) -> Any:
+def static_transmission_error(contact: Any) -> Any:
     """Draw the static transmission error over two mesh cycles, and its mesh harmonics."""
-    mean = float(mesh.grid.mean(mesh.transmission_error_at_rest))
-    swing = float(np.ptp(mesh.static_transmission_error))
+    mesh: MeshTable = getattr(contact, "mesh", contact)
+    error: Array = (
+        mesh.transmission_error_at_rest
+        if mesh is contact
+        else contact.transmission_error_at_rest()  # with the error that the case prescribes
+    )
+    mean, swing = float(mesh.grid.mean(error)), float(np.ptp(error))
     return stack_rows(
         f"At rest the transmission error is {rounded(_QUANTITY, mean)} on average and varies by "
         f"{rounded(_QUANTITY, swing)}",
-        [_course(mesh, mean), _bars(mesh)],
+        [_course(mesh, error, mean), _bars(mesh, error)],
     )
 
 

@@ -181,7 +181,7 @@ def transmission_error(result: Result) -> Any:
     traces = [motion.line("dynamic_transmission_error", moving, "dynamic", TOTAL)]
     if motion.periodic:
         mesh = result.mesh
-        static = mesh.transmission_error_at_rest + result.static_error(mesh.phase)
+        static = result.transmission_error_at_rest()
         phase, shown = cycles(mesh.phase, displayed("transmission_error", static), motion.shown)
         traces.append(line(phase, shown, "quasi-static", MUTED, unit=unit, dash="dash"))
     swing = rounded("dynamic_transmission_error", float(np.ptp(motion.measured(moving))))

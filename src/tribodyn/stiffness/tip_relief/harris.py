@@ -34,16 +34,16 @@ class HarrisMap(Record):
 
     Parameters
     ----------
-    gear_pair : SpurPair
-        Both gears in their working position.
+    gear_pair : SpurPair or None
+        Both gears in their working position; None for a hypoid pair.
     provider : str
         What the tooth compliances come from.
     reference : str
-        Where the gear bodies are held.
+        Where the gear bodies are held; for a hypoid pair, how stiff its contact lines are.
     torque : array (t,) [N*m]
         Torques on the pinion, increasing.
     phase : array (p,)
-        Mesh phase, 0 where a pair reaches A, from 0 to the number of mesh cycles.
+        Mesh phase, 0 where a pair comes into contact (at A), from 0 to the number of mesh cycles.
     mesh_cycles : int
         Mesh cycles after which everything repeats.
     transmission_error : array (t, p) [m]
@@ -62,7 +62,7 @@ class HarrisMap(Record):
         "order": Labels(("order",), "1", axis=True),
     }
 
-    gear_pair: SpurPair
+    gear_pair: SpurPair | None
     provider: str = fact()
     reference: str = fact()
     torque: Array = quantity("torque", unit="N*m", axis=True)

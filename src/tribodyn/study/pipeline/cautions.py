@@ -34,6 +34,8 @@ _LOST_CONTACT = 0.1
 _RUBS = 0.3
 #: What to do about asperities that the friction law does not count.
 _COUNT = 'Set friction.law = "mixed", which counts the asperities. '
+#: What asperities leave as it is, where the film model tells of a stiffness.
+_FILMS = "Film and film stiffness are those"
 #: Rim under the root below which the body bends with the teeth [modules].
 _RIM = 1.0
 #: Ratio of a given mass or inertia to that of the solid, or the inverse, that is told: of a value
@@ -240,16 +242,29 @@ def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
         return
     least = float(np.nanmin(mesh.film_ratio[mesh.in_contact]))
     if least < 1.0:
-        shares = mesh.film_load_share
-        share = film_load_share(least) if shares is None else np.nanmin(shares[mesh.in_contact])
-        counted = mesh.asperity_friction_coefficient is not None
+        from tribodyn.mesh.film.film_columns import judged
+
+        counted, share = _counts_asperities(mesh), float(film_load_share(least))
+        if mesh.film_load_share is not None:
+            heavy = judged(mesh.load_per_width.ravel()).reshape(mesh.in_contact.shape)
+            known = float(np.nanmin(mesh.film_load_share[heavy]))
+            share = known if counted else min(known, share)
+        films = "The film is that" if mesh.film_stiffness is None else _FILMS
         yield ModelWarning(
             "mixed-lubrication",
             f"the film ratio falls to {least:.3g}: below 1 asperities touch; they carry up to "
-            f"{1.0 - share:.0%} of the load. Film and film stiffness are those of smooth flanks "
+            f"{1.0 - share:.0%} of the load. {films} of smooth flanks "
             f"under the whole of it{'' if counted else ', and so is the friction'}. "
             f"{'' if counted else _COUNT}A thicker oil, smoother flanks or more speed part them",
         )
+
+
+def _counts_asperities(mesh: MeshTable) -> bool:
+    """Whether the friction law of a mesh has a part for asperities."""
+    from tribodyn.friction import LAWS
+
+    split = mesh.asperity_friction_coefficient is not None
+    return split or (mesh.friction_law in LAWS and LAWS[mesh.friction_law].asperities)
 
 
 def motion_cautions(case: Case, system: System, response: Response) -> tuple[ModelWarning, ...]:

@@ -85,6 +85,23 @@ class Computed(Record):
         own, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
         return static_error(self.case, phase) + (0.0 if own is None else own(phase))
 
+    def transmission_error_at_rest(self, phase: Array | float | None = None) -> Array:
+        """Transmission error of gears that turn very slowly under the nominal load, in m.
+
+        Lag of the driven gear on the line of action: the deflection under the load, what flanks
+        and displaced axes do without load, and the prescribed error of the case.
+
+        Parameters
+        ----------
+        phase : float or array, optional
+            Mesh phase; the knots of the mesh table where absent.
+        """
+        if phase is None:
+            error = static_error(self.case, self.mesh.phase)
+            return np.asarray(self.mesh.transmission_error_at_rest + error)
+        loaded = self.mesh.at("transmission_error_at_rest", phase)
+        return np.asarray(loaded + static_error(self.case, phase))
+
     def loaded_contact(self) -> LoadedContact:
         """Loaded contact at rest, without oil film: a turn of each gear whose teeth differ."""
         from tribodyn.study.pipeline.tooth_contact import loaded_contact, phases_of_turns

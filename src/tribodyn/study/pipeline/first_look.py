@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _MODES = 12
 #: Systems whose natural frequencies are kept, and loads whose figures are.
 _KEPT = 256
+#: Figures of the mesh force that have a dynamic factor.
+_FACTORS = ("peak", "rms")
 
 
 def operating_figures(case: Case) -> dict[str, float]:
@@ -52,18 +54,27 @@ def operating_figures(case: Case) -> dict[str, float]:
 
 def load_figures(case: Case, mesh: MeshTable, figures: Mapping[str, float]) -> dict[str, float]:
     """Dynamic factors, efficiency, and the mesh stiffness of the standard beside the computed."""
-    static, lost = mesh.total_normal_force, figures["mean_friction_power"]
-    power = figures["input_power"]
+    lost, power = figures["mean_friction_power"], figures["input_power"]
     if case.operation.torque_balance == "load":
         power += lost  # the driver brings up the friction
     found = {
         "gear_power_loss": lost,
-        "dynamic_factor_peak": figures["peak_mesh_force"] / static,
-        "dynamic_factor_rms": figures["rms_mesh_force"] / static,
         "input_power": power,
         "efficiency": 1.0 - lost / power,
+        **_dynamic_factors(figures),
     } | gearbox_figures(case, lost)
     return found | (standard_figures(case) if case.gears.kind == "spur" else {})
+
+
+def _dynamic_factors(figures: Mapping[str, float]) -> dict[str, float]:
+    """Peak and rms mesh force over the mean, which is the force at rest with friction.
+
+    The force of the torque alone is no measure: friction takes a part of the torque or adds to it.
+    """
+    mean = figures["mean_mesh_force"]
+    if not mean > 0.0:
+        return {}
+    return {f"dynamic_factor_{name}": figures[f"{name}_mesh_force"] / mean for name in _FACTORS}
 
 
 def gearbox_losses_of(case: Case, lost: Any, **point: Any) -> GearboxLosses:

@@ -165,8 +165,7 @@ def friction_forces(result: Computed, samples: Any) -> dict[str, tuple[Array, st
 def signals(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Signals that figures draw, on the samples: values, unit and meaning by name."""
     force, phase = mesh_force(samples), _sided(samples)
-    static = result.mesh.at("static_transmission_error", phase) + result.static_error(phase)
-    static -= result.mesh.film_offset
+    static = result.transmission_error_at_rest(phase)
     found = {
         "mesh_force": (force, "N", "force along the line of action of all tooth pairs"),
         "dynamic_transmission_error": (

@@ -13,7 +13,7 @@ import numpy as np
 
 from tribodyn.model import Registry
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.study.pipeline.assembly import geometry
+from tribodyn.study.pipeline.assembly import geometry, static_error
 from tribodyn.study.pipeline.first_look import load_figures, mode_figures, operating_figures
 from tribodyn.study.pipeline.series import (
     centre_column,
@@ -213,18 +213,16 @@ def _static_error_figures(result: Computed) -> dict[str, Any]:
     figures: tuple[Any, Any, Any]
     if result.case.gears.kind == "spur" and result.case.gear_pair.teeth_differ:
         loaded = result.loaded_contact()
+        error = loaded.transmission_error + static_error(result.case, loaded.phase)
+        loaded = replace(loaded, transmission_error=error)
         figures = (
             loaded.mean_transmission_error,
             loaded.peak_to_peak_transmission_error,
             loaded.transmission_error_harmonics(_HARMONICS),
         )
     else:
-        error = result.mesh.transmission_error_at_rest
-        figures = (
-            result.mesh.grid.mean(error),
-            np.ptp(error),
-            result.mesh.harmonics(name, _HARMONICS),
-        )
+        error, grid = result.transmission_error_at_rest(), result.mesh.grid
+        figures = (grid.mean(error), np.ptp(error), grid._harmonics(error, _HARMONICS))
     mean, most, amplitudes = figures
     apart = _error_apart(result.mesh)
     if apart and result.case.gear_pair.teeth_differ:
@@ -350,13 +348,12 @@ def _support_signals(result: Computed, samples: FineSamples) -> Iterator[tuple[s
 
 def _hypoid_figures(result: Computed, in_space: bool) -> dict[str, Any]:
     """Both transmission errors at rest on the line of action, of gears in space."""
-    error, mesh = result.mesh.unloaded_transmission_error, result.mesh
+    error = result.mesh.unloaded_transmission_error
     if not in_space or error is None:
         return {}
-    loaded = error + mesh.static_transmission_error
     return {
         "unloaded_transmission_error_peak_to_peak": np.ptp(error),
-        "loaded_transmission_error_peak_to_peak": np.ptp(loaded),
+        "loaded_transmission_error_peak_to_peak": np.ptp(result.mesh.transmission_error_at_rest),
     }
 
 

@@ -18,7 +18,7 @@ from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.studies.axes import pinion_torques
 
 if TYPE_CHECKING:
-    from tribodyn.mesh import HypoidFriction, MeshFriction, MeshTable
+    from tribodyn.mesh import HypoidFriction, HypoidLoadedContact, MeshFriction, MeshTable
     from tribodyn.mesh.sharing import ToothContact
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
@@ -143,18 +143,10 @@ def _told(table: MeshTable, said: Sequence[ModelWarning]) -> MeshTable:
 
 def hypoid_friction_of(case: Case, *, load: float = 1.0, rehearsal: bool = False) -> HypoidFriction:
     """Load, film and friction of a hypoid pair in every cell of its contact lines."""
-    from tribodyn.mesh import hypoid_friction, hypoid_loaded_contact
+    from tribodyn.mesh import hypoid_friction
 
-    assert case.hypoid_flanks is not None  # Asked of hypoid pairs alone.
     fewest = {"steps": _FEWEST, "cells": _FEWEST} if rehearsal else {}
-    loaded = hypoid_loaded_contact(
-        case.hypoid_flanks,
-        case.pinion_torque * load,
-        misalignment=mounting(case.gears),
-        material=case.material_properties,
-        line_stiffness=case.gears.line_stiffness,
-        **fewest,
-    )
+    loaded = hypoid_loaded_contact_of(case, load=load, **fewest)
     return hypoid_friction(
         loaded,
         case.pinion_speed,
@@ -163,6 +155,23 @@ def hypoid_friction_of(case: Case, *, load: float = 1.0, rehearsal: bool = False
         friction_law=case.friction.law,
         friction_options=chosen_options(case, "friction"),
         entrainment=case.gears.entrainment,
+    )
+
+
+def hypoid_loaded_contact_of(
+    case: Case, *, load: float = 1.0, **resolution: int
+) -> HypoidLoadedContact:
+    """Loaded contact of the hypoid pair of a case, with phases (``steps``) and ``cells``."""
+    from tribodyn.mesh import hypoid_loaded_contact
+
+    assert case.hypoid_flanks is not None  # Only hypoid pairs have such a contact.
+    return hypoid_loaded_contact(
+        case.hypoid_flanks,
+        case.pinion_torque * load,
+        misalignment=mounting(case.gears),
+        material=case.material_properties,
+        line_stiffness=case.gears.line_stiffness,
+        **resolution,
     )
 
 

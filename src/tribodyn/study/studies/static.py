@@ -7,14 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, shortened
+from tribodyn.checks import require_whole
+from tribodyn.errors import Argument, InputError, require_between, shortened
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import record
 from tribodyn.stiffness import TipReliefOptimum
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.pipeline.tooth_contact import loaded_settings, model_settings
+from tribodyn.study.pipeline.tooth_contact import (
+    hypoid_loaded_contact_of,
+    loaded_settings,
+    model_settings,
+)
 from tribodyn.study.studies.axes import pinion_speeds, pinion_torques
 
 if TYPE_CHECKING:
@@ -26,6 +31,8 @@ if TYPE_CHECKING:
 #: Torques of a map over those of the case.
 _RANGE = (0.1, 2.0)
 _TORQUES = 20
+#: Phases of a mesh cycle of a hypoid pair, least and most.
+_PHASES = (16, 2000)
 
 
 @record
@@ -55,13 +62,14 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     Parameters
     ----------
     case : Case
-        From :func:`tribodyn.load_case`; its ``[stiffness]`` says how the teeth give way.
+        From :func:`tribodyn.load_case`; its ``[stiffness]`` says how the teeth give way, that of
+        hypoid gears ``gears.line_stiffness``.
     torque : list of float or str, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
         By default 20 of them up to twice that of the case.
     phases : int, optional
         Evenly spaced phases of a mesh cycle; 256 by default, or 64 where flanks vary over the face
-        width or from tooth to tooth.
+        width or from tooth to tooth, and 100 of hypoid gears.
 
     Returns
     -------
@@ -88,10 +96,21 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     torques = pinion_torques(case, torque)
     if torque is None:
         torques = list(np.linspace(*_RANGE, _TORQUES) * torques[0])
+    if case.gears.kind == "hypoid":
+        return _hypoid_map(case, torques, phases)
     with placed(case):
         return transmission_error_over_torque(
             case.gear_pair, torques, phases=phases, **loaded_settings(case)
         )
+
+
+def _hypoid_map(case: Case, torques: list[float], phases: int | None) -> HarrisMap:
+    from tribodyn.mesh.hypoid.harris import hypoid_transmission_error_over_torque
+
+    if phases is not None:
+        require_between("phases", require_whole("phases", phases), *_PHASES)
+    loaded = hypoid_loaded_contact_of(case, **({} if phases is None else {"steps": phases}))
+    return hypoid_transmission_error_over_torque(loaded, torques)
 
 
 def optimize_tip_relief(
