@@ -98,6 +98,11 @@ def test_a_film_below_the_roughness_is_told() -> None:
         gears=None,
         film_load_share=None,
         asperity_friction_coefficient=None,
+        contact_ratio_under_load=1.0,
+        transverse_contact_ratio=1.0,
+        load_per_width=np.full((2, 1), 1e5),
+        film_stiffness=None,
+        friction_law="constant",
     )
     assert mesh_cautions(mesh) == ()
     mesh.film_ratio = np.array([[1.2], [1.01]])
@@ -121,6 +126,8 @@ def test_zeros_without_contact_are_no_thin_film() -> None:
         film_ratio=np.array([[1.5, 0.0]]),
         in_contact=np.array([[True, False]]),
         gears=None,
+        contact_ratio_under_load=1.0,
+        transverse_contact_ratio=1.0,
     )
     assert mesh_cautions(mesh) == ()
 

@@ -231,11 +231,13 @@ def _bars(mesh: MeshTable, error: Array) -> Row:
     )
 
 
-def _error_caption(mesh: MeshTable) -> str:
+def _error_caption(contact: Any) -> str:
+    mesh: MeshTable = getattr(contact, "mesh", contact)
     caption = (
-        "How far the gears approach along the line of action when they turn very slowly under "
-        "load, counted from where perfect rigid flanks touch. What varies excites the vibration; "
-        "the bars show how much of it falls on each harmonic of the mesh frequency."
+        "How far the driven gear lags on the line of action when the gears turn very slowly under "
+        "load, counted from where perfect rigid flanks touch: deflection and what the flanks do "
+        "without load together. What varies excites the vibration; the bars show how much of it "
+        "falls on each harmonic of the mesh frequency."
     )
     teeth = mesh.tooth_transmission_error
     if teeth is None:
