@@ -130,10 +130,7 @@ Answer = TypeVar("Answer")
 
 
 def warn_of_loaded(compute: Callable[[], Answer], again: Callable[[], object]) -> Answer:
-    """Compute all contacts; if a model warns, issue the warnings of ``again`` in place of its own.
-
-    ``again`` computes the contacts that are judged alone.
-    """
+    """Compute all contacts; if a model warns, warn of the judged ones, which ``again`` computes."""
     with collected() as warnings:
         answer = compute()
     if warnings:

@@ -86,16 +86,7 @@ class Computed(Record):
         return static_error(self.case, phase) + (0.0 if own is None else own(phase))
 
     def transmission_error_at_rest(self, phase: Array | float | None = None) -> Array:
-        """Transmission error of gears that turn very slowly under the nominal load, in m.
-
-        Lag of the driven gear on the line of action: the deflection under the load, what flanks
-        and displaced axes do without load, and the prescribed error of the case.
-
-        Parameters
-        ----------
-        phase : float or array, optional
-            Mesh phase; the knots of the mesh table where absent.
-        """
+        """Lag of the driven gear under load at rest [m], the prescribed error of the case included."""
         if phase is None:
             error = static_error(self.case, self.mesh.phase)
             return np.asarray(self.mesh.transmission_error_at_rest + error)

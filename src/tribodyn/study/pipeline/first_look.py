@@ -67,10 +67,8 @@ def load_figures(case: Case, mesh: MeshTable, figures: Mapping[str, float]) -> d
 
 
 def _dynamic_factors(figures: Mapping[str, float]) -> dict[str, float]:
-    """Peak and rms mesh force over the mean, which is the force at rest with friction.
-
-    The force of the torque alone is no measure: friction takes a part of the torque or adds to it.
-    """
+    """Peak and rms mesh force over the mean, which is the force at rest with friction."""
+    # The force of the torque alone is no measure: friction takes a part of it or adds to it.
     mean = figures["mean_mesh_force"]
     if not mean > 0.0:
         return {}
