@@ -86,7 +86,7 @@ class Computed(Record):
         return static_error(self.case, phase) + (0.0 if own is None else own(phase))
 
     def transmission_error_at_rest(self, phase: Array | float | None = None) -> Array:
-        """Lag of the driven gear under load at rest [m], the prescribed error of the case included."""
+        """Lag of the driven gear under load at rest [m], with the prescribed error of the case."""
         if phase is None:
             error = static_error(self.case, self.mesh.phase)
             return np.asarray(self.mesh.transmission_error_at_rest + error)
