@@ -16,7 +16,9 @@ def cached_njit(**options: Any) -> Callable[[Any], Any]:
 
     def compile_kernel(function: Any) -> Any:
         try:
-            return nb.njit(cache=True, **options)(function)
+            kernel = nb.njit(cache=True, **options)(function)
+            _ignore_outdated_index(kernel)
+            return kernel
         except RuntimeError as error:
             # Neither the source folder nor the home directory can be written: a container perhaps.
             if "no locator" not in str(error):
@@ -25,6 +27,23 @@ def cached_njit(**options: Any) -> Callable[[Any], Any]:
             return nb.njit(**options)(function)
 
     return compile_kernel
+
+
+def _ignore_outdated_index(kernel: Any) -> None:
+    """Treat an index of another version, whose classes have moved since, as an empty one."""
+    cache_file = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
+    if cache_file is None:  # nothing is compiled, for example with NUMBA_DISABLE_JIT
+        return
+    load = cache_file._load_index
+
+    def load_index() -> dict[Any, str]:
+        try:
+            index: dict[Any, str] = load()
+        except (ImportError, AttributeError):  # Numba unpickles before it compares the sources
+            return {}
+        return index
+
+    cache_file._load_index = load_index
 
 
 @cache

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.divergence import most_splits, unparted_step
+from tribodyn.dynamics.equations.divergence import chattering_step, most_splits
 from tribodyn.dynamics.equations.motion import (
     WithinSteps,
     clearance,
@@ -208,7 +208,7 @@ def carry_over_crossings(
 
 def _unparted(tables: TangentTables, step: int, contact: int) -> ComputationError:
     phase = float(tables.compiled.grid.left[step])
-    return unparted_step(contact, tables.dead.size, phase, phase / tables.mesh_frequency, None)
+    return chattering_step(contact, tables.dead.size, phase, phase / tables.mesh_frequency, None)
 
 
 def _first_crossing(

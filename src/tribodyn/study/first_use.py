@@ -108,10 +108,10 @@ def _march(lanes: int, followed: bool = False) -> None:
 
 def _rows() -> None:
     """Motions of as many systems as an operating map has side by side, which take no time."""
-    from tribodyn.dynamics.orbits.side_by_side import _Group
+    from tribodyn.dynamics.orbits.batched_orbits import SystemBatch
 
-    group = _Group([_system()] * _BLOCK, np.full(_BLOCK, 10.0), 64)
-    group.march(group.whole, group.start(), np.arange(_BLOCK), lambda number, states: None)
+    group = SystemBatch([_system()] * _BLOCK, np.full(_BLOCK, 10.0), 64)
+    group.march(group.full_steps, group.start(), np.arange(_BLOCK), lambda number, states: None)
 
 
 def _system() -> System:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
+from pathlib import Path
+
+import numba
 import pytest
 from numba.core.caching import CompileResultCacheImpl
 
@@ -20,6 +24,21 @@ def test_a_kernel_is_cached_on_disk() -> None:
     compiled = cached_njit(nogil=True)(_double)
     assert cache_lock.has_disk_cache(compiled)
     assert not cache_lock.is_cached(compiled)
+
+
+@pytest.mark.parametrize("name", ["no_such_module\nMoved", "tribodyn.compiled\nMovedClass"])
+def test_an_index_with_classes_that_have_moved_counts_as_empty(
+    name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    kernel = cached_njit(nogil=True)(_double)
+    cache_file = kernel._cache._cache_file
+    reference = f"c{name}\n.".encode()  # a pickle that refers to a class of another version
+    path = Path(cache_file._index_path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(pickle.dumps(cache_file._version) + reference)
+    assert kernel(21.0) == 42.0
+    assert cache_lock.is_cached(kernel)
 
 
 def test_without_a_cache_folder_kernels_are_compiled_with_one_message(

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from known_marches import march_newmark
 from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics._engine.blocks import LaneBlock, Run, march
-from tribodyn.dynamics._engine.marching import UNPARTED
+from tribodyn.dynamics._engine.marching import CHATTERING
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.errors import ComputationError
@@ -134,7 +134,7 @@ def test_a_step_that_comes_to_no_end_is_told():
     period, state = np.full(40, 1.0 / FREQUENCY), np.zeros((40, 2))
     lanes, block = Run(compiled, RungeKutta4(), None, period, state, None), np.arange(16, 32)
     step, contact, lane = 5 * 64 + 16, 7, 3
-    code = UNPARTED + (step * 12 + contact) * 16 + lane
+    code = CHATTERING + (step * 12 + contact) * 16 + lane
     with pytest.raises(ComputationError, match="more than 64 times within one step") as told:
         lanes.report(LaneBlock(block, 16), code, 2)
     problem = told.value.problems[0]

@@ -129,7 +129,7 @@ def test_a_missing_package_or_processor_is_told_with_the_remedy(monkeypatch) -> 
     monkeypatch.setattr(cuda, "is_available", lambda: False)
     reason = "\nCUDA driver library cannot be found.\nIf you are sure ..."
     monkeypatch.setattr(cuda, "cuda_error", lambda: f"Error at driver init: {reason}")
-    assert "no graphics processor of NVIDIA answers. CUDA driver library" in (text := ask())
+    assert "no NVIDIA graphics processor available. CUDA driver library" in (text := ask())
     assert "nvidia-smi" in text
     assert 'It belongs to "rk4"' in ask(method="newmark")
     with pytest.raises(InputError, match='"cpu", or "cuda"'):
@@ -149,7 +149,7 @@ def test_packages_that_do_not_go_together_are_told_as_such(monkeypatch) -> None:
     free = System([[1.0]], [[0.0]], [[4.0]], [0.0])
     with pytest.raises(ComputationError) as told:
         simulate_ensemble(free, [1.0, 2.0], 1, ([1.0], [0.0]), backend="cuda")
-    assert "no row_stack. These versions do not go together: numba-cuda 0.1" in str(told.value)
+    assert "no row_stack. These versions are incompatible: numba-cuda 0.1" in str(told.value)
 
 
 if __name__ == "__main__":

@@ -93,7 +93,7 @@ def test_the_lane_that_ran_away_is_named():
 def test_a_coordinate_connected_to_nothing():
     stiffness = np.diag([100.0, 0.0])
     system = System(np.eye(2), np.diag([1.0, 0.0]), stiffness, [1.0, 1.0], names=NAMES)
-    with pytest.raises(InputError, match="wheel_x is connected to nothing"):
+    with pytest.raises(InputError, match="wheel_x is not connected to anything"):
         steady_state(system, 1.0)
     held = System(np.eye(2), np.diag([1.0, 0.1]), stiffness, [1.0, 0.0], names=NAMES)
     assert steady_state(held, 1.0).converged
@@ -136,7 +136,7 @@ def test_strong_friction_is_told_before_any_other_cause():
     system = _pair(damping=(0.01, 1.0), contacts=[contact])
     nodes = compile_for(system, 64.0, 256).nodes
     text, remedy = probable_cause(system, nodes, 0.1, np.ones(6))
-    assert text.startswith("Friction is 3 times the contact force")
+    assert text.startswith("Friction accelerates the coordinates 3 times as much")
     assert "friction coefficient" in remedy
     weak = np.ones(6)
     weak[2] = 0.05

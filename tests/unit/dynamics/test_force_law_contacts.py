@@ -222,5 +222,5 @@ def test_a_mesh_without_a_law_is_named(way):
 
 
 def test_a_gap_that_varies_belongs_into_the_law():
-    with pytest.raises(InputError, match="gap is no constant"):
+    with pytest.raises(InputError, match="gap is not a constant"):
         law_contacts(_one(gap=lambda phase: 1e-5 + 0 * phase), constant_law([0.0], [1e8]))

@@ -146,7 +146,7 @@ def test_growth_is_reported_with_time_and_coordinate():
         np.eye(2), np.diag([0.1, -10.0]), np.diag([1.0, 100.0]), [1.0, 1.0], names=("calm", "wild")
     )
     compiled = compile_newmark(system, 0.5, 512)
-    with pytest.raises(ComputationError, match="coordinate wild, first of all") as caught:
+    with pytest.raises(ComputationError, match="first in coordinate wild") as caught:
         march_newmark(compiled, np.array([2.0]), np.zeros((1, 4)), 100)
     time = float(str(caught.value).split("at the time ")[1].split(" s")[0])
     assert time == pytest.approx(np.log(np.finfo(float).max) / 5.0, rel=0.02)
@@ -157,7 +157,7 @@ def test_contact_forces_that_are_not_found_are_reported():
     h = 1.0 / STEPS
     contact = Contact([1.0], stiffness=-1.0 / (0.25 * h * h))
     system = System([[1.0]], [[0.0]], [[0.0]], [1.0], [contact])
-    with pytest.raises(ComputationError, match=r"ends at 0\.0625 s were not found"):
+    with pytest.raises(ComputationError, match=r"ends at 0\.0625 s did not converge"):
         march_newmark(compile_newmark(system, 1.0, STEPS), np.ones(1), np.ones((1, 2)), 50)
 
 

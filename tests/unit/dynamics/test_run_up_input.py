@@ -62,7 +62,7 @@ def test_low_speeds_get_more_steps_and_too_few_are_refused() -> None:
     assert counts == sorted(counts, reverse=True)
     assert counts[-1] == 256
     assert all(1000.0 / (f * n) <= 0.35 for f, n in zip((0.5, 2.0, 8.0), counts, strict=False))
-    with pytest.raises(InputError, match="leave steps out") as caught:
+    with pytest.raises(InputError, match="omit steps") as caught:
         run_up(stiff, ([0.0, 1.0], [0.5, 2.0]), steps=512)
     assert "at 0.5 Hz" in str(caught.value)
     with pytest.raises(InputError, match="Begin at"):
@@ -103,11 +103,13 @@ def test_systems_of_different_structures_are_refused() -> None:
     other = System([[2.0]], [[0.3]], [[0.0]], [1.0], [Contact([1.0], 9.0)])
     with pytest.raises(InputError, match="another structure"):
         run_up({1.0: oscillator(), 2.0: other}, speed_ramp(1.0, 2.0, 5.0))
-    with pytest.raises(InputError, match="a gap everywhere"):
+    with pytest.raises(InputError, match="a gap at all"):
         run_up({1.0: oscillator(), 2.0: oscillator(gap=0.1)}, speed_ramp(1.0, 2.0, 5.0))
 
 
 def test_a_motion_that_grows_is_told_with_time_and_coordinate() -> None:
     growing = System([[1.0]], [[-50.0]], [[0.0]], [0.0], [Contact([1.0], 100.0)], names=["gear_y"])
-    with pytest.raises(ComputationError, match=r"after 1\d.* s, at .* Hz, first of all gear_y"):
+    with pytest.raises(
+        ComputationError, match=r"after 1\d.* s, at .* Hz, first in coordinate gear_y"
+    ):
         run_up(growing, speed_ramp(1.0, 2.0, 60.0), start=([1e-3], [0.0]))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.dynamics.orbits.side_by_side import _Group
+from tribodyn.dynamics.orbits.batched_orbits import SystemBatch
 from tribodyn.errors import quiet
 from tribodyn.study.pipeline.run import Begun, begin, computed, move_together
 
@@ -91,18 +91,18 @@ def test_slow_points_whose_map_has_more_rounding_are_found_together() -> None:
 def test_motions_of_systems_alike_march_as_alone(cases: list[td.Case], count: int) -> None:
     points = [begin(cases[number % 2]) for number in range(count)]
     frequencies = np.array([point.mesh.mesh_frequency for point in points])
-    group = _Group([point.system for point in points], frequencies, 1024)
+    group = SystemBatch([point.system for point in points], frequencies, 1024)
     state, every = group.coordinates.expand(group.start()), np.arange(count)
-    given = 1.0 / frequencies, group.whole.program.constant_load
-    alone = _Group([points[1].system], frequencies[1:2], 1024)
-    load = alone.whole.program.constant_load
-    exact = dict(alone.whole.march(1.0 / frequencies[1:2], load, state[1:2], np.arange(1)))[0]
+    given = 1.0 / frequencies, group.full_steps.program.constant_load
+    alone = SystemBatch([points[1].system], frequencies[1:2], 1024)
+    load = alone.full_steps.program.constant_load
+    exact = dict(alone.full_steps.march(1.0 / frequencies[1:2], load, state[1:2], np.arange(1)))[0]
     most = np.abs(exact).max(axis=0)
-    motions = dict(group.whole.march(*given, state, every))
+    motions = dict(group.full_steps.march(*given, state, every))
     assert motions.keys() == set(every.tolist())
     assert np.all(np.abs(motions[1] - exact) <= 1e-12 * most)
-    assert dict(group.whole.march(*given, state, every[1:2])).keys() == {1}
+    assert dict(group.full_steps.march(*given, state, every[1:2])).keys() == {1}
     state[0] = np.inf
-    beside = dict(group.whole.march(*given, state, every))
+    beside = dict(group.full_steps.march(*given, state, every))
     assert np.isnan(beside[0]).all()
     assert all(np.array_equal(beside[number], motions[number]) for number in every[1:])

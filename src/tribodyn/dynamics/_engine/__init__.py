@@ -1,18 +1,21 @@
-"""The engines: private, reached through `tribodyn.dynamics.time`.
+"""Compiled time integration; private, used through `tribodyn.dynamics.time`.
 
-| module | what it answers |
+A lane is one trajectory of a block of trajectories that are integrated together (SIMD).
+
+| module | content |
 |---|---|
-| `lanes` | How does compiled code add and multiply one number per trajectory? |
-| `contact_forces` | What forces and accelerations follow from a motion? The law, compiled. |
-| `method` | What does a method of fixed steps give, and how is it chosen? |
-| `runge_kutta`, `newmark` | How does one step of the method go? |
-| `dormand_prince` | How does one adaptive step go, how wrong is it, what is between its ends? |
-| `crossing` | When within a step does a contact open or close? |
-| `statistics` | What is gathered of lanes, and the same sums of recorded motions? |
-| `moments`, `middle` | How is it gathered while marching, and what does a step leave for it? |
-| `marching` | How does a block of lanes march in the steps of the grid? |
-| `adaptive` | How does it march in steps of its own length? |
-| `blocks` | How are lanes spread over blocks and threads, and what is said of a failure? |
-| `adaptive_engine` | The same for adaptive steps: tolerances, blocks and failures. |
-| `phase_table` | What are the entries between events, as polynomials of the mesh phase? |
+| `lanes` | vector type of the compiled code: one number per lane |
+| `contact_forces` | equation of motion: contact forces, frictions, accelerations |
+| `method` | interface of the fixed-step methods |
+| `runge_kutta`, `newmark` | one step of each fixed-step method |
+| `dormand_prince` | one adaptive step, its error estimate and its dense output |
+| `crossing` | location of contact loss and contact gain within a step |
+| `statistics` | signals whose statistics are accumulated, and their order |
+| `running_statistics` | accumulation of the statistics during the integration |
+| `midpoint` | state in the middle of a step, needed for the statistics |
+| `marching` | integration loop of a block of lanes with fixed steps |
+| `adaptive` | integration loop of a block of lanes with adaptive steps |
+| `blocks` | fixed steps: distribution over blocks and threads, report of failures |
+| `adaptive_engine` | adaptive steps: tolerances, blocks, report of failures |
+| `phase_table` | entries of the system as piecewise polynomials of the mesh phase |
 """

@@ -1,8 +1,8 @@
-"""Marching a block of lanes in steps of their own length: the worst lane sets the step.
+"""Integrate a block of lanes with adaptive steps; the lane with the largest error sets the step.
 
-Steps end at events, where rows, sides and accelerations are taken anew. A lane in which a contact
-leaves its side repeats the step alone: where the polynomial of the step leaves the side, the step
-is repeated up to there, the contact changes its side, and the motion goes on.
+Steps end at events, where rows, sides and accelerations are recomputed. A lane in which a contact
+leaves its side repeats the step alone: up to the crossing on the polynomial of the step, where the
+contact changes its side, and on from there.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from tribodyn.dynamics._engine.crossing import (
     WIDTH,
     begin_search,
     change_sides,
-    go_on,
+    continue_search,
     measure,
 )
 from tribodyn.dynamics._engine.dormand_prince import (
@@ -60,12 +60,12 @@ MAX_CHANGES, CHATTER = 64, 1e-6
 NARROWEST = 1e-13
 
 
-class Kept(NamedTuple):
-    """What a march leaves behind."""
+class MarchOutput(NamedTuple):
+    """Output of the integration."""
 
     points: Array  #: mesh phases to record at, from 0
     record: Array  #: receives the states there and at the end; empty to record nothing
-    trail: Array  #: receives the steps of a single lane; empty to keep nothing
+    trail: Array  #: receives the steps of a single lane; empty to store none
     #: Steps, rejections, crossings, widest step, reason of a failure (0 none, 1 step too narrow,
     #: 2 chatter, -2 stopped), its phase, lane and contact, steps in the trail, cycle.
     report: Array
@@ -85,27 +85,34 @@ def _shrink(error: float) -> float:
 
 
 @nb.njit(**INNER)
-def _keep_points(
-    lanes: Any, law: Law, trial: Trial, kept: Kept, point: int, shift: int, lane: int, w: Array
+def _record_points(
+    lanes: Any,
+    law: Law,
+    trial: Trial,
+    output: MarchOutput,
+    point: int,
+    shift: int,
+    lane: int,
+    w: Array,
 ) -> int:
-    """Record the grid points of a step, but its end; returns the next one."""
+    """Record the states at the output points of a step without its end; returns the next point."""
     n = law.code[0]
-    if kept.record.shape[0] > 0:
-        while point < kept.points.size and kept.points[point] < trial.phase + trial.width:
-            theta = max((kept.points[point] - trial.phase) / trial.width, 0.0)
+    if output.record.shape[0] > 0:
+        while point < output.points.size and output.points[point] < trial.phase + trial.width:
+            theta = max((output.points[point] - trial.phase) / trial.width, 0.0)
             between(lanes, law, theta, True, w)
             for i in range(2 * n):
                 for item in range(len(lanes)):
                     value = w[(2 * n + i) * len(lanes) + item]
-                    kept.record[shift + point, i, lane + item] = value
+                    output.record[shift + point, i, lane + item] = value
             point += 1
     return point
 
 
 @nb.njit(**INNER)
-def _keep_step(law: Law, trial: Trial, kept: Kept, w: Array) -> None:
+def _append_to_trail(law: Law, trial: Trial, output: MarchOutput, w: Array) -> None:
     """Append the step of a single lane to the trail: all that its polynomial needs."""
-    n, o, report, trail = law.code[0], adaptive_slots(law.code), kept.report, kept.trail
+    n, o, report, trail = law.code[0], adaptive_slots(law.code), output.report, output.trail
     report[0] += 1.0
     report[3] = max(report[3], trial.width)
     row = int(report[8])
@@ -122,12 +129,12 @@ def _keep_step(law: Law, trial: Trial, kept: Kept, w: Array) -> None:
 
 @nb.njit(**INNER)
 def _measure_at(
-    law: Law, cells: Cells, trial: Trial, theta: float, room: Array, place: int, w: Array
+    law: Law, cells: Cells, trial: Trial, theta: float, scratch: Array, place: int, w: Array
 ) -> None:
     """Compressions and gaps at a fraction of the step, on its polynomial."""
     fill_within(cells, trial, theta, trial.cell, law.rows)
     between((0.0,), law, theta, False, w)
-    measure(law, I64(0), I64(1), w, room, place)
+    measure(law, I64(0), I64(1), w, scratch, place)
 
 
 @nb.njit(**INNER)
@@ -141,10 +148,10 @@ def _turns_negative(a: float, b: float, c: float) -> bool:
 def _leaves(lane: int, width: int, law: Law, w: Array) -> bool:
     """Whether a distance of one lane may be negative within the step, from its five places."""
     table, stride = adaptive_slots(law.code).table, 2 * law.code[1]
-    here = first_contact(law, I64(0), I64(0))
+    cursor = first_contact(law, I64(0), I64(0))
     for j in range(law.code[1]):
-        dead = is_dead_zone(law, here)
-        here = next_contact(law, here)
+        dead = is_dead_zone(law, cursor)
+        cursor = next_contact(law, cursor)
         for item in range(2 * j, 2 * j + 2 if dead else 2 * j):
             a, b = w[(table + item) * width + lane], w[(table + item + stride) * width + lane]
             if b < 0.0:
@@ -158,14 +165,14 @@ def _leaves(lane: int, width: int, law: Law, w: Array) -> bool:
 
 
 @nb.njit(**ONCE)
-def _enclose(law: Law, cells: Cells, trial: Trial, room: Array, w: Array) -> tuple[float, float]:
-    """Places of the step between which the first contact leaves its side; the far one 2 if none."""
+def _enclose(law: Law, cells: Cells, trial: Trial, scratch: Array, w: Array) -> tuple[float, float]:
+    """Bracket the first departure of a contact from its side; an upper end of 2 means none."""
     s, o, contacts = slots_of(law.code), adaptive_slots(law.code), law.code[1]
     stride, low, high = 2 * contacts, 0.0, 2.0
-    here = first_contact(law, I64(0), I64(0))
+    cursor = first_contact(law, I64(0), I64(0))
     for j in range(contacts):
-        dead = is_dead_zone(law, here)
-        here = next_contact(law, here)
+        dead = is_dead_zone(law, cursor)
+        cursor = next_contact(law, cursor)
         for item in range(2 * j, 2 * j + 2 if dead else 2 * j):
             if w[s.side + j] != 0.0 and item % 2 == 1:
                 continue
@@ -183,8 +190,12 @@ def _enclose(law: Law, cells: Cells, trial: Trial, room: Array, w: Array) -> tup
                 a, c = w[at + (m - 1) * stride], w[at + (m + 1) * stride]
                 if _turns_negative(a, b, c):
                     lowest = 0.25 * m + 0.125 * (a - c) / (a - 2.0 * b + c)
-                    _measure_at(law, cells, trial, lowest, room, I64(NOW), w)
-                    d, gap, side = room[WIDTH * j + NOW], room[WIDTH * j + NOW + 1], w[s.side + j]
+                    _measure_at(law, cells, trial, lowest, scratch, I64(NOW), w)
+                    d, gap, side = (
+                        scratch[WIDTH * j + NOW],
+                        scratch[WIDTH * j + NOW + 1],
+                        w[s.side + j],
+                    )
                     away = side * d - gap if side != 0.0 else gap - (d if item % 2 == 0 else -d)
                     if away < 0.0:
                         if lowest < high:
@@ -195,28 +206,28 @@ def _enclose(law: Law, cells: Cells, trial: Trial, room: Array, w: Array) -> tup
 
 @nb.njit(**ONCE)
 def _first_crossing(
-    law: Law, cells: Cells, trial: Trial, room: Array, w: Array
+    law: Law, cells: Cells, trial: Trial, scratch: Array, w: Array
 ) -> tuple[float, float]:
-    """Where in the step the search begins, and where the first contacts leave, 2 if none does."""
+    """Start of the search, and fraction at which the first contacts leave (2 if none does)."""
     s, o, contacts = slots_of(law.code), adaptive_slots(law.code), law.code[1]
-    low, high = _enclose(law, cells, trial, room, w)
+    low, high = _enclose(law, cells, trial, scratch, w)
     if high > 1.0:
         return low, 2.0
-    here = first_contact(law, I64(0), I64(0))
+    cursor = first_contact(law, I64(0), I64(0))
     for j in range(contacts):
         kind = 1.0 if w[o.fresh + j] != 0.0 and low == 0.0 else 0.0
-        room[WIDTH * j + KIND] = kind if is_dead_zone(law, here) else -1.0
-        here = next_contact(law, here)
-    _measure_at(law, cells, trial, low, room, I64(NEAR), w)
-    _measure_at(law, cells, trial, high, room, I64(NOW), w)
-    target = begin_search(room, contacts, low, high, s.side, w)
+        scratch[WIDTH * j + KIND] = kind if is_dead_zone(law, cursor) else -1.0
+        cursor = next_contact(law, cursor)
+    _measure_at(law, cells, trial, low, scratch, I64(NEAR), w)
+    _measure_at(law, cells, trial, high, scratch, I64(NOW), w)
+    target = begin_search(scratch, contacts, low, high, s.side, w)
     if target < 0.0:
         return low, 2.0
-    there = False
-    while not there:
-        _measure_at(law, cells, trial, target, room, I64(NOW), w)
-        there, following = go_on(room, contacts, low, target, s.side, w)
-        if not there:
+    converged = False
+    while not converged:
+        _measure_at(law, cells, trial, target, scratch, I64(NOW), w)
+        converged, following = continue_search(scratch, contacts, low, target, s.side, w)
+        if not converged:
             target = following
     return low, target
 
@@ -229,18 +240,18 @@ def _begin_anew(lanes: Any, law: Law, cells: Cells, cell: int, phase: float, w: 
 
 
 @nb.njit(**INNER)
-def _change_sides(law: Law, start: float, target: float, room: Array, w: Array) -> int:
-    """Let the contacts that cross change their sides; returns the first of them."""
+def _change_sides(law: Law, start: float, target: float, scratch: Array, w: Array) -> int:
+    """Change the sides of the contacts that cross; returns the first of them."""
     s, o = slots_of(law.code), adaptive_slots(law.code)
-    contact: int = change_sides(room, s.contacts, start, target, s.side, w)
+    contact: int = change_sides(scratch, s.contacts, start, target, s.side, w)
     for j in range(s.contacts):
-        w[o.fresh + j] = 1.0 if room[WIDTH * j + KIND] > 0.0 else 0.0
+        w[o.fresh + j] = 1.0 if scratch[WIDTH * j + KIND] > 0.0 else 0.0
     return contact
 
 
 @nb.njit(**INNER)
 def _accept(lanes: Any, law: Law, w: Array) -> None:
-    """Let the end of the step be the beginning of the next."""
+    """Copy the end of the step to the start of the next."""
     n, o, width = law.code[0], adaptive_slots(law.code), len(lanes)
     take_over(lanes, n, w)
     for item in range(n * width):
@@ -249,11 +260,11 @@ def _accept(lanes: Any, law: Law, w: Array) -> None:
 
 @nb.njit(**ONCE)
 def _advance_lane(
-    law: Law, cells: Cells, segment: Trial, end: float, tolerance: Any, kept: Kept, point: int,
-    shift: int, lane: int, room: Array, w: Array,
+    law: Law, cells: Cells, segment: Trial, end: float, tolerance: Any, output: MarchOutput,
+    point: int, shift: int, lane: int, scratch: Array, w: Array,
 ) -> None:  # fmt: skip
-    """March one lane over a step of the block from crossing to crossing, in buffer 0."""
-    one, report = (0.0,), kept.report
+    """Integrate one lane over a step of the block, from crossing to crossing, in buffer 0."""
+    single_lane, report = (0.0,), output.report
     o, contacts = adaptive_slots(law.code), law.code[1]
     phase, cell = segment.phase, segment.cell
     width, before, changes, counted = end - phase, 1.0, 0, phase
@@ -264,7 +275,7 @@ def _advance_lane(
         if not cut:
             width = min(width, end - phase)
         trial = Trial(cell, segment.last, phase, width)
-        error = try_step(one, law, cells, trial, w)
+        error = try_step(single_lane, law, cells, trial, w)
         if not error <= 1.0 and not cut:
             report[1] += 1.0
             if width < NARROWEST:
@@ -272,8 +283,8 @@ def _advance_lane(
                 return
             width *= _shrink(error)
             continue
-        if not cut and may_cross(one, law, cells, trial, w):
-            low, theta = _first_crossing(law, cells, trial, room, w)
+        if not cut and may_cross(single_lane, law, cells, trial, w):
+            low, theta = _first_crossing(law, cells, trial, scratch, w)
             if theta <= 1.0:
                 if phase - counted > CHATTER:
                     counted, changes = phase, 0
@@ -283,26 +294,26 @@ def _advance_lane(
                     # Repeat the step up to the crossing: fifth order instead of its polynomial.
                     cut, plan, width = True, width, theta * width
                 else:
-                    contact = _change_sides(law, low, theta, room, w)
-                    _begin_anew(one, law, cells, cell, phase, w)
+                    contact = _change_sides(law, low, theta, scratch, w)
+                    _begin_anew(single_lane, law, cells, cell, phase, w)
                     if changes > MAX_CHANGES:
                         report[4], report[5], report[6], report[7] = 2.0, phase, lane, contact
                         return
                 continue
-        point = _keep_points(one, law, trial, kept, point, shift, lane, w)
-        _keep_step(law, trial, kept, w)
+        point = _record_points(single_lane, law, trial, output, point, shift, lane, w)
+        _append_to_trail(law, trial, output, w)
         phase = end if width >= end - phase else phase + width
         cell = find_cell(cells, cell, cell, segment.last, phase)
-        _accept(one, law, w)
+        _accept(single_lane, law, w)
         for j in range(contacts):
             w[o.fresh + j] = 0.0
         set_scale(1, law.code, tolerance[0], tolerance[1], w)
         if cut:
-            contact = _change_sides(law, low, theta, room, w)
+            contact = _change_sides(law, low, theta, scratch, w)
             if changes > MAX_CHANGES:
                 report[4], report[5], report[6], report[7] = 2.0, phase, lane, contact
                 return
-            _begin_anew(one, law, cells, cell, phase, w)
+            _begin_anew(single_lane, law, cells, cell, phase, w)
             width, cut = plan, False
         else:
             width *= _growth(error, before)
@@ -321,24 +332,24 @@ def _build(digest: str) -> Any:
         rtol: float,
         atol_: Array,
         cycles: int,
-        kept: Kept,
+        output: MarchOutput,
         stop: Index,
     ) -> Array:
-        """March every lane by ``cycles`` mesh cycles; returns the slots of the lane that failed.
+        """Integrate every lane over ``cycles`` mesh cycles; returns the slots of a failed lane.
 
         ``memory`` holds the next step and the last error, and the largest size of each state.
         """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        program, report, points, block = table.program, kept.report, kept.points, len(lanes)
+        program, report, points, block = table.program, output.report, output.points, len(lanes)
         code, events, first = address(program.code), table.events, table.first
         s, o = slots_of(code), adaptive_slots(code)
         n, contacts, slots = s.n, s.contacts, s.end + o.end
         work = np.zeros(slots * (block + 1))
-        aside = np.empty(table.constant.size + WIDTH * (contacts + 1))
+        row_buffer = np.empty(table.constant.size + WIDTH * (contacts + 1))
         for column in range(table.constant.size):
-            aside[column] = table.constant[column]
-        law = Law(code, address(program.reads), address(aside))
-        room, w = ahead(law.rows, table.constant.size), address(work)
+            row_buffer[column] = table.constant[column]
+        law = Law(code, address(program.reads), address(row_buffer))
+        scratch, w = ahead(law.rows, table.constant.size), address(work)
         single, atol = ahead(w, slots * block), address(atol_)
         edge, degree, start = address(table.edge), address(table.degree), address(table.start)
         coefficients, varying = address(table.coefficients), address(table.varying)
@@ -357,23 +368,23 @@ def _build(digest: str) -> Any:
             for segment in range(first.size - 1):
                 phase, end = events[segment], events[segment + 1]
                 cell, last = first[segment], first[segment + 1]
-                anew = True
+                restarts = True
                 while phase < end:
                     if stop[0] != 0:
                         report[4] = STOPPED
                         return work
-                    if anew:
+                    if restarts:
                         if switching and phase == events[segment]:
                             fill_row(cells, cell, phase, law.rows)
                             set_sides(lanes, law, I64(0), I64(0), w)
                         _begin_anew(lanes, law, cells, cell, phase, w)
-                        anew = False
-                    rest = end - phase
+                        restarts = False
+                    remaining = end - phase
                     width = plan
-                    if plan >= rest:
-                        width = rest
-                    elif plan > 0.5 * rest:
-                        width = 0.5 * rest
+                    if plan >= remaining:
+                        width = remaining
+                    elif plan > 0.5 * remaining:
+                        width = 0.5 * remaining
                     trial = Trial(cell, last, phase, width)
                     error = try_step(lanes, law, cells, trial, w)
                     if not error <= 1.0:
@@ -387,29 +398,29 @@ def _build(digest: str) -> Any:
                             return work[slots * block :]
                         plan = width * _shrink(error)
                         continue
-                    goal = end if width >= rest else phase + width
+                    goal = end if width >= remaining else phase + width
                     crossing = switching and may_cross(lanes, law, cells, trial, w)
                     old_point = point
-                    alone = crossing and block == 1 and _leaves(I64(0), I64(1), law, w)
-                    if not alone:
-                        point = _keep_points(lanes, law, trial, kept, point, shift, I64(0), w)
-                        _keep_step(law, trial, kept, w)
+                    repeats_alone = crossing and block == 1 and _leaves(I64(0), I64(1), law, w)
+                    if not repeats_alone:
+                        point = _record_points(lanes, law, trial, output, point, shift, I64(0), w)
+                        _append_to_trail(law, trial, output, w)
                     if crossing:
                         for lane in range(block):
                             if not _leaves(lane, block, law, w):
                                 continue
                             take_lane(lane, block, slots, w, single)
                             _advance_lane(
-                                law, cells, trial, goal, (rtol, atol), kept, old_point,
-                                shift, lane, room, single,
+                                law, cells, trial, goal, (rtol, atol), output, old_point,
+                                shift, lane, scratch, single,
                             )  # fmt: skip
                             if report[4] != 0.0:
                                 return work[slots * block :]
                             for i in range(2 * n):
                                 w[(4 * n + i) * block + lane] = single[i]
                             put_lane(lane, block, s.side, s.load, w, single)
-                            anew = True
-                        if alone:
+                            restarts = True
+                        if repeats_alone:
                             while point < points.size and points[point] < goal:
                                 point += 1
                     phase = goal
@@ -426,12 +437,12 @@ def _build(digest: str) -> Any:
             for i in range(2 * n):
                 state[lane, i] = w[i * block + lane]
                 memory[2 + i * block + lane] = w[(o.size + i) * block + lane]
-        if kept.record.shape[0] > 0:
+        if output.record.shape[0] > 0:
             for i in range(2 * n):
                 for lane in range(block):
-                    kept.record[cycles * points.size, i, lane] = state[lane, i]
+                    output.record[cycles * points.size, i, lane] = state[lane, i]
         # The address holds only as long as its owner is in use.
-        report[0] += 0.0 * aside[0]
+        report[0] += 0.0 * row_buffer[0]
         return work
 
     return march_adaptive_block

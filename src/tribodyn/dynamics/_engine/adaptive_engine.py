@@ -1,4 +1,4 @@
-"""From a system to adaptively marched lanes: tolerances, blocks, threads, failures."""
+"""Prepare adaptive integration of a system: tolerances, blocks of lanes, report of failures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics._engine.blocks import LaneBlock, lane_blocks
 from tribodyn.dynamics._engine.phase_table import PhaseTable, build_table
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.divergence import Failed, adaptive_failure, unparted_step
+from tribodyn.dynamics.equations.divergence import Failed, adaptive_failure, chattering_step
 from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.nodes import sampled
@@ -29,10 +29,10 @@ Tolerance = float | Sequence[float] | ArrayLike
 
 #: Default absolute tolerance, over the relative one and the size of the static state.
 SMALL = 1e-3
-#: Error of a step over the tolerance asked for, and the same times the memory of the motion [rad].
+#: Error of a step over the requested tolerance, and the same times the memory of the motion [rad].
 #: Errors of steps add up over the memory; so their sum stayed below half of the tolerance in all
 #: reference cases, up to a hundred undamped periods. Impacts spread neighbouring motions, hence the
-#: smaller share of steps where flanks can part: with it the error of two masses that spread small
+#: smaller share where flanks can separate: with it the error of two masses that spread small
 #: differences 450-fold equals the tolerance.
 _SHARE, _SHARE_WITH_GAP, _BUDGET, _LEAST = 0.015, 0.001, 3.0, 1e-5
 
@@ -70,7 +70,7 @@ def static_scale(compiled: Compiled, mesh_frequency: float) -> Array:
 def step_share(
     compiled: Compiled, duration: float, stiffness_scale: float = 1.0, damping_scale: float = 1.0
 ) -> float:
-    """Error of a step over the tolerance of the motion."""
+    """Allowed error of a step over the tolerance of the motion."""
     system, nodes = compiled.system, compiled.nodes
     inverse = system.inverse_mass
     longest = 0.0
@@ -80,11 +80,11 @@ def step_share(
     )
     for share in (0.0, 1.0):
         parts = []
-        for values, own in pairs:
+        for values, structure_matrix in pairs:
             contact = np.einsum(
                 "rs,rsj,rsji,rsjk->ik", nodes.weight, values, nodes.direction, nodes.direction
             )
-            parts.append(inverse @ (np.asarray(own) + share * contact))
+            parts.append(inverse @ (np.asarray(structure_matrix) + share * contact))
         roots = state_roots(*parts)
         time = np.minimum(duration, 1.0 / np.maximum(-roots.real, 1e-3 / duration))
         longest = max(longest, float((np.abs(roots.imag) * time).max(initial=0.0)))
@@ -116,7 +116,7 @@ class AdaptiveBlock(LaneBlock):
 
 
 class AdaptiveLanes:
-    """Lanes that march on from call to call, in blocks of lanes of one engine."""
+    """Lanes whose integration continues from call to call, in blocks of lanes of one engine."""
 
     def __init__(
         self,
@@ -129,15 +129,19 @@ class AdaptiveLanes:
         self.period = np.asarray(period, dtype=float)
         self.factors = np.ones((lanes, 6)) if scales is None else scales
         steady, self.blocks = np.empty((lanes, n)), []
-        for engine, own in engines:
-            force = self.factors[own, 5]
-            steady[own] = lane_load(engine.table.program, engine.system, extra_force[own], force)
-            rate = max(engine.rate * float(np.max(self.period[own])), 1e-9)
-            for block in lane_blocks(own.size):
+        for engine, lane_numbers in engines:
+            force = self.factors[lane_numbers, 5]
+            steady[lane_numbers] = lane_load(
+                engine.table.program, engine.system, extra_force[lane_numbers], force
+            )
+            rate = max(engine.rate * float(np.max(self.period[lane_numbers])), 1e-9)
+            for block in lane_blocks(lane_numbers.size):
                 memory = np.zeros(2 + 2 * n * block.index.size)
                 memory[:2] = min(0.1 * engine.rtol**0.2 / rate, 0.1), 1.0
-                one = AdaptiveBlock(own[block.index], block.count, engine, memory)
-                self.blocks.append(one)
+                adaptive_block = AdaptiveBlock(
+                    lane_numbers[block.index], block.count, engine, memory
+                )
+                self.blocks.append(adaptive_block)
         self.load = np.hstack((steady, self.factors))
 
     def march_block(
@@ -150,17 +154,17 @@ class AdaptiveLanes:
         trail: Array,
         elapsed: int,
     ) -> Array:
-        """March one block, whose states are overwritten; returns its report."""
-        from tribodyn.dynamics._engine.adaptive import Kept, march_adaptive_block
+        """Integrate one block, whose states are overwritten; returns its report."""
+        from tribodyn.dynamics._engine.adaptive import MarchOutput, march_adaptive_block
 
         engine, (width, double) = block.engine, state.shape
-        kept = np.zeros((0, double, width)) if record is None else record
+        states = np.zeros((0, double, width)) if record is None else record
         report = np.zeros(10)
         lanes = (0.0,) * width, engine.table, self.period[block.index], self.load[block.index]
         tolerances = engine.safety * engine.rtol, engine.safety * engine.atol
-        left = Kept(points, kept, trail, report)
+        output = MarchOutput(points, states, trail, report)
         slots = march_adaptive_block(
-            *lanes, state, block.memory, *tolerances, cycles, left, stop_flag()
+            *lanes, state, block.memory, *tolerances, cycles, output, stop_flag()
         )
         refuse_stopped(int(report[4]))
         if report[4]:
@@ -168,13 +172,13 @@ class AdaptiveLanes:
         return report
 
     def _report(self, block: AdaptiveBlock, report: Array, state: Array, elapsed: int) -> None:
-        """Tell why a block ended early; ``state`` is that of its lane at the failed step."""
+        """Raise the reason why a block failed; ``state`` is that of its lane at the failed step."""
         system, lane = block.engine.system, int(block.index[int(report[6])])
         phase, period = elapsed + report[9] + report[5], float(self.period[lane])
         who = lane if self.period.size > 1 else None
         if report[4] == 2.0:
             place = int(report[7]), len(system.contacts), phase, phase * period, who
-            raise unparted_step(*place, adaptive=True)
+            raise chattering_step(*place, adaptive=True)
         nodes = sampled(system, max(_SAMPLE, 2 * len(system_events(system))))[1]
         scale = block.engine.atol / (SMALL * block.engine.rtol)
         facts = period, who, self.factors[lane], 0.0
@@ -199,21 +203,21 @@ def adaptive_engine(
     table = build_table(system, scaled=scaled, split=split) if table is None else table
     if table.error > rtol:
         raise InputError(
-            f"rtol = {rtol:.1e}, and the entries of the system are known over the mesh "
-            f"phase to {table.error:.1e}",
+            f"rtol = {rtol:.1e} is below {table.error:.1e}, the accuracy to which the entries "
+            "of the system are resolved over the mesh phase",
             where="argument rtol",
-            why="Their kinks or noise cannot be followed any closer",
+            why="Their kinks or noise cannot be resolved any further",
             remedy=f"Give rtol of at least {table.error:.0e}, or smoother entries",
         )
     grid, nodes, program = compile_system(system, max(_SAMPLE, 2 * table.events.size))
     compiled = Compiled(system, grid, nodes, program, math.nan)
     slowest = float(np.min(np.asarray(mesh_frequency, dtype=float)))
     if atol is None:
-        given = SMALL * rtol * static_scale(compiled, slowest)
+        absolute_tolerance = SMALL * rtol * static_scale(compiled, slowest)
     else:
-        given = read_atol(atol, system.size)
+        absolute_tolerance = read_atol(atol, system.size)
     factors = np.ones((1, 6)) if parameters is None else parameters.table(parameters.count)
     most, least = factors.max(axis=0), factors.min(axis=0)
     safety = step_share(compiled, cycles / slowest, float(most[0]), float(least[1]))
     rate = largest_rate(system, nodes, tuple(most[:3]))
-    return AdaptiveEngine(system, table, float(rtol), given, rate, safety)
+    return AdaptiveEngine(system, table, float(rtol), absolute_tolerance, rate, safety)

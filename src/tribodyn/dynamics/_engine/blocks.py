@@ -1,4 +1,4 @@
-"""Lanes in blocks, blocks in threads; marching with fixed steps, and what is said of a failure."""
+"""Fixed-step integration of lanes in blocks and threads, and the report of failures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.divergence import Failed, newmark_failure, runaway, unparted_step
+from tribodyn.dynamics.equations.divergence import Failed, chattering_step, newmark_failure, runaway
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.program import LaneRows, lane_load
 from tribodyn.errors import Argument, InputError
@@ -22,33 +22,33 @@ from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics._engine.moments import Gathered
+    from tribodyn.dynamics._engine.running_statistics import Gathered
 
 Value = TypeVar("Value")
 Block = TypeVar("Block", bound="LaneBlock")
 
-#: Lanes of one block. A single lane keeps everything in scalar registers; the state of many has to
-#: stay in the first cache, which 64 lanes of a pair of gears overflow.
+#: Lanes of one block. A single lane uses scalar registers; the state of several has to stay in the
+#: first-level cache, which 64 lanes of a pair of gears overflow.
 WIDTH = 16
 #: Lanes of one block whose rows differ: these stream from memory, which more lanes do not help.
-#: Fewer lanes than these march one by one.
+#: Fewer lanes than these are integrated one by one.
 OWN_ROWS = 4
 #: Steps of all lanes, times coordinates and contacts, that take a few milliseconds together.
 _BRIEF = 200_000
 
-#: Where lanes march: on this processor, or on a graphics processor.
+#: Device that integrates the lanes: this processor or a graphics processor.
 Backend = Literal["cpu", "cuda"]
 _backend: ContextVar[Backend] = ContextVar("backend", default="cpu")
 
 
 def on_gpu() -> bool:
-    """Whether lanes march on a graphics processor."""
+    """Whether lanes are integrated on a graphics processor."""
     return _backend.get() == "cuda"
 
 
 @contextmanager
 def marching_on(backend: Backend | None) -> Iterator[None]:
-    """March all lanes inside the block there; None: where it is said outside."""
+    """Context in which all lanes are integrated on ``backend``; None keeps the current one."""
     if backend not in (None, "cpu", "cuda"):
         why = 'It is "cpu", or "cuda" for a graphics processor'
         raise InputError(f"backend = {backend!r}", Argument("backend"), why)
@@ -65,10 +65,10 @@ def marching_on(backend: Backend | None) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class LaneBlock:
-    """Lanes that march side by side: past the end the last one is repeated, to fill the block."""
+    """Lanes that are integrated together; the last lane is repeated to fill the block."""
 
     index: Index
-    count: int  #: lanes that are not repeated
+    count: int  #: lanes without repetitions
 
     @property
     def lanes(self) -> Index:
@@ -91,13 +91,13 @@ class BlockRecord:
 
     def __init__(self, record: Array | None, lanes: Index, width: int) -> None:
         self._all, self._lanes = record, lanes
-        whole = record is not None and record.shape[2] == lanes.size == width
+        covers_record = record is not None and record.shape[2] == lanes.size == width
         self.states = record
-        if record is not None and not whole:
+        if record is not None and not covers_record:
             self.states = np.empty((*record.shape[:2], width))
 
     def put(self) -> None:
-        """Put the lanes in their places."""
+        """Copy the lanes of the block into the record."""
         if self._all is not None and self.states is not None and self.states is not self._all:
             self._all[:, :, self._lanes] = self.states[:, :, : self._lanes.size]
 
@@ -109,7 +109,7 @@ class BlockMoments:
         self._all, self._block = statistics, block
         self.gathered: Gathered | None = None
         if statistics is not None:
-            from tribodyn.dynamics._engine.moments import Gathered
+            from tribodyn.dynamics._engine.running_statistics import Gathered
 
             waves = np.ascontiguousarray(statistics.waves).reshape(-1)
             moments = np.ascontiguousarray(statistics.moments[:, block.index]).reshape(-1)
@@ -117,7 +117,7 @@ class BlockMoments:
             self.gathered = Gathered(statistics.outputs, waves, harmonics, moments)
 
     def put(self) -> None:
-        """Put the moments in their places."""
+        """Copy the moments of the block into the statistics."""
         if self._all is not None and self.gathered is not None:
             numbers = self.gathered.moments.reshape(-1, self._block.index.size)
             self._all.moments[:, self._block.lanes] = numbers[:, : self._block.count]
@@ -132,14 +132,14 @@ def march_blocks(
     *,
     brief: bool = False,
 ) -> tuple[Array, list[Value]]:
-    """Let every block march its lanes; returns their new states, and what each march returned."""
+    """Integrate every block in threads; returns the new states and the value of each block."""
     new = np.empty_like(state)
 
     def march_lanes(block: Block) -> Value:
         part = np.ascontiguousarray(state[block.index])
-        kept = BlockRecord(record, block.lanes, block.index.size)
-        value = march_block(block, part, kept.states)
-        kept.put()
+        block_record = BlockRecord(record, block.lanes, block.index.size)
+        value = march_block(block, part, block_record.states)
+        block_record.put()
         new[block.lanes] = part[: block.count]
         return value
 
@@ -147,7 +147,7 @@ def march_blocks(
 
 
 def is_brief(compiled: Compiled, lanes: int, cycles: int) -> bool:
-    """Tell whether a march is over before an interruption is missed."""
+    """Whether an integration takes only milliseconds, so that nobody needs to interrupt it."""
     size = compiled.system.size + len(compiled.system.contacts)
     return lanes * cycles * compiled.grid.steps * size <= _BRIEF
 
@@ -167,8 +167,8 @@ def march(
     threads: int | None = None,
     elapsed: int = 0,
 ) -> Array:
-    """March lanes by whole mesh cycles, after ``elapsed`` others; returns their new state."""
-    # Whoever gives parameters has looked whether the steps are short enough for them.
+    """Integrate lanes over mesh cycles, after ``elapsed`` others; returns their new states."""
+    # The caller has checked that the steps are short enough for the parameters.
     lanes = state.shape[0]
     run = Run(compiled, method, parameters, period, state, extra_force)
     if on_gpu():
@@ -184,8 +184,8 @@ def march(
     blocks = lane_blocks(lanes, width, own_rows=bool(compiled.members))
     brief = is_brief(compiled, lanes, cycles)
 
-    def march_lanes(block: LaneBlock, part: Array, kept: Array | None) -> int:
-        return run.march(block, part, cycles, kept, statistics)
+    def march_lanes(block: LaneBlock, part: Array, block_record: Array | None) -> int:
+        return run.march(block, part, cycles, block_record, statistics)
 
     new, codes = march_blocks(blocks, state, record, march_lanes, threads, brief=brief)
     if max(codes) >= 0:
@@ -194,7 +194,7 @@ def march(
 
 
 class Run:
-    """Lanes with everything that the kernel wants to know about each of them."""
+    """Lanes with all arrays that the kernel needs for each of them."""
 
     def __init__(
         self,
@@ -214,10 +214,13 @@ class Run:
         self.load = np.empty((lanes, double // 2))
         self.members = compiled.each(lanes)
         for number, member in enumerate(self.members):
-            own = member.lanes
-            self.member[own] = number
-            self.load[own] = lane_load(
-                self.programs[number], member.system, extra[own], self.scales[own, 5]
+            lane_numbers = member.lanes
+            self.member[lane_numbers] = number
+            self.load[lane_numbers] = lane_load(
+                self.programs[number],
+                member.system,
+                extra[lane_numbers],
+                self.scales[lane_numbers, 5],
             )
         if parameters is not None:
             self.load = np.hstack((self.load, self.scales))
@@ -230,7 +233,7 @@ class Run:
         record: Array | None = None,
         statistics: Statistics | None = None,
     ) -> int:
-        """March the lanes of one block; returns what :func:`march_block` does."""
+        """Integrate the lanes of one block; returns the code of :func:`march_block`."""
         from tribodyn.dynamics._engine.marching import march_block
 
         index = block.index
@@ -248,7 +251,7 @@ class Run:
         return refuse_stopped(int(code))
 
     def gather(self, block: LaneBlock, record: Array, statistics: Statistics, cycles: int) -> None:
-        """Add a recorded mesh cycle of a block, whose lanes have one system, to the statistics."""
+        """Add a recorded mesh cycle of a block of lanes of one system to the statistics."""
         from tribodyn.dynamics._engine.marching import gather_record
 
         sums, index = BlockMoments(statistics, block), block.index
@@ -258,31 +261,31 @@ class Run:
         sums.put()
 
     def report(self, block: LaneBlock, code: int, elapsed: int) -> None:
-        """Tell why a block ended early."""
-        from tribodyn.dynamics._engine.marching import UNFOUND, UNPARTED
+        """Raise the reason why a block failed."""
+        from tribodyn.dynamics._engine.marching import CHATTERING, UNCONVERGED
 
         grid, several = self.compiled.grid, self.period.size > 1
-        if UNPARTED <= code < UNFOUND:
-            place, item = divmod(code - UNPARTED, block.index.size)
+        if CHATTERING <= code < UNCONVERGED:
+            place, item = divmod(code - CHATTERING, block.index.size)
             contacts = len(self.compiled.system.contacts)
             cycle, number = divmod(place // contacts, grid.steps)
             lane = int(block.index[item])
             at = elapsed + cycle + float(grid.left[number])
             time, who = at * float(self.period[lane]), lane if several else None
-            raise unparted_step(place % contacts, contacts, at, time, who)
-        lane, before, record, last = self._again(block, code % UNPARTED)
-        done = last % UNPARTED if last >= 0 else grid.steps
+            raise chattering_step(place % contacts, contacts, at, time, who)
+        lane, before, record, last = self._again(block, code % CHATTERING)
+        done = last % CHATTERING if last >= 0 else grid.steps
         member, rate = self.members[self.member[lane]], self.compiled.step_number
         phase = before + elapsed + np.append(grid.left, 1.0)
         facts = float(self.period[lane]), lane if several else None, self.scales[lane], rate
         failed = Failed(member.system, member.nodes, record[:done, :, 0], phase, *facts)
         if isinstance(self.method, Newmark):
-            raise newmark_failure(failed, last >= UNFOUND, self.method[:3])
+            raise newmark_failure(failed, last >= UNCONVERGED, self.method[:3])
         raise runaway(failed, f"omega_max*dt = {rate:.3g}, limit 2.7 of the integrator")
 
     def _again(self, block: LaneBlock, step: int) -> tuple[int, int, Array, int]:
-        """March the lane that failed once more: its number, cycles before, last cycle, code."""
-        # The step counted from the start is at the end of a mesh cycle. A lane marched by itself is
+        """Repeat the failed lane; returns its number, cycles before, last cycle and its code."""
+        # The step counted from the start is at the end of a mesh cycle. A lane integrated alone is
         # rounded differently, so that it may take a cycle more or less.
         steps = self.compiled.grid.steps
         record, last, lane = np.zeros((steps + 1, self.state.shape[1], 1)), -1, block.index[0]

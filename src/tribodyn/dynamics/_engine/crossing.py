@@ -1,15 +1,15 @@
-"""Splitting a step where a contact leaves its side of the dead zone.
+"""Split a step where a contact crosses a boundary of its dead zone.
 
 The contact force has a kink there and, with damping, a jump. A step across it loses its order, so
 the lane concerned repeats the step in parts, each with one force law, from crossing to crossing.
 Rows are interpolated quadratically within the step.
 
-The search: two places of the step enclose the instant; nobody is beyond its boundary at the near
-one, somebody is at the far one. Every try replaces one of them, whichever contact it was meant for,
-so that the search ends however many contacts cross together; those that do so to rounding change
-their sides at one instant. A try is a step to that place with fixed steps, and the polynomial of
-the step with adaptive ones. Eight numbers per contact and eight of the search itself are kept in
-``room``.
+The search brackets the crossing by two fractions of the step: at the near one no contact is beyond
+its boundary, at the far one at least one is. Every trial replaces one end of the bracket, so that
+the search ends however many contacts cross together; contacts that cross at the same instant to
+rounding change their sides together. With fixed steps a trial integrates up to the fraction; with
+adaptive steps it evaluates the polynomial of the step. ``scratch`` holds eight numbers per contact
+and eight of the search.
 """
 
 from __future__ import annotations
@@ -37,189 +37,200 @@ from tribodyn.types import Array
 quadratic_weights = nb.njit(**INNER)(motion.quadratic_weights)
 most_splits = nb.njit(**INNER)(divergence.most_splits)
 
-#: Numbers per contact, and those of the search behind them: see the slots.
+#: Numbers per contact; the search takes as many behind those of the contacts.
 WIDTH = 8
-#: Slots of a contact: -1 without a dead zone, 1 if it begins on its boundary, else 0; its
-#: compression and gap at the near place, at the far one, at the last try; what they change by in
-#: the whole step.
+#: Slots of a contact: kind (-1 without a dead zone, 1 if it begins on its boundary, else 0);
+#: compression and gap at the near end, at the far end and at the last trial; their change over
+#: the step.
 KIND, NEAR, FAR, NOW, _CHANGE = 0, 1, 3, 5, 7
-#: Slots of the search: near and far place, weights of their distances, which of them was replaced
-#: last, its width some tries ago and how many, contact for which the last try was made.
+#: Slots of the search: near and far end, weights of their distances, end that was replaced last,
+#: width some trials ago, number of trials, contact for which the last trial was made.
 _LOW, _HIGH, _LOW_WEIGHT, _HIGH_WEIGHT, _LAST, _WIDE, _TRIES, _LEADER = 0, 1, 2, 3, 4, 5, 6, 7
 
-#: Every fourth try at the latest halves the search, so that 200 leave nothing of it.
+#: Every fourth trial at the latest halves the bracket, so that 200 exhaust double precision.
 MAX_TRIES = 240
-#: Distances from the boundary over their change in the step: of the crossing, and of others there.
-_THERE, _TOGETHER = 1e-14, 1e-12
-#: Narrowest search, and time within which it is not told whether a contact leaves its boundary.
+#: Distance from the boundary over its change in the step that counts as on the boundary: of the
+#: crossing contact, and of others that cross at the same instant.
+_CONVERGED, _SIMULTANEOUS = 1e-14, 1e-12
+#: Narrowest bracket, and time within which a contact that begins on its boundary is not judged.
 _NARROW, _STAY = 1e-15, 1e-6
 
 
 @nb.njit(**INNER)
-def _distance(room: Array, j: int, place: int, sides: int, w: Array) -> float:
-    """Distance of a contact to its boundary; in the gap, to the one that it is beyond at last."""
+def _distance(scratch: Array, j: int, place: int, sides: int, w: Array) -> float:
+    """Distance of a contact to its boundary; in the gap, to the one on its side at ``FAR``."""
     at = WIDTH * j
-    d, gap, side = room[at + place], room[at + place + 1], w[sides + j]
-    leaving = 1.0 if room[at + FAR] > 0.0 else -1.0
+    d, gap, side = scratch[at + place], scratch[at + place + 1], w[sides + j]
+    leaving = 1.0 if scratch[at + FAR] > 0.0 else -1.0
     return side * d - gap if side != 0.0 else gap - leaving * d
 
 
 @nb.njit(**INNER)
-def _is_beyond(room: Array, j: int, early: bool, sides: int, w: Array) -> bool:
-    """Tell whether a contact is beyond its boundary at the last try, ``early`` after the start."""
+def _is_beyond(scratch: Array, j: int, early: bool, sides: int, w: Array) -> bool:
+    """Whether a contact is beyond its boundary at the last trial, ``early`` after the start."""
     at = WIDTH * j
-    if early and room[at + KIND] > 0.0:
+    if early and scratch[at + KIND] > 0.0:
         return False
-    d, gap, side = room[at + NOW], room[at + NOW + 1], w[sides + j]
+    d, gap, side = scratch[at + NOW], scratch[at + NOW + 1], w[sides + j]
     beyond: bool = side * d - gap < 0.0 if side != 0.0 else abs(d) - gap > 0.0
-    return room[at + KIND] >= 0.0 and beyond
+    return scratch[at + KIND] >= 0.0 and beyond
 
 
 @nb.njit(**INNER)
-def _keep(room: Array, contacts: int, place: int) -> None:
+def _save_trial(scratch: Array, contacts: int, place: int) -> None:
     for j in range(contacts):
         for item in range(2):
-            room[WIDTH * j + place + item] = room[WIDTH * j + NOW + item]
+            scratch[WIDTH * j + place + item] = scratch[WIDTH * j + NOW + item]
 
 
 @nb.njit(**INNER)
-def _leader(room: Array, contacts: int, start: float, sides: int, w: Array) -> tuple[Any, float]:
-    """Contact that seems to cross first, and where; -1 if one is there from the beginning."""
+def _leader(scratch: Array, contacts: int, start: float, sides: int, w: Array) -> tuple[Any, float]:
+    """Estimate which contact crosses first, and where; -1 if one starts on its boundary."""
     search = WIDTH * contacts
-    low, high = room[search + _LOW], room[search + _HIGH]
+    low, high = scratch[search + _LOW], scratch[search + _HIGH]
     first: Any = I64(-1)
     place = high
     for j in range(contacts):
-        after = _distance(room, j, I64(FAR), sides, w)
-        kind = room[WIDTH * j + KIND]
+        after = _distance(scratch, j, I64(FAR), sides, w)
+        kind = scratch[WIDTH * j + KIND]
         if kind < 0.0 or not after < 0.0 or (kind > 0.0 and high - start < _STAY):
             continue
-        before = _distance(room, j, I64(NEAR), sides, w)
+        before = _distance(scratch, j, I64(NEAR), sides, w)
         if (kind > 0.0 and low == start) or before <= 0.0:
             return I64(-1), low
-        near = room[search + _LOW_WEIGHT] * before
-        at = low + (high - low) * near / (near - room[search + _HIGH_WEIGHT] * after)
+        low_distance = scratch[search + _LOW_WEIGHT] * before
+        at = low + (high - low) * low_distance / (
+            low_distance - scratch[search + _HIGH_WEIGHT] * after
+        )
         if first < 0 or at < place:
             first, place = I64(j), at
     return first, place
 
 
 @nb.njit(**INNER)
-def _propose(room: Array, contacts: int, start: float, sides: int, w: Array) -> Any:
-    """Next place to try; ``start`` itself ends the search there."""
+def _propose(scratch: Array, contacts: int, start: float, sides: int, w: Array) -> Any:
+    """Next fraction to try; a return of ``start`` ends the search at the start."""
     search = WIDTH * contacts
-    low, high = room[search + _LOW], room[search + _HIGH]
-    leader, target = _leader(room, contacts, start, sides, w)
-    room[search + _LEADER] = leader
-    room[search + _TRIES] += 1.0
+    low, high = scratch[search + _LOW], scratch[search + _HIGH]
+    leader, target = _leader(scratch, contacts, start, sides, w)
+    scratch[search + _LEADER] = leader
+    scratch[search + _TRIES] += 1.0
     if leader < 0:
-        # A contact begins on its boundary, to rounding: look for a place inside.
+        # A contact begins on its boundary, to rounding: try a fraction inside.
         return start if high - start < 2.0 * _STAY else low + 0.5 * (high - low)
-    if room[search + _TRIES] % 4.0 == 0.0:
-        if high - low > 0.5 * room[search + _WIDE]:
+    if scratch[search + _TRIES] % 4.0 == 0.0:
+        if high - low > 0.5 * scratch[search + _WIDE]:
             target = low + 0.5 * (high - low)
-        room[search + _WIDE] = high - low
+        scratch[search + _WIDE] = high - low
     return target if low < target < high else low + 0.5 * (high - low)
 
 
 @nb.njit(**INNER)
-def begin_search(room: Array, contacts: int, start: float, end: float, sides: int, w: Array) -> Any:
-    """First place to try between ``start`` and ``end``; -1 if all keep their sides."""
+def begin_search(
+    scratch: Array, contacts: int, start: float, end: float, sides: int, w: Array
+) -> Any:
+    """First fraction to try between ``start`` and ``end``; -1 if no contact changes its side."""
     search = WIDTH * contacts
-    some = False
+    any_beyond = False
     for j in range(contacts):
         at = WIDTH * j
-        gap, side = room[at + NEAR + 1], w[sides + j]
-        d = side * room[at + NEAR] if side != 0.0 else -abs(room[at + NEAR])
-        if room[at + KIND] == 0.0 and (d - gap if side != 0.0 else gap + d) <= 0.0:
-            room[at + KIND] = 1.0
-        some = some or _is_beyond(room, j, end - start < _STAY, sides, w)
-        room[at + _CHANGE] = abs(room[at + NOW] - room[at + NEAR])
-        room[at + _CHANGE] += abs(room[at + NOW + 1] - room[at + NEAR + 1])
-    if not some:
+        gap, side = scratch[at + NEAR + 1], w[sides + j]
+        d = side * scratch[at + NEAR] if side != 0.0 else -abs(scratch[at + NEAR])
+        if scratch[at + KIND] == 0.0 and (d - gap if side != 0.0 else gap + d) <= 0.0:
+            scratch[at + KIND] = 1.0
+        any_beyond = any_beyond or _is_beyond(scratch, j, end - start < _STAY, sides, w)
+        scratch[at + _CHANGE] = abs(scratch[at + NOW] - scratch[at + NEAR])
+        scratch[at + _CHANGE] += abs(scratch[at + NOW + 1] - scratch[at + NEAR + 1])
+    if not any_beyond:
         return -1.0
-    _keep(room, contacts, I64(FAR))
-    room[search + _LOW], room[search + _HIGH], room[search + _WIDE] = start, end, end - start
-    room[search + _LOW_WEIGHT] = room[search + _HIGH_WEIGHT] = 1.0
-    room[search + _LAST] = room[search + _TRIES] = 0.0
-    return _propose(room, contacts, start, sides, w)
+    _save_trial(scratch, contacts, I64(FAR))
+    scratch[search + _LOW], scratch[search + _HIGH], scratch[search + _WIDE] = (
+        start,
+        end,
+        end - start,
+    )
+    scratch[search + _LOW_WEIGHT] = scratch[search + _HIGH_WEIGHT] = 1.0
+    scratch[search + _LAST] = scratch[search + _TRIES] = 0.0
+    return _propose(scratch, contacts, start, sides, w)
 
 
 @nb.njit(**INNER)
-def go_on(
-    room: Array, contacts: int, start: float, target: float, sides: int, w: Array
+def continue_search(
+    scratch: Array, contacts: int, start: float, target: float, sides: int, w: Array
 ) -> tuple[bool, float]:
-    """Take a try at ``target``; returns whether it is the instant, else the next place to try."""
+    """Evaluate the trial at ``target``; returns whether it converged, and the next fraction."""
     search = WIDTH * contacts
-    if target == start or room[search + _TRIES] > MAX_TRIES:
+    if target == start or scratch[search + _TRIES] > MAX_TRIES:
         return True, target
-    some, alone = False, True
+    any_beyond, all_at_boundary = False, True
     for j in range(contacts):
-        if _is_beyond(room, j, target - start < _STAY, sides, w):
-            some = True
-            limit = _TOGETHER * room[WIDTH * j + _CHANGE]
-            alone = alone and _distance(room, j, I64(NOW), sides, w) >= -limit
-    leader = I64(room[search + _LEADER])
-    there = False
+        if _is_beyond(scratch, j, target - start < _STAY, sides, w):
+            any_beyond = True
+            limit = _SIMULTANEOUS * scratch[WIDTH * j + _CHANGE]
+            all_at_boundary = (
+                all_at_boundary and _distance(scratch, j, I64(NOW), sides, w) >= -limit
+            )
+    leader = I64(scratch[search + _LEADER])
+    converged = False
     if leader >= 0:
-        g = _distance(room, leader, I64(NOW), sides, w)
-        there = alone and abs(g) <= _THERE * room[WIDTH * leader + _CHANGE]
-        # A motion beyond all bounds has no crossing to be found; the caller reports it.
-        there = there or not math.isfinite(g)
-    if there:
+        g = _distance(scratch, leader, I64(NOW), sides, w)
+        converged = all_at_boundary and abs(g) <= _CONVERGED * scratch[WIDTH * leader + _CHANGE]
+        # A motion that is not finite has no crossing; the caller reports it.
+        converged = converged or not math.isfinite(g)
+    if converged:
         return True, target
-    kept, other = (_HIGH, _LOW) if some else (_LOW, _HIGH)
-    room[search + kept] = target
-    room[search + _LOW_WEIGHT + kept] = 1.0
-    if room[search + _LAST] == 1.0 + kept:
-        room[search + _LOW_WEIGHT + other] *= 0.5
+    replaced, other = (_HIGH, _LOW) if any_beyond else (_LOW, _HIGH)
+    scratch[search + replaced] = target
+    scratch[search + _LOW_WEIGHT + replaced] = 1.0
+    if scratch[search + _LAST] == 1.0 + replaced:
+        scratch[search + _LOW_WEIGHT + other] *= 0.5
     else:
-        room[search + _LOW_WEIGHT + other] = 1.0
-    room[search + _LAST] = 1.0 + kept
-    _keep(room, contacts, I64(FAR if some else NEAR))
-    if leader >= 0 and room[search + _HIGH] - room[search + _LOW] < _NARROW:
+        scratch[search + _LOW_WEIGHT + other] = 1.0
+    scratch[search + _LAST] = 1.0 + replaced
+    _save_trial(scratch, contacts, I64(FAR if any_beyond else NEAR))
+    if leader >= 0 and scratch[search + _HIGH] - scratch[search + _LOW] < _NARROW:
         return True, target
-    return False, _propose(room, contacts, start, sides, w)
+    return False, _propose(scratch, contacts, start, sides, w)
 
 
 @nb.njit(**INNER)
 def change_sides(
-    room: Array, contacts: int, start: float, target: float, sides: int, w: Array
+    scratch: Array, contacts: int, start: float, target: float, sides: int, w: Array
 ) -> Any:
-    """Change the sides of all contacts that cross where the search ended; returns the first."""
+    """Change the sides of all contacts that cross at ``target``; returns the first of them."""
     search = WIDTH * contacts
-    narrow = room[search + _HIGH] - room[search + _LOW] < _NARROW
+    narrow = scratch[search + _HIGH] - scratch[search + _LOW] < _NARROW
     first: Any = I64(-1)
     for j in range(contacts):
         at = WIDTH * j
-        if room[at + KIND] < 0.0:
+        if scratch[at + KIND] < 0.0:
             continue
         if target == start:
-            crosses = room[at + KIND] > 0.0
+            crosses = scratch[at + KIND] > 0.0
         else:
-            limit = _TOGETHER * room[at + _CHANGE]
-            crosses = narrow or _distance(room, j, I64(NOW), sides, w) <= limit
-            crosses = crosses and not (room[at + KIND] > 0.0 and target - start < _STAY)
-            crosses = crosses or j == I64(room[search + _LEADER])
-        crosses = crosses and _distance(room, j, I64(FAR), sides, w) < 0.0
-        room[at + KIND] = 1.0 if crosses else 0.0
+            limit = _SIMULTANEOUS * scratch[at + _CHANGE]
+            crosses = narrow or _distance(scratch, j, I64(NOW), sides, w) <= limit
+            crosses = crosses and not (scratch[at + KIND] > 0.0 and target - start < _STAY)
+            crosses = crosses or j == I64(scratch[search + _LEADER])
+        crosses = crosses and _distance(scratch, j, I64(FAR), sides, w) < 0.0
+        scratch[at + KIND] = 1.0 if crosses else 0.0
         if crosses:
             first = j if first < 0 else first
-            far = 1.0 if room[at + FAR] > 0.0 else -1.0
+            far = 1.0 if scratch[at + FAR] > 0.0 else -1.0
             w[sides + j] = 0.0 if w[sides + j] != 0.0 else far
-    _keep(room, contacts, I64(NEAR))
+    _save_trial(scratch, contacts, I64(NEAR))
     return first
 
 
 @nb.njit(**INNER)
-def measure(law: Law, base: int, buffer: int, w: Array, room: Array, place: int) -> None:
-    """Compression and gap of every contact with a dead zone, from ``place`` of its numbers."""
-    s, here = slots_of(law.code), first_contact(law, base, buffer)
+def measure(law: Law, base: int, buffer: int, w: Array, scratch: Array, place: int) -> None:
+    """Store compression and gap of every contact with a dead zone from its slot ``place`` on."""
+    s, cursor = slots_of(law.code), first_contact(law, base, buffer)
     for j in range(s.contacts):
-        if is_dead_zone(law, here):
-            room[WIDTH * j + place] = first_lane(compression((0.0,), law, here, s.error, w))
-            room[WIDTH * j + place + 1] = first_lane(dead_zone((0.0,), law, here, s.gap, w))
-        here = next_contact(law, here)
+        if is_dead_zone(law, cursor):
+            scratch[WIDTH * j + place] = first_lane(compression((0.0,), law, cursor, s.error, w))
+            scratch[WIDTH * j + place + 1] = first_lane(dead_zone((0.0,), law, cursor, s.gap, w))
+        cursor = next_contact(law, cursor)
 
 
 @nb.njit(**INNER)
@@ -236,8 +247,8 @@ def row_within(law: Law, base: int, tau: float, part: Array, node: int) -> None:
 
 
 @nb.njit(**ONCE)
-def _note(law: Law, start: float, end: float, w: Array, parts: Array) -> None:
-    """Add a part to the list of them: where it begins and ends, sides, state at both ends."""
+def _append_part(law: Law, start: float, end: float, w: Array, parts: Array) -> None:
+    """Append a part of the step to ``parts``: start and end, sides, state at both ends."""
     n, contacts, side = law.code[0], law.code[1], slots_of(law.code).side
     at = 1 + I64(parts[0]) * (2 + contacts + 4 * n)
     parts[0] += 1.0
@@ -251,67 +262,74 @@ def _note(law: Law, start: float, end: float, w: Array, parts: Array) -> None:
 
 
 @nb.njit(**ONCE)
-def _try(
+def _try_part(
     method: Any,
     law: Law,
     base: int,
     width: float,
     part: Array,
     w: Array,
-    room: Array,
+    scratch: Array,
     start: float,
     target: float,
 ) -> bool:
-    """March the part of a step from ``start`` to ``target`` with the sides at its beginning."""
+    """Integrate a step from ``start`` to ``target`` with the sides at its start."""
     for node in range(3):
         row_within(law, base, start + 0.5 * node * (target - start), part, I64(node))
-    own = Law(law.code, law.reads, part)
+    part_law = Law(law.code, law.reads, part)
     w[slots_of(law.code).h] = width * (target - start)
-    prepare(method, own, 2 * law.code[2], width * (target - start), I64(-1), w)
-    good: bool = step((0.0,), method, own, I64(-1), I64(0), w, None)
-    measure(own, 2 * law.code[2], I64(2), w, room, I64(NOW))
+    prepare(method, part_law, 2 * law.code[2], width * (target - start), I64(-1), w)
+    good: bool = step((0.0,), method, part_law, I64(-1), I64(0), w, None)
+    measure(part_law, 2 * law.code[2], I64(2), w, scratch, I64(NOW))
     return good
 
 
 @nb.njit(**ONCE)
 def split_step(
-    method: Any, law: Law, base: int, width: float, part: Array, w: Array, parts: Array, room: Array
+    method: Any,
+    law: Law,
+    base: int,
+    width: float,
+    part: Array,
+    w: Array,
+    parts: Array,
+    scratch: Array,
 ) -> tuple[bool, int]:
-    """March one lane by one step in parts; also returns -1, or a contact that comes to no end.
+    """Integrate one lane over one step in parts, from crossing to crossing.
 
-    The state in buffer 0 and the sides are those at the left end; the new state is left in
-    buffer 2, and the sides are updated. The parts are left in ``parts``. The first number tells
-    whether every part was found.
+    Buffer 0 and the sides hold the left end; the new state is written to buffer 2, the sides are
+    updated, and the parts are appended to ``parts``. Returns whether every part converged, and -1
+    or a contact that opens and closes without end.
     """
     n, contacts, sides = law.code[0], law.code[1], slots_of(law.code).side
     start, contact, good = 0.0, I64(-1), True
     parts[0] = 0.0
-    here = first_contact(law, base, I64(0))
+    cursor = first_contact(law, base, I64(0))
     for j in range(contacts):
-        room[WIDTH * j] = 0.0 if is_dead_zone(law, here) else -1.0
-        here = next_contact(law, here)
+        scratch[WIDTH * j] = 0.0 if is_dead_zone(law, cursor) else -1.0
+        cursor = next_contact(law, cursor)
     row_within(law, base, 0.0, part, I64(0))
-    own = Law(law.code, law.reads, part)
-    measure(own, I64(0), I64(0), w, room, I64(NEAR))
+    part_law = Law(law.code, law.reads, part)
+    measure(part_law, I64(0), I64(0), w, scratch, I64(NEAR))
     target, searching, left = 1.0, False, most_splits(contacts) + 1
     while left > 0:
-        good = _try(method, law, base, width, part, w, room, start, target) and good
-        there, following = True, 0.0
+        good = _try_part(method, law, base, width, part, w, scratch, start, target) and good
+        converged, following = True, 0.0
         if searching:
-            there, following = go_on(room, contacts, start, target, sides, w)
+            converged, following = continue_search(scratch, contacts, start, target, sides, w)
         else:
-            following = begin_search(room, contacts, start, 1.0, sides, w)
-            there, searching = following < 0.0, True
-        if not there:
+            following = begin_search(scratch, contacts, start, 1.0, sides, w)
+            converged, searching = following < 0.0, True
+        if not converged:
             target = following
             continue
-        _note(law, start, target, w, parts)
+        _append_part(law, start, target, w, parts)
         if following < 0.0:
             return good, I64(-1)
-        contact = change_sides(room, contacts, start, target, sides, w)
+        contact = change_sides(scratch, contacts, start, target, sides, w)
         for i in range(2 * n):
             w[i] = w[4 * n + i]
-        restart((0.0,), method, own, 2 * law.code[2], w)
+        restart((0.0,), method, part_law, 2 * law.code[2], w)
         start, target, searching, left = target, 1.0, False, left - 1
     for i in range(2 * n):
         if not math.isfinite(w[i]):

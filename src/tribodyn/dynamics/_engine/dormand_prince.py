@@ -69,16 +69,16 @@ class AdaptiveSlots(NamedTuple):
 
 @nb.njit(forceinline=True, **INNER)
 def adaptive_slots(code: Index) -> AdaptiveSlots:
-    """Where a lane keeps what the method needs."""
+    """Layout of the slots of the method."""
     s = slots_of(code)
-    n, own, contacts = s.n, s.end, s.contacts
-    mean = own + 14 * n
+    n, stage, contacts = s.n, s.end, s.contacts
+    mean = stage + 14 * n
     error = mean + 5 * n
     table = error + 2
     fresh = table + 10 * contacts
     return AdaptiveSlots(
-        own, own + 6 * n, own + 7 * n, mean, mean + n, mean + 3 * n, error, error + 1, table,
-        fresh, fresh + contacts - own,
+        stage, stage + 6 * n, stage + 7 * n, mean, mean + n, mean + 3 * n, error, error + 1, table,
+        fresh, fresh + contacts - stage,
     )  # fmt: skip
 
 
@@ -127,17 +127,17 @@ def fill_row(cells: Cells, cell: int, phase: float, row: Array) -> None:
 
 
 @nb.njit(**INNER)
-def fill_within(cells: Cells, trial: Trial, theta: float, here: int, row: Array) -> int:
+def fill_within(cells: Cells, trial: Trial, theta: float, cell: int, row: Array) -> int:
     """Evaluate the row at a fraction of a step; returns its cell."""
     phase = trial.phase + theta * trial.width
-    here = find_cell(cells, here, trial.cell, trial.last, phase)
-    fill_row(cells, here, phase, row)
-    return here
+    cell = find_cell(cells, cell, trial.cell, trial.last, phase)
+    fill_row(cells, cell, phase, row)
+    return cell
 
 
 @nb.njit(**INNER)
 def set_scale(width: int, code: Index, rtol: float, atol: Array, w: Array) -> None:
-    """Take the state into the largest sizes and the inverse tolerances."""
+    """Update the largest size and the inverse tolerance of each state."""
     n, o = code[0], adaptive_slots(code)
     for i in range(2 * n):
         size, inverse = (o.size + i) * width, (o.tolerance + i) * width
@@ -158,10 +158,10 @@ def try_step(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> floa
     store(w, s.h, h)
     for i in range(n):
         store(w, o.rate + i, load(lanes, w, n + i))
-    here = trial.cell
+    cell = trial.cell
     for stage in range(1, 7):
         if stage < 6:
-            here = fill_within(cells, trial, NODES[stage], here, law.rows)
+            cell = fill_within(cells, trial, NODES[stage], cell, law.rows)
         buffer = I64(2) if stage == 6 else I64(1)
         target = 2 * n * buffer
         for i in range(n):
@@ -198,7 +198,7 @@ def try_step(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> floa
 
 @nb.njit(**INNER)
 def between(lanes: Any, law: Law, theta: float, speed: bool, w: Array) -> None:
-    """State at the fraction ``theta`` of the step, into buffer 1; without ``speed`` positions."""
+    """State at the fraction ``theta`` of the step, into buffer 1; velocities if ``speed``."""
     slots, o = slots_of(law.code), adaptive_slots(law.code)
     n, h = slots.n, load(lanes, w, slots.h)
     b5, b1, b4, b2, b3 = quintic_place(theta)
@@ -216,18 +216,18 @@ def between(lanes: Any, law: Law, theta: float, speed: bool, w: Array) -> None:
 @nb.njit(**INNER)
 def _distances(lanes: Any, law: Law, buffer: int, slot: int, w: Array) -> None:
     """Distances of every contact to the boundaries of its side, two slots each from ``slot``."""
-    s, here = slots_of(law.code), first_contact(law, I64(0), buffer)
+    s, cursor = slots_of(law.code), first_contact(law, I64(0), buffer)
     for j in range(s.contacts):
-        if is_dead_zone(law, here):
-            near, far = clearances(lanes, law, s, here, j, w)
-            store(w, slot + 2 * j, near)
-            store(w, slot + 2 * j + 1, far)
-        here = next_contact(law, here)
+        if is_dead_zone(law, cursor):
+            upper, lower = clearances(lanes, law, s, cursor, j, w)
+            store(w, slot + 2 * j, upper)
+            store(w, slot + 2 * j + 1, lower)
+        cursor = next_contact(law, cursor)
 
 
 @nb.njit(**INNER)
 def may_cross(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> bool:
-    """Tell whether a contact of any lane may have left its side within the step just tried."""
+    """Whether a contact of any lane may have left its side within the last trial step."""
     keep_apart()
     contacts, table = law.code[1], adaptive_slots(law.code).table
     cell = trial.cell
@@ -238,11 +238,11 @@ def may_cross(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> boo
             between(lanes, law, theta, False, w)
         buffer = I64(0) if m == 0 else (I64(2) if m == 4 else I64(1))
         _distances(lanes, law, buffer, table + 2 * contacts * m, w)
-    some = False
-    here = first_contact(law, I64(0), I64(0))
+    crossing = False
+    cursor = first_contact(law, I64(0), I64(0))
     for j in range(contacts):
-        dead = is_dead_zone(law, here)
-        here = next_contact(law, here)
+        dead = is_dead_zone(law, cursor)
+        cursor = next_contact(law, cursor)
         if not dead:
             continue
         for slot in range(table + 2 * j, table + 2 * j + 2):
@@ -253,6 +253,6 @@ def may_cross(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> boo
                 slope = after - before
                 reach = greatest(slope, 0.0 * slope - slope)
                 if any_negative(now - 0.25 * reach) or any_negative(after):
-                    some = True
+                    crossing = True
                 before, now = now, after
-    return some
+    return crossing

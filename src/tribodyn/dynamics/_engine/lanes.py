@@ -42,7 +42,7 @@ def _data(context: Any, builder: Any, kind: Any, array: Any) -> Any:
 
 @intrinsic
 def address(typing: Any, array: Any) -> Any:
-    """Tell where the numbers of a contiguous array begin; somebody must keep the array alive."""
+    """Address of a contiguous array; the caller must keep the array alive."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return _data(context, builder, signature.args[0], arguments[0])
@@ -52,7 +52,7 @@ def address(typing: Any, array: Any) -> Any:
 
 @intrinsic
 def ahead(typing: Any, place: Any, count: Any) -> Any:
-    """Address that many items after another."""
+    """Address ``count`` items after ``place``."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.gep(arguments[0], [arguments[1]])
@@ -62,7 +62,7 @@ def ahead(typing: Any, place: Any, count: Any) -> Any:
 
 @intrinsic
 def on_line(typing: Any, place: Any) -> Any:
-    """First address from there on where a line of the cache begins, at most seven numbers on.
+    """First address from ``place`` on that is aligned to a cache line.
 
     Vectors of eight numbers that lie across two lines are read and written at half the speed.
     """
@@ -83,7 +83,7 @@ def _pointer(context: Any, builder: Any, kind: Any, array: Any, slot: Any, width
 
 @intrinsic
 def keep_apart(typing: Any) -> Any:
-    """Keep the function that calls this one out of its callers, which would be compiled longer."""
+    """Prevent inlining of the calling function, which would lengthen compilation."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         builder.function.attributes.add("noinline")
@@ -138,7 +138,7 @@ def _any(builder: Any, comparison: Any, width: int) -> Any:
 
 @intrinsic
 def any_negative(typing: Any, value: Any) -> Any:
-    """Tell whether the number of any lane is below zero."""
+    """Whether the number of any lane is below zero."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         width = signature.args[0].width
@@ -150,7 +150,7 @@ def any_negative(typing: Any, value: Any) -> Any:
 
 @intrinsic
 def any_above(typing: Any, value: Any, limit: Any) -> Any:
-    """Tell whether any lane is above its limit or no number."""
+    """Whether the number of any lane is above its limit or NaN."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         higher = builder.fcmp_unordered(">", arguments[0], arguments[1])
@@ -186,12 +186,12 @@ def _indicator(comparison: str) -> Any:
 
 @intrinsic
 def entry(typing: Any, lanes: Any, rows: Any, item: Any) -> Any:
-    """Read one item of a row table: a number, or one per lane where lanes have their own rows."""
-    own = isinstance(rows, types.BaseTuple)
-    kind = LaneType(len(lanes)) if own else types.float64
+    """Read one item of a row table: one number, or one per lane where each lane has its rows."""
+    per_lane = isinstance(rows, types.BaseTuple)
+    kind = LaneType(len(lanes)) if per_lane else types.float64
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        if not own:
+        if not per_lane:
             return builder.load(builder.gep(arguments[1], [arguments[2]]))
         data = builder.extract_value(arguments[1], 0)
         pointer = _pointer(context, builder, rows[0], data, arguments[2], kind.width)
@@ -201,17 +201,19 @@ def entry(typing: Any, lanes: Any, rows: Any, item: Any) -> Any:
 
 
 def _arithmetic(operation: Any, name: str) -> None:
-    """Let lanes and numbers be combined by an operator."""
+    """Define an operator for lanes and numbers."""
 
     @infer_global(operation)
     class _Combine(AbstractTemplate):
         def generic(self, arguments: Any, named: Any) -> Any:
             lanes = [kind for kind in arguments if isinstance(kind, LaneType)]
-            known = (LaneType, types.Float, types.Integer)
-            if not lanes or not all(isinstance(kind, known) for kind in arguments):
+            number_types = (LaneType, types.Float, types.Integer)
+            if not lanes or not all(isinstance(kind, number_types) for kind in arguments):
                 return None
-            taken = [kind if isinstance(kind, LaneType) else types.float64 for kind in arguments]
-            return signature(lanes[0], *taken)
+            operand_types = [
+                kind if isinstance(kind, LaneType) else types.float64 for kind in arguments
+            ]
+            return signature(lanes[0], *operand_types)
 
     def generate(context: Any, builder: Any, kinds: Any, arguments: Any) -> Any:
         operands = [

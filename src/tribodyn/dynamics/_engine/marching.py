@@ -1,4 +1,4 @@
-"""Marching a block of lanes over whole mesh cycles: steps, crossings, record and statistics."""
+"""Integrate a block of lanes over mesh cycles: steps, crossings, record and statistics."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ from tribodyn.dynamics._engine.method import (
     restart,
     step,
 )
-from tribodyn.dynamics._engine.middle import seen_slots, set_inverse
-from tribodyn.dynamics._engine.moments import (
+from tribodyn.dynamics._engine.midpoint import set_inverse, statistics_slots
+from tribodyn.dynamics._engine.running_statistics import (
     Gathered,
     Place,
     add_nodes,
@@ -48,9 +48,9 @@ from tribodyn.dynamics.equations.program import LaneRows, Program
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
 
-#: What :func:`march_block` returns from here on tells of a step that comes to no end, and of one
-#: whose forces were not found.
-UNPARTED, UNFOUND = 1 << 40, 1 << 50
+#: Offsets of the codes that :func:`march_block` returns for a contact that opens and closes without
+#: end, and for a step whose contact forces did not converge.
+CHATTERING, UNCONVERGED = 1 << 40, 1 << 50
 
 
 @nb.njit(**INNER)
@@ -80,7 +80,7 @@ def _choose_slots(columns, rows):  # type: ignore[no-untyped-def]
 
 
 def _open_rows(rows: Any, three: Any) -> Any:
-    """What :func:`~tribodyn.dynamics._engine.lanes.entry` reads; its type tells whose rows."""
+    """Rows for :func:`~tribodyn.dynamics._engine.lanes.entry`; a tuple if each lane has its own."""
     raise TypeError("chosen by type where it is compiled")
 
 
@@ -92,7 +92,7 @@ def _choose_table(rows, three):  # type: ignore[no-untyped-def]
 
 
 def _rows_at(lanes: Any, columns: int, rows: Any, step: int, three: Any) -> int:
-    """Where the rows of a step begin; steps that are looked at begin with the first."""
+    """Address of the rows of a step; steps have to be read in order from the first."""
     raise TypeError("chosen by type where it is compiled")
 
 
@@ -106,7 +106,7 @@ def _choose_place(lanes, columns, rows, step, three):  # type: ignore[no-untyped
         if step == 0:
             for item in range(3 * columns * len(lanes)):
                 three[item] = rows.first[item % rows.first.size]
-        two = (rows.nodes.size - 4) // 3  # whether the order of every other step is another
+        two = (rows.nodes.size - 4) // 3  # 1 if every other step has another order of nodes
         first, place = rows.nodes[0] * (step >> two), 1 + 3 * (step & two)
         for node in range(3):
             row = (first + rows.nodes[place + node]) * count
@@ -118,7 +118,7 @@ def _choose_place(lanes, columns, rows, step, three):  # type: ignore[no-untyped
 
 
 def _rows_of_lane(law: Law, base: int, width: int, lane: int, gathered: Any) -> tuple[Law, int]:
-    """Law of one lane and where its three rows begin; gathered if lanes have rows of their own."""
+    """Law of one lane and address of its rows; copied to ``gathered`` if each lane has its own."""
     raise TypeError("chosen by type where it is compiled")
 
 
@@ -137,7 +137,7 @@ def _choose_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-d
 
 
 def _moments_of(gathered: Any) -> Any:
-    """Numbers of all moments, those of the waves of a step, and what a step has to leave."""
+    """Count of all moments, and of the cosines and sines of a node."""
     raise TypeError("chosen by type where it is compiled")
 
 
@@ -174,21 +174,21 @@ def set_up(width: int, code: Index, period: Array, load: Array, state: Array, w:
 @nb.njit(**ONCE)
 def has_dead_zones(law: Law) -> bool:
     """Whether any contact has a dead zone."""
-    here = first_contact(law, I64(0), I64(0))
-    some: Any = np.bool_(False)
+    cursor = first_contact(law, I64(0), I64(0))
+    any_dead_zone: Any = np.bool_(False)
     for _ in range(law.code[1]):
-        some = some or is_dead_zone(law, here)
-        here = next_contact(law, here)
-    return some
+        any_dead_zone = any_dead_zone or is_dead_zone(law, cursor)
+        cursor = next_contact(law, cursor)
+    return any_dead_zone
 
 
-def _seen_of(gathered: Any, slot: int) -> Any:
-    """The slot where a step leaves what statistics need, or None."""
+def _statistics_slot_of(gathered: Any, slot: int) -> Any:
+    """Slot where a step stores its data for the statistics, or None."""
     raise TypeError("chosen by type where it is compiled")
 
 
-@overload(_seen_of, inline="always")
-def _choose_seen(gathered, slot):  # type: ignore[no-untyped-def]
+@overload(_statistics_slot_of, inline="always")
+def _choose_statistics_slot(gathered, slot):  # type: ignore[no-untyped-def]
     if isinstance(gathered, types.NoneType):
         return lambda gathered, slot: None
     return lambda gathered, slot: slot
@@ -209,25 +209,27 @@ def _build(digest: str) -> Any:
         gathered: Gathered | None,
         stop: Index,
     ) -> int:
-        """March every lane by ``cycles`` mesh cycles.
+        """Integrate every lane over ``cycles`` mesh cycles.
 
-        The record (points, items, lanes) holds as many items of the states as it has place for.
-        Returns -1 when done, :data:`STOPPED` when stopped, else the step, counted from the start,
-        after which a state is not finite; or, with ``step * contacts + contact`` times the lanes
-        plus the lane on top of it, :data:`UNPARTED`; or :data:`UNFOUND` plus the step.
+        The record (points, items, lanes) receives as many items of the states as fit into it.
+        Returns -1 on success, :data:`STOPPED` after an interruption, the step (counted from the
+        start) after which a state is not finite, :data:`CHATTERING` plus
+        ``(step * contacts + contact) * lanes + lane``, or :data:`UNCONVERGED` plus the step.
         """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         share, again = program.width, program.restart
         columns, width = program.code[2], len(lanes)
-        held = np.empty(_row_slots(columns, rows) * width + 8)
-        three = on_line(address(held))
+        row_buffer = np.empty(_row_slots(columns, rows) * width + 8)
+        three = on_line(address(row_buffer))
         law = Law(address(program.code), address(program.reads), _open_rows(rows, three))
         s, n = slots_of(law.code), law.code[0]
-        own, lasting, kinds = own_slots(method, law)
-        # What statistics need of a step lies behind the slots of the method.
-        seen = _seen_of(gathered, s.end + own)
-        slots = s.end + own + (0 if seen is None else seen_slots(s.contacts))
-        # Slots of all lanes, those of one, rows of a part of a step, rows of one lane.
+        method_slots, persistent_slots, kinds = own_slots(method, law)
+        # The data of a step for the statistics follow the slots of the method.
+        statistics_slot = _statistics_slot_of(gathered, s.end + method_slots)
+        slots = (
+            s.end + method_slots + (0 if statistics_slot is None else statistics_slots(s.contacts))
+        )
+        # Slots of all lanes, moments, slots of one lane, rows of a part of a step, rows of a lane.
         numbers, waves = _moments_of(gathered)
         count = numbers // width
         work = np.zeros((slots + count) * width + slots + 6 * columns + 8)
@@ -235,28 +237,28 @@ def _build(digest: str) -> Any:
         moments = ahead(w, slots * width)
         single = ahead(moments, count * width)
         part = ahead(single, slots)
-        room = ahead(part, 3 * columns)
-        # A list of the parts of a step, the search, moments of the lanes that were split, waves.
-        listed = 1 + (most_splits(s.contacts) + 1) * (2 + s.contacts + 4 * n)
-        most = listed + WIDTH * (s.contacts + 1)
-        kept = np.empty(most + count * width + 3 * waves)
-        parts = address(kept)
-        search, others = ahead(parts, listed), ahead(parts, most)
+        lane_rows = ahead(part, 3 * columns)
+        # Parts of a step, search, moments of lanes with a split step, cosines and sines of a part.
+        parts_size = 1 + (most_splits(s.contacts) + 1) * (2 + s.contacts + 4 * n)
+        search_end = parts_size + WIDTH * (s.contacts + 1)
+        scratch = np.empty(search_end + count * width + 3 * waves)
+        parts = address(scratch)
+        search, split_moments = ahead(parts, parts_size), ahead(parts, search_end)
         set_up(width, law.code, period, load, state, w)
         base = _rows_at(lanes, columns, rows, I64(0), three)
-        for lane in range(width if own > 0 else 0):
+        for lane in range(width if method_slots > 0 else 0):
             take_lane(lane, width, slots, w, single)
-            alone, first = _rows_of_lane(law, base, width, lane, room)
+            lane_law, first = _rows_of_lane(law, base, width, lane, lane_rows)
             for kind in range(kinds):
-                prepare(method, alone, first, period[lane], kind, single)
+                prepare(method, lane_law, first, period[lane], kind, single)
             put_lane(lane, width, s.end, slots, w, single)
         if gathered is not None:
             sums = Gathered(gathered.outputs, address(gathered.waves), gathered.harmonics, moments)
             for item in range(numbers):
                 moments[item] = gathered.moments[item]
         switching = has_dead_zones(law)
-        keep, kept_states, states = record.shape[0] > 0, address(record), 2 * n * width
-        told = record.shape[1] * width
+        recording, recorded, states = record.shape[0] > 0, address(record), 2 * n * width
+        record_items = record.shape[1] * width
         point = 0
         for _cycle in range(cycles):
             for r in range(share.size):
@@ -271,55 +273,70 @@ def _build(digest: str) -> Any:
                     if switching:
                         set_sides(lanes, law, base, I64(0), w)
                     restart(lanes, method, law, base, w)
-                if keep:
-                    for item in range(told):
-                        kept_states[point * told + item] = w[item]
-                if not step(lanes, method, law, r, base, w, seen):
-                    return UNFOUND + point + 1
-                gone = I64(0)
+                if recording:
+                    for item in range(record_items):
+                        recorded[point * record_items + item] = w[item]
+                if not step(lanes, method, law, r, base, w, statistics_slot):
+                    return UNCONVERGED + point + 1
+                crossed = I64(0)
                 if switching:
-                    gone = left_side(lanes, law, base + 2 * columns, w)
-                if gone != 0:
+                    crossed = left_side(lanes, law, base + 2 * columns, w)
+                if crossed != 0:
                     for lane in range(width):
-                        if not (gone >> lane) & 1:
+                        if not (crossed >> lane) & 1:
                             continue
                         take_lane(lane, width, slots, w, single)
-                        alone, first = _rows_of_lane(law, base, width, lane, room)
-                        whole = period[lane] * share[r]
+                        lane_law, first = _rows_of_lane(law, base, width, lane, lane_rows)
+                        duration = period[lane] * share[r]
                         if gathered is not None:
-                            mine = ahead(others, lane * count)
-                            take_lane(lane, width, count, sums.moments, mine)
-                            own_sums = Gathered(sums.outputs, sums.waves, sums.harmonics, mine)
-                            place = Place(first, 3 * waves * r, share[r] / cycles, seen)
-                            add_nodes((0.0,), alone, place, I64(0), own_sums, single)
+                            lane_moments = ahead(split_moments, lane * count)
+                            take_lane(lane, width, count, sums.moments, lane_moments)
+                            lane_sums = Gathered(
+                                sums.outputs, sums.waves, sums.harmonics, lane_moments
+                            )
+                            location = Place(
+                                first, 3 * waves * r, share[r] / cycles, statistics_slot
+                            )
+                            add_nodes((0.0,), lane_law, location, I64(0), lane_sums, single)
                         good, contact = split_step(
-                            method, alone, first, whole, part, single, parts, search
+                            method, lane_law, first, duration, part, single, parts, search
                         )
                         if contact >= 0:
-                            return UNPARTED + (point * s.contacts + contact) * width + lane
+                            return CHATTERING + (point * s.contacts + contact) * width + lane
                         if not good:
-                            return UNFOUND + point + 1
+                            return UNCONVERGED + point + 1
                         put_lane(lane, width, 4 * n, 6 * n, w, single)
                         put_lane(lane, width, s.force, s.side + s.contacts, w, single)
-                        put_lane(lane, width, s.end, s.end + lasting, w, single)
+                        put_lane(lane, width, s.end, s.end + persistent_slots, w, single)
                         if gathered is not None:
-                            near = ahead(others, count * width)
-                            gather_parts(alone, place, parts, whole, part, near, own_sums, single)
+                            part_waves = ahead(split_moments, count * width)
+                            gather_parts(
+                                lane_law,
+                                location,
+                                parts,
+                                duration,
+                                part,
+                                part_waves,
+                                lane_sums,
+                                single,
+                            )
                 if gathered is not None:
-                    place, pending = Place(base, 3 * waves * r, share[r] / cycles, seen), 1.0
-                    add_nodes(lanes, law, place, I64(1), sums, w)
+                    location, pending = (
+                        Place(base, 3 * waves * r, share[r] / cycles, statistics_slot),
+                        1.0,
+                    )
+                    add_nodes(lanes, law, location, I64(1), sums, w)
                     if r + 1 == share.size or again[r + 1]:
                         acceleration(lanes, law, base + 2 * columns, I64(2), s.first, w)
-                        add_nodes(lanes, law, place, I64(2), sums, w)
+                        add_nodes(lanes, law, location, I64(2), sums, w)
                         pending = 0.0
                     for lane in range(width):
-                        at = (seen + 3 * s.contacts) * width + lane
-                        w[at] = pending * place.share / 6.0
-                        # The whole step was added to lanes that were split: their own moments
-                        # instead.
-                        if (gone >> lane) & 1:
-                            mine = ahead(others, lane * count)
-                            put_lane(lane, width, I64(0), count, sums.moments, mine)
+                        at = (statistics_slot + 3 * s.contacts) * width + lane
+                        w[at] = pending * location.share / 6.0
+                        # The unsplit step was added to lanes with a split step: restore theirs.
+                        if (crossed >> lane) & 1:
+                            lane_moments = ahead(split_moments, lane * count)
+                            put_lane(lane, width, I64(0), count, sums.moments, lane_moments)
                             w[at] = 0.0
                 accept(lanes, method, law, w)
                 point += 1
@@ -332,11 +349,11 @@ def _build(digest: str) -> Any:
         for lane in range(width):
             for i in range(2 * n):
                 state[lane, i] = w[i * width + lane]
-        if keep:
-            for item in range(told):
-                kept_states[point * told + item] = w[item]
-        # Addresses hold only as long as their owners are in use: nothing is read after this.
-        kept[0] = work[0] + held[0]
+        if recording:
+            for item in range(record_items):
+                recorded[point * record_items + item] = w[item]
+        # Addresses are valid only while the arrays are in use: nothing is read after this.
+        scratch[0] = work[0] + row_buffer[0]
         return -1
 
     return march_block
@@ -356,7 +373,7 @@ def _build_gather(digest: str) -> Any:
         cycles: int,
         gathered: Gathered,
     ) -> None:
-        """Add a mesh cycle of a block, recorded at the ends of the grid's steps, to its moments."""
+        """Add a mesh cycle of a block, recorded at the step ends of the grid, to its moments."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         share, width, waves = program.width, len(lanes), gathered.harmonics
         law = Law(address(program.code), address(program.reads), address(program.rows))
@@ -374,9 +391,9 @@ def _build_gather(digest: str) -> Any:
             for item in range(2 * n * width):
                 w[item] = states[2 * n * width * r + item]
                 w[4 * n * width + item] = states[2 * n * width * (r + 1) + item]
-            place = Place(3 * columns * r, 6 * waves * r, share[r] / cycles, I64(0))
-            gather(lanes, law, switching, place, sums, w)
-        # Addresses hold only as long as their owner is in use.
+            location = Place(3 * columns * r, 6 * waves * r, share[r] / cycles, I64(0))
+            gather(lanes, law, switching, location, sums, w)
+        # Addresses are valid only while the array is in use.
         work[0] = 0.0
 
     return gather_record

@@ -1,6 +1,6 @@
 """Methods of fixed steps: a method is a tuple of its parameters, chosen by its type.
 
-So kernels are compiled for each method and kept on disk, which functions as arguments would spoil.
+So kernels are compiled for each method and cached on disk, which functions as arguments prevent.
 The file of a method overloads the functions below for its type. ``law`` is what
 :mod:`~tribodyn.dynamics._engine.contact_forces` reads, ``w`` the work buffer; the slots of a method
 begin where those of the law end.
@@ -52,16 +52,15 @@ class Newmark(NamedTuple):
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
 JIT: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
 
-#: For what only compiled functions call.
+#: Options of functions that only compiled functions call.
 INNER: dict[str, Any] = {**JIT, **INNER_OPTIONS}
 
-#: For what is called in one place only: it is not compiled by itself, which would be done again
-#: with its caller.
+#: Options of functions with a single caller: they are compiled only as part of the caller.
 ONCE: dict[str, Any] = {**INNER, "inline": "always"}
 
 
 def for_method(method: type, function: Any) -> Any:
-    """Take what follows as one of the functions below, for the methods of one type."""
+    """Register the decorated function as overload of a function below for one type of method."""
     from numba.extending import overload
 
     place = list(inspect.signature(function).parameters).index("method")
@@ -79,30 +78,32 @@ def for_method(method: type, function: Any) -> Any:
 
 
 def own_slots(method: Any, law: Any) -> tuple[int, int, int]:
-    """Slots of the method, how many of them a step changes for good, kinds of steps to prepare."""
+    """Count of slots of the method, of those that persist after a step, and of kinds of steps."""
     raise TypeError("chosen by type where it is compiled")
 
 
 def prepare(method: Any, law: Any, base: int, duration: float, kind: int, w: Array) -> None:
-    """Set up the slots of one lane for a kind of steps; kind -1: for a part of that duration."""
+    """Set up the slots of one lane for a kind of steps; kind -1: for a part of a step."""
     raise TypeError("chosen by type where it is compiled")
 
 
 def restart(lanes: Any, method: Any, law: Any, base: int, w: Array) -> None:
-    """Begin anew at an event or a change of side; ``base`` is the row there."""
+    """Restart at an event or a change of side; ``base`` is the row there."""
     raise TypeError("chosen by type where it is compiled")
 
 
-def step(lanes: Any, method: Any, law: Any, number: int, base: int, w: Array, seen: Any) -> bool:
-    """March every lane by step ``number``, -1 for a part of one; False if it was not found.
+def step(
+    lanes: Any, method: Any, law: Any, number: int, base: int, w: Array, statistics_slot: Any
+) -> bool:
+    """Integrate every lane over step ``number`` (-1: a part of one); False without convergence.
 
-    If ``seen`` is a slot and not None, the accelerations at the left end are left in the slots from
-    ``first`` and those in the middle in the slots from ``second``, the state there in buffer 1, and
-    the rest as :func:`~tribodyn.dynamics._engine.middle.seen_slots` tells.
+    Unless ``statistics_slot`` is None, the accelerations at the left end are stored from slot
+    ``first`` on, those in the middle from slot ``second`` on, the state in the middle in buffer 1,
+    and the rest as in :func:`~tribodyn.dynamics._engine.midpoint.statistics_slots`.
     """
     raise TypeError("chosen by type where it is compiled")
 
 
 def accept(lanes: Any, method: Any, law: Any, w: Array) -> None:
-    """Let the end of the step be the beginning of the next."""
+    """Copy the end of the step to the start of the next."""
     raise TypeError("chosen by type where it is compiled")

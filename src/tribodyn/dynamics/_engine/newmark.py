@@ -5,7 +5,7 @@ the law of motion at the right end of the step. The structure alone gives ``a1 =
 ``S = 1 + gamma h C + beta h^2 K``, all divided by the mass matrix, one inverse per lane and width
 of a step. The contact forces are the unknowns of Newton's method: compressions and rates depend on
 them linearly, so that its matrix has the size of the number of contacts and is exact, friction
-included. The acceleration is found anew at every event and contact change: without that the scheme
+included. The acceleration is recomputed at every event and contact change: without that the scheme
 is of first order. Source: Newmark (1959), A method of computation for structural dynamics.
 """
 
@@ -50,7 +50,7 @@ from tribodyn.dynamics._engine.method import (
     restart,
     step,
 )
-from tribodyn.dynamics._engine.middle import copy_slots, from_middle, to_middle
+from tribodyn.dynamics._engine.midpoint import copy_slots, from_middle, to_middle
 from tribodyn.dynamics._engine.runge_kutta import take_over
 from tribodyn.types import Array, Index
 
@@ -64,12 +64,12 @@ class _Slots(NamedTuple):
 
     now: int  #: acceleration at the beginning of the step
     new: int  #: and at its end
-    guess: int  #: contact forces to begin with
-    plain: int  #: compressions if no contact pushed
+    guess: int  #: initial guess of the contact forces
+    plain: int  #: compressions without contact forces
     rates: int  #: and their rates
-    slope: int  #: change of every friction with its load
-    push: int  #: what a unit of each force does to the accelerations
-    effect: int  #: and to compressions and rates
+    slope: int  #: derivative of every friction by its load
+    push: int  #: accelerations per unit of each force
+    effect: int  #: compressions and rates per unit of each force
     matrix: int  #: of Newton's method
     right: int  #: its right side
     spare: int  #: matrix that is inverted
@@ -98,29 +98,29 @@ def _slots_of(code: Index) -> _Slots:
 
 @nb.njit(**INNER)
 def _friction_terms(law: Law, base: int, buffer: int) -> Cursor:
-    """Where the frictions begin."""
-    here = first_contact(law, base, buffer)
+    """Position of the first friction."""
+    cursor = first_contact(law, base, buffer)
     for _ in range(law.code[1]):
-        here = next_contact(law, here)
-    return here
+        cursor = next_contact(law, cursor)
+    return cursor
 
 
 @nb.njit(forceinline=True, **INNER)
-def _next_friction(law: Law, here: Cursor) -> Cursor:
-    """Where the next friction begins."""
-    contacts, terms = law.code[here.at], law.code[here.at + 1]
-    return Cursor(here.at + 2, here.read + contacts, here.row + 2 + terms)
+def _next_friction(law: Law, cursor: Cursor) -> Cursor:
+    """Position of the next friction."""
+    contacts, terms = law.code[cursor.at], law.code[cursor.at + 1]
+    return Cursor(cursor.at + 2, cursor.read + contacts, cursor.row + 2 + terms)
 
 
 @nb.njit(**INNER)
 def _coordinate_terms(law: Law, base: int, buffer: int) -> Cursor:
-    """Where the terms of the coordinates begin."""
-    here = _friction_terms(law, base, buffer)
-    count = law.code[here.at]
-    here = Cursor(here.at + 1, here.read, here.row)
+    """Position of the terms of the first coordinate."""
+    cursor = _friction_terms(law, base, buffer)
+    count = law.code[cursor.at]
+    cursor = Cursor(cursor.at + 1, cursor.read, cursor.row)
     for _ in range(count):
-        here = _next_friction(law, here)
-    return here
+        cursor = _next_friction(law, cursor)
+    return cursor
 
 
 @for_method(Newmark, prepare)
@@ -132,17 +132,17 @@ def _invert(method: Newmark, law: Law, base: int, duration: float, kind: int, w:
     inverse = _slots_of(law.code).inverse + max(kind, 0) * n * n
     for item in range(n * n):
         w[spare + item] = w[inverse + item] = 0.0
-    here = _coordinate_terms(law, base, I64(0))
+    cursor = _coordinate_terms(law, base, I64(0))
     for i in range(n):
         w[spare + i * n + i] += 1.0
         w[inverse + i * n + i] = 1.0
-        for item in range(law.code[here.at]):
-            slot, factor = law.reads[here.read + item], law.rows[here.row + item]
+        for item in range(law.code[cursor.at]):
+            slot, factor = law.reads[cursor.read + item], law.rows[cursor.row + item]
             if slot < n:
                 w[spare + i * n + slot] -= method.beta * h * h * factor
             elif slot < 2 * n:
                 w[spare + i * n + slot - n] -= method.gamma * h * factor
-        here = next_coordinate(law, here)
+        cursor = next_coordinate(law, cursor)
     for k in range(n):
         best = k
         for i in range(k + 1, n):
@@ -169,7 +169,7 @@ def _invert(method: Newmark, law: Law, base: int, duration: float, kind: int, w:
 def _without_contacts(
     lanes: Any, method: Newmark, law: Law, base: int, inverse: int, w: Array
 ) -> None:
-    """State at the end of the step, compressions and rates, if no contact pushed."""
+    """State at the end of the step, compressions and rates without contact forces."""
     s, o = slots_of(law.code), _slots_of(law.code)
     n, h = s.n, load(lanes, w, s.h)
     zero = 0.0 * h
@@ -184,12 +184,12 @@ def _without_contacts(
         store(w, s.force + j, zero)
     for f in range(s.friction, s.end):
         store(w, f, zero)
-    here = _coordinate_terms(law, base, I64(2))
+    cursor = _coordinate_terms(law, base, I64(2))
     for i in range(n):
         start = load(lanes, w, s.load + i)
-        b = sum_terms(lanes, law, start, law.code[here.at], here.read, here.row, w)
+        b = sum_terms(lanes, law, start, law.code[cursor.at], cursor.read, cursor.row, w)
         store(w, s.second + i, b)
-        here = next_coordinate(law, here)
+        cursor = next_coordinate(law, cursor)
     for i in range(n):
         a = zero
         for k in range(n):
@@ -199,59 +199,59 @@ def _without_contacts(
         a = load(lanes, w, o.new + i)
         store(w, 4 * n + i, load(lanes, w, 4 * n + i) + late * a)
         store(w, 5 * n + i, load(lanes, w, 5 * n + i) + fast * a)
-    here = first_contact(law, base, I64(2))
+    cursor = first_contact(law, base, I64(2))
     for j in range(s.contacts):
-        d, rate = compression_and_rate(lanes, law, s, here, w)
+        d, rate = compression_and_rate(lanes, law, s, cursor, w)
         store(w, o.plain + j, d)
         store(w, o.rates + j, rate)
         store(w, s.force + j, load(lanes, w, o.guess + j))
-        here = next_contact(law, here)
+        cursor = next_contact(law, cursor)
 
 
 @nb.njit(**INNER)
 def _pushes(lanes: Any, law: Law, base: int, inverse: int, w: Array) -> None:
-    """What a unit of each contact force and friction does to the accelerations."""
+    """Accelerations per unit of each contact force and friction."""
     s, o = slots_of(law.code), _slots_of(law.code)
     n, zero = s.n, 0.0 * load(lanes, w, s.h)
     for item in range(o.push, o.effect):
         store(w, item, zero)
-    here = _coordinate_terms(law, base, I64(0))
+    cursor = _coordinate_terms(law, base, I64(0))
     for i in range(n):
-        for item in range(law.code[here.at]):
-            slot = law.reads[here.read + item]
+        for item in range(law.code[cursor.at]):
+            slot = law.reads[cursor.read + item]
             source = slot - s.force
             if slot >= s.friction:
                 source = s.contacts + slot - s.friction
             elif slot < s.force or slot >= s.side:
                 continue
-            factor, at = entry(lanes, law.rows, here.row + item), o.push + source * n
+            factor, at = entry(lanes, law.rows, cursor.row + item), o.push + source * n
             for k in range(n):
                 a = load(lanes, w, at + k) + load(lanes, w, inverse + k * n + i) * factor
                 store(w, at + k, a)
-        here = next_coordinate(law, here)
+        cursor = next_coordinate(law, cursor)
 
 
 @nb.njit(**INNER)
 def _effects(lanes: Any, method: Newmark, law: Law, base: int, w: Array) -> None:
-    """What a unit of each contact force and friction does to compressions and rates."""
+    """Compressions and their rates per unit of each contact force and friction."""
     s, o = slots_of(law.code), _slots_of(law.code)
     n, m, sources = s.n, s.contacts, s.contacts + s.end - s.friction
     h, beat = load(lanes, w, s.h), load(lanes, w, s.beat)
     late, fast = method.beta * h * h, method.gamma * h
-    here = first_contact(law, base, I64(0))
+    cursor = first_contact(law, base, I64(0))
     for i in range(m):
         for j in range(sources):
             along, turned, push = 0.0 * h, 0.0 * h, o.push + j * n
-            count = law.code[here.at]
+            count = law.code[cursor.at]
             for item in range(count):
-                a = load(lanes, w, push + law.reads[here.read + item])
-                along = along + entry(lanes, law.rows, here.row + 5 + item) * a
-            for item in range(count, count + law.code[here.at + 1]):
-                a = load(lanes, w, push + law.reads[here.read + item])
-                turned = turned + entry(lanes, law.rows, here.row + 5 + item) * a
+                a = load(lanes, w, push + law.reads[cursor.read + item])
+                along = along + entry(lanes, law.rows, cursor.row + 5 + item) * a
+            for item in range(count, count + law.code[cursor.at + 1]):
+                a = load(lanes, w, push + law.reads[cursor.read + item])
+                turned = turned + entry(lanes, law.rows, cursor.row + 5 + item) * a
             store(w, o.effect + i * sources + j, late * along)
             store(w, o.effect + (m + i) * sources + j, fast * along + beat * late * turned)
-        here = next_contact(law, here)
+        cursor = next_contact(law, cursor)
 
 
 @nb.njit(**INNER)
@@ -273,47 +273,47 @@ def _solve(lanes: Any, m: int, matrix: int, right: int, w: Array) -> None:
 
 
 @nb.njit(**INNER)
-def _slopes(lanes: Any, law: Law, here: Cursor, w: Array) -> None:
-    """Every friction and its change with the load."""
+def _slopes(lanes: Any, law: Law, cursor: Cursor, w: Array) -> None:
+    """Every friction and its derivative by the load."""
     s, o = slots_of(law.code), _slots_of(law.code)
-    here = Cursor(here.at + 1, here.read, here.row)
+    cursor = Cursor(cursor.at + 1, cursor.read, cursor.row)
     for f in range(s.end - s.friction):
-        force, slope, following = friction_law(lanes, law, s.rub, here, w)
+        force, slope, following = friction_law(lanes, law, s.rub, cursor, w)
         store(w, s.friction + f, force)
         store(w, o.slope + f, slope)
-        here = following
+        cursor = following
 
 
 @nb.njit(**INNER)
 def _row_of_newton(lanes: Any, law: Law, i: int, rubbing: Cursor, k: Any, c: Any, w: Array) -> None:
-    """Row of the matrix for contact ``i``, whose force changes by ``k`` and ``c``."""
+    """Row of Newton's matrix for contact ``i`` with the tangents ``k`` and ``c`` of its force."""
     s, o = slots_of(law.code), _slots_of(law.code)
     m, frictions = s.contacts, s.end - s.friction
     by_d, by_rate = o.effect + i * (m + frictions), o.effect + (m + i) * (m + frictions)
     for j in range(m):
         d, rate = load(lanes, w, by_d + j), load(lanes, w, by_rate + j)
-        here = Cursor(rubbing.at + 1, rubbing.read, rubbing.row)
+        cursor = Cursor(rubbing.at + 1, rubbing.read, rubbing.row)
         for f in range(frictions):
-            for item in range(law.code[here.at]):
-                if law.reads[here.read + item] == s.force + j:
+            for item in range(law.code[cursor.at]):
+                if law.reads[cursor.read + item] == s.force + j:
                     slope = load(lanes, w, o.slope + f)
                     d = d + load(lanes, w, by_d + m + f) * slope
                     rate = rate + load(lanes, w, by_rate + m + f) * slope
-            here = _next_friction(law, here)
+            cursor = _next_friction(law, cursor)
         unit = 1.0 if i == j else 0.0
         store(w, o.matrix + i * m + j, unit - (k * d + c * rate))
 
 
 @nb.njit(**INNER)
 def _iterate(lanes: Any, tolerance: float, law: Law, base: int, w: Array) -> bool:
-    """Find the contact forces by Newton's method; False if the passes are not enough."""
+    """Solve for the contact forces by Newton's method; returns False without convergence."""
     s, o = slots_of(law.code), _slots_of(law.code)
     m, frictions = s.contacts, s.end - s.friction
     sources, rubbing = m + frictions, _friction_terms(law, base, I64(2))
     for _ in range(PASSES):
         size = 0.0 * load(lanes, w, s.h)
         _slopes(lanes, law, rubbing, w)
-        here = first_contact(law, base, I64(2))
+        cursor = first_contact(law, base, I64(2))
         for i in range(m):
             start, change = load(lanes, w, o.plain + i), load(lanes, w, o.rates + i)
             d, rate = start, change
@@ -321,27 +321,27 @@ def _iterate(lanes: Any, tolerance: float, law: Law, base: int, w: Array) -> boo
                 force = load(lanes, w, s.force + j if j < m else s.friction + j - m)
                 d = d + load(lanes, w, o.effect + i * sources + j) * force
                 rate = rate + load(lanes, w, o.effect + (m + i) * sources + j) * force
-            force, k, c = contact_law(lanes, law, s, here, i, d, rate, w)
+            force, k, c = contact_law(lanes, law, s, cursor, i, d, rate, w)
             old = load(lanes, w, s.force + i)
             store(w, o.right + i, force - old)
             size = greatest(size, magnitude(old) + magnitude(force))
             size = greatest(size, magnitude(k * start) + magnitude(c * change))
             _row_of_newton(lanes, law, i, rubbing, k, c, w)
-            here = next_contact(law, here)
+            cursor = next_contact(law, cursor)
         _solve(lanes, m, o.matrix, o.right, w)
-        there = True
+        converged = True
         for i in range(m):
             correction = load(lanes, w, o.right + i)
             store(w, s.force + i, load(lanes, w, s.force + i) + correction)
-            there = there and not any_above(magnitude(correction), tolerance * size)
-        if there:
+            converged = converged and not any_above(magnitude(correction), tolerance * size)
+        if converged:
             return True
     return False
 
 
 @nb.njit(**INNER)
 def _step(lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Array) -> bool:
-    """March every lane by one step; ``base`` is the row at its end."""
+    """Integrate every lane over one step; ``base`` is the row at its end."""
     keep_apart()
     s, o = slots_of(law.code), _slots_of(law.code)
     n, m = s.n, s.contacts
@@ -351,7 +351,7 @@ def _step(lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Arra
         return True
     _pushes(lanes, law, base, inverse, w)
     _effects(lanes, method, law, base, w)
-    there: bool = _iterate(lanes, method.tolerance, law, base, w)
+    converged: bool = _iterate(lanes, method.tolerance, law, base, w)
     friction_forces(lanes, law, _friction_terms(law, base, I64(2)), w)
     h = load(lanes, w, s.h)
     late, fast = method.beta * h * h, method.gamma * h
@@ -363,25 +363,25 @@ def _step(lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Arra
         store(w, o.new + i, load(lanes, w, o.new + i) + a)
         store(w, 4 * n + i, load(lanes, w, 4 * n + i) + late * a)
         store(w, 5 * n + i, load(lanes, w, 5 * n + i) + fast * a)
-    return there
+    return converged
 
 
 @for_method(Newmark, step)
 def newmark_step(
-    lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Array, seen: Any
+    lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Array, statistics_slot: Any
 ) -> bool:
-    """March every lane by one step with the sides at its start."""
+    """Integrate every lane over one step with the sides at its start."""
     s, columns = slots_of(law.code), law.code[2]
-    if seen is not None:
+    if statistics_slot is not None:
         acceleration(lanes, law, base, I64(0), s.first, w)
-        copy_slots(lanes, s.force, seen, s.contacts, w)
+        copy_slots(lanes, s.force, statistics_slot, s.contacts, w)
     # The row at the end of the step is read.
-    there: bool = _step(lanes, method, law, number, base + 2 * columns, w)
-    if seen is not None:
-        to_middle(lanes, law, base + columns, seen, w)
+    converged: bool = _step(lanes, method, law, number, base + 2 * columns, w)
+    if statistics_slot is not None:
+        to_middle(lanes, law, base + columns, statistics_slot, w)
         acceleration(lanes, law, base + columns, I64(1), s.second, w)
-        from_middle(lanes, law, seen, w)
-    return there
+        from_middle(lanes, law, statistics_slot, w)
+    return converged
 
 
 @for_method(Newmark, own_slots)

@@ -4,8 +4,8 @@ Rows are the factors that the kernel reads
 (:class:`~tribodyn.dynamics.equations.program.Program`). Each segment between two events is divided
 into cells; in each cell every factor that varies is a polynomial through Chebyshev nodes. A cell is
 halved until the polynomial meets the entry between its nodes, so that an entry with kinks gets
-small cells there, and steps end at kinks. Linear interpolation will not do: each of its knots is a
-kink that an adaptive integrator stumbles over.
+small cells there, and steps end at kinks. Linear interpolation is not enough: each of its grid
+points is a kink at which an adaptive integrator reduces its step.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tribodyn.types import Array, Index
 _DEGREE = 10
 #: Largest deviation between the nodes, over the largest size of the factor.
 _DEVIATION = 1e-11
-#: The same times the width of the cell: how much of it a step across the cell can notice.
+#: The same times the width of the cell: the part of it that affects a step across the cell.
 _NOTICED = 1e-14
 #: Rounding of a numerical derivative in phase, over the size of what is differentiated.
 _NOISE = 2e-11
@@ -35,12 +35,12 @@ _CANCELLED = 1e-14
 _NARROWEST = 1e-10
 #: Cells are not halved further when this many halvings in a row did not help.
 _STALLED = 3
-#: Cells below this width are those beside a kink; jump of a slope that counts as one, over the
-#: size of the factor and per mesh cycle.
+#: Cells below this width adjoin a kink; jump of a slope that counts as one, over the size of the
+#: factor and per mesh cycle.
 _NARROW, _KINK = 5e-5, 1e-5
 #: Most cells of a mesh cycle.
 _MOST = 40_000
-#: Cells per mesh cycle to begin with, and points that show which terms are never zero.
+#: Initial cells per mesh cycle, and points that show which terms are never zero.
 _FIRST, _SAMPLE = 16, 256
 
 
@@ -64,10 +64,10 @@ class _Rows:
 
     def __init__(self, system: System, events: Array, scaled: bool, split: bool) -> None:
         self.system, self.scaled, self.split = system, scaled, split
-        self._look(build_grid(tuple(events[:-1]), max(_SAMPLE, 8 * events.size)))
+        self._sample_terms(build_grid(tuple(events[:-1]), max(_SAMPLE, 8 * events.size)))
 
-    def _look(self, sample: Grid) -> None:
-        """Take the terms, and the sizes of their factors, from a sample."""
+    def _sample_terms(self, sample: Grid) -> None:
+        """Take the terms and the sizes of their factors from a sample."""
         self.sample = sample
         nodes, self.program = self._compile(sample)
         self.columns = int(self.program.code[2])
@@ -92,14 +92,14 @@ class _Rows:
         _, program = self._compile(grid)
         if not np.array_equal(program.code, self.program.code):
             # A term that is zero on the sample is not zero elsewhere: the sample grows.
-            self._look(grid)
+            self._sample_terms(grid)
             raise _MoreTermsError
         rows = program.rows.reshape(-1, 3, self.columns)[first.steps :]
         self.scale = np.maximum(self.scale, np.abs(rows).max(axis=(0, 1)))
         return rows
 
     def full_scale(self) -> Array:
-        """Size of each column; of one that is mere rounding, what the rounding would belong to."""
+        """Size of each column; for a column of mere rounding, the size that causes the rounding."""
         scale = np.maximum(self.scale, self.noise / _DEVIATION)
         return np.where(scale > 0.0, scale, 1.0)
 
@@ -146,8 +146,8 @@ def build_table(system: System, *, scaled: bool = False, split: bool = False) ->
             return _refine(rows, events)
         except _MoreTermsError:
             continue
-    what = "entries of the system are zero at most mesh phases and not at some"
-    why = "No sample of the mesh cycle shows which terms there are"
+    what = "entries of the system are zero at most mesh phases but not at all"
+    why = "Samples of the mesh cycle do not show which terms are present"
     remedy = "Declare the phases where an entry begins and ends as events"
     raise InputError(what, "argument system", why, remedy)
 
@@ -167,10 +167,10 @@ class _Level:
         def spread(values: Array) -> Array:
             return np.repeat(values, pairs.size)
 
-        found = rows.at(
+        sampled_rows = rows.at(
             spread(middle), (half[:, None] * pairs).ravel(), spread(low), spread(high)
         ).reshape(left.size, pairs.size, 3, -1)
-        nodes = found[:, : count // 2]
+        nodes = sampled_rows[:, : count // 2]
         # In the order of falling abscissa: right ends, the middle, left ends.
         values = np.concatenate((nodes[:, :, 2], nodes[:, :1, 1], nodes[:, ::-1, 0]), axis=1)
         basis = np.cos(np.outer(np.arange(count), angle)) * 2.0 / count
@@ -189,7 +189,9 @@ class _Level:
             self.spectrum,
             np.cos(np.arange(count)[:, None, None] * np.arccos(np.clip(x, -1.0, 1.0))),
         )
-        truth = np.concatenate((found[:, count // 2 :, 0], found[:, count // 2 :, 2]), axis=1)
+        truth = np.concatenate(
+            (sampled_rows[:, count // 2 :, 0], sampled_rows[:, count // 2 :, 2]), axis=1
+        )
         self.deviation = np.abs(model - truth).max(axis=1)
 
 
@@ -213,11 +215,18 @@ def _refine(rows: _Rows, events: Array) -> PhaseTable:
         )
         # Rounding of an entry does not shrink with the cell; a kink halves, all else falls faster.
         stalled = np.where((ratio > 0.7 * parent) & (ratio < 1e4), stalled + 1, 0)
-        many = sum(item[0].size for item in done) + 2 * left.size > _MOST
+        at_cell_limit = sum(item[0].size for item in done) + 2 * left.size > _MOST
         narrow = (right - left) < _NARROWEST
-        kept = (ratio <= 1.0) | (stalled >= _STALLED) | narrow | many
-        done.append((left[kept], right[kept], level.spectrum[kept], level.deviation[kept] / scale))
-        split = ~kept
+        accepted = (ratio <= 1.0) | (stalled >= _STALLED) | narrow | at_cell_limit
+        done.append(
+            (
+                left[accepted],
+                right[accepted],
+                level.spectrum[accepted],
+                level.deviation[accepted] / scale,
+            )
+        )
+        split = ~accepted
         middle = 0.5 * (left + right)
         left, right = (
             np.concatenate((left[split], middle[split])),
@@ -247,7 +256,7 @@ def _assemble(
     for k in range(_DEGREE + 1):
         powers[k, : k + 1] = np.polynomial.chebyshev.cheb2poly([0.0] * k + [1.0])
     monomials = np.einsum("ckv,kp->cvp", spectrum[:, :, varying], powers)
-    kept = np.arange(_DEGREE + 1)[None, None, :] <= degree[:, None, None]
+    within_degree = np.arange(_DEGREE + 1)[None, None, :] <= degree[:, None, None]
     sizes = (degree + 1) * varying.size
     ends = _with_kinks(events, left, right, spectrum / scale)
     return PhaseTable(
@@ -257,7 +266,7 @@ def _assemble(
         edge=np.append(left, 1.0),
         degree=degree.astype(np.int64),
         start=(np.cumsum(sizes) - sizes).astype(np.int64),
-        coefficients=np.append(monomials[np.broadcast_to(kept, monomials.shape)], 0.0),
+        coefficients=np.append(monomials[np.broadcast_to(within_degree, monomials.shape)], 0.0),
         varying=varying.astype(np.int64),
         constant=spectrum[0, 0].copy(),
         error=error,
@@ -265,7 +274,7 @@ def _assemble(
 
 
 def _with_kinks(events: Array, left: Array, right: Array, spectrum: Array) -> Array:
-    """Events, and cell edges at kinks: where a slope jumps, and beside the narrowest cells."""
+    """Events, and cell edges at kinks: where a slope jumps, and next to the narrowest cells."""
     width = right - left
     order = np.arange(_DEGREE + 1.0)[None, :, None]
     rise = 2.0 / width[:, None] * (order**2 * spectrum).sum(axis=1)
@@ -275,6 +284,6 @@ def _with_kinks(events: Array, left: Array, right: Array, spectrum: Array) -> Ar
     kinked = (jump > np.maximum(_KINK, 4e-9 / narrow)) & (narrow > _NARROW)
     around = np.concatenate(([np.inf], width, [np.inf]))
     least = (width < _NARROW) & (width <= around[:-2]) & (width < around[2:])
-    found = np.concatenate((left[1:][kinked], right[least]))
-    found = found[np.abs(found[:, None] - events).min(axis=1) > _NARROW]
-    return np.union1d(events, found)
+    kinks = np.concatenate((left[1:][kinked], right[least]))
+    kinks = kinks[np.abs(kinks[:, None] - events).min(axis=1) > _NARROW]
+    return np.union1d(events, kinks)

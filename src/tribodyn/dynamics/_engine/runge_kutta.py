@@ -25,7 +25,7 @@ from tribodyn.dynamics._engine.method import (
     restart,
     step,
 )
-from tribodyn.dynamics._engine.middle import copy_slots, from_middle, to_middle
+from tribodyn.dynamics._engine.midpoint import copy_slots, from_middle, to_middle
 from tribodyn.types import Array
 
 
@@ -55,30 +55,36 @@ def _restart(lanes: Any, method: RungeKutta4, law: Law, base: int, w: Array) -> 
 
 @for_method(RungeKutta4, step)
 def runge_kutta_step(
-    lanes: Any, method: RungeKutta4, law: Law, number: int, base: int, w: Array, seen: Any
+    lanes: Any,
+    method: RungeKutta4,
+    law: Law,
+    number: int,
+    base: int,
+    w: Array,
+    statistics_slot: Any,
 ) -> bool:
-    """March every lane by one step, from the state in buffer 0 to buffer 2."""
+    """Integrate every lane over one step, from the state in buffer 0 to buffer 2."""
     keep_apart()
     s = slots_of(law.code)
     n, columns = s.n, law.code[2]
     h = load(lanes, w, s.h)
     sixth = (1.0 / 6.0) * h
     # A loop that the compiler cannot unroll is compiled in a quarter of the time.
-    for stage in range(method.stages if seen is None else method.stages + 1):
+    for stage in range(method.stages if statistics_slot is None else method.stages + 1):
         buffer, target = stage if stage < 3 else I64(1), 1 + stage % 2
         part = 0.5 if stage < 2 else 1.0
         q, out, row = 2 * n * buffer, 2 * n * target, (stage + 1) // 2
-        if seen is not None:
+        if statistics_slot is not None:
             if stage == 1:
-                copy_slots(lanes, s.force, seen, s.contacts, w)
+                copy_slots(lanes, s.force, statistics_slot, s.contacts, w)
             if stage == 4:
                 row = I64(1)
-                to_middle(lanes, law, base + columns, seen, w)
-        here = all_forces(lanes, law, base + row * columns, buffer, w)
+                to_middle(lanes, law, base + columns, statistics_slot, w)
+        cursor = all_forces(lanes, law, base + row * columns, buffer, w)
         for i in range(n):
             start = load(lanes, w, s.load + i)
-            a = sum_terms(lanes, law, start, law.code[here.at], here.read, here.row, w)
-            here = next_coordinate(law, here)
+            a = sum_terms(lanes, law, start, law.code[cursor.at], cursor.read, cursor.row, w)
+            cursor = next_coordinate(law, cursor)
             q0, v0 = load(lanes, w, i), load(lanes, w, n + i)
             if stage < 3:
                 dt = part * h
@@ -87,14 +93,14 @@ def runge_kutta_step(
                 if stage == 2:
                     a = a + load(lanes, w, s.second + i)
                 store(w, (s.first if stage == 0 else s.second) + i, a)
-            elif seen is not None and stage == 4:
+            elif statistics_slot is not None and stage == 4:
                 store(w, s.second + i, a)
             else:
                 start, inner = load(lanes, w, s.first + i), load(lanes, w, s.second + i)
                 store(w, out + i, q0 + h * (v0 + sixth * (start + inner)))
                 store(w, out + n + i, v0 + sixth * (start + 2.0 * inner + a))
-    if seen is not None:
-        from_middle(lanes, law, seen, w)
+    if statistics_slot is not None:
+        from_middle(lanes, law, statistics_slot, w)
     return True
 
 

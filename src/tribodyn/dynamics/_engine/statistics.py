@@ -1,9 +1,10 @@
-"""Statistics of lanes: what is gathered, and in which order.
+"""Statistics of lanes: signals, moments and their order.
 
 Signals are, in this order: compression of every contact, force of every contact, acceleration of
 every coordinate, and linear outputs of the state. Both ends and the middle of every step count with
-Simpson's weights, and at an event both sides do; :mod:`tribodyn.dynamics._engine.moments` gathers
-them, while a block marches or from a mesh cycle that it recorded.
+Simpson's weights, and at an event both sides do.
+:mod:`tribodyn.dynamics._engine.running_statistics` accumulates them during the integration of a
+block or from a recorded mesh cycle.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ PLAIN_MOMENTS = 5
 
 
 class Statistics(NamedTuple):
-    """What is gathered of lanes, so that no time series is stored."""
+    """Moments of the signals of all lanes, accumulated without storing time series."""
 
     outputs: Array  #: linear outputs of the state (m, 2 n)
     waves: Array  #: cosine and sine of harmonics, (steps, 3, harmonics, 2)

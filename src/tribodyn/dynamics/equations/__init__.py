@@ -1,15 +1,16 @@
-"""The law that is marched: data of a structure, its rows on the mesh phase, its motion.
+"""Equations of motion: data of a structure, its entries over the mesh phase, its accelerations.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| `system` | What is a structure with its contacts and frictions? |
-| `grid` | How is the mesh cycle divided so that no step spans a jump? |
-| `nodes` | What are the entries at both ends and in the middle of every step? |
-| `alike` | What are the entries of many systems that differ in values alone? |
-| `motion` | What forces and accelerations follow from a motion? The law, readable. |
-| `program` | In which flat arrays do the kernels read the law? |
-| `lane_parameters` | By which factors do lanes of an ensemble differ? |
-| `compiled` | What is a system, or one for each lane, on its grid? |
-| `step_limit` | How long may a step be? |
-| `divergence` | What is said of a march that failed, and why did it? |
+| `system` | a structure with its contacts and frictions |
+| `entry` | entries as constants or functions of the mesh phase |
+| `grid` | division of the mesh cycle into steps that end at events |
+| `nodes` | entries of a system at both ends and in the middle of every step |
+| `batched_tables` | the same for a batch of systems with the same structure |
+| `motion` | forces and accelerations of a motion, in readable NumPy |
+| `program` | the equations in flat arrays for the compiled kernels |
+| `lane_parameters` | factors by which the lanes of an ensemble differ |
+| `compiled` | one system, or one per lane, evaluated on a grid |
+| `step_limit` | largest stable step, recommended number of steps |
+| `divergence` | error messages of failed integrations |
 """

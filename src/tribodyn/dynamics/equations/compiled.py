@@ -1,7 +1,6 @@
-"""Systems on their grid, checked for the longest step: one for all lanes, or one for each.
+"""Systems evaluated on their grid with a checked step size: one for all lanes, or one per lane.
 
-Lanes with systems of their own have one grid with the events of all, one structure of terms, and
-rows for each lane.
+Different systems share a grid with the events of all and one structure of terms; each has its rows.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ from tribodyn.types import Index, Mask
 
 @dataclass(frozen=True)
 class Member:
-    """One of several systems on a common grid, with the lanes that march it."""
+    """One of several systems on a common grid, with the numbers of its lanes."""
 
     system: System
     nodes: Nodes
@@ -40,7 +39,7 @@ class Member:
 
 @dataclass(frozen=True)
 class Compiled:
-    """A system on its grid, checked for one highest step size."""
+    """A system on its grid, with checked step size."""
 
     system: System
     grid: Grid
@@ -83,14 +82,14 @@ class Compiled:
 def compile_for(
     system: System, mesh_frequency: ArrayLike, steps: int, parameters: LaneParameters | None = None
 ) -> Compiled:
-    """Compile a system and refuse a step that the integrator cannot follow."""
+    """Compile a system; raise if the step is beyond the stability limit of the integrator."""
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     require_whole("steps", steps)
     grid, nodes, program = compile_system(system, int(steps))
     beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
     if parameters is None:
-        known = system._rates.get(grid.steps)  # of the same rows
-        number = refuse_unstable_step(system, nodes, grid, float(beat.min()), rate=known)
+        cached_rate = system._rates.get(grid.steps)  # from the same rows
+        number = refuse_unstable_step(system, nodes, grid, float(beat.min()), rate=cached_rate)
     else:
         number = refuse_unstable_lanes(system, nodes, grid, beat, parameters)
     return Compiled(system, grid, nodes, program, number, parameters=parameters)
@@ -104,12 +103,12 @@ def compile_lanes(
     *,
     any_step: bool = False,
 ) -> Compiled:
-    """Compile the systems of all lanes on one grid; ``any_step``: however long the steps are."""
-    given = [systems] if isinstance(systems, System) else list(systems)
-    distinct = list({id(one): one for one in given}.values())
+    """Compile the systems of all lanes on one grid; ``any_step`` skips the check of the step."""
+    lane_systems = [systems] if isinstance(systems, System) else list(systems)
+    distinct = list({id(lane_system): lane_system for lane_system in lane_systems}.values())
     if len(distinct) == 1 and not any_step:
         return compile_for(distinct[0], mesh_frequency, steps, parameters)
-    _refuse_different(given)
+    _refuse_different(lane_systems)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     require_whole("steps", steps)
     if len(distinct) == 1:
@@ -117,17 +116,17 @@ def compile_lanes(
         rate = largest_rate(system, nodes) if parameters is None else float("nan")
         number = rate * float(grid.width.max() / np.min(mesh_frequency))
         return Compiled(system, grid, nodes, program, number, parameters=parameters)
-    beat = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (len(given),))
+    beat = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (len(lane_systems),))
     events = system_events(*distinct)
-    places = {id(one): number for number, one in enumerate(distinct)}
-    which = np.array([places[id(one)] for one in given])
+    places = {id(lane_system): number for number, lane_system in enumerate(distinct)}
+    which = np.array([places[id(lane_system)] for lane_system in lane_systems])
     members, number = [], float("nan") if any_step else 0.0
     for place, system in enumerate(distinct):
         lanes = np.flatnonzero(which == place)
         grid, nodes, program = compile_system(system, steps, events)
         if not any_step:
-            own = refuse_unstable_lanes(system, nodes, grid, beat, parameters, lanes=lanes)
-            number = max(number, own)
+            lane_number = refuse_unstable_lanes(system, nodes, grid, beat, parameters, lanes=lanes)
+            number = max(number, lane_number)
         members.append(Member(system, nodes, lanes))
         if place == 0:
             first = program
@@ -136,51 +135,53 @@ def compile_lanes(
 
 
 def _refuse_different(systems: list[System]) -> None:
-    def facts(system: System) -> dict[str, object]:
+    def counts(system: System) -> dict[str, object]:
         return {
             "coordinates": system.size,
             "contacts": len(system.contacts),
             "contacts with damping in the gap": tuple(
                 contact.damping_in_gap for contact in system.contacts
             ),
-            "contacts that its frictions follow": tuple(one.contacts for one in system.frictions),
+            "contacts that its frictions follow": tuple(
+                friction.contacts for friction in system.frictions
+            ),
             "coefficients of its frictions": tuple(
-                coefficient_count(f"frictions[{f}].coefficients", one)
-                for f, one in enumerate(system.frictions)
+                coefficient_count(f"frictions[{f}].coefficients", friction)
+                for f, friction in enumerate(system.frictions)
             ),
         }
 
-    if not systems or not all(isinstance(one, System) for one in systems):
+    if not systems or not all(isinstance(friction, System) for friction in systems):
         what = "systems is neither a System nor a sequence of one System for each lane"
-        why = "Every lane has a system of its own"
+        why = "All lanes share one system, or each lane has one"
         raise InputError(what, "argument systems", why, "Give one System, or a list of them")
-    known = {id(systems[0]): facts(systems[0])}
-    first = known[id(systems[0])]
+    structures = {id(systems[0]): counts(systems[0])}
+    first = structures[id(systems[0])]
     for lane, system in enumerate(systems):
-        if id(system) in known:
+        if id(system) in structures:
             continue
-        known[id(system)] = own = facts(system)
-        for name, value in own.items():
+        structures[id(system)] = structure = counts(system)
+        for name, value in structure.items():
             if value != first[name]:
                 raise InputError(
                     f"the system of lane {lane} has {value} {name}, that of lane 0 has "
                     f"{first[name]}",
                     where="argument systems",
-                    why="Lanes march side by side and have the same structure, with values of "
-                    "their own",
-                    remedy="March different structures in separate ensembles",
+                    why="The lanes of an ensemble are integrated together: their systems may "
+                    "differ in values but not in structure",
+                    remedy="Simulate different structures in separate ensembles",
                 )
 
 
 def _refuse_mixed_gaps(members: list[Member]) -> None:
-    dead: list[Mask] = [has_gap(one.nodes) for one in members]
-    for one, own in zip(members, dead, strict=True):
-        apart = np.flatnonzero(own != dead[0])
-        if apart.size:
+    dead: list[Mask] = [has_gap(member.nodes) for member in members]
+    for member, has_gap_here in zip(members, dead, strict=True):
+        mixed = np.flatnonzero(has_gap_here != dead[0])
+        if mixed.size:
             raise InputError(
-                f"contact {apart[0]} has a dead zone in lane "
-                f"{(one if own[apart[0]] else members[0]).lanes[0]} and none in lane "
-                f"{(members[0] if own[apart[0]] else one).lanes[0]}",
+                f"contact {mixed[0]} has a dead zone in lane "
+                f"{(member if has_gap_here[mixed[0]] else members[0]).lanes[0]} and none in lane "
+                f"{(members[0] if has_gap_here[mixed[0]] else member).lanes[0]}",
                 where="argument systems",
                 why="A contact without a dead zone also pulls, which is another force law",
                 remedy="Give it a gap in every lane, however small, or in none",

@@ -1,4 +1,4 @@
-"""What to say of a motion that grew beyond all bounds: when, who, and the probable cause."""
+"""Error messages of failed integrations: time, coordinate and probable cause."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _SUSPECT_STEP = 2.0
 _ROUNDING = 1e-9
 #: Friction over contact force, both as accelerations, above which it is the first suspect.
 _STRONG = 0.4
-#: A state above this has grown beyond all bounds; contact forces are then not to blame.
+#: A state above this has diverged; the contact forces are then not the cause.
 _HUGE = 1e100
-#: The same over its usual size, of adaptive steps: these become too narrow before it is infinite.
+#: The same over the usual size, for adaptive steps, which become too small before it is infinite.
 _BEYOND = 1e9
 
 
@@ -29,8 +29,8 @@ class Failed(NamedTuple):
 
     system: System
     nodes: Nodes
-    states: Array  #: before every step that was tried (steps, 2 n)
-    phase: Array  #: mesh phase of each of them, and perhaps of later ones, from the start [1]
+    states: Array  #: before every attempted step (steps, 2 n)
+    phase: Array  #: mesh phase of these and possibly of later states, from the start [1]
     period: float  #: [s]
     lane: int | None  #: its number among several
     factors: Array  #: of stiffness, damping, friction, error, gap and force [1]
@@ -42,7 +42,7 @@ class Failed(NamedTuple):
         return "" if self.lane is None else f", in lane {self.lane}"
 
     def fastest(self, step: int) -> str:
-        """Coordinate with most of the kinetic energy; one that went first has it too."""
+        """Coordinate with most of the kinetic energy, or the first that is not finite."""
         with np.errstate(all="ignore"):
             speed = np.abs(self.states[step, self.system.size :])
             energy = np.diag(np.asarray(self.system.mass)) * speed**2
@@ -50,7 +50,7 @@ class Failed(NamedTuple):
 
 
 def runaway(failed: Failed, steps: str) -> ComputationError:
-    """Error that tells when and where a motion ran away, and why; ``steps`` says if they did it."""
+    """Error of a motion that diverged: when, where and why; ``steps`` describes the step size."""
     finite = np.append(np.isfinite(failed.states).all(axis=1), False)
     last = max(int(np.argmin(finite)) - 1, 0)
     phase, name = float(failed.phase[last]), failed.fastest(last)
@@ -59,7 +59,7 @@ def runaway(failed: Failed, steps: str) -> ComputationError:
     return ComputationError(
         f"the motion grew beyond all bounds after {phase:.4g} mesh cycles, at the time "
         f"{phase * failed.period:.6g} s{failed.who}",
-        where=f"coordinate {name}" + (f" of the body {body}" if body else "") + ", first of all"
+        where=f"first in coordinate {name}" + (f" of the body {body}" if body else "")
         if failed.system.size > 1
         else f"coordinate {name}",
         why=f"{causes}. {steps}",
@@ -68,30 +68,30 @@ def runaway(failed: Failed, steps: str) -> ComputationError:
 
 
 def newmark_failure(
-    failed: Failed, unfound: bool, law: tuple[float, float, float]
+    failed: Failed, unconverged: bool, law: tuple[float, float, float]
 ) -> ComputationError:
-    """Error of Newmark's scheme: it ran away, or contact forces were not found."""
-    reached = failed.step_number
-    number = f" at omega_max*dt = {reached:.3g}" if np.isfinite(reached) else ""
-    if unfound and np.abs(failed.states).max() < _HUGE:
+    """Error of Newmark's scheme: the motion or the iteration for contact forces diverged."""
+    step_number = failed.step_number
+    number = f" at omega_max*dt = {step_number:.3g}" if np.isfinite(step_number) else ""
+    if unconverged and np.abs(failed.states).max() < _HUGE:
         time = failed.phase[len(failed.states)] * failed.period
         return ComputationError(
-            f"the contact forces of the step that ends at {time:.6g} s were not found{failed.who}",
-            why="Newton's method did not come below the tolerance of "
-            f"{law[2]:.0e} within 25 passes{number}",
-            remedy="Take more steps per mesh cycle or a larger tolerance, and look for a "
-            "contact stiffness or damping below zero, which can make the equations of a step "
-            "singular",
+            f"the contact forces of the step that ends at {time:.6g} s did not converge"
+            f"{failed.who}",
+            why=f"Newton's method did not reach the tolerance of {law[2]:.0e} within 25 "
+            f"iterations{number}",
+            remedy="Use more steps per mesh cycle or a larger tolerance, and check for negative "
+            "contact stiffness or damping, which can make the equations of a step singular",
         )
-    steps = f"gamma = {law[0]:g}, beta = {law[1]:g} are stable{number}, so the step is not to blame"
+    steps = f"gamma = {law[0]:g}, beta = {law[1]:g} are stable{number}: the step is not the cause"
     return runaway(failed._replace(step_number=0.0), steps)
 
 
 def adaptive_failure(failed: Failed, scale: Array) -> ComputationError:
-    """Error of adaptive steps that became too narrow; ``scale`` is the size of usual states."""
+    """Error of adaptive steps that became too small; ``scale`` is the size of usual states."""
     state, name = failed.states[-1], failed.fastest(-1)
     if not np.abs(state / scale).max() <= _BEYOND:
-        return runaway(failed, "Steps are as short as accuracy needs, so it is not they")
+        return runaway(failed, "Steps are as short as accuracy needs: they are not the cause")
     phase = float(failed.phase[-1])
     return ComputationError(
         f"no step meets the tolerance: {name} moves fastest",
@@ -106,11 +106,11 @@ def _place(phase: float, time: float, who: str) -> str:
 
 
 def most_splits(contacts: int) -> int:
-    """Changes of side that may part a step; what has more does not come to an end."""
+    """Largest number of contact changes within a step; more count as endless chatter."""
     return 16 + 4 * contacts
 
 
-def unparted_step(
+def chattering_step(
     contact: int,
     contacts: int,
     phase: float,
@@ -119,26 +119,26 @@ def unparted_step(
     *,
     adaptive: bool = False,
 ) -> ComputationError:
-    """Error of a step that cannot be parted; ``phase`` counts mesh cycles [1], ``time`` is in s."""
+    """Error of a contact that chatters; ``phase`` counts mesh cycles [1], ``time`` is in s."""
     often = f"{most_splits(contacts)} times within one step"
-    remedy = "Take more steps per mesh cycle, or damping that does not vanish in the gap"
+    remedy = "Use more steps per mesh cycle, or damping that does not vanish in the gap"
     if adaptive:
         often = "64 times within a millionth of a mesh cycle"
-        remedy = "Look for negative damping, and for flanks far too hard or too near each other"
+        remedy = "Check for negative damping, too stiff flanks and too small a gap"
     who = "" if lane is None else f", in lane {lane}"
     return ComputationError(
         f"the contacts open and close more than {often}",
         where=f"contacts[{contact}], {_place(phase, time, who)}",
         why="The flanks chatter at the boundary of the dead zone, where the damping force "
-        "jumps: the step cannot be marched in parts with one force law each",
-        remedy=f"{remedy}; look for an error or a gap that changes fast at that mesh phase",
+        "jumps: the step cannot be divided into parts with one force law each",
+        remedy=f"{remedy}; check for an error or a gap that changes fast at that mesh phase",
     )
 
 
 def probable_cause(
     system: System, nodes: Nodes, step_number: float, factors: Array
 ) -> tuple[str, str]:
-    """Look for what can make a motion grow."""
+    """Return what can make a motion grow, and the remedy."""
     stiff, damp = factors[:2]
     spring, damper = ("stiffness", stiff, "N/m"), ("damping", damp, "N*s/m")
     for (kind, factor, unit), entry in ((spring, nodes.stiffness), (damper, nodes.damping)):
@@ -148,20 +148,20 @@ def probable_cause(
             return (
                 f"The {kind} of contact {j} is negative: {values.min():.6g} {unit} at the mesh "
                 f"phase {nodes.phase[row, node]:.4g}",
-                f"Look for a wrong sign in contacts[{j}].{kind}",
+                f"Check the sign of contacts[{j}].{kind}",
             )
     stiffness, damping, push = _mean_matrices(system, nodes, factors)
     checks = (
         ("stiffness", stiffness, np.asarray(system.stiffness)),
         ("damping", damping, np.asarray(system.damping)),
     )
-    for kind, total, own in checks:
-        found = _negative_direction(total, system)
-        if found:
-            where = f"System.{kind}" if _negative_direction(own, system) else "the contacts"
+    for kind, total, structural in checks:
+        coordinates = _negative_direction(total, system)
+        if coordinates:
+            where = f"System.{kind}" if _negative_direction(structural, system) else "the contacts"
             return (
-                f"The {kind} matrix has a negative eigenvalue, in a motion of {found}",
-                f"Look for a wrong sign or place in {where}",
+                f"The {kind} matrix has a negative eigenvalue, in a motion of {coordinates}",
+                f"Check signs and positions of the entries of {where}",
             )
     rubbing = _friction_cause(system, nodes, factors[2], (stiffness, damping, push))
     if rubbing is not None:
@@ -173,26 +173,26 @@ def probable_cause(
         )
     if np.ptp(nodes.stiffness, axis=(0, 1)).max(initial=0.0) > 0.0:
         return (
-            "The mean system is stable, so that the stiffness that changes over the mesh cycle "
-            "feeds energy in: a parametric resonance",
+            "The mean system is stable, so that the varying mesh stiffness feeds energy in: a "
+            "parametric resonance",
             "Add damping, move the mesh frequency, or let the contact open with a gap",
         )
     return (
         "The system itself is unstable",
-        "Look for negative stiffness or damping, or friction that feeds energy in",
+        "Check for negative stiffness or damping, and for friction that feeds energy in",
     )
 
 
 def _friction_cause(
     system: System, nodes: Nodes, rub: float, mean: tuple[Array, Array, Array]
 ) -> tuple[str, str] | None:
-    """What to say of friction that feeds energy in, or that is too strong for a tooth."""
+    """Cause and remedy if friction feeds energy in or is too strong for a tooth."""
     strength, phase = _friction_strength(system, nodes, rub)
     strong = (
-        f"Friction is {strength:.3g} times the contact force as it moves the coordinates, most of "
-        f"all at the mesh phase {phase:.4g}"
+        f"Friction accelerates the coordinates {strength:.3g} times as much as the contact force, "
+        f"at the mesh phase {phase:.4g}"
     )
-    look = "Look for the friction coefficient, lubricated steel hardly exceeds 0.2"
+    remedy = "Check the friction coefficient: lubricated steel hardly exceeds 0.2"
     spring, damper, push = mean
     if np.abs(push).max(initial=0.0) > 0.0:
         mass = np.asarray(system.mass)
@@ -201,13 +201,13 @@ def _friction_cause(
         )
         if growth > max(10.0 * still, _ROUNDING):
             cause = (
-                "Friction feeds energy in: with it a motion about the static load grows, without "
-                "it none does"
+                "Friction feeds energy in: a motion about the static load grows with friction and "
+                "decays without it"
             )
             if strength > _STRONG:
-                return f"{strong}. {cause}", f"{look}, and for the sign of the sliding direction"
-            return cause, "Look for the sign of the sliding direction, or add damping"
-    return (f"{strong}: it can drive a motion by itself", look) if strength > _STRONG else None
+                return f"{strong}. {cause}", f"{remedy}, and the sign of the sliding direction"
+            return cause, "Check the sign of the sliding direction, or add damping"
+    return (f"{strong}, which can drive a motion", remedy) if strength > _STRONG else None
 
 
 def _friction_strength(system: System, nodes: Nodes, rub: float) -> tuple[float, float]:
@@ -224,13 +224,13 @@ def _push(system: System, nodes: Nodes) -> Array:
     """Generalized force per contact force; frictions as they change about their nominal load."""
     if not system.frictions:
         return nodes.force_direction
-    nominal = np.array([one.load for one in system.frictions])
+    nominal = np.array([friction.load for friction in system.frictions])
     ratio = friction_tangent(system, nodes.friction_coefficients, nominal)
     return push_with_friction(system, nodes, ratio)
 
 
 def _mean_matrices(system: System, nodes: Nodes, factors: Array) -> tuple[Array, Array, Array]:
-    """Stiffness and damping with all contacts closed, and what friction adds to both."""
+    """Stiffness and damping with all contacts closed, and the contributions of friction."""
     stiff, damp, rub = factors[:3]
     push, along = _push(system, nodes), nodes.direction
     spring, damper = (

@@ -1,4 +1,4 @@
-"""What a part of a contact can be given as: a constant or a function of the mesh phase."""
+"""Entries of a contact: constants or functions of the mesh phase."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from tribodyn.types import Array
 #: A constant, or a vectorized function of the mesh phase in [0, 1).
 Entry = float | ArrayLike | Callable[[Array], Any]
 
-#: Steps looked at for a jump by each of two signs; parts into which they are cut, how often, and
-#: how often before a bend has to stay; part of a bend that stays at a jump; least jump over the
-#: size of the entry.
+#: Search for jumps: steps examined by each of two criteria; parts into which they are divided, and
+#: how often; divisions before a bend has to persist; part of a bend that persists at a jump; least
+#: jump over the size of the entry.
 _SUSPECTS, _PARTS, _CUTS, _FREE, _KEPT, _JUMP = 8, 16, 4, 1, 0.4, 1e-7
 #: Difference of two calls with the same phases, over the size of the entry, that is rounding.
 _ROUNDING = 1e-9
 
 
-def read_events(given: Any, where: str) -> tuple[float, ...]:
+def read_events(value: Any, where: str) -> tuple[float, ...]:
     """Check mesh phases at which an entry jumps."""
-    events = tuple(real_numbers(where, given, "mesh phases").reshape(-1).tolist())
+    events = tuple(real_numbers(where, value, "mesh phases").reshape(-1).tolist())
     bad = [event for event in events if not 0.0 <= event < 1.0]
     if bad:
         what = f"events holds {bad[0]:g}"
-        remedy = "Take the fraction of the mesh cycle, for example phase % 1.0"
+        remedy = "Give the fraction of the mesh cycle, for example phase % 1.0"
         raise InputError(what, where, "Events are mesh phases and lie in [0, 1)", remedy)
     return events
 
@@ -64,23 +64,26 @@ def entry_values(where: str, entry: Any, phases: Array, size: int) -> Array:
 
 def refuse_chance(where: str, entry: Any, phases: Array, values: Array) -> None:
     """Refuse a function whose values do not follow from the mesh phase alone."""
-    some = np.arange(0, phases.size, max(1, phases.size // 31))[::-1]
-    apart = np.abs(entry_values(where, entry, phases[some], values.shape[1]) - values[some])
-    if np.any(apart > _ROUNDING * np.abs(values).max(axis=0)):
-        row = int(apart.max(axis=1).argmax())
+    repeated = np.arange(0, phases.size, max(1, phases.size // 31))[::-1]
+    difference = np.abs(
+        entry_values(where, entry, phases[repeated], values.shape[1]) - values[repeated]
+    )
+    if np.any(difference > _ROUNDING * np.abs(values).max(axis=0)):
+        row = int(difference.max(axis=1).argmax())
         raise InputError(
-            f"{where} gives other values when it is called again: "
-            f"{apart[row].max():.4g} apart at the mesh phase {phases[some][row]:.6g}",
+            f"{where} returns other values when it is called again: the difference at the mesh "
+            f"phase {phases[repeated][row]:.6g} is {difference[row].max():.4g}",
             where=where,
             why="The motion repeats only if every value follows from the mesh phase alone",
-            remedy="Draw random numbers once, before, and look them up by the phase",
+            remedy="Draw random numbers once beforehand, and look them up by the phase",
         )
 
 
 def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
     """Refuse a function that jumps between events; ``nodes`` (s, 3), ``values`` (s, 3, size).
 
-    The bend over a jump stays when the step is cut, that of a kink falls with it, others faster.
+    The bend over a jump persists when the step is divided, that of a kink falls with it, others
+    faster.
     """
     size = np.abs(values).max(axis=(0, 1)) + 1e-300
     bend = (values[:, 0] - 2.0 * values[:, 1] + values[:, 2]) / size
@@ -88,7 +91,7 @@ def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
     bend = np.abs(bend).max(axis=1)
     likely = np.unique(np.concatenate([np.argsort(-key)[:_SUSPECTS] for key in (bend, sharp)]))
     likely = likely[bend[likely] > _JUMP]
-    low, high, kept = nodes[likely, 0], nodes[likely, 2], bend[likely]
+    low, high, largest_bend = nodes[likely, 0], nodes[likely, 2], bend[likely]
     for cut in range(_CUTS):
         if not low.size:
             return
@@ -98,25 +101,25 @@ def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
         bends = np.abs(parts[:, :-2] - 2.0 * parts[:, 1:-1] + parts[:, 2:]).max(axis=2)
         rows, first = np.arange(low.size), bends.argmax(axis=1)
         most = bends[rows, first]
-        stays = (most > _JUMP) & ((most > _KEPT * kept) | (cut < _FREE))
-        low, high, kept = (x[stays] for x in (at[rows, first], at[rows, first + 2], most))
+        stays = (most > _JUMP) & ((most > _KEPT * largest_bend) | (cut < _FREE))
+        low, high, largest_bend = (x[stays] for x in (at[rows, first], at[rows, first + 2], most))
     if low.size:
-        row = int(kept.argmax())
+        row = int(largest_bend.argmax())
         ends = entry_values(where, entry, np.array([low[row], high[row]]), size.size)
         raise InputError(
             f"{where} jumps by {np.ptp(ends, 0).max():.4g} at the mesh phase "
             f"{0.5 * (low[row] + high[row]):.7g}, which is not an event",
             where=where,
             why="A step across a jump loses its order, and steps end at events only",
-            remedy="Give this phase to events of the contact or the friction",
+            remedy="Add this phase to the events of the contact or the friction",
         )
 
 
 def _shaped(where: str, values: Array, count: int, size: int) -> Array:
     if values.shape != (count, size):
         why = f"It must be ({count}, {size}) for {count} mesh phases"
-        remedy = "Return one row of values for each phase that the function is given"
-        raise InputError(f"{where} gives the shape {values.shape}", where, why, remedy)
+        remedy = "Return one row of values for each phase that is passed to the function"
+        raise InputError(f"{where} returns the shape {values.shape}", where, why, remedy)
     return values
 
 
@@ -125,13 +128,13 @@ def _oriented(where: str, function: Callable[[Array], Any], phases: Array, size:
     # One more or one less phase than components makes the orientation unambiguous.
     probe = phases if phases.size not in (1, size) else np.resize(phases, size + 2)
     try:
-        given = function(probe)
+        result = function(probe)
     except (TypeError, ValueError) as error:
         what = f"{where} is not a vectorized function of the mesh phase: {error}"
         why = "It is called with an array of phases and returns an array"
         remedy = "Use numpy.where instead of if, and functions that take arrays"
         raise InputError(what, where, why, remedy) from error
-    values = real_numbers(where, given, "real numbers, whatever the mesh phase")
+    values = real_numbers(where, result, "real numbers, whatever the mesh phase")
     if values.ndim == 0:
         values = np.full((probe.size, 1), float(values))
     elif values.ndim == 1 and values.size == probe.size and size == 1:

@@ -61,14 +61,14 @@ class Grid:
 
 def system_events(*systems: System) -> tuple[float, ...]:
     """Events of all contacts and frictions, sorted and merged."""
-    given = [part.events for system in systems for part in system.contacts]
-    given += [part.events for system in systems for part in system.frictions]
-    events = sorted({0.0, *(event for part in given for event in part)})
-    kept: list[float] = []
+    event_lists = [part.events for system in systems for part in system.contacts]
+    event_lists += [part.events for system in systems for part in system.frictions]
+    events = sorted({0.0, *(event for part in event_lists for event in part)})
+    merged: list[float] = []
     for event in events:
-        if (not kept or event - kept[-1] > _MERGE) and event < 1.0 - _MERGE:
-            kept.append(event)
-    return tuple(kept)
+        if (not merged or event - merged[-1] > _MERGE) and event < 1.0 - _MERGE:
+            merged.append(event)
+    return tuple(merged)
 
 
 def build_grid(events: tuple[float, ...], steps: int) -> Grid:
@@ -100,26 +100,26 @@ def build_grid(events: tuple[float, ...], steps: int) -> Grid:
 
 
 def _shares(lengths: Array, steps: int) -> Index:
-    """Give each segment its part of the steps, at least two, by largest remainder."""
+    """Distribute the steps over the segments, at least two each, by largest remainder."""
     free = steps - 2 * lengths.size
     ideal = lengths / lengths.sum() * steps - 2.0
     ideal = np.maximum(ideal, 0.0)
     ideal *= free / ideal.sum() if ideal.sum() > 0 else 0.0
     counts = np.floor(ideal).astype(np.int64)
-    rest = free - int(counts.sum())
+    remaining = free - int(counts.sum())
     order = np.argsort(counts - ideal)
-    counts[order[:rest]] += 1
+    counts[order[:remaining]] += 1
     return np.asarray(counts + 2)
 
 
-def once(values: Array, kept: int = 0) -> Array:
-    """What is repeated along an axis, as a constant is, taken once along it; not of the last."""
-    axes = values.strides[: values.ndim - kept]
+def unrepeated(values: Array, trailing: int = 0) -> Array:
+    """View with every broadcast axis reduced to one item; the last ``trailing`` axes stay."""
+    axes = values.strides[: values.ndim - trailing]
     return values[tuple(slice(None if stride else 1) for stride in axes)]
 
 
 class RowEvaluator:
-    """Evaluates entries on the three nodes of every step, one-sidedly at events."""
+    """Evaluate entries on the three nodes of every step, one-sidedly at events."""
 
     def __init__(self, grid: Grid, *, checks: bool = True) -> None:
         self.grid, self.checks = grid, checks
@@ -131,8 +131,8 @@ class RowEvaluator:
     def values(self, where: str, entry: Entry, size: int = 1) -> Array:
         """Values on the nodes, of an entry that jumps at events only."""
         if not varies(entry):
-            one = entry_values(where, entry, self.nodes[:1, 0], size)[0]
-            return np.broadcast_to(one, (*self.nodes.shape, size))
+            constant = entry_values(where, entry, self.nodes[:1, 0], size)[0]
+            return np.broadcast_to(constant, (*self.nodes.shape, size))
         flat = entry_values(where, entry, self.nodes.reshape(-1), size)
         values = flat.reshape(*self.nodes.shape, size)
         if self.checks and not self.is_smooth(entry):
@@ -141,25 +141,25 @@ class RowEvaluator:
         return values
 
     def joined(self, entries: Sequence[Any], into: Array) -> frozenset[int]:
-        """Look up tables on the same knots together; numbers of the entries that are ``into``."""
+        """Look up tables with the same grid together; return the numbers of the entries filled."""
         tables = {j: each for j, each in enumerate(entries) if hasattr(each, "_of_columns")}
         grids = {each.grid for each in tables.values()}
-        whole = all(each.values.ndim == 1 for each in tables.values())
+        scalar_tables = all(each.values.ndim == 1 for each in tables.values())
         if (
             len(tables) < 2
             or len(grids) > 1
-            or not (whole and self.is_smooth(entries[min(tables)]))
+            or not (scalar_tables and self.is_smooth(entries[min(tables)]))
         ):
             return frozenset()
         columns = np.stack([each.values for each in tables.values()], axis=1)
-        if not np.isfinite(columns).all():  # which is told of each by itself
+        if not np.isfinite(columns).all():  # reported when each entry is evaluated alone
             return frozenset()
         table: Any = next(iter(tables.values()))._of_columns(columns)
         into[..., list(tables)] = table(self.nodes.reshape(-1)).reshape(*self.nodes.shape, -1)
         return frozenset(tables)
 
     def is_smooth(self, entry: Entry) -> bool:
-        """Whether it is a table that jumps nowhere but at events of this grid."""
+        """Whether the entry is a table that jumps only at events of this grid."""
         events = getattr(entry, "event_phases", None)
         return events is not None and self.grid.events.issuperset(events)
 
@@ -186,6 +186,6 @@ def _stencil_derivative(shift: Array) -> Array:
         others = np.delete(nodes, i)
         scale = np.prod(nodes[i] - others)
         for k in range(4):
-            rest = np.delete(others, k)
-            weights[..., i] += np.prod(shift[..., None] - rest, axis=-1) / scale
+            other_nodes = np.delete(others, k)
+            weights[..., i] += np.prod(shift[..., None] - other_nodes, axis=-1) / scale
     return weights

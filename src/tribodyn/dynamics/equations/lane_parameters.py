@@ -1,4 +1,4 @@
-"""What lanes of an ensemble differ by: factors of the parts of one system."""
+"""Factors by which the lanes of an ensemble scale the parts of one system."""
 
 from __future__ import annotations
 
@@ -74,8 +74,8 @@ class LaneParameters:
                 lengths[values.size] = name
             object.__setattr__(self, name, values)
         if len(lengths) > 1:
-            (one, first), (two, second), *_ = lengths.items()
-            what = f"{first} holds {one} factors and {second} holds {two}"
+            (first_count, first), (second_count, second), *_ = lengths.items()
+            what = f"{first} holds {first_count} factors and {second} holds {second_count}"
             why = "Every array has one factor for each lane"
             raise InputError(what, "LaneParameters", why, "Give as many factors to each")
 

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.arrays.products import times
-from tribodyn.dynamics.equations.grid import Grid, once
+from tribodyn.dynamics.equations.grid import Grid, unrepeated
 from tribodyn.dynamics.equations.nodes import Nodes, friction_force
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
@@ -37,7 +37,7 @@ class Scales(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """What the equation of motion gives."""
+    """Result of the equation of motion."""
 
     deflection: Array  #: compression of every contact [m]
     contact: Array  #: force of every contact [N]
@@ -50,14 +50,15 @@ _SAME = Scales()
 
 def has_gap(nodes: Nodes) -> Mask:
     """Contacts with a dead zone."""
-    gap = once(nodes.gap, 1)
+    gap = unrepeated(nodes.gap, 1)
     return np.asarray(np.any(gap > 0.0, axis=tuple(range(gap.ndim - 1))))
 
 
 def _constant(direction: Array) -> Array | None:
-    """Directions (contacts, n) that are the same in all rows; None where they turn."""
-    few = once(direction, 2)
-    return few.reshape(few.shape[-2:]) if few.size == math.prod(few.shape[-2:]) else None
+    """Directions (contacts, n) if they are the same in all rows, else None."""
+    distinct = unrepeated(direction, 2)
+    shape = distinct.shape[-2:]
+    return distinct.reshape(shape) if distinct.size == math.prod(shape) else None
 
 
 def _along(direction: Array, vectors: Array) -> Array:
@@ -68,11 +69,11 @@ def _along(direction: Array, vectors: Array) -> Array:
 
 
 def _with_parts(matrix: Array, direction: Array, vectors: Array) -> tuple[Array, Array]:
-    """Matrix times vectors (..., n), and their parts along directions, at once where it goes."""
+    """Matrix times vectors (..., n), and their parts along directions; if possible one product."""
     if (constant := _constant(direction)) is None:
         return times(vectors, matrix), _along(direction, vectors)
-    both = times(vectors, np.concatenate((matrix, constant)))
-    return both[..., : len(matrix)], both[..., len(matrix) :]
+    products = times(vectors, np.concatenate((matrix, constant)))
+    return products[..., : len(matrix)], products[..., len(matrix) :]
 
 
 def _pushed(push: Array, force: Array) -> Array:
@@ -84,7 +85,7 @@ def _pushed(push: Array, force: Array) -> Array:
 
 def compression(rows: Nodes, q: Array, error: Any = 1.0) -> Array:
     """Compression of every contact."""
-    return np.asarray(_along(rows.direction, q) - error * once(rows.error, 1))
+    return np.asarray(_along(rows.direction, q) - error * unrepeated(rows.error, 1))
 
 
 def compression_rate(rows: Nodes, beat: Any, q: Array, v: Array) -> Array:
@@ -94,7 +95,10 @@ def compression_rate(rows: Nodes, beat: Any, q: Array, v: Array) -> Array:
 
 def _turning(rows: Nodes, beat: Any, q: Array, error: Any = 1.0) -> Array:
     """Rate of every compression because the mesh turns at the mesh frequency ``beat``."""
-    turning, slope = -error * once(rows.error_slope, 1), once(rows.direction_slope, 2)
+    turning, slope = (
+        -error * unrepeated(rows.error_slope, 1),
+        unrepeated(rows.direction_slope, 2),
+    )
     if slope.any():
         turning = turning + _along(rows.direction_slope, q)
     return np.asarray(beat * turning)
@@ -121,28 +125,28 @@ def forces(
     scales: Scales = _SAME,
     extra: Any = 0.0,
 ) -> Forces:
-    """Contact forces and accelerations; without ``side`` every contact is where it is pressed."""
+    """Contact forces and accelerations; without ``side`` the sides follow from the compressions."""
     inverse, (stiffness, damping) = system.inverse_mass, system.over_mass
-    held, along = _with_parts(stiffness, rows.direction, q)
+    elastic, along = _with_parts(stiffness, rows.direction, q)
     damped, speed = _with_parts(damping, rows.direction, v)
-    d = along - scales.error * once(rows.error, 1)
+    d = along - scales.error * unrepeated(rows.error, 1)
     rate = speed + _turning(rows, beat, q, scales.error)
-    gap = scales.gap * once(rows.gap, 1)
+    gap = scales.gap * unrepeated(rows.gap, 1)
     if side is None and np.all(d > gap):
         side = np.broadcast_to(1.0, d.shape)
         contact = scales.stiffness * rows.stiffness * (d - gap)
-        contact = contact + scales.damping * once(rows.damping, 1) * rate
+        contact = contact + scales.damping * unrepeated(rows.damping, 1) * rate
     else:
         side = sides(d, gap, has_gap(rows)) if side is None else side
         in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
         contact = np.abs(side) * scales.stiffness * rows.stiffness * (d - side * gap)
         contact = contact + ((side != 0.0) | in_gap) * scales.damping * rows.damping * rate
-    total = times(scales.force * once(rows.force, 1) + extra, inverse) - held
+    total = times(scales.force * unrepeated(rows.force, 1) + extra, inverse) - elastic
     total -= damped
     if scales is _SAME:
-        total -= _pushed(times(once(rows.force_direction, 2), inverse), contact)
+        total -= _pushed(times(unrepeated(rows.force_direction, 2), inverse), contact)
     else:
-        total -= _pushed(times(once(rows.direction, 2), inverse), contact)
+        total -= _pushed(times(unrepeated(rows.direction, 2), inverse), contact)
         rub = times(rows.force_direction - rows.direction, inverse)
         total = total - scales.friction * _pushed(rub, contact)
     if system.frictions:
@@ -193,18 +197,18 @@ def quintic_speed(s: Any) -> tuple[Any, Any, Any, Any, Any]:
 def with_middles(duration: Array, state: Array) -> tuple[Array, Array]:
     """Position and velocity at both ends and in the middle of steps, (..., steps, 3, n).
 
-    ``state`` (..., steps + 1, 2 n) is known at the ends, ``duration`` (..., steps) in s.
+    ``state`` (..., steps + 1, 2 n) holds the ends, ``duration`` (..., steps) is in s.
     """
     size, h = state.shape[-1] // 2, duration[..., None, :]
-    # Every coordinate by itself, so that all loops are long.
+    # Steps along the last axis, so that the inner loops are long.
     rows = np.ascontiguousarray(np.swapaxes(state, -1, -2))
     left, right = rows[..., :-1], rows[..., 1:]
-    found = np.empty((*left.shape, 3))
-    found[..., 0], found[..., 2] = left, right
+    values = np.empty((*left.shape, 3))
+    values[..., 0], values[..., 2] = left, right
     ends = left[..., :size, :], left[..., size:, :], right[..., :size, :], right[..., size:, :]
-    found[..., :size, :, 1], found[..., size:, :, 1] = cubic_middle(h, 1.0 / h, *ends)
-    found = np.moveaxis(found, -3, -1)
-    return found[..., :size], found[..., size:]
+    values[..., :size, :, 1], values[..., size:, :, 1] = cubic_middle(h, 1.0 / h, *ends)
+    values = np.moveaxis(values, -3, -1)
+    return values[..., :size], values[..., size:]
 
 
 def quadratic(rows: Array, step: Index, tau: Array) -> Array:
@@ -224,14 +228,14 @@ def rows_within(nodes: Nodes, step: Index, tau: Array) -> Nodes:
 def within_steps(grid: Grid, cycle: Index, phase: Array) -> tuple[Index, Array]:
     """Steps in which triples of samples lie, and the fraction of the step of each."""
     edges = np.concatenate((grid.left, [1.0]))
-    own = phase - cycle[:, None]
-    inner = own + np.array([1e-12, 0.0, -1e-12])
+    cycle_phase = phase - cycle[:, None]
+    inner = cycle_phase + np.array([1e-12, 0.0, -1e-12])
     number = np.clip(np.searchsorted(edges, inner, side="right") - 1, 0, grid.steps - 1)
-    return number, np.clip((own - grid.left[number]) / grid.width[number], 0.0, 1.0)
+    return number, np.clip((cycle_phase - grid.left[number]) / grid.width[number], 0.0, 1.0)
 
 
 class WithinSteps:
-    """Motions within steps of the grid, each with the sides of its contacts held."""
+    """Motions within steps of the grid, with fixed sides of all contacts."""
 
     def __init__(self, system: System, nodes: Nodes, grid: Grid, beat: float, extra: Array) -> None:
         self.system, self.nodes, self.grid = system, nodes, grid
@@ -257,7 +261,7 @@ class WithinSteps:
     def contact_of_each(
         self, step: Index, contact: Index
     ) -> Callable[[Array, Array], tuple[Array, Array]]:
-        """Compression and gap of one contact in each of some steps, at fractions of these."""
+        """Function for compression and gap of one contact per step at fractions of the steps."""
         every = np.arange(step.size)
         direction, error, gap = (
             rows[step % self.grid.steps, :, contact]
@@ -266,21 +270,21 @@ class WithinSteps:
 
         def at(tau: Array, q: Array) -> tuple[Array, Array]:
             along, off, play = (quadratic(rows, every, tau) for rows in (direction, error, gap))
-            here = self.nodes._replace(direction=along[:, None], error=off[:, None])
-            return compression(here, q)[:, 0], play
+            contact_rows = self.nodes._replace(direction=along[:, None], error=off[:, None])
+            return compression(contact_rows, q)[:, 0], play
 
         return at
 
     def advance(self, step: Index, begin: Array, end: Array, y: Array, side: Array) -> Array:
-        """March states (m, 2 n) over parts of steps by one Runge-Kutta step each."""
+        """Integrate states (m, 2 n) over parts of steps by one Runge-Kutta step each."""
         taus = np.stack((begin, 0.5 * (begin + end), end), axis=1)
         rows = rows_within(self.nodes, step[:, None], taus)
         h = (self.duration(step) * (end - begin))[:, None]
 
         def slope(node: int, y: Array) -> Array:
             q, v = np.split(y, 2, axis=1)
-            here = Nodes(*(part[:, node] for part in rows))
-            law = forces(self.system, here, self.beat, q, v, side, extra=self.extra)
+            node_rows = Nodes(*(part[:, node] for part in rows))
+            law = forces(self.system, node_rows, self.beat, q, v, side, extra=self.extra)
             return np.concatenate((v, law.acceleration), axis=1)
 
         k1 = slope(0, y)

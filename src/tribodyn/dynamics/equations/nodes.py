@@ -14,35 +14,43 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.entry import varies
-from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, once, system_events
+from tribodyn.dynamics.equations.grid import (
+    Grid,
+    RowEvaluator,
+    build_grid,
+    system_events,
+    unrepeated,
+)
 from tribodyn.dynamics.equations.system import LoadFriction, System, no_direction
 from tribodyn.errors import InputError, real_numbers
 from tribodyn.types import Array, Index, Mask
 
-#: Phases at which a function tells how many coefficients it returns; no likely number of these.
+#: Phases at which a function is probed for its number of coefficients; no likely number of these.
 _PROBE = 37
 
 
 def coefficient_count(where: str, friction: LoadFriction) -> int:
     """Number of coefficients of one row."""
-    given = friction.coefficients
+    coefficients = friction.coefficients
     probe = (np.arange(_PROBE) + 0.5) / _PROBE
-    values = real_numbers(where, given(probe) if callable(given) else given, "rows of numbers")
+    values = real_numbers(
+        where, coefficients(probe) if callable(coefficients) else coefficients, "rows of numbers"
+    )
     shape = values.shape
-    if callable(given) and _PROBE in shape:
+    if callable(coefficients) and _PROBE in shape:
         shape = tuple(np.delete(shape, shape.index(_PROBE)).tolist())
     if len(shape) > 1 or 0 in shape:
         why = f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases"
-        remedy = "Return a row of numbers for each phase that the function is given"
-        raise InputError(f"{where} gives the shape {values.shape}", where, why, remedy)
+        remedy = "Return a row of numbers for each phase that is passed to the function"
+        raise InputError(f"{where} returns the shape {values.shape}", where, why, remedy)
     return int(shape[0]) if shape else 1
 
 
 def friction_directions(system: System, rows: RowEvaluator) -> Array:
     """Directions of all frictions on the rows."""
     out = np.zeros((*rows.nodes.shape, len(system.frictions), system.size))
-    for f, one in enumerate(system.frictions):
-        out[:, :, f] = rows.values(f"frictions[{f}].direction", one.direction, system.size)
+    for f, friction in enumerate(system.frictions):
+        out[:, :, f] = rows.values(f"frictions[{f}].direction", friction.direction, system.size)
     return out
 
 
@@ -50,23 +58,25 @@ def friction_coefficients(system: System, rows: RowEvaluator) -> Array:
     """Coefficients of all frictions on the rows, filled up with zeros."""
     names = [f"frictions[{f}].coefficients" for f in range(len(system.frictions))]
     pairs = list(zip(names, system.frictions, strict=True))
-    counts = [coefficient_count(name, one) for name, one in pairs]
+    counts = [coefficient_count(name, friction) for name, friction in pairs]
     out = np.zeros((*rows.nodes.shape, len(pairs), max(counts, default=1)))
-    for f, (name, one) in enumerate(pairs):
-        out[:, :, f, : counts[f]] = rows.values(name, one.coefficients, counts[f])
+    for f, (name, friction) in enumerate(pairs):
+        out[:, :, f, : counts[f]] = rows.values(name, friction.coefficients, counts[f])
     return out
 
 
 def carried_load(system: System, contact_force: Array) -> Array:
     """Force N that each friction follows."""
-    columns = [contact_force[..., list(one.contacts)].sum(axis=-1) for one in system.frictions]
+    columns = [
+        contact_force[..., list(friction.contacts)].sum(axis=-1) for friction in system.frictions
+    ]
     return np.stack(columns, axis=-1) if columns else np.zeros((*contact_force.shape[:-1], 0))
 
 
 def _ratio(system: System, load: Array) -> tuple[Array, Mask]:
     """Load over the nominal load, and whether it is below the limit."""
-    nominal = np.array([one.load for one in system.frictions])
-    limit = np.array([one.limit for one in system.frictions])
+    nominal = np.array([friction.load for friction in system.frictions])
+    limit = np.array([friction.limit for friction in system.frictions])
     x = np.abs(load) * (1.0 / nominal)
     return np.minimum(x, limit), x < limit
 
@@ -100,9 +110,9 @@ def friction_tangent(system: System, coefficients: Array, load: Array) -> Array:
 def push_with_friction(system: System, nodes: Nodes, ratio: Array) -> Array:
     """Generalized force per unit force of each contact, all friction included."""
     push = nodes.force_direction
-    for f, one in enumerate(system.frictions):
+    for f, friction in enumerate(system.frictions):
         push = push.copy() if f == 0 else push
-        for j in one.contacts:
+        for j in friction.contacts:
             push[..., j, :] += ratio[..., f, None] * nodes.friction_direction[..., f, :]
     return push
 
@@ -134,7 +144,7 @@ class Nodes(NamedTuple):
 
 
 def evaluate_nodes(system: System, grid: Grid) -> Nodes:
-    """Evaluate every entry on a grid; what was checked on one half as fine is not checked again."""
+    """Evaluate every entry on a grid; checks on a grid at most twice as wide are not repeated."""
     widest = float(grid.width.max())
     rows = RowEvaluator(grid, checks=widest < 0.49 * system._checked)
     size = system.size
@@ -145,26 +155,26 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         if len(entries) == 1:
             return take(f"contacts[0].{name}", entries[0])
         still = not any(map(varies, entries))
-        found = np.empty((1 if still else grid.steps, 3, len(entries)))
-        together = rows.joined(entries, found) if take == rows.values else frozenset[int]()
+        table = np.empty((1 if still else grid.steps, 3, len(entries)))
+        together = rows.joined(entries, table) if take == rows.values else frozenset[int]()
         for j, entry in enumerate(entries):
             if j not in together:
-                found[..., j] = take(f"contacts[{j}].{name}", entry)[: len(found), :, 0]
-        return _one_row(found[0, 0], grid) if still else found
+                table[..., j] = take(f"contacts[{j}].{name}", entry)[: len(table), :, 0]
+        return _one_row(table[0, 0], grid) if still else table
 
     def vector(name: str, take: Callable[..., Array]) -> Array:
         if len(contacts) == 1 and (entry := getattr(contacts[0], name)) is not None:
             return take(f"contacts[0].{name}", entry, size)[:, :, None]
         entries = [getattr(contact, name) for contact in contacts]
         still = not any(map(varies, entries))
-        found = np.zeros((1 if still else grid.steps, 3, len(entries), size))
+        table = np.zeros((1 if still else grid.steps, 3, len(entries), size))
         for j, entry in enumerate(entries):
             if entry is not None:
-                found[:, :, j] = take(f"contacts[{j}].{name}", entry, size)[: len(found)]
-        return _one_row(found[0, 0], grid) if still else found
+                table[:, :, j] = take(f"contacts[{j}].{name}", entry, size)[: len(table)]
+        return _one_row(table[0, 0], grid) if still else table
 
     direction = vector("direction", rows.values)
-    for j in np.flatnonzero(~once(direction, 2).any(axis=(0, 1, 3))):
+    for j in np.flatnonzero(~unrepeated(direction, 2).any(axis=(0, 1, 3))):
         raise no_direction(f"contacts[{j}].direction")
     gap = scalar("gap", rows.values)
     refuse_negative_gap(gap)
@@ -195,8 +205,8 @@ def _one_row(row: Array, grid: Grid) -> Array:
 
 
 def refuse_negative_gap(gap: Array) -> None:
-    """Refuse a dead zone less than none."""
-    least = once(gap).min(initial=0.0)
+    """Refuse a negative dead zone."""
+    least = unrepeated(gap).min(initial=0.0)
     if least < 0.0:
         what = f"gap = {least:.6g} m"
         why = "The gap is half the dead zone and cannot be negative"
@@ -204,7 +214,7 @@ def refuse_negative_gap(gap: Array) -> None:
 
 
 def halved_grid(grid: Grid) -> Grid:
-    """The grid with every step cut in two."""
+    """The grid with every step halved."""
     half, first = np.repeat(0.5 * grid.width, 2), np.arange(2 * grid.steps) % 2 == 0
     left = np.repeat(grid.left, 2) + np.where(first, 0.0, half)
     events = np.repeat(grid.after_event, 2) & first
@@ -213,7 +223,7 @@ def halved_grid(grid: Grid) -> Grid:
 
 
 def halved_nodes(system: System, grid: Grid, nodes: Nodes) -> tuple[Grid, Nodes]:
-    """The grid with every step cut in two, and its rows: two of three are there already."""
+    """The grid with every step halved, and its rows, two thirds of which are reused."""
     half, count, fine = 0.5 * grid.width, grid.steps, halved_grid(grid)
     segments = grid.segment_left, grid.segment_right
     between = evaluate_nodes(
@@ -238,7 +248,7 @@ def step_weights(grid: Grid) -> Array:
 
 
 def sampled(system: System, steps: int) -> tuple[Grid, Nodes]:
-    """The grid of a system with as many steps, and its rows."""
+    """The grid of a system with ``steps`` steps, and its rows."""
     grid = build_grid(system_events(system), steps)
     return grid, evaluate_nodes(system, grid)
 
@@ -247,8 +257,8 @@ def refuse_falling_force(
     phase: Array, stiffness: Array, gap: Array, direction: Array, error: Array
 ) -> None:
     """Refuse dead zones beyond which the force of a mesh falls with compression."""
-    dead = np.flatnonzero(np.any(once(gap, 1) > 0.0, axis=(0, 1)))
-    if not np.any(once(stiffness, 1)[:, :, dead] < 0.0):
+    dead = np.flatnonzero(np.any(unrepeated(gap, 1) > 0.0, axis=(0, 1)))
+    if not np.any(unrepeated(stiffness, 1)[:, :, dead] < 0.0):
         return
     floor = -_ROUNDING * float(np.abs(stiffness).max())
     for j in dead:
@@ -265,8 +275,8 @@ def refuse_falling_force(
                 f"the force falls by {-total[at]:.4g} N per m of compression beyond "
                 f"{1e6 * gap[(*at, j)]:.4g} um, at the mesh phase {phase[at]:.4g}",
                 where=f"contacts[{j}].stiffness",
-                why="A contact that is pressed together pushes back more: a force law that "
-                "falls has several compressions for one load",
+                why="The force of a contact rises with its compression: a falling force law has "
+                "several compressions for one load",
                 remedy="Give contacts with a dead zone stiffnesses whose sum, from the lowest "
                 "to any other, is not negative",
             )
@@ -285,11 +295,11 @@ def force_laws(nodes: Nodes) -> Index:
 
 
 def lowest_of_each_law(nodes: Nodes) -> Mask:
-    """Tell which contacts do not share their compression with a spring that begins lower."""
+    """Mark the contacts that no spring with a lower gap shares its compression with."""
     laws, places = force_laws(nodes), np.einsum("rs,rsj->j", nodes.weight, nodes.gap)
     stiff = nodes.stiffness.any(axis=(0, 1))
-    kept = np.ones(places.size, dtype=bool)
+    lowest = np.ones(places.size, dtype=bool)
     for j in range(places.size):
         for i in np.flatnonzero(stiff & (laws == laws[j])):
-            kept[j] &= (places[i], i) >= (places[j], j)
-    return kept
+            lowest[j] &= (places[i], i) >= (places[j], j)
+    return lowest

@@ -1,8 +1,8 @@
 """The largest step that the integrator can follow.
 
 The classical Runge-Kutta scheme is stable on the imaginary axis up to ``|lambda| h = 2.83``.
-Beyond it the computed motion explodes or, with a dead zone, wanders: a published route to chaos
-is nothing but this. Steps are refused above 2.7.
+Beyond it the computed motion diverges or, with a dead zone, is irregular: a published route to
+chaos is this artefact. Steps are refused above 2.7.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ LIMIT = 2.7
 
 #: Rows of the table that are examined at most, and lanes.
 _SAMPLES, _LANES = 32, 256
-#: Squarings after which the norm of a power tells the matrices that matter, those after which it
-#: tells one that is likely to, and its rounding.
+#: Squarings after which the norm of a power selects the relevant matrices, squarings after which it
+#: selects a first candidate, and its rounding.
 _SQUARINGS, _FIRST, _ROUNDING = 12, 4, 1e-9
-#: Factors of stiffness, damping and friction of a system as it stands.
+#: Factors of stiffness, damping and friction of an unscaled system.
 _PLAIN = (1.0, 1.0, 1.0)
 _AS_IT_STANDS = np.array([_PLAIN])
 #: ``omega_max * dt`` at which figures of a spur gear pair are good to about 1e-6.
@@ -43,21 +43,21 @@ FEWEST, _MOST = 1024, 65536
 
 def largest_rate(system: System, nodes: Nodes, factors: tuple[float, ...] = _PLAIN) -> float:
     """Largest modulus of an eigenvalue of the motion with all contacts closed."""
-    places = look_at(nodes.stiffness.sum(axis=-1))
+    places = examined_rows(nodes.stiffness.sum(axis=-1))
     return float(rates_at(system, nodes, places, np.array([factors])).max())
 
 
 def rates_at(
     system: System, nodes: Nodes, places: tuple[Index, ...], factors: Array = _AS_IT_STANDS
 ) -> Array:
-    """Largest modulus of an eigenvalue at places, for each row of ``factors`` (f, 3).
+    """Largest modulus of an eigenvalue at ``places``, for each row of ``factors`` (f, 3).
 
-    Each row has all places, or one of its own; systems alike have theirs with a first axis more.
+    All rows of factors share the places, or each has one; a batch has a leading axis.
     """
     along, push = nodes.direction[places], nodes.force_direction[places]
     if system.frictions:
         at = Nodes(*(part[places] for part in nodes))
-        nominal = np.array([one.load for one in system.frictions])
+        nominal = np.array([friction.load for friction in system.frictions])
         push = push_with_friction(
             system, at, friction_tangent(system, at.friction_coefficients, nominal)
         )
@@ -78,8 +78,8 @@ def state_roots(elastic: Array, viscous: Array) -> ComplexArray:
 
 def _state_matrix(elastic: Array, viscous: Array) -> Array:
     size = elastic.shape[-1]
-    # Displacements in units of velocity over the largest stiffness rate: without it the matrix
-    # mixes entries of 1 and 1e12 and the eigenvalues lose digits.
+    # Displacements are scaled by the largest stiffness rate: otherwise the matrix mixes entries of
+    # 1 and 1e12 and the eigenvalues lose digits.
     axes = tuple(range(-min(elastic.ndim, 3), 0))
     scale = np.maximum(np.sqrt(np.abs(elastic).max(axis=axes, keepdims=True)), 1e-30)
     state = np.zeros((*elastic.shape[:-2], 2 * size, 2 * size))
@@ -90,17 +90,17 @@ def _state_matrix(elastic: Array, viscous: Array) -> Array:
 
 
 def _spectral_radius(matrices: Array) -> Array:
-    """Largest modulus of an eigenvalue of any of some matrices (..., m, n, n).
+    """Largest modulus of an eigenvalue of any of the matrices (..., m, n, n).
 
-    The root of the norm of a power bounds it, little above. Matrices that stay below what another
-    one reaches are left out as soon as the bound tells.
+    The root of the norm of a power is a close upper bound. Matrices whose bound is below the
+    modulus of another one are left out.
 
     Source: Gelfand (1941), Mat. Sbornik 9, 3-24: the root of the norm tends to the largest modulus.
     """
-    apart = _blocks(np.any(matrices, axis=tuple(range(matrices.ndim - 2))))
-    if len(apart) > 1:
-        found = [_spectral_radius(matrices[..., block[:, None], block]) for block in apart]
-        return np.asarray(np.max(found, axis=0))
+    blocks = _blocks(np.any(matrices, axis=tuple(range(matrices.ndim - 2))))
+    if len(blocks) > 1:
+        radii = [_spectral_radius(matrices[..., block[:, None], block]) for block in blocks]
+        return np.asarray(np.max(radii, axis=0))
     if np.all(matrices == matrices[..., :1, :, :]):
         matrices = matrices[..., :1, :, :]
     lead, (count, size) = matrices.shape[:-3], matrices.shape[-3:-1]
@@ -118,15 +118,15 @@ def _spectral_radius(matrices: Array) -> Array:
             largest = _modulus(every[first])
             bound[first] = 0.0
         if squaring >= _FIRST:
-            near = bound > (1.0 - _ROUNDING) * largest[left // count]
-            if not near.all():
-                left, power, bound = left[near], power[near], bound[near]
+            relevant = bound > (1.0 - _ROUNDING) * largest[left // count]
+            if not relevant.all():
+                left, power, bound = left[relevant], power[relevant], bound[relevant]
     np.maximum.at(largest, left // count, _modulus(every[left]))
     return largest.reshape(lead)
 
 
 def _blocks(pattern: Mask) -> list[Index]:
-    """Diagonal blocks of which a matrix that is triangular but for them has the eigenvalues."""
+    """Indices of the diagonal blocks of a block triangular matrix, which have its eigenvalues."""
     from scipy.sparse.csgraph import connected_components
 
     count, block = connected_components(pattern, connection="strong")
@@ -137,8 +137,8 @@ def _modulus(matrices: Array) -> Array:
     return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1, initial=0.0))
 
 
-def look_at(total: Array) -> tuple[Index, Index]:
-    """Rows of tables (..., steps, 3) to examine, and where in its step each is stiffest."""
+def examined_rows(total: Array) -> tuple[Index, Index]:
+    """Rows of tables (..., steps, 3) to examine, and the stiffest node of each."""
     spread = np.linspace(0, total.shape[-2] - 1, _SAMPLES).astype(np.int64)
     stiffest = total.reshape(*total.shape[:-2], -1).argmax(axis=-1)[..., None] // total.shape[-1]
     spread = np.broadcast_to(spread, (*stiffest.shape[:-1], _SAMPLES))
@@ -176,15 +176,15 @@ def recommended_steps(system: System, mesh_frequency: float) -> int:
 
 
 def rate_on_grid(system: System, steps: int = FEWEST) -> float:
-    """Largest modulus of an eigenvalue, looked up on a grid of as many steps."""
+    """Largest modulus of an eigenvalue on a grid of ``steps`` steps; cached."""
     if steps in system._rates:
         return system._rates[steps]
     grid = build_grid(system_events(system), steps)
     evaluator, total = RowEvaluator(grid, checks=False), np.zeros((grid.steps, 3))
     for j, contact in enumerate(system.contacts):
         total += evaluator.values(f"contacts[{j}].stiffness", contact.stiffness)[..., 0]
-    # All else is needed on the rows alone that are examined.
-    rows, stages = look_at(total)
+    # All other entries are needed on the examined rows only.
+    rows, stages = examined_rows(total)
     nodes, places = evaluate_nodes(system, grid.rows(rows)), (np.arange(rows.size), stages)
     system._rates[steps] = float(rates_at(system, nodes, places)[0])
     return system._rates[steps]
@@ -231,21 +231,21 @@ def refuse_unstable_lanes(
     """Return the largest ``omega_max * dt`` of lanes that scale a system, or refuse it."""
     table, beat = _every_lane(mesh_frequency, parameters, lanes)
     longest = float(grid.width.max())
-    # Often the stiffest, most damped and slowest of all would still be within the limit.
+    # Often a lane with the largest factors of all and the lowest frequency is within the limit.
     least = largest_rate(system, nodes, tuple(table.max(axis=0))) * longest / float(beat.min())
     if least <= LIMIT:
         return least
     keys = (table[:, 0] / beat**2, table[:, 1] / beat)
     likely = np.unique(np.concatenate([np.argsort(-key)[:_LANES] for key in keys]))
-    rows, stages = look_at(nodes.stiffness.sum(axis=-1))
+    rows, stages = examined_rows(nodes.stiffness.sum(axis=-1))
     stiffest = np.array([int(nodes.stiffness.sum(axis=-1)[rows, stages].argmax())])
     rates = rates_at(system, nodes, (rows[stiffest], stages[stiffest]), table[likely])
     worst = int(likely[np.argmax(rates / beat[likely])])
     names = ("stiffness_scale", "damping_scale", "friction_scale")
     factors = dict(zip(names, table[worst].tolist(), strict=True))
-    given = [f"{name} = {value:g}" for name, value in factors.items() if value != 1.0]
+    scaled = [f"{name} = {value:g}" for name, value in factors.items() if value != 1.0]
     number = worst if lanes is None else int(lanes[worst])
-    who = f" in lane {number}" + (f" ({', '.join(given)})" if given else "")
+    who = f" in lane {number}" + (f" ({', '.join(scaled)})" if scaled else "")
     scales = tuple(factors.values())
     return refuse_unstable_step(system, nodes, grid, float(beat[worst]), scales, who)
 

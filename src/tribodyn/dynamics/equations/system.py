@@ -39,7 +39,7 @@ class Contact:
     damping : float or function
         Contact damping [N*s/m], acting while in contact.
     error : float or function
-        Displacement error taken off the compression [m].
+        Displacement error subtracted from the compression [m].
     gap : float or function
         Half of the dead zone [m]. Zero makes the contact linear, without separation.
     friction : (n,) array or function, optional
@@ -47,7 +47,7 @@ class Contact:
     events : tuple of float
         Mesh phases at which an entry jumps. They become grid points, and values there are taken
         from the left and from the right separately. The beginning of the mesh cycle always is one;
-        a function that jumps anywhere else, or is not one of the phase alone, is refused.
+        a function that jumps anywhere else or depends on more than the phase is refused.
     damping_in_gap : bool
         Keep the damping in free flight. Unphysical; for comparison with published models.
 
@@ -104,7 +104,7 @@ class LoadFriction:
     limit : float
         Largest ``x``: beyond it the coefficient stays as it is there [1].
     events : tuple of float
-        Mesh phases at which an entry jumps, beside those of the contacts.
+        Mesh phases at which an entry jumps, in addition to those of the contacts.
 
     Raises
     ------
@@ -113,9 +113,8 @@ class LoadFriction:
 
     Notes
     -----
-    ``x = min(|N|/load, limit)``. The friction keeps the sign of N: while the back flank carries,
-    or a damper pulls, N is negative and the friction turns round with it, as that of
-    :class:`Contact` does.
+    ``x = min(|N|/load, limit)``. The friction has the sign of N: during back-side contact, or while
+    a damper pulls, N is negative and the friction reverses, as that of :class:`Contact` does.
 
     Examples
     --------
@@ -139,8 +138,8 @@ class LoadFriction:
         listed = real_numbers("LoadFriction.contacts", contacts, "whole numbers").reshape(-1)
         numbers = tuple(require_whole("contacts", contact, 0) for contact in listed)
         if not numbers or min(numbers) < 0:
-            why = "The friction follows the force of one contact or of several"
-            remedy = "Name them by their place in System.contacts, counted from 0"
+            why = "The friction follows the force of one or more contacts"
+            remedy = "Give their indices in System.contacts, counted from 0"
             raise InputError(f"contacts = {numbers}", "LoadFriction.contacts", why, remedy)
         object.__setattr__(self, "contacts", numbers)
 
@@ -151,7 +150,7 @@ class LoadFriction:
 
 def no_direction(where: str) -> InputError:
     """Error of a contact that no motion compresses."""
-    why = "No coordinate compresses the contact, so that it could never carry"
+    why = "No coordinate compresses the contact, so that it never transmits a force"
     remedy = "Give the derivative of the compression with respect to each coordinate"
     return InputError("the direction is zero", where, why, remedy)
 
@@ -164,7 +163,7 @@ def _matrix(name: str, value: ArrayLike) -> Array:
         raise InputError(what, f"System.{name}", "It must be a square (n, n) matrix", remedy)
     if not np.all(np.isfinite(matrix)):
         what, why = f"{name} holds NaN or infinity", "The equations of motion need finite numbers"
-        raise InputError(what, f"System.{name}", why, "Look for the entry that is not finite")
+        raise InputError(what, f"System.{name}", why, "Correct the entry that is not finite")
     return matrix
 
 
@@ -183,16 +182,16 @@ class System:
     names : sequence of str, optional
         Names of the coordinates; ``q0, q1, ...`` by default.
     balance : (n,) array, optional
-        Direction of a torque whose size is found so that the free rotation of the whole drive
-        keeps its mean speed [N*m per unit]. Without it every force is held as given.
+        Direction of a torque whose size is determined so that the free rotation of the drive has
+        a constant mean speed [N*m per unit]. Without it all forces are as prescribed.
     frictions : sequence of LoadFriction
         Frictions whose coefficients follow the contact forces.
 
     Raises
     ------
     InputError
-        If shapes disagree, a value is not finite, the mass matrix is not that of a kinetic energy
-        greater than zero, or a friction names a contact that does not exist.
+        If shapes disagree, a value is not finite, the mass matrix is not symmetric and positive
+        definite, or a friction refers to a contact that does not exist.
 
     Examples
     --------
@@ -209,9 +208,9 @@ class System:
     names: Sequence[str] = ()
     balance: ArrayLike | None = None
     frictions: Sequence[LoadFriction] = ()
-    #: Largest rate of the motion by the number of steps at which it was looked for.
+    #: Largest rate of the motion by the number of steps with which it was computed.
     _rates: dict[int, float] = field(default_factory=dict, init=False, repr=False, compare=False)
-    #: Widest step over a mesh cycle when the entries were looked at for jumps and chance.
+    #: Widest step over a mesh cycle when the entries were checked for jumps and randomness.
     _checked: float = field(default=np.inf, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -225,16 +224,17 @@ class System:
                 raise InputError(what, f"System.{name}", why, remedy)
             object.__setattr__(self, name, matrix)
         contacts = (self.contacts,) if isinstance(self.contacts, Contact) else self.contacts
-        one = isinstance(self.frictions, LoadFriction)
-        frictions = (self.frictions,) if one else self.frictions
+        single_friction = isinstance(self.frictions, LoadFriction)
+        frictions = (self.frictions,) if single_friction else self.frictions
         for name, parts, kind in (
             ("contacts", contacts, Contact),
             ("frictions", frictions, LoadFriction),
             ("names", self.names, str),
         ):
             if not isinstance(parts, list | tuple) or not all(isinstance(p, kind) for p in parts):
-                what, remedy = f"{name} is no sequence of {kind.__name__}", "Give a list or a tuple"
-                raise InputError(what, f"System.{name}", "A system has several of them", remedy)
+                what = f"{name} is not a sequence of {kind.__name__}"
+                why = "A system can have several of them"
+                raise InputError(what, f"System.{name}", why, "Give a list or a tuple")
         object.__setattr__(self, "frictions", tuple(frictions))
         object.__setattr__(self, "contacts", tuple(contacts))
         names = tuple(self.names) or tuple(f"q{i}" for i in range(size))
@@ -249,7 +249,7 @@ class System:
             balance = real_numbers("System.balance", self.balance)
             if balance.shape != (size,):
                 what = f"balance has the shape {balance.shape}, not ({size},)"
-                why = "It holds the torque of each coordinate back"
+                why = "It is the torque on each coordinate"
                 raise InputError(what, "System.balance", why, "Give one number for each coordinate")
             object.__setattr__(self, "balance", balance)
 
@@ -298,7 +298,7 @@ def _refuse_singular(mass: Array, names: tuple[str, ...]) -> None:
             "the mass matrix cannot be inverted: "
             + (detail if empty.size else f"it is singular{_without_inertia(mass, names)}"),
             where="System.mass",
-            why="Every coordinate needs an inertia of its own",
+            why="Every coordinate needs an inertia",
             remedy="Remove the coordinate, or give it a mass or moment of inertia",
         )
     even = np.abs(mass - mass.T).max() <= 1e-9 * np.abs(mass).max()
@@ -308,7 +308,7 @@ def _refuse_singular(mass: Array, names: tuple[str, ...]) -> None:
             + ("" if not even else _without_inertia(mass, names)),
             where="System.mass",
             why="Every motion has a kinetic energy greater than zero",
-            remedy="Look for a wrong sign or place in the matrix",
+            remedy="Check signs and positions of the entries of the matrix",
         )
 
 

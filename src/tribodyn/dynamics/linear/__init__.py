@@ -1,10 +1,10 @@
-"""The linear view of a structure about its static load.
+"""Linear analysis of a structure about its static load.
 
-The public names stand on the page of :mod:`tribodyn.dynamics`.
+The public names are those of :mod:`tribodyn.dynamics`.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| ``natural_modes`` | natural frequencies, modes and where their energy sits |
-| ``forced_response`` | what a harmonic transmission error does |
-| ``campbell`` | at which speeds mesh orders meet natural frequencies |
+| ``natural_modes`` | natural frequencies, modes and their energy shares |
+| ``forced_response`` | response to a harmonic transmission error |
+| ``campbell`` | speeds at which mesh orders meet natural frequencies |
 """

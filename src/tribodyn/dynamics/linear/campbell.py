@@ -100,8 +100,8 @@ class Campbell(Record):
         """One line."""
         modes, lines, met = self.frequency.shape[1], len(self.orders), len(self.resonances)
 
-        def several(count: int, word: str) -> str:
-            return f"{count} {word}{'s' if count != 1 else ''}"
+        def several(count: int, noun: str) -> str:
+            return f"{count} {noun}{'s' if count != 1 else ''}"
 
         return (
             f"Campbell({several(modes, 'elastic mode')}, {several(lines, 'order')}, "
@@ -146,8 +146,8 @@ def campbell(
 
     Notes
     -----
-    Gyroscopic moments are left out, as in the models themselves. Between two speeds the
-    frequencies of a function are taken as straight lines.
+    Gyroscopic moments are neglected, as in the models. Between two speeds the frequencies of a
+    function are interpolated linearly.
 
     Examples
     --------
@@ -158,8 +158,8 @@ def campbell(
     """
     lines = tuple(int(order) for order in orders)
     if not lines:
-        what, why = "no order is asked for", "Each line of the diagram belongs to one order"
-        raise InputError(what, "argument orders", why, "Give orders=(1, 2, 3), say")
+        what, why = "orders is empty", "Each line of the diagram belongs to one order"
+        raise InputError(what, "argument orders", why, "Give for example orders=(1, 2, 3)")
     require_positive("teeth", teeth, "")
     require_positive("orders", np.asarray(lines), "")
     speeds = _rising(speed)
@@ -198,7 +198,7 @@ def _rising(speed: ArrayLike) -> Array:
     require_positive("speed", speeds, "rad/s")
     if speeds.size < 2 or np.any(np.diff(speeds) <= 0.0):
         raise InputError(
-            "the speeds do not rise" if speeds.size > 1 else "one speed only",
+            "the speeds do not rise" if speeds.size > 1 else "there is only one speed",
             where="argument speed",
             why="The diagram spans a range of speeds",
             remedy="Give at least two rising speeds",
@@ -207,13 +207,13 @@ def _rising(speed: ArrayLike) -> Array:
 
 
 def _crossings(distance: Array) -> list[float]:
-    """Places, counted in samples, at which a distance changes its sign."""
+    """Positions, counted in samples, at which a distance changes its sign."""
     below = distance < 0.0
-    found = []
+    positions = []
     for left in np.flatnonzero(below[1:] != below[:-1]):
         a, b = float(distance[left]), float(distance[left + 1])
-        found.append(float(left) + a / (a - b))
-    return found
+        positions.append(float(left) + a / (a - b))
+    return positions
 
 
 def _between(values: Array, place: float) -> float:

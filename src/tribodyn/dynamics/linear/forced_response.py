@@ -14,7 +14,7 @@ from tribodyn.types import Array, ComplexArray
 
 @record
 class ForcedResponse(Record):
-    """ComplexArray amplitudes of the motion that a harmonic error excites.
+    """Complex amplitudes of the motion that a harmonic error excites.
 
     A signal is ``Re(amplitude*exp(2 pi i f t))`` where the error is ``Re(error*exp(2 pi i f t))``.
 
@@ -69,7 +69,7 @@ class ForcedResponse(Record):
         Returns
         -------
         (m,) array
-            Local maxima on the given frequencies, rising [Hz].
+            Local maxima among the frequencies, rising [Hz].
         """
         size = np.abs(self.mesh_force)
         inner = (size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])
@@ -94,7 +94,7 @@ def forced_response(
     phase: ModePhase = "mean",
     friction: bool = True,
 ) -> ForcedResponse:
-    """Find the harmonic motion that a displacement error of one mesh excites.
+    """Compute the harmonic motion that a displacement error of one mesh excites.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def forced_response(
     frequency : float or (f,) array
         Frequencies of the error [Hz].
     contact : int
-        The contact whose error it is; the other ramps of its force law get the same error.
+        Contact with the error; the other ramps of its force law have the same error.
     error : float
         Amplitude of the error [m].
     phase : "mean" or float
@@ -118,10 +118,10 @@ def forced_response(
 
     Notes
     -----
-    ``[K - w^2 M + i w C] q = sum_j (h_j + s_j)(k_j + i w c_j) e``: the error pushes against the
-    springs and dampers of the contacts, the resulting motion changes their compression. It holds
-    while the teeth stay in touch and the stiffness hardly changes; harmonics of a changing
-    stiffness, which excite by themselves, belong to ``steady_state``.
+    ``[K - w^2 M + i w C] q = sum_j (h_j + s_j)(k_j + i w c_j) e``: the error acts on the springs
+    and dampers of the contacts, the resulting motion changes their compression. The result holds
+    while the teeth stay in contact and the stiffness is nearly constant; for the excitation by a
+    varying stiffness use ``steady_state``.
 
     Examples
     --------
@@ -140,10 +140,10 @@ def forced_response(
         why = f"The system has {count} contact{'s' if count != 1 else ''}, counted from 0"
         raise InputError(what, "argument contact", why, "Give the number of one of its contacts")
     members = np.flatnonzero(linear.bundle == linear.bundle[contact])
-    given = np.where(np.isin(np.arange(count), members), float(error), 0.0)
-    position = _solve(linear, 2.0 * np.pi * hertz, given, friction)
+    contact_error = np.where(np.isin(np.arange(count), members), float(error), 0.0)
+    position = _solve(linear, 2.0 * np.pi * hertz, contact_error, friction)
     approach = position @ linear.direction.T
-    deflection = approach - given
+    deflection = approach - contact_error
     omega = 2j * np.pi * hertz[:, None]
     stiffness, damping = np.asarray(system.stiffness), np.asarray(system.damping)
     return ForcedResponse(
@@ -159,20 +159,22 @@ def forced_response(
     )
 
 
-def _solve(linear: LinearSystem, omega: Array, given: Array, friction: bool) -> ComplexArray:
+def _solve(
+    linear: LinearSystem, omega: Array, contact_error: Array, friction: bool
+) -> ComplexArray:
     w = omega[:, None, None]
     spring = linear.stiffness + (linear.friction_stiffness if friction else 0.0)
     damper = linear.damping + (linear.friction_damping if friction else 0.0)
     push = linear.push if friction else linear.direction
     dynamic = spring - w**2 * linear.mass + 1j * w * damper
-    force = (linear.spring + 1j * omega[:, None] * linear.damper) * given @ push
+    force = (linear.spring + 1j * omega[:, None] * linear.damper) * contact_error @ push
     scale = 1.0 / np.sqrt(np.diag(linear.mass))
     scaled = dynamic * np.outer(scale, scale)
     try:
         solved = np.linalg.solve(scaled, (scale * force)[:, :, None])[:, :, 0]
     except np.linalg.LinAlgError as error:
         what = "an undamped mode lies exactly at one of the frequencies"
-        why = "Its motion grows without end"
-        remedy = "Give the structure or the contact some damping"
+        why = "Its motion grows without bounds"
+        remedy = "Add damping to the structure or the contact"
         raise InputError(what, "argument frequency", why, remedy) from error
     return np.asarray(scale * solved)

@@ -1,4 +1,4 @@
-"""Natural frequencies and modes of a system made linear about its static load."""
+"""Natural frequencies and modes of a system linearised about its static load."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 
 ModePhase = Literal["mean"] | float
 
-#: Steps over which the mean of a cycle is taken, and rounds in which ramps open and close.
+#: Steps over which a cycle is averaged, and iterations in which ramps open and close.
 _STEPS, _ROUNDS = 256, 50
 
 
@@ -100,11 +100,11 @@ def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
 
 
 def _at_rest(system: System, nodes: Nodes) -> tuple[Mask, Array]:
-    """Contacts that carry at rest, and what a further newton of each pushes, friction included."""
-    kept = np.broadcast_to(lowest_of_each_law(nodes), nodes.stiffness.shape)
+    """Contacts that are closed at rest, and the generalized force per newton with friction."""
+    lowest = np.broadcast_to(lowest_of_each_law(nodes), nodes.stiffness.shape)
     push = nodes.force_direction
-    if kept.all() and not system.frictions:
-        return np.array(kept), push
+    if lowest.all() and not system.frictions:
+        return np.array(lowest), push
     closed = np.ones(nodes.stiffness.shape, dtype=bool)
     position = np.zeros(nodes.force.shape)
     load = np.zeros((*nodes.stiffness.shape[:2], len(system.frictions)))
@@ -112,8 +112,8 @@ def _at_rest(system: System, nodes: Nodes) -> tuple[Mask, Array]:
         carrying = np.where(closed, nodes.stiffness, 0.0)
         last, position = position, _equilibrium(system, nodes, carrying, push)
         compression = np.einsum("rsji,rsi->rsj", nodes.direction, position) - nodes.error
-        found = kept | (compression > nodes.gap)
-        done = np.array_equal(found, closed)
+        updated = lowest | (compression > nodes.gap)
+        done = np.array_equal(updated, closed)
         if system.frictions:
             load = carried_load(system, carrying * (compression - nodes.gap))
             ratio = friction_secant(system, nodes.friction_coefficients, load)
@@ -121,7 +121,7 @@ def _at_rest(system: System, nodes: Nodes) -> tuple[Mask, Array]:
             done &= bool(np.abs(position - last).max() <= 1e-12 * np.abs(position).max())
         if done:
             break
-        closed = found
+        closed = updated
     tangent = friction_tangent(system, nodes.friction_coefficients, load)
     return closed, push_with_friction(system, nodes, tangent)
 
@@ -143,7 +143,7 @@ _RIGID = 1e-12
 
 @record
 class NaturalModes(Record):
-    """Undamped modes of a system about its static load, and the damped motion beside them.
+    """Undamped modes of a system about its static load, and its damped eigenvalues.
 
     Modes are sorted by frequency; rigid ones come first, with exactly 0 Hz.
 
@@ -211,7 +211,7 @@ class NaturalModes(Record):
 
     @property
     def stable(self) -> bool:
-        """Whether no damped motion grows; friction can make one grow."""
+        """Whether no damped motion grows; friction can cause growth."""
         size = np.abs(self.eigenvalues).max(initial=0.0)
         return bool(np.all(self.eigenvalues.real <= 1e-9 * size))
 
@@ -237,7 +237,7 @@ class NaturalModes(Record):
         -------
         dict
             ``mesh`` (contacts), ``shaft`` (springs between coordinates) and ``support`` (springs to
-            the ground), (n,) each; elements with names of their own count as ``support`` [1].
+            the ground), (n,) each; elements with other names count as ``support`` [1].
         """
         last = len(self.elements) - self.contacts
         between = np.array([" - " in name for name in self.elements[:last]], dtype=bool)
@@ -262,7 +262,7 @@ def natural_modes(
     elements: Mapping[str, ArrayLike] | None = None,
     friction: bool = False,
 ) -> NaturalModes:
-    """Find the natural frequencies of a system about its static load.
+    """Compute the natural frequencies of a system about its static load.
 
     Parameters
     ----------
@@ -274,7 +274,7 @@ def natural_modes(
         [N/m, N*m/rad, ...]; by default one spring to the ground per coordinate and one
         between each pair of coupled coordinates.
     friction : bool
-        Whether the damped motion feels friction, which can make it grow.
+        Whether the damped motion includes friction, which can make it grow.
 
     Raises
     ------
@@ -284,9 +284,9 @@ def natural_modes(
 
     Notes
     -----
-    A contact with play is closed, as under load; of a force law the ramps that carry at the
-    static load count. ``frequency`` knows neither damping nor friction; ``eigenvalues`` belong to
-    ``M q'' + C q' + K q = 0`` with the damping of the contacts and, if asked for, friction.
+    A contact with backlash is closed, as under load; of a force law the ramps that are closed at
+    the static load count. ``frequency`` neglects damping and friction; ``eigenvalues`` belong to
+    ``M q'' + C q' + K q = 0`` with the damping of the contacts and, if requested, friction.
 
     Examples
     --------
@@ -325,9 +325,9 @@ def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     squares, columns = np.linalg.eigh(0.5 * (matrix + matrix.T))
     rigid = np.abs(squares) <= _RIGID * np.abs(squares).max(initial=0.0)
     if np.any(squares[~rigid] < 0.0):
-        what = "the system falls over at rest: a stiffness is negative"
-        why = "A motion runs away from the static load without oscillating"
-        remedy = "Look for a wrong sign in the stiffness matrix or of a contact"
+        what = "the system is statically unstable: a stiffness is negative"
+        why = "A motion moves away from the static equilibrium without oscillating"
+        remedy = "Check the signs in the stiffness matrix and of the contact stiffnesses"
         raise InputError(what, "System.stiffness", why, remedy)
     frequency = np.sqrt(np.where(rigid, 0.0, squares)) / (2.0 * np.pi)
     shape = (inverse.T @ columns).T
@@ -350,12 +350,12 @@ def _shares(matrices: Array, frequency: Array, shape: Array) -> Array:
 def _damped(
     linear: LinearSystem, frequency: Array, shape: Array, friction: bool
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues and shapes in the undamped modes, without the place of the rigid ones."""
+    """Eigenvalues and shapes in the undamped modes, without the position of the rigid ones."""
     spring = linear.stiffness + (linear.friction_stiffness if friction else 0.0)
     damper = linear.damping + (linear.friction_damping if friction else 0.0)
     size, rigid = len(frequency), int(np.count_nonzero(frequency == 0.0))
     swinging = size - rigid
-    # Displacements times a typical rate keep the entries of like size.
+    # Displacements are scaled by a typical rate, so that all entries have similar magnitude.
     rate = max(2.0 * np.pi * float(frequency.max(initial=0.0)), 1e-30)
     state = np.zeros((swinging + size, swinging + size))
     state[:swinging, swinging + rigid :] = rate * np.eye(swinging)
@@ -386,31 +386,31 @@ def structure_elements(
     size = float(np.abs(matrix).max(initial=0.0))
     if np.abs(matrix - matrix.T).max(initial=0.0) > 1e-9 * size:
         why = "Only a symmetric matrix stores energy"
-        remedy = "Give friction as the friction of a contact"
+        remedy = "Model friction as the friction of a contact"
         raise InputError("the stiffness matrix is not symmetric", "System.stiffness", why, remedy)
     if elements is None:
         return _springs(matrix, tuple(system.names))
-    given = {name: np.asarray(element, dtype=float) for name, element in elements.items()}
-    wrong = [name for name, element in given.items() if element.shape != matrix.shape]
-    if wrong or np.abs(sum(given.values()) - matrix).max() > 1e-9 * size:
-        what = f'"{wrong[0]}" is no {matrix.shape} matrix' if wrong else "they do not add up"
-        why = "The springs together are the stiffness matrix of the structure"
-        remedy = "Give all springs of the structure, those to the ground too"
+    matrices = {name: np.asarray(element, dtype=float) for name, element in elements.items()}
+    wrong = [name for name, element in matrices.items() if element.shape != matrix.shape]
+    if wrong or np.abs(sum(matrices.values()) - matrix).max() > 1e-9 * size:
+        what = f'"{wrong[0]}" is not a {matrix.shape} matrix' if wrong else "they do not add up"
+        why = "The sum of the springs is the stiffness matrix of the structure"
+        remedy = "Give all springs of the structure, including those to the ground"
         raise InputError(what, "argument elements", why, remedy)
-    return given
+    return matrices
 
 
 def _springs(matrix: Array, names: tuple[str, ...]) -> dict[str, Array]:
     count = len(names)
-    found: dict[str, Array] = {}
+    springs: dict[str, Array] = {}
     for i in range(count):
         ground = float(matrix[i].sum())
         if abs(ground) > _ROUNDING * np.abs(matrix[i]).sum():
-            found[names[i]] = _spring(count, i, None, ground)
+            springs[names[i]] = _spring(count, i, None, ground)
         for k in range(i + 1, count):
             if matrix[i, k] != 0.0:
-                found[f"{names[i]} - {names[k]}"] = _spring(count, i, k, -float(matrix[i, k]))
-    return found
+                springs[f"{names[i]} - {names[k]}"] = _spring(count, i, k, -float(matrix[i, k]))
+    return springs
 
 
 def _spring(count: int, i: int, k: int | None, stiffness: float) -> Array:

@@ -1,17 +1,17 @@
-"""Periodic orbits: found directly, and followed over the speed or any parameter.
+"""Periodic orbits: computed directly, and followed over the speed or any parameter.
 
-The public names stand on the page of :mod:`tribodyn.dynamics`.
+The public names are those of :mod:`tribodyn.dynamics`.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| ``alike_lanes`` | how systems alike march over one mesh cycle together |
-| ``continuation``, ``continuation_path`` | where a branch of orbits goes, stable or not |
-| ``coordinates`` | in which coordinates a motion closes |
-| ``orbit_map`` | where states are after one period, and which of them close |
-| ``periods`` | after how many mesh cycles a motion repeats |
-| ``search`` | which orbit a start comes to, and whether it stays in touch on the way |
-| ``side_by_side`` | which motions of many systems alike stay in touch, all found together |
-| ``solution_branch`` | what a branch of orbits holds |
-| ``speed_sweep``, ``speed_sweep_follow`` | what a slow sweep of the speed meets, up and down |
+| ``batched_orbits`` | orbits without loss of contact of many systems, computed together |
+| ``batched_periods`` | integration of a batch of systems over one mesh cycle |
+| ``continuation``, ``continuation_path`` | branches of orbits over a parameter, stable or not |
+| ``coordinates`` | reduced coordinates in which a motion is periodic |
+| ``orbit_map`` | the map of a state over one period, and Newton's method for its fixed point |
+| ``periods`` | number of mesh cycles after which a motion repeats |
+| ``search`` | search for the orbit that a start approaches |
+| ``solution_branch`` | result of a continuation |
+| ``speed_sweep``, ``speed_sweep_follow`` | steady motions over the speed, upwards and downwards |
 | ``steady_state`` | the orbit at one speed, with a certified error |
 """

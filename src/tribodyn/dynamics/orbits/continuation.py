@@ -43,7 +43,7 @@ from tribodyn.types import Array
 _NEAR = 0.1
 #: First step away from a point where the period doubles, relative to the motion.
 _ASIDE = 1e-2
-#: What a branch holds of the figures of its orbits.
+#: Figures of the orbits that a branch stores.
 _COLUMNS = (
     "position",
     "velocity",
@@ -82,7 +82,7 @@ def continuation(
     mesh_frequency : float, optional
         Mesh frequency [Hz] where the function returns systems only.
     parameter : str
-        What the parameter is called.
+        Name of the parameter.
     between : (float, float)
         First and last parameter [its unit]. The branch begins at the first and ends where it
         leaves the range, at either end.
@@ -106,7 +106,7 @@ def continuation(
     tolerance : float
         Largest error of a point relative to the first motion [-].
     progress : Progress
-        Told about the points.
+        Receives the progress over the points.
 
     Raises
     ------
@@ -121,7 +121,8 @@ def continuation(
     Neimark-Sacker points where a complex pair passes the unit circle, branch points where another
     branch crosses, grazing where a contact begins to open. Pairs of such points between two
     neighbouring orbits are overlooked: a shorter ``longest_step`` finds them. If a branch cannot be
-    followed further, a warning (``steady-state``) says where and why, and the rest is returned.
+    followed further, a warning (``steady-state``) reports where and why, and the part so far is
+    returned.
 
     Examples
     --------
@@ -182,7 +183,7 @@ def _first(
     state = static_start(mapping.compiled) if start is None else read_start(system, start)
     y = mapping.start(state)
     if start is not None:
-        # A given state may be that of an unstable orbit, which no search would keep.
+        # The start may be a state of an unstable orbit, which a search would leave.
         function.size = _motion(mapping, y)
         try:
             point = correct(
@@ -198,7 +199,7 @@ def _first(
             f"no orbit of {function.periods} mesh cycle(s) was found at {between[0]:g}: "
             f"certified error {orbit.error:.2e}",
             why=f"The limit is {TOLERANCE:.0e}",
-            remedy="Begin elsewhere, give a start, or take periods = 2, 3, 4",
+            remedy="Begin at another value, give a start, or try periods = 2, 3, 4",
         )
     function.size = _motion(mapping, orbit.point)
     x = np.append(orbit.point / function.size, 0.0)
@@ -211,7 +212,7 @@ def _motion(mapping: OrbitMap, y: Array) -> float:
 
 
 def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> BranchPoint:
-    """First point of the branch of twice the period, beside the point where it begins."""
+    """First point of the branch of twice the period, near the point where it begins."""
     if not 0.0 <= (start.parameter - function.origin) / function.range <= 1.0:
         what = f"start lies at {start.parameter:.8g}"
         why = f"The range is {function.origin:g} to {function.origin + function.range:g}"
@@ -241,8 +242,8 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
             )
     raise ComputationError(
         f"no branch of {function.periods} mesh cycles was found at {start.parameter:.8g}",
-        why=f"A {start.kind} of period {start.period} was given",
-        remedy="Only a period-doubling has such a branch, and a linear system has none",
+        why=f"The start is a {start.kind} of period {start.period}",
+        remedy="Start at a period-doubling; a linear system has no such branch",
     )
 
 
@@ -296,8 +297,8 @@ def _located(
     if np.isfinite(openings[id(orbits[0])]):
 
         def opening(point: BranchPoint) -> float:
-            known = openings.get(id(point))
-            return figures(point).opening if known is None else known
+            cached_opening = openings.get(id(point))
+            return figures(point).opening if cached_opening is None else cached_opening
 
         located += locate(function, orbits, "grazing", opening, lambda point: True, tolerance)
     return sorted(
@@ -339,12 +340,15 @@ class OrbitFigures:
 def signal_names(system: System, wanted: Sequence[str] | None) -> tuple[str, ...]:
     """Names of the signals to measure."""
     count = len(system.contacts)
-    known = ("deflection",)[:count] + tuple(f"deflection {j}" for j in range(1, count))
+    deflections = ("deflection",)[:count] + tuple(f"deflection {j}" for j in range(1, count))
     if wanted is None:
-        return known[:1] or tuple(system.names)
+        return deflections[:1] or tuple(system.names)
     for name in wanted:
-        if name not in (*known, *system.names):
-            why, remedy = f"Known: {', '.join((*known, *system.names))}", "Choose one of these"
+        if name not in (*deflections, *system.names):
+            why, remedy = (
+                f"Known: {', '.join((*deflections, *system.names))}",
+                "Choose one of these",
+            )
             raise InputError(f'no signal is called "{name}"', "argument signals", why, remedy)
     return tuple(wanted)
 

@@ -1,10 +1,10 @@
 """Steps along a branch of periodic orbits: predict along the tangent, correct across it.
 
 State and parameter are scaled, so that one length measures both: states by the size of the first
-orbit, the parameter by the range that is looked through. The corrector is a damped Newton's method
-with a border. Its matrix is kept, with Broyden's update, as long as it brings the residual down;
-where a contact begins to open the map has a kink, the matrix is taken anew and the step is halved
-until the residual falls. Special points lie where a test function changes its sign.
+orbit, the parameter by its range. The corrector is a damped Newton's method with a bordered matrix.
+The matrix is reused, with Broyden's update, as long as it reduces the residual; where a contact
+begins to open the map has a kink, the matrix is recomputed and the step is halved until the
+residual falls. Special points lie where a test function changes its sign.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _DISTURBANCE, _PARAMETER_DISTURBANCE = 3e-6, 1e-6
 #: Iterations of the corrector, and of the search for a special point.
 _ITERATIONS, _BISECTIONS = 14, 40
 _HALVINGS = 4
-#: A kept matrix has to bring the residual down at least by this factor.
+#: A reused matrix has to reduce the residual at least by this factor.
 _CONTRACTION = 0.3
 #: Least cosine of the angle between neighbouring tangents: a larger turn may be another branch.
 _STRAIGHT = 0.8
@@ -43,7 +43,7 @@ _EASY, _HARD = 6, 9
 _WIDTH = 1e-10
 #: Largest distance of the critical multiplier from the unit circle at such a point.
 _CRITICAL = 1e-3
-#: Change of the scaled parameter along a branch that is nothing but rounding.
+#: Change of the scaled parameter along a branch that is mere rounding.
 _UPRIGHT = 1e-7
 
 
@@ -59,21 +59,22 @@ class Family:
     ) -> None:
         self._make, self._frequency, self._steps = make, mesh_frequency, steps
         # The slowest cycle has the longest steps.
-        self._own = compile_for(make, lowest, steps) if isinstance(make, System) else None
+        self._compiled = compile_for(make, lowest, steps) if isinstance(make, System) else None
 
     def __call__(self, parameter: float) -> tuple[Compiled, float]:
         """Compile the system of one parameter; returns it with its mesh frequency."""
-        if self._own is not None or isinstance(self._make, System):
-            assert self._own is not None
-            return self._own, parameter
+        if self._compiled is not None or isinstance(self._make, System):
+            assert self._compiled is not None
+            return self._compiled, parameter
         result = self._make(parameter)
         system, frequency = result if isinstance(result, tuple) else (result, self._frequency)
         if not isinstance(system, System) or frequency is None:
             raise InputError(
                 f"the function of the parameter returned {type(result).__name__}"
-                + ("" if frequency is not None else " and no mesh frequency was given"),
+                + ("" if frequency is not None else " and there is no argument mesh_frequency"),
                 where="argument make_system",
-                why="A System with mesh_frequency given, or a tuple (System, mesh frequency)",
+                why="It has to return a System and mesh_frequency is set, or a tuple (System, "
+                "mesh frequency)",
                 remedy="Return one of the two",
             )
         return compile_for(system, float(frequency), self._steps), float(frequency)
@@ -83,7 +84,7 @@ class Family:
 class Jet:
     """The map at one point with its derivatives, all scaled."""
 
-    residual: Array  #: what the map adds to the point [-]
+    residual: Array  #: image minus the point [-]
     matrix: Array  #: derivative with respect to the point, the monodromy matrix [-]
     slope: Array  #: derivative with respect to the parameter [-]
 
@@ -102,20 +103,20 @@ class FamilyMap:
         self.size = 1.0
         self.cycles = 0
         self._coordinates: OrbitCoordinates | None = None
-        self._kept: tuple[float, OrbitMap] | None = None
+        self._latest: tuple[float, OrbitMap] | None = None
 
     def parameter(self, x: Array) -> float:
         """Parameter of a point."""
         return float(self.origin + self.range * x[-1])
 
     def at(self, parameter: float) -> OrbitMap:
-        """Take the map of one parameter."""
-        if self._kept is not None and self._kept[0] == parameter:
-            return self._kept[1]
+        """The map at one parameter; the latest one is cached."""
+        if self._latest is not None and self._latest[0] == parameter:
+            return self._latest[1]
         compiled, frequency = self.family(parameter)
         mapping = OrbitMap(compiled, frequency, self.periods, self._coordinates, None)
         self._coordinates = mapping.coordinates
-        self._kept = (parameter, mapping)
+        self._latest = (parameter, mapping)
         return mapping
 
     def reduced(self, x: Array) -> Array:
@@ -123,7 +124,7 @@ class FamilyMap:
         return np.asarray(x[:-1] * self.size)
 
     def residual(self, x: Array) -> Array:
-        """What the map adds to a point."""
+        """Scaled image of a point minus the point."""
         y = self.reduced(x)
         self.cycles += self.periods
         return np.asarray((self.at(self.parameter(x))(y) - y) / self.size)
@@ -194,12 +195,12 @@ def correct(
                 break
         moved = trial - x
         contraction = new_size / size if size else 0.0
-        # What is left to go is the last step times the contraction; rounding ends it too.
+        # The remaining distance is the last step times the contraction; rounding ends it too.
         left = float(np.linalg.norm(moved)) * (min(contraction, 1.0) if contraction < 0.1 else 1.0)
         if left <= 0.5 * tolerance and np.isfinite(new_size):
             return _accept(function, trial if new_size < size else x, row, count)
         if new_size < size:
-            # Broyden's update: the matrix learns from the step that was taken.
+            # Broyden's update of the matrix.
             border = border + np.outer(new - value - border @ moved, moved) / (moved @ moved)
             x, value, size = trial, new, new_size
         elif fresh:
@@ -221,7 +222,7 @@ def _accept(function: FamilyMap, x: Array, row: Array, count: int) -> BranchPoin
 
 @dataclass(frozen=True)
 class Stepping:
-    """How to go along a branch."""
+    """Step control along a branch."""
 
     longest: float  #: longest step in the parameter, relative to the range
     points: int  #: points at most
@@ -264,7 +265,7 @@ def _at(
 def with_values(
     function: FamilyMap, points: list[BranchPoint], values: Array, tolerance: float
 ) -> list[BranchPoint]:
-    """Add the points of a branch at given parameters, as often as it passes them."""
+    """Add the points of a branch at ``values`` of the parameter, as often as it passes them."""
     scaled = (np.asarray(values, dtype=float) - function.origin) / function.range
     joined = points[:1]
     for left, right in pairwise(points):
@@ -292,32 +293,34 @@ def _closes(points: list[BranchPoint], new: BranchPoint) -> bool:
 def follow(
     function: FamilyMap, first: BranchPoint, stepping: Stepping, progress: Progress
 ) -> tuple[list[BranchPoint], str, bool]:
-    """Go along a branch until it leaves the range, closes, ends or has enough points."""
+    """Follow a branch until it leaves the range, closes, ends or has enough points."""
     points, length = [first], 0.25
     reason, worst = "", ""
     while not reason:
-        here = points[-1]
-        weight = _weight(here.x, stepping)
-        along = here.tangent / np.linalg.norm(weight * here.tangent)
+        current = points[-1]
+        weight = _weight(current.x, stepping)
+        along = current.tangent / np.linalg.norm(weight * current.tangent)
         row = weight**2 * along
         turned, new = False, None
         try:
-            guess = here.x + length * along
-            new = correct(function, guess, row / np.linalg.norm(row), here.jet, stepping.tolerance)
+            guess = current.x + length * along
+            new = correct(
+                function, guess, row / np.linalg.norm(row), current.jet, stepping.tolerance
+            )
             turned = _cosine(weight * new.tangent, weight * along) < _STRAIGHT
             worst = "the branch turns sharply" if turned else ""
             if np.linalg.norm(weight * (new.x - guess)) > length:
-                new, worst = None, "the next orbit found is far away"
+                new, worst = None, "the next orbit is far away"
         except StalledError as stalled:
             worst = f"the residual stays at {stalled.residual:.2e}"
         if new is None or (turned and length > _TURN):
             length = 0.5 * length
             if length < _SHORTEST:
-                return points, _stopped(function, here, worst), False
+                return points, _stopped(function, current, worst), False
             continue
         progress.advance(1)
         if not _inside(new.x):
-            end = _last(function, here, new, stepping.tolerance)
+            end = _last(function, current, new, stepping.tolerance)
             points += [end] if end is not None else []
             reason = f"left the range at {function.parameter(np.clip(new.x, 0.0, 1.0)):.10g}"
             break
@@ -337,14 +340,14 @@ def _weight(x: Array, stepping: Stepping) -> Array:
     return weight
 
 
-def _cosine(one: Array, other: Array) -> float:
-    return float(one @ other / (np.linalg.norm(one) * np.linalg.norm(other)))
+def _cosine(first: Array, second: Array) -> float:
+    return float(first @ second / (np.linalg.norm(first) * np.linalg.norm(second)))
 
 
-def _stopped(function: FamilyMap, here: BranchPoint, worst: str) -> str:
+def _stopped(function: FamilyMap, current: BranchPoint, worst: str) -> str:
     return (
-        f"stopped at {function.parameter(here.x):.10g}, the largest multiplier being "
-        f"{np.abs(here.multipliers[:1]).max(initial=0.0):.6g}: {worst}, however short the step"
+        f"stopped at {function.parameter(current.x):.10g}, the largest multiplier being "
+        f"{np.abs(current.multipliers[:1]).max(initial=0.0):.6g}: {worst}, however short the step"
     )
 
 
@@ -361,7 +364,7 @@ class Located:
 
 
 def _fold(point: BranchPoint) -> float:
-    # A branch of a linear motion that loses its stability stands upright: no sign to speak of.
+    # A branch of a linear motion that loses its stability is vertical: the sign is rounding.
     along = float(point.tangent[-1])
     return along if abs(along) > _UPRIGHT else 0.0
 
@@ -401,7 +404,7 @@ def _always(point: BranchPoint) -> bool:
 
 
 def tests_of_multipliers() -> dict[str, tuple[Test, Callable[[BranchPoint], bool]]]:
-    """Test functions of the multipliers by the kind of point, and what holds at such a point."""
+    """Test functions of the multipliers by kind of point, and a check of the located point."""
     return {
         "fold": (_fold, _always),
         "period-doubling": (_period_doubling, _is_doubling),
@@ -437,7 +440,7 @@ def _between(
     test: Test,
     tolerance: float,
 ) -> BranchPoint:
-    """Regula falsi with the weight of a kept end halved, on the chord of two points."""
+    """Regula falsi (Illinois method) on the chord of two points."""
     chord = ends[1].x - ends[0].x
     row = chord / np.linalg.norm(chord)
     (low, high), (left, right) = (0.0, 1.0), values

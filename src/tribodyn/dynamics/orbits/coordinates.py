@@ -1,10 +1,10 @@
-"""Which coordinates a periodic orbit has: all but the free rotation of the whole drive.
+"""Reduced coordinates of a periodic orbit: all but the free rotation of the drive.
 
 With friction the two torques of a gear pair do not balance, the whole drive speeds up or slows
 down, and no periodic orbit exists in the absolute angle. Nothing depends on that angle, so the
-orbit is sought in the remaining coordinates. They are taken orthogonal in the mass metric, where
-the free motion and the rest do not exchange momentum. A search begins at the static equilibrium
-at mean stiffness.
+orbit is computed in the remaining coordinates. They are orthogonal in the mass metric, where the
+free motion and the others do not exchange momentum. A search starts from the static equilibrium at
+mean stiffness.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 from tribodyn.arrays.memo import Memo
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.grid import once
+from tribodyn.dynamics.equations.grid import unrepeated
 from tribodyn.dynamics.equations.motion import compression
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
@@ -30,13 +30,13 @@ from tribodyn.errors import InputError, warn
 from tribodyn.types import Array
 
 _RANK = 1e-9
-#: Part of the acceleration by the forces that goes into free motions and is told.
+#: Share of the acceleration by the forces in free motions above which a warning is issued.
 _UNBALANCED = 1e-3
 
 
 @dataclass(frozen=True)
 class OrbitCoordinates:
-    """Change between a state and the reduced vector in which an orbit closes."""
+    """Conversion between a state and the reduced vector in which an orbit is periodic."""
 
     lower: Array  #: cholesky factor of the mass matrix
     elastic: Array  #: orthonormal basis, in the mass metric, of positions that matter
@@ -61,7 +61,7 @@ class OrbitCoordinates:
 
     @cached_property
     def _reducing(self) -> Array:
-        """Matrix (2 n, e + v) that reduces a state; one for each of several rates (..., 1, 1)."""
+        """Matrix (2 n, e + v) that reduces a state; one per rate for several rates (..., 1, 1)."""
         (size, count), rate = self.elastic.shape, np.asarray(self.rate)
         matrix = np.zeros((*rate.shape[:-2], 2 * size, count + self.moving.shape[1]))
         matrix[..., :size, :count] = rate * (self.lower @ self.elastic)
@@ -86,18 +86,18 @@ class OrbitCoordinates:
 
 
 def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordinates:
-    """Find the coordinates that matter."""
+    """Reduced coordinates of a system at a mesh frequency."""
     system, nodes = compiled.system, compiled.nodes
     used = _used_directions(nodes.direction, nodes.direction_slope)
     matrices = (np.asarray(getattr(system, name)) for name in ("mass", "stiffness", "damping"))
-    given = (*matrices, used)
-    shared = _known.get(given, lambda: _coordinates(*given))
+    arrays = (*matrices, used)
+    shared = _coordinates_cache.get(arrays, lambda: _coordinates(*arrays))
     _warn_of_unbalanced(compiled, shared.inverse, shared.free)
     return replace(shared, rate=2.0 * np.pi * mesh_frequency)
 
 
-#: Those of the last systems at 1 rad/s: a study builds the same structure many times.
-_known: Memo[OrbitCoordinates] = Memo(8)
+#: Coordinates of the last systems at 1 rad/s: a study builds the same structure many times.
+_coordinates_cache: Memo[OrbitCoordinates] = Memo(8)
 
 
 def _coordinates(mass: Array, stiffness: Array, damping: Array, used: Array) -> OrbitCoordinates:
@@ -111,7 +111,7 @@ def _coordinates(mass: Array, stiffness: Array, damping: Array, used: Array) -> 
 
 
 def _warn_of_unbalanced(compiled: Compiled, inverse: Array, free: Array) -> None:
-    """Say where forces drive a free motion of the whole drive that no torque balances."""
+    """Warn if forces accelerate a free motion of the drive that no torque balances."""
     system, nodes = compiled.system, compiled.nodes
     if system.balance is not None or not 0 < free.shape[1] < system.size:
         return
@@ -124,51 +124,50 @@ def _warn_of_unbalanced(compiled: Compiled, inverse: Array, free: Array) -> None
     warn(
         "unbalanced-drive",
         f"the forces of the system do not balance: the whole drive speeds up, {system.names[most]} "
-        f"by {gained[most]:.4g} rad/s^2 (m/s^2 where it moves straight), and the orbit leaves this "
-        "out. Look for a wrong size or sign in System.force, or give System.balance, the torque "
-        "whose size is to be found",
+        f"by {gained[most]:.4g} rad/s^2 (m/s^2 for a translation), and the orbit leaves this "
+        "out. Check magnitudes and signs in System.force, or give System.balance, the direction of "
+        "a balancing torque",
         stacklevel=5,
     )
 
 
 def refuse_disconnected(compiled: Compiled) -> None:
-    """Refuse a coordinate that no spring, damper or contact joins to anything."""
+    """Refuse a coordinate without a spring, damper or contact."""
     system, nodes = compiled.system, compiled.nodes
-    held = np.zeros(system.size, dtype=bool)
+    connected = np.zeros(system.size, dtype=bool)
     for name in ("stiffness", "damping"):
         matrix = np.asarray(getattr(system, name))
-        held |= np.any(matrix != 0.0, axis=0) | np.any(matrix != 0.0, axis=1)
+        connected |= np.any(matrix != 0.0, axis=0) | np.any(matrix != 0.0, axis=1)
     coupled = np.asarray(system.mass) - np.diag(np.diag(np.asarray(system.mass)))
-    held |= np.any(coupled != 0.0, axis=0)
+    connected |= np.any(coupled != 0.0, axis=0)
     for part in (nodes.direction, nodes.direction_slope, nodes.force_direction):
-        held |= np.any(once(part, 2) != 0.0, axis=(0, 1, 2))
-    held |= np.any(nodes.friction_direction != 0.0, axis=(0, 1, 2))
-    if held.all() or not held.any():
+        connected |= np.any(unrepeated(part, 2) != 0.0, axis=(0, 1, 2))
+    connected |= np.any(nodes.friction_direction != 0.0, axis=(0, 1, 2))
+    if connected.all() or not connected.any():
         return
-    names = [system.names[int(i)] for i in np.flatnonzero(~held)]
-    many = len(names) > 1
+    names = [system.names[int(i)] for i in np.flatnonzero(~connected)]
+    plural = len(names) > 1
     raise InputError(
-        f"the coordinate{'s' if many else ''} {', '.join(names)} "
-        f"{'are' if many else 'is'} connected to nothing",
+        f"the coordinate{'s' if plural else ''} {', '.join(names)} "
+        f"{'are' if plural else 'is'} not connected to anything",
         where="System.stiffness",
-        why="No spring, damper or contact reaches it, so that it moves freely and has no "
-        "periodic orbit",
+        why="A coordinate without spring, damper or contact moves freely and has no periodic orbit",
         remedy="Add the missing shaft, bearing or contact, or remove the coordinate",
     )
 
 
 def _used_directions(*parts: Array) -> Array:
-    """Different directions of all contacts (m, n); one row for a contact that keeps its own."""
+    """Different directions of all contacts (m, n); one row for a contact of constant direction."""
     rows = [np.zeros((0, parts[0].shape[-1]))]
     for part in parts:
         for number in range(part.shape[-2]):
-            contact = once(part[..., number, :], 1).reshape(-1, part.shape[-1])
+            contact = unrepeated(part[..., number, :], 1).reshape(-1, part.shape[-1])
             rows.append(contact if np.ptp(contact, axis=0).any() else contact[:1])
     return np.asarray(np.unique(np.vstack(rows), axis=0))
 
 
 def _complement(basis: Array) -> Array:
-    """Orthonormal basis of what is orthogonal to the columns of an orthonormal basis."""
+    """Orthonormal basis of the complement of the columns of an orthonormal basis."""
     full, _ = np.linalg.qr(basis, mode="complete") if basis.shape[1] else (np.eye(len(basis)), None)
     return np.ascontiguousarray(full[:, basis.shape[1] :])
 
@@ -182,20 +181,20 @@ def _row_space(matrices: list[Array]) -> Array:
     return np.ascontiguousarray(rows[values > _RANK * values[0]].T)
 
 
-#: Rounds in which the ramps of a force law open and close; each round goes down the law.
-#: The same number of rounds is enough for the friction that goes with the load.
+#: Iterations in which the ramps of a force law open and close, one ramp per iteration at least.
+#: The same number is enough for load-dependent friction.
 _ROUNDS = 50
 
 
 def static_start(compiled: Compiled) -> Array:
     """State at rest under the mean loads, every contact on its driving flank."""
     nodes = compiled.nodes
-    kept = lowest_of_each_law(nodes)
+    lowest = lowest_of_each_law(nodes)
     carrying = nodes.stiffness
     position = _equilibrium(compiled, carrying)
-    for _ in range(0 if kept.all() else _ROUNDS):
+    for _ in range(0 if lowest.all() else _ROUNDS):
         beyond = compression(nodes, position) > nodes.gap
-        closed = np.where(kept | beyond, nodes.stiffness, 0.0)
+        closed = np.where(lowest | beyond, nodes.stiffness, 0.0)
         if np.array_equal(closed, carrying):
             break
         carrying = closed
@@ -204,7 +203,7 @@ def static_start(compiled: Compiled) -> Array:
 
 
 def _equilibrium(compiled: Compiled, carrying: Array) -> Array:
-    """Position at rest with the stiffness (steps, 3, contacts) that carries."""
+    """Position at rest with the stiffness (steps, 3, contacts) of the closed contacts."""
     system, nodes = compiled.system, compiled.nodes
     position = balanced_position(system, nodes, carrying, nodes.force_direction)
     for _ in range(_ROUNDS if system.frictions else 0):
@@ -237,8 +236,8 @@ def _sums(push: Array, weight: Array, along: Array, shift: Array) -> tuple[Array
     lead, size = push.shape[:-4], push.shape[-1]
     flat = np.swapaxes(push.reshape(*lead, -1, size), -1, -2)
     factors = np.stack((weight, weight * shift), axis=-1).reshape(*lead, -1, 2)
-    if (constant := once(along, 1)).size == size:  # which can be taken out of the sum
+    if (constant := unrepeated(along, 1)).size == size:  # a factor of the sum
         sums = flat @ factors
         return sums[..., :1] * constant.reshape(size), sums[..., 1]
-    held = factors[..., :1] * np.broadcast_to(along, push.shape).reshape(*lead, -1, size)
-    return flat @ held, (flat @ factors[..., 1:])[..., 0]
+    weighted = factors[..., :1] * np.broadcast_to(along, push.shape).reshape(*lead, -1, size)
+    return flat @ weighted, (flat @ factors[..., 1:])[..., 0]

@@ -1,8 +1,8 @@
 """The map whose fixed point is a periodic orbit: the reduced state over one period.
 
-With a balancing torque its size is one more unknown: what the free motion of the drive gains over
-the period is what the torque has to take away. Points, and periods where they differ, are lanes of
-one march.
+With a balancing torque its size is one more unknown: the torque has to compensate the velocity that
+the free motion of the drive gains over the period. Points, and periods where they differ, are
+integrated together as lanes.
 """
 
 from __future__ import annotations
@@ -23,22 +23,22 @@ from tribodyn.dynamics.orbits.coordinates import (
 from tribodyn.errors import InputError
 from tribodyn.types import Array, ComplexArray, Index
 
-#: Lanes that are marched at a time: more do not fit beside each other in the memory near a core.
+#: Lanes that are integrated at a time: more do not fit into the cache.
 _LANES = 16384
-#: Lanes from which on a march chooses its blocks by itself.
+#: Lanes from which on the integration chooses the width of its blocks.
 _MANY = 32
-#: Disturbance of the matrix of a map with dead zones relative to the motion, rounds of Newton's
-#: method, and the least by which a round has to bring the error down.
+#: Disturbance for the matrix of a map with dead zones relative to the motion, iterations of
+#: Newton's method, and the factor by which an iteration has to reduce the error.
 _DISTURBANCE, _ROUNDS, _CONTRACTION = 1e-6, 8, 0.7
 #: A matrix evaluated farther than this from the orbit, over its size, is evaluated again.
 _FAR = 1e-3
 
 
 class Balance(NamedTuple):
-    """The torque that takes away what the free motion of a drive gains."""
+    """The torque that balances a free motion of the drive."""
 
     direction: Array  #: the free motion that it drives
-    force: Array  #: it for a gain of 1 m/s in 1 s [N or N*m]
+    force: Array  #: force for a gain of 1 m/s in 1 s [N or N*m]
     strength: float
 
     @classmethod
@@ -51,7 +51,7 @@ class Balance(NamedTuple):
         strength = float(np.linalg.norm(push))
         if strength < 1e-12 * float(np.linalg.norm(np.linalg.solve(coordinates.lower, force))):
             what = "balance does not drive any free motion"
-            why = "The structure holds the drive in place, so no torque needs balancing"
+            why = "The structure supports the drive, so no torque needs balancing"
             raise InputError(what, "System.balance", why, "Leave balance out")
         return cls(push / strength, force / strength, strength)
 
@@ -61,9 +61,9 @@ class Balance(NamedTuple):
 
 
 class OrbitMap:
-    """The reduced state, and the balancing torque if there is one, over one period.
+    """Map of the reduced state, and of the balancing torque if there is one, over one period.
 
-    With several mesh frequencies points (frequencies, ..., k) are mapped, each at its own.
+    With several mesh frequencies it maps points (frequencies, ..., k), each at its frequency.
     """
 
     def __init__(
@@ -92,14 +92,14 @@ class OrbitMap:
         return other
 
     def at(self, which: Index) -> OrbitMap:
-        """The map at some of several mesh frequencies."""
+        """The map at selected mesh frequencies."""
         other = copy(self)
         if np.ndim(self.period):
             other.period = np.asarray(self.period)[which]
         return other
 
     def rescaled(self, y: Array, periods: int) -> Array:
-        """Point of the map over ``periods`` mesh cycles as one of this: the torque stays."""
+        """Convert a point of the map over ``periods`` mesh cycles, with the same torque."""
         if self.balance is None:
             return y
         return np.append(y[:-1], y[-1] * self.periods / periods)
@@ -112,7 +112,7 @@ class OrbitMap:
         """Reduced vector of a state, without a balancing torque."""
         y = self.coordinates.reduce(state)
         if y.size == 0:
-            what = "no coordinate is held by a spring, a damper or a contact"
+            what = "no coordinate has a spring, a damper or a contact"
             why = "Nothing vibrates, so that no periodic orbit exists"
             raise InputError(what, "System.stiffness", why, "Use simulate for a free motion")
         return y if self.balance is None else np.append(y, 0.0)
@@ -153,19 +153,19 @@ class OrbitMap:
         reduced = self.coordinates.reduce(new)
         if self.balance is None:
             return reduced
-        # What the free motion gained over the period is what the torque has to take away.
+        # The torque has to compensate what the free motion gained over the period.
         gained = self.coordinates.free_velocity(new) @ self.balance.direction
         return np.column_stack((reduced, points[:, -1] - gained))
 
     def follow(self, y: Array) -> tuple[Array, Array]:
-        """Map points (..., k) and keep every state on the way, (..., rows, 2 n)."""
+        """Map points (..., k) and record all states, (..., rows, 2 n)."""
         points = y.reshape(-1, y.shape[-1])
         images, record = self._recorded(points)
         states = np.ascontiguousarray(np.moveaxis(record, 2, 0))
         return images.reshape(y.shape), states.reshape(*y.shape[:-1], *states.shape[1:])
 
     def _recorded(self, points: Array) -> tuple[Array, Array]:
-        """Images of points (lanes, k), and the states on the way (rows, 2 n, lanes)."""
+        """Images of points (lanes, k), and all states (rows, 2 n, lanes)."""
         state, extra = self.split(points)
         rows = self.periods * self.compiled.grid.steps + 1
         record = np.empty((rows, state.shape[1], len(points)))
@@ -177,15 +177,15 @@ class OrbitMap:
         return self._image(points, new), record
 
     def differences(self, y: Array, step: float) -> tuple[Array, Array, Array, Array]:
-        """Image and states of a point (k,), and how both change with every coordinate of it.
+        """Image and states of a point (k,), and their derivatives by its coordinates.
 
         The states have the shape (rows, 2 n), their derivatives (rows, 2 n, k).
         """
         lanes = -(-(y.size + 1) // WIDTH) * WIDTH  # Whole blocks need no copies.
         images, record = self._recorded(y + step * np.eye(lanes, y.size, -1))
-        (image, *beside), states = images[: y.size + 1], np.ascontiguousarray(record[:, :, 0])
+        (image, *disturbed), states = images[: y.size + 1], np.ascontiguousarray(record[:, :, 0])
         slopes = (record[:, :, 1 : y.size + 1] - record[:, :, :1]) / step
-        return image, (np.array(beside) - image).T / step, states, slopes
+        return image, (np.array(disturbed) - image).T / step, states, slopes
 
     def matrix(
         self, y: Array, step: Array | float, *, central: bool = False
@@ -194,43 +194,43 @@ class OrbitMap:
         eye, step = np.eye(y.shape[-1]), np.asarray(step)[..., None, None]
         moves = np.vstack((0.0 * eye[:1], eye, -eye if central else eye[:0]))
         images = self(y[..., None, :] + step * moves)
-        beside = images[..., 1:, :]
+        disturbed = images[..., 1:, :]
         if central:
-            plus, minus = np.split(beside, 2, axis=-2)
+            plus, minus = np.split(disturbed, 2, axis=-2)
             slope = (plus - minus) / (2.0 * step)
         else:
-            slope = (beside - images[..., :1, :]) / step
+            slope = (disturbed - images[..., :1, :]) / step
         return images[..., 0, :], np.swapaxes(slope, -1, -2)
 
     @property
     def affine(self) -> bool:
-        """Whether the map is linear but for a constant: no dead zone, no friction that bends."""
+        """Whether the map is affine: no dead zone, no nonlinear friction."""
         code = self.compiled.program.code
         if self.compiled.nodes.friction_coefficients.shape[-1] > 1:
             return False
         return not any(code[4 + 4 * j + 2] for j in range(self.contacts))
 
     def multipliers(self, matrix: Array) -> ComplexArray:
-        """Floquet multipliers under a held torque, the largest first."""
+        """Floquet multipliers under constant torque, the largest first."""
         inner = matrix if self.balance is None else matrix[:-1, :-1]
         values = np.linalg.eigvals(inner).astype(complex)
         return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
 
     def record(self, y: Array) -> tuple[Array, Array]:
-        """March one period and keep every state."""
+        """Integrate one period and record all states."""
         _, states = self.follow(y)
         self.cycles -= self.periods
         return self.without_drift(states), self.split(y)[1][0]
 
     def without_drift(self, states: Array) -> Array:
-        """Take the mean speed and mean acceleration out of the free motions, in place."""
+        """Remove mean speed and mean acceleration from the free motions, in place."""
         left = self.compiled.nodes.phase[:, 0]
         phase = np.append(np.add.outer(np.arange(self.periods), left), float(self.periods))
         return take_drift_out(self.coordinates, phase[:, None] * self.period, states)
 
 
 def take_drift_out(c: OrbitCoordinates, time: Array, states: Array) -> Array:
-    """Leave mean speed and acceleration of free motions out of states (..., rows, 2 n), in place.
+    """Remove mean speed and acceleration of free motions from states (..., rows, 2 n), in place.
 
     ``time`` (..., rows, 1) begins at zero.
     """
@@ -247,7 +247,7 @@ def take_drift_out(c: OrbitCoordinates, time: Array, states: Array) -> Array:
         middle = still[..., :-1, :].mean(axis=-2, keepdims=True)
         back = basis.T @ c.inverse
         moved = still - middle - place
-        for i in np.flatnonzero(back.any(axis=0)):  # the coordinates that a free motion has
+        for i in np.flatnonzero(back.any(axis=0)):  # the coordinates of the free motion
             states[..., i] += moved @ back[:, i]
         if basis is c.free:
             drift = rise * time + drift
@@ -257,17 +257,17 @@ def take_drift_out(c: OrbitCoordinates, time: Array, states: Array) -> Array:
 
 
 def _complement(elastic: Array, free: Array) -> Array:
-    """Motions whose speed matters but whose place does not."""
-    both = np.hstack((elastic, free))
-    size = both.shape[0]
-    if both.shape[1] == size:
+    """Motions whose velocity is part of the orbit but whose position is not."""
+    basis = np.hstack((elastic, free))
+    size = basis.shape[0]
+    if basis.shape[1] == size:
         return np.zeros((size, 0))
-    _, _, rows = np.linalg.svd(both.T)
-    return np.asarray(rows[both.shape[1] :].T)
+    _, _, rows = np.linalg.svd(basis.T)
+    return np.asarray(rows[basis.shape[1] :].T)
 
 
 class Orbits(NamedTuple):
-    """Fixed points of a map, one for each of the points that were searched from."""
+    """Fixed points of a map, one for each start."""
 
     point: Array  #: (m, k) [m/s]
     matrix: Array  #: derivative of the map there, (m, k, k) [-]
@@ -282,7 +282,7 @@ def newton_step(matrix: Array, residual: Array) -> tuple[Array, float]:
 
 
 def newton(mapping: OrbitMap, points: Array, tolerance: float, rounds: int = _ROUNDS) -> Orbits:
-    """Newton's method from points (m, k) side by side; matrices are kept once an orbit is near."""
+    """Newton's method from points (m, k); the matrix of a point near its orbit is reused."""
     count, size = points.shape
     orbits = Orbits(points.copy(), np.zeros((count, size, size)), np.full(count, np.inf))
     left, far = np.arange(count), np.ones(count, dtype=bool)
@@ -307,10 +307,12 @@ def newton(mapping: OrbitMap, points: Array, tolerance: float, rounds: int = _RO
 
 
 def _residuals(mapping: OrbitMap, orbits: Orbits, which: Index, scale: Array, fresh: bool) -> Array:
-    """What the map adds to some points; with ``fresh`` their matrices are evaluated as well."""
-    y, here = orbits.point[which], mapping.at(which)
+    """Residuals of some points; with ``fresh`` their matrices are evaluated as well."""
+    y, submap = orbits.point[which], mapping.at(which)
     if not fresh:
-        return np.asarray(here(y) - y)
+        return np.asarray(submap(y) - y)
     # Of a linear map any difference is exact, and a large one loses no digits.
-    image, orbits.matrix[which] = here.matrix(y, (1.0 if mapping.affine else _DISTURBANCE) * scale)
+    image, orbits.matrix[which] = submap.matrix(
+        y, (1.0 if mapping.affine else _DISTURBANCE) * scale
+    )
     return np.asarray(image - y)

@@ -1,4 +1,4 @@
-"""The search for a fixed point: settle, finish with Newton's method, accelerate where needed."""
+"""Search for a fixed point: let the motion settle, then Newton's method; accelerate if needed."""
 
 from __future__ import annotations
 
@@ -56,27 +56,27 @@ def _combine(points: list[Array], residuals: list[Array]) -> Array:
     return combined
 
 
-#: Periods looked ahead at most, and the part of the distance at which there is nothing to fear.
+#: Largest number of periods to look ahead, and the part of the distance that is negligible.
 HORIZON, GONE = 2000, 1e-3
 
 
 class FlankWatch:
-    """Compressions beyond the play of the meshes that have one."""
+    """Clearance of the flanks from separation, for all meshes with a dead zone."""
 
     def __init__(self, mapping: OrbitMap) -> None:
         nodes = mapping.compiled.nodes
         dead = np.any(nodes.gap > 0.0, axis=(0, 1))
         laws = force_laws(nodes)
         meshes = [np.flatnonzero(laws == number) for number in np.unique(laws)]
-        kept = [mesh for mesh in meshes if dead[mesh].all()]
-        first = [mesh[0] for mesh in kept]
+        gapped = [mesh for mesh in meshes if dead[mesh].all()]
+        first = [mesh[0] for mesh in gapped]
         self._direction = nodes.direction[:, ::2][:, :, first]
         self._error = nodes.error[:, ::2][:, :, first]
-        gaps = [nodes.gap[:, ::2, mesh].min(axis=2) for mesh in kept]
+        gaps = [nodes.gap[:, ::2, mesh].min(axis=2) for mesh in gapped]
         self._gap = np.stack(gaps, axis=-1) if gaps else np.zeros((*self._error.shape[:2], 0))
-        #: Whether no mesh is made of several contacts, which open one after the other.
-        self.whole = len(kept) == np.count_nonzero(dead)
-        self._held = not np.ptp(self._direction, (0, 1)).any()
+        #: Whether no mesh consists of several contacts, which open one after the other.
+        self.single_contacts = len(gapped) == np.count_nonzero(dead)
+        self._constant_direction = not np.ptp(self._direction, (0, 1)).any()
         self._steps = mapping.compiled.grid.steps
         self._size = mapping.compiled.system.size
 
@@ -88,7 +88,7 @@ class FlankWatch:
         """States (rows, 2 n, k) along the directions, (periods, steps, 2, meshes, k)."""
         q, cycles = states[:, : self._size], len(states) // self._steps
         shape = (cycles, self._steps, 2, self._direction.shape[2], states.shape[2])
-        if self._held:  # the same direction all along
+        if self._constant_direction:  # the same direction all along
             along = np.zeros((len(q), *shape[3:]))
             for mesh, place in zip(*np.nonzero(self._direction[0, 0]), strict=True):
                 along[:, mesh] += self._direction[0, 0, mesh, place] * q[:, place]
@@ -97,37 +97,37 @@ class FlankWatch:
         return np.asarray(np.einsum("rsji,crsik->crsjk", self._direction, ends))
 
     def clearance(self, compression: Array) -> Array:
-        """Distance of each mesh from parting, on the flank on which it begins."""
+        """Distance of each mesh from separation, on the flank on which it starts."""
         return self.flank(compression) * compression - self._gap
 
     @staticmethod
     def flank(compression: Array) -> Array:
-        """Side of the play on which each mesh begins, (meshes,): 1 or -1."""
+        """Side of the dead zone on which each mesh starts, (meshes,): 1 or -1."""
         return np.where(compression[0, 0, 0] < 0.0, -1.0, 1.0)
 
     def in_touch(self, states: Array) -> bool:
-        """Whether no mesh parts on the way."""
+        """Whether no mesh separates in a motion."""
         return bool(np.all(self.clearance(self.compression(states)) > 0.0))
 
     def rates(self, states: Array, slopes: Array) -> tuple[Array, Array]:
-        """Clearance on a way (samples,), and how it changes with slopes (samples, k)."""
+        """Clearance along a motion (samples,), and its derivatives (samples, k)."""
         compression = self.compression(states)
-        room = self.clearance(compression).reshape(-1)
+        clearance = self.clearance(compression).reshape(-1)
         rates = self.flank(compression)[:, None] * self._along(slopes)
-        return room, rates.reshape(room.size, slopes.shape[-1])
+        return clearance, rates.reshape(clearance.size, slopes.shape[-1])
 
     def stays(self, states: Array, slopes: Array, matrix: Array, distance: Array) -> bool:
-        """Whether a motion beside an orbit reaches it without parting."""
-        room, rates = self.rates(states, slopes)
-        if np.any(room <= 0.0):
+        """Whether a motion near an orbit approaches it without separation."""
+        clearance, rates = self.rates(states, slopes)
+        if np.any(clearance <= 0.0):
             return False
         first, steepest = float(np.abs(rates @ distance).max(initial=0.0)), 0.0
         if rates.size:
             steepest = float(np.sqrt((rates**2).sum(axis=1).max()))
         for _ in range(HORIZON):
-            if steepest * float(np.linalg.norm(distance)) > room.min(initial=np.inf):
+            if steepest * float(np.linalg.norm(distance)) > clearance.min(initial=np.inf):
                 moved = rates @ distance
-                if np.any(room + moved <= 0.0):
+                if np.any(clearance + moved <= 0.0):
                     return False
                 if float(np.abs(moved).max(initial=0.0)) <= GONE * first:
                     break
@@ -137,10 +137,10 @@ class FlankWatch:
         return True
 
 
-#: Plain periods with dead zones at most, if the flanks part: they keep a start in its own basin
-#: of attraction. A linear system has one orbit and needs none.
+#: Largest number of integrated periods with dead zones if the flanks separate: they keep a start in
+#: its basin of attraction. A linear system has one orbit and needs none.
 _SETTLE = 24
-#: Plain periods after which Newton's method is tried while the flanks are in touch.
+#: Integrated periods after which Newton's method is tried while the flanks are in contact.
 _TRIES = (2, 8)
 #: A disturbance this small relative to the orbit no longer changes the basin.
 _SETTLED = 1e-3
@@ -148,10 +148,10 @@ _SETTLED = 1e-3
 _AWAY = 0.1
 _ANDERSON_LIMIT = 40
 NEWTON_LIMIT = 8
-#: Plain periods of each further attempt.
+#: Integrated periods of each further attempt.
 PATIENCE = (150, 400)
-#: Size of the disturbances of the monodromy matrix relative to the orbit, and where all equations
-#: are linear, so that larger ones are as good and lose fewer digits.
+#: Size of the disturbances for the monodromy matrix relative to the orbit; and for linear
+#: equations, where larger ones are exact and lose fewer digits.
 _DISTURBANCE, APART = 1e-7, 1e-3
 
 
@@ -167,7 +167,7 @@ class OrbitPoint:
     states: Array  #: the motion over one period
     slopes: Array  #: its derivative by the reduced vector, the last axis
     search: int = 0
-    linear: bool = False  #: in touch all along, so that other motions differ by multiples of slopes
+    linear: bool = False  #: no separation: nearby motions differ by multiples of the slopes
 
     @property
     def correction(self) -> Array:
@@ -185,7 +185,7 @@ class OrbitPoint:
 
     @property
     def attracts(self) -> bool:
-        """Whether motions beside the orbit approach it, or keep their distance."""
+        """Whether nearby motions approach the orbit, or keep their distance."""
         return bool(np.abs(self.multipliers[:1]).max(initial=0.0) <= 1.0 + 1e-6)
 
 
@@ -195,12 +195,12 @@ def motion_size(mapping: OrbitMap, states: Array) -> float:
     return float(np.linalg.norm(reduced, axis=1).max()) or 1.0
 
 
-def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> OrbitPoint:
-    """Evaluate the map and its matrix at a point, that of a known one where it is the same."""
+def _examine(mapping: OrbitMap, y: Array, reference: OrbitPoint | None = None) -> OrbitPoint:
+    """Evaluate the map and its matrix at a point; reuse the matrix of an equivalent reference."""
     image, states = mapping.follow(y)
     scale = motion_size(mapping, states)
-    if known is not None and _same_equations(mapping, known.states, states):
-        return replace(known, point=y, residual=image - y, scale=scale, states=states)
+    if reference is not None and _same_equations(mapping, reference.states, states):
+        return replace(reference, point=y, residual=image - y, scale=scale, states=states)
     if mapping.affine:
         # Of a linear map any difference is exact, and a large one loses no digits.
         matrix, slopes = mapping.matrix(y, scale)[1], np.zeros((*states.shape, 0))
@@ -209,8 +209,8 @@ def _examine(mapping: OrbitMap, y: Array, known: OrbitPoint | None = None) -> Or
     return OrbitPoint(y, image - y, matrix, scale, mapping.multipliers(matrix), states, slopes)
 
 
-def _same_equations(mapping: OrbitMap, one: Array, other: Array) -> bool:
-    """Whether two motions obey the same linear equations: contacts on the same sides all along."""
+def _same_equations(mapping: OrbitMap, first_states: Array, second_states: Array) -> bool:
+    """Whether two motions obey the same linear equations: all contacts always on the same side."""
     if mapping.affine:
         return True
     nodes, size = mapping.compiled.nodes, mapping.compiled.system.size
@@ -218,17 +218,19 @@ def _same_equations(mapping: OrbitMap, one: Array, other: Array) -> bool:
         return False
     gap, dead = nodes.gap[:, 0], has_gap(nodes)
     rows = nodes._replace(direction=nodes.direction[:, 0], error=nodes.error[:, 0])
-    places = (part[:-1, :size].reshape(-1, len(gap), size) for part in (one, other))
+    places = (
+        part[:-1, :size].reshape(-1, len(gap), size) for part in (first_states, second_states)
+    )
     first, second = (sides(compression(rows, q), gap, dead) for q in places)
     return np.array_equal(first, second)
 
 
 def finish_orbit(
-    mapping: OrbitMap, y: Array, tolerance: float, known: OrbitPoint | None = None
+    mapping: OrbitMap, y: Array, tolerance: float, reference: OrbitPoint | None = None
 ) -> OrbitPoint:
-    """Newton's method from a point near the orbit, of which another may be known."""
+    """Newton's method from a point near the orbit; ``reference`` is another point near it."""
     search = mapping.cycles
-    best = _examine(mapping, y, known)
+    best = _examine(mapping, y, reference)
     for _ in range(NEWTON_LIMIT):
         if best.error <= 0.01 * tolerance:
             break
@@ -245,17 +247,17 @@ def _good(orbit: OrbitPoint, tolerance: float) -> bool:
 
 
 def _in_one_march(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint | None:
-    """Orbit that a motion approaches whose flanks never part: its equations are linear."""
+    """Orbit that a motion approaches without separation: its equations are linear."""
     watch = FlankWatch(mapping)
-    if not watch.whole or mapping.compiled.nodes.friction_coefficients.shape[-1] > 1:
+    if not watch.single_contacts or mapping.compiled.nodes.friction_coefficients.shape[-1] > 1:
         return None
     step = APART * float(np.linalg.norm(y))
     image, matrix, states, slopes = mapping.differences(y, step)
-    room, rates = watch.rates(states, slopes)
-    if np.any(room <= 0.0) or np.any(room[:, None] + step * rates <= 0.0):
+    clearance, rates = watch.rates(states, slopes)
+    if np.any(clearance <= 0.0) or np.any(clearance[:, None] + step * rates <= 0.0):
         return None
-    told = mapping.multipliers(matrix), states, slopes
-    start = OrbitPoint(y, image - y, matrix, motion_size(mapping, states), *told, linear=True)
+    motion = mapping.multipliers(matrix), states, slopes
+    start = OrbitPoint(y, image - y, matrix, motion_size(mapping, states), *motion, linear=True)
     orbit = finish_orbit(mapping, y + start.correction, tolerance, start)
     if orbit.linear and _good(orbit, tolerance):
         return orbit if watch.stays(orbit.states, slopes, matrix, y - orbit.point) else None
@@ -265,7 +267,7 @@ def _in_one_march(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint |
 def _settle(
     mapping: OrbitMap, y: Array, periods: int, tolerance: float, unstable: OrbitPoint | None
 ) -> tuple[Array, bool, OrbitPoint | None]:
-    """March plain periods until little changes, or the orbit is known to be reached in touch."""
+    """Integrate periods until the change is small or contact is certain up to the orbit."""
     watch, candidate, spent = FlankWatch(mapping), None, 0
     for count in range(1, periods + 1):
         new, states = mapping.follow(y)
@@ -298,31 +300,31 @@ def approach_orbit(
     periods: int = _SETTLE,
     unstable: OrbitPoint | None = None,
 ) -> tuple[OrbitPoint | None, Array]:
-    """Follow a motion until it is known which stable orbit it approaches."""
-    y, settled, known = _settle(mapping, y, periods, tolerance, unstable)
-    if known is None and settled:
+    """Follow a motion until the stable orbit that it approaches is certain."""
+    y, settled, attractor = _settle(mapping, y, periods, tolerance, unstable)
+    if attractor is None and settled:
         orbit = finish_orbit(mapping, y, tolerance)
-        known = orbit if _good(orbit, tolerance) else None
-    return known, y
+        attractor = orbit if _good(orbit, tolerance) else None
+    return attractor, y
 
 
 def _attempt(
     mapping: OrbitMap, y: Array, periods: int, tolerance: float, unstable: OrbitPoint | None
 ) -> OrbitPoint:
-    """Settle and finish, with acceleration in between if it has to be."""
-    known, y = approach_orbit(mapping, y, tolerance, periods, unstable)
-    if known is not None:
-        return known
-    near, _, _ = anderson(mapping, y, tolerance=1e-3 * tolerance, limit=_ANDERSON_LIMIT)
-    return finish_orbit(mapping, near, tolerance)
+    """Let the motion settle, accelerate if necessary, and finish with Newton's method."""
+    attractor, y = approach_orbit(mapping, y, tolerance, periods, unstable)
+    if attractor is not None:
+        return attractor
+    accelerated, _, _ = anderson(mapping, y, tolerance=1e-3 * tolerance, limit=_ANDERSON_LIMIT)
+    return finish_orbit(mapping, accelerated, tolerance)
 
 
-# A motion on its way beyond all bounds overflows in norms before it is reported.
+# The norm of a diverging motion overflows before it is reported.
 @np.errstate(over="ignore", invalid="ignore")
 def find_orbit(
     mapping: OrbitMap, y: Array, tolerance: float, patience: Sequence[int] = PATIENCE
 ) -> OrbitPoint:
-    """Settle, accelerate, finish; with more and more plain marching if that is not enough."""
+    """Find an orbit from a start; each further attempt integrates more periods first."""
     if mapping.affine:
         return finish_orbit(mapping, y, tolerance)
     touching = _in_one_march(mapping, y, tolerance)
@@ -334,8 +336,8 @@ def find_orbit(
         if _good(orbit, tolerance):
             break
         unstable = orbit if orbit.error <= tolerance else None
-        # A motion leaves an unstable orbit, so the search goes on beside it.
-        beside = _SETTLED * orbit.scale * generator.standard_normal(y.size)
-        start = orbit.point if unstable is None else orbit.point + beside
+        # A motion leaves an unstable orbit, so the search continues from a point near it.
+        disturbance = _SETTLED * orbit.scale * generator.standard_normal(y.size)
+        start = orbit.point if unstable is None else orbit.point + disturbance
         orbit = _attempt(mapping, start, periods, tolerance, unstable)
     return orbit

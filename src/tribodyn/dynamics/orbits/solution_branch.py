@@ -52,7 +52,7 @@ class Branch(Record):
     Parameters
     ----------
     name : str
-        What the parameter is.
+        Name of the parameter.
     parameter : (p,) array
         Value of the parameter at each point [its unit].
     mesh_frequency : (p,) array
@@ -86,7 +86,7 @@ class Branch(Record):
     complete : bool
         Whether it left the range or closed, or has as many points as allowed.
     cycles_used : int
-        Mesh cycles that were marched.
+        Integrated mesh cycles.
     """
 
     name: str = fact(name="parameter")
@@ -125,7 +125,7 @@ class Branch(Record):
         return tuple(point for point in self.special_points if point.kind == kind)
 
     def start(self, index: int) -> tuple[Array, Array]:
-        """State of one point, from which a search or a march can start.
+        """State of one point, from which a search or an integration can start.
 
         Parameters
         ----------
@@ -143,12 +143,12 @@ class Branch(Record):
         """One line."""
         low, high = self.parameter.min(), self.parameter.max()
         marks = [point.kind for point in self.special_points]
-        told = [f"{marks.count(kind)} {kind}" for kind in dict.fromkeys(marks)]
+        counts = [f"{marks.count(kind)} {kind}" for kind in dict.fromkeys(marks)]
         cycles = f"{self.period} mesh cycle{'s' if self.period != 1 else ''}"
         return (
             f"Branch({self.parameter.size} orbits of {cycles}, {self.name} {low:.6g} to "
             f"{high:.6g}, {int(self.stable.sum())} stable"
-            + (f", {', '.join(told)}" if told else "")
+            + (f", {', '.join(counts)}" if counts else "")
             + ("" if self.complete else ", ended early")
             + ")"
         )

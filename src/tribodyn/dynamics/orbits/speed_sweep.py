@@ -1,4 +1,4 @@
-"""Steady motions over the speed: what a slow sweep meets on the way up and on the way down."""
+"""Steady motions over the speed: a slow sweep upwards and downwards."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def speed_sweep(
     output_unit: str = "N",
     progress: Progress = SILENT,
 ) -> SpeedSweep:
-    """Find the steady motions over the speed, up and down, with their stability.
+    """Compute the steady motions over the speed, upwards and downwards, with their stability.
 
     Parameters
     ----------
@@ -51,20 +51,20 @@ def speed_sweep(
     mesh_frequency : (p,) array
         Mesh frequencies, rising [Hz].
     teeth : int
-        Mesh cycles per revolution of the shaft whose speed is told; where it is left out, figures
-        are drawn over the mesh frequency.
+        Mesh cycles per revolution of the shaft whose speed is reported; by default figures show
+        the mesh frequency.
     directions : sequence of "up", "down"
-        Ways to go.
+        Directions of the sweep.
     start : (position, velocity), optional
-        State from which the first speed of every direction is marched [m or rad, m/s or rad/s];
-        by default the orbit without loss of contact, else rest.
+        State from which the integration starts at the first speed of every direction [m or rad,
+        m/s or rad/s]; by default the orbit without loss of contact, else rest.
     steps : int, optional
         Steps per mesh cycle at all speeds; by default each speed has as many as it needs
         (``omega_max * dt`` up to 0.35, at least 256).
     periods : sequence of int
         Numbers of mesh cycles after which motions may repeat.
     patience : int
-        Mesh cycles that a motion gets to settle after it has left its orbit.
+        Mesh cycles in which a motion may settle after it has left its orbit.
     tolerance : float
         Largest certified error of an orbit.
     outputs : mapping of str to (2 n,) array, optional
@@ -72,7 +72,7 @@ def speed_sweep(
     output_unit : str
         Their unit.
     progress : Progress
-        Told about the speeds.
+        Receives the progress over the speeds.
 
     Raises
     ------
@@ -84,11 +84,11 @@ def speed_sweep(
     Notes
     -----
     Without dead zones the map over a mesh cycle is linear: all speeds and all columns of their
-    matrices are marched side by side, and an orbit may be unstable. With dead zones this gives
+    matrices are integrated in one batch, and an orbit may be unstable. With dead zones this gives
     the orbits without loss of contact; each direction then follows its motion from speed to speed
-    with Newton's method, and where it is lost or becomes unstable, the motion is marched on from
-    the last one until it repeats: a jump, or a motion of several mesh cycles. Unlike
-    :func:`continuation` it shows stable motions only and does not turn back at a fold.
+    with Newton's method. Where the motion is lost or becomes unstable, it is integrated from the
+    last orbit until it repeats: a jump, or a motion of several mesh cycles. Unlike
+    :func:`continuation` a sweep shows stable motions only and does not turn back at a fold.
 
     Examples
     --------
@@ -103,17 +103,17 @@ def speed_sweep(
     require_positive("mesh_frequency", frequency, "Hz")
     if frequency.ndim != 1 or np.any(np.diff(frequency) <= 0.0):
         why = "A sweep goes through them in order"
-        remedy = "Sort them; the direction is the matter of directions"
+        remedy = "Sort them, and choose the direction by the argument directions"
         raise InputError("the mesh frequencies do not rise", "argument mesh_frequency", why, remedy)
     if not directions or any(each not in ("up", "down") for each in directions):
         what, why = f"directions = {directions}", '"up", "down" or both'
         raise InputError(what, "argument directions", why, "Choose one or two of these")
     require_positive("teeth", teeth)
     require_positive("patience", patience)
-    known, systems = systems_by_frequency(system)
+    table_frequencies, systems = systems_by_frequency(system)
     linear = read_outputs(outputs, systems[0])
     tables = Tables(systems, 1, float(frequency[0]), steps)
-    family = SpeedFamily(tables, known, frequency)
+    family = SpeedFamily(tables, table_frequencies, frequency)
     followed = _follow_all(
         family, directions, start, tolerance, patience, sorted({1, *periods}), progress
     )
@@ -144,20 +144,20 @@ def _follow_all(
         progress.advance(count)
         progress.finish()
         return [orbits] * len(directions)
-    valid = _shut(family, closed.point, closed.error <= tolerance)
+    valid = _in_contact(family, closed.point, closed.error <= tolerance)
     begin = None
     if start is not None:
         begin = family.mapping(0, 1).start(read_start(family.system, start))
     follower = Follower(family, closed, valid, tolerance, patience, periods)
     lock = Lock()
 
-    def told() -> None:
+    def report_speed() -> None:
         with lock:
             progress.advance()
 
     def follow_direction(direction: str) -> list[Followed]:
         order = range(count) if direction == "up" else range(count)[::-1]
-        met = follow(follower, order, begin, told)
+        met = follow(follower, order, begin, report_speed)
         return met if direction == "up" else met[::-1]
 
     followed = in_threads(follow_direction, directions, len(directions))
@@ -165,11 +165,14 @@ def _follow_all(
     return followed
 
 
-def _shut(family: SpeedFamily, point: Array, converged: Mask) -> Mask:
-    """Tell at which speeds an orbit was found that never leaves the driving flanks."""
+def _in_contact(family: SpeedFamily, point: Array, converged: Mask) -> Mask:
+    """Mark the speeds with a converged orbit that never leaves the driving flanks."""
     number = np.flatnonzero(converged)
-    one, none = np.ones(number.size, dtype=np.int64), np.zeros((0, 2 * family.system.size))
-    figures = family.statistics(number, point[number], one, 1, none)
+    periods, no_outputs = (
+        np.ones(number.size, dtype=np.int64),
+        np.zeros((0, 2 * family.system.size)),
+    )
+    figures = family.statistics(number, point[number], periods, 1, no_outputs)
     contacts = len(family.system.contacts)
     lost = figures[contacts : 2 * contacts, 4].max(axis=0)
     valid = np.zeros(converged.size, dtype=bool)
@@ -255,7 +258,7 @@ def _jumps(
 
 @dataclass(frozen=True)
 class Jump:
-    """Where the motion of a slow sweep leaves its orbit.
+    """Speed at which the motion of a slow sweep leaves its orbit.
 
     Parameters
     ----------
@@ -282,9 +285,9 @@ class SpeedSweep(Record):
     mesh_frequency : (p,) array
         Mesh frequencies [Hz].
     teeth : int
-        Mesh cycles per revolution of the shaft whose speed is told.
+        Mesh cycles per revolution of the shaft whose speed is reported.
     directions : tuple of str
-        ``"up"`` and ``"down"``, as far as they were asked for; ``b`` of them.
+        The requested ones of ``"up"`` and ``"down"``; ``b`` of them.
     signals : tuple of str
         Names of the signals: compressions, contact forces, accelerations, outputs.
     units : tuple of str
@@ -296,7 +299,7 @@ class SpeedSweep(Record):
     contact_loss : (b, p, contacts) array
         Part of the time off the driving flank [-].
     period : (b, p) int array
-        Mesh cycles after which the motion repeats; 0 if it was not found to.
+        Mesh cycles after which the motion repeats; 0 if it does not.
     stable : (b, p) bool array
         Whether all multipliers lie inside the unit circle.
     floquet_multipliers : (b, p, m) complex array
@@ -308,7 +311,7 @@ class SpeedSweep(Record):
     extra_force : (b, p, n) array
         Generalized force that balances the drive [N or N*m].
     jumps : tuple of Jump
-        Where the motion left its orbit.
+        Speeds at which the motion left its orbit.
     names : tuple of str
         Names of the coordinates.
     step_number : float
@@ -367,7 +370,7 @@ class SpeedSweep(Record):
             If there is no such signal.
         """
         if signal not in self.signals:
-            why = f"There are {', '.join(self.signals)}"
+            why = f"The signals are {', '.join(self.signals)}"
             raise InputError(f'no signal "{signal}"', "argument signal", why, "Choose one of these")
         return self.signals.index(signal)
 
@@ -381,16 +384,16 @@ class SpeedSweep(Record):
             ("that do not repeat", int(np.count_nonzero(self.period == 0))),
             ("with loss of contact", int(np.count_nonzero(self.contact_loss.max(-1, initial=0)))),
         ]
-        told = ", ".join(f"{count} {words}" for words, count in marks if count)
+        summary = ", ".join(f"{count} {label}" for label, count in marks if count)
         return (
             f"SpeedSweep({self.mesh_frequency.size} speeds, {low:.6g} to {high:.6g} Hz, "
-            f"{' and '.join(self.directions)}{': ' if told else ''}{told})"
+            f"{' and '.join(self.directions)}{': ' if summary else ''}{summary})"
         )
 
     def _parts(self) -> Parts:
         variables, coordinates, _ = parts = super()._parts()
-        both = ("direction", "mesh_frequency", "multiplier")
-        variables["multiplier_real"] = (both, self.floquet_multipliers.real, {"units": "1"})
-        variables["multiplier_imaginary"] = (both, self.floquet_multipliers.imag, {"units": "1"})
+        axes = ("direction", "mesh_frequency", "multiplier")
+        variables["multiplier_real"] = (axes, self.floquet_multipliers.real, {"units": "1"})
+        variables["multiplier_imaginary"] = (axes, self.floquet_multipliers.imag, {"units": "1"})
         coordinates["speed"] = ("mesh_frequency", self.speed, {"units": "rad/s"})
         return parts

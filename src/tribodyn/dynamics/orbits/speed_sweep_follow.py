@@ -1,4 +1,4 @@
-"""Following the motion from speed to speed as a slow run does: along an orbit until it is lost."""
+"""Follow the motion from speed to speed as in a slow sweep: along an orbit until it is lost."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weig
 from tribodyn.errors import ComputationError
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
-#: Mesh cycles between two looks at a motion that has left its orbit.
+#: Mesh cycles between two checks of a motion that has left its orbit.
 _LOOK = 24
-#: Rounds of Newton's method from rest: while the flanks are in touch, the first one arrives.
+#: Iterations of Newton's method from rest: while the flanks are in contact, one is enough.
 _FROM_REST = 3
 #: A motion that repeats within this is near its orbit; a part of a period that does so is one.
 _NEAR, _SAME = 5e-3, 1e-5
-#: Longest way to an orbit over what is expected, and how much closer a motion has to come.
+#: Longest distance to an orbit over the expected one, and the factor by which it has to fall.
 _REACH, _CLOSER = 10.0, 0.98
-#: A way between two motions that is this part of their size may be a jump.
+#: A distance between two motions beyond this part of their size may be a jump.
 _JUMP = 0.003
 #: A multiplier beyond this is unstable.
 _UNSTABLE = 1.0 + 1e-7
-#: How much of the patience a motion gets that did not repeat at the speed before.
+#: Part of the patience for a motion that did not repeat at the previous speed.
 _IRREGULAR = 0.25
 
 
 class SpeedFamily:
     """One system, or several over the speed, at the speeds of a sweep."""
 
-    def __init__(self, tables: Tables, known: Array, frequency: Array) -> None:
+    def __init__(self, tables: Tables, table_frequencies: Array, frequency: Array) -> None:
         self.tables, self.frequency = tables, frequency
         self.system = tables.systems[0]
         self._compiled: dict[tuple[int, int, float], Compiled] = {}
         self._key = []
         for beat in frequency:
-            left, part = blend_weight(known, float(beat))
+            left, part = blend_weight(table_frequencies, float(beat))
             self._key.append((tables.steps_at(float(beat)), left, part))
         lowest = float(frequency.min())
         self.coordinates = orbit_coordinates(self.compiled(int(np.argmin(frequency))), lowest)
@@ -77,13 +77,13 @@ class SpeedFamily:
         return [np.array(group, dtype=np.int64) for group in groups.values()]
 
     def all_at_once(self, tolerance: float) -> Orbits:
-        """Newton's method from rest at all speeds side by side."""
+        """Newton's method from rest at all speeds in one batch."""
         start = np.array([self.start(number) for number in range(self.frequency.size)])
         size = start.shape[1]
         orbits = Orbits(start, np.zeros((*start.shape, size)), np.zeros(len(start)))
         for group in self.groups():
-            known = newton(self.mapping(group, 1), start[group], tolerance, _FROM_REST)
-            for values, new in zip(orbits, known, strict=True):
+            group_orbits = newton(self.mapping(group, 1), start[group], tolerance, _FROM_REST)
+            for values, new in zip(orbits, group_orbits, strict=True):
                 values[group] = new
         return orbits
 
@@ -102,7 +102,7 @@ class SpeedFamily:
     def statistics(
         self, number: Index, y: Array, periods: Index, cycles: int, outputs: Array
     ) -> Array:
-        """March motions over their periods and gather their figures."""
+        """Integrate motions over their periods and compute their figures."""
         contacts, others = len(self.system.contacts), self.system.size + len(outputs)
         figures = np.empty((2 * contacts + others, 5, number.size))
         state, extra = self.split(number, y, periods)
@@ -131,7 +131,7 @@ def _blended(table: Table, left: int, part: float) -> tuple[Program, float]:
 
 
 class Followed:
-    """What was met at one speed."""
+    """Motion at one speed."""
 
     def __init__(
         self,
@@ -151,7 +151,7 @@ class Followed:
 
 
 def _orbit_near(mapping: OrbitMap, y: Array, tolerance: float) -> Followed | None:
-    """Orbit that Newton's method finds from a point."""
+    """Orbit to which Newton's method converges from a point, or None."""
     orbit = newton(mapping, y[None], tolerance)
     error = float(orbit.error[0])
     if not error <= tolerance:
@@ -161,7 +161,7 @@ def _orbit_near(mapping: OrbitMap, y: Array, tolerance: float) -> Followed | Non
 
 
 def _march(mapping: OrbitMap, y: Array, cycles: int) -> Array:
-    """March plainly, with the balancing torque brought up at the end."""
+    """Integrate mesh cycles, and update the balancing torque in the last one."""
     if cycles > 1:
         most = mapping.over(cycles - 1)
         y = mapping.rescaled(most(most.rescaled(y, 1)), cycles - 1)
@@ -169,7 +169,7 @@ def _march(mapping: OrbitMap, y: Array, cycles: int) -> Array:
 
 
 class Follower:
-    """Finds the motion of one speed from that of the speed before."""
+    """Find the motion of one speed from that of the previous speed."""
 
     def __init__(
         self,
@@ -184,7 +184,7 @@ class Follower:
         self.tolerance, self.patience, self.periods = tolerance, patience, sorted(periods)
 
     def shut(self, number: int) -> Followed | None:
-        """Orbit of a speed at which the teeth stay in touch, if it is known and stable."""
+        """Stable orbit of a speed without loss of contact, or None."""
         if self.closed is None or not self.valid[number]:
             return None
         mapping = self.family.mapping(number, 1)
@@ -194,14 +194,14 @@ class Follower:
         return orbit if orbit.stable else None
 
     def is_shut(self, number: int, orbit: Followed) -> bool:
-        """Tell whether an orbit is the one at which the teeth stay in touch."""
+        """Whether an orbit is the one without loss of contact."""
         if self.closed is None or not self.valid[number] or orbit.period != 1:
             return False
         away = float(np.linalg.norm(orbit.point - self.closed.point[number]))
         return away <= _SAME * float(np.linalg.norm(orbit.point))
 
     def continued(self, number: int, last: Followed, guess: Array) -> Followed | None:
-        """Orbit that continues that of the speed before."""
+        """Orbit that continues the one of the previous speed, or None."""
         mapping = self.family.mapping(number, last.period)
         orbit = _orbit_near(mapping, guess, self.tolerance)
         if orbit is None and guess is not last.point:
@@ -213,7 +213,7 @@ class Follower:
         return orbit
 
     def _shortest(self, number: int, orbit: Followed) -> Followed:
-        """Take an orbit of several mesh cycles for what it is: it may repeat sooner."""
+        """Reduce an orbit of several mesh cycles to its shortest period."""
         for periods in self.periods:
             if periods < orbit.period and orbit.period % periods == 0:
                 mapping = self.family.mapping(number, periods)
@@ -224,22 +224,22 @@ class Follower:
         return orbit
 
     def lost(self, number: int, y: Array, patience: int) -> Followed:
-        """March on until the motion repeats, and find the orbit that it has come to."""
+        """Integrate until the motion repeats, and find the orbit that it has reached."""
         mapping = self.family.mapping(number, 1)
         marched = 0
         while marched < patience:
             y = _march(mapping, y, _LOOK)
             marched += _LOOK
             ahead = y
-            near: list[tuple[int, float]] = []
+            candidates: list[tuple[int, float]] = []
             for count in range(1, max(self.periods) + 1):
                 ahead = mapping(ahead)
                 away = float(np.linalg.norm(mapping.states(ahead - y)))
                 if count in self.periods and away <= _NEAR * float(np.linalg.norm(y)):
-                    near.append((count, away))
-            for periods, away in near:
-                whole = self.family.mapping(number, periods)
-                orbit = _orbit_near(whole, whole.rescaled(y, 1), self.tolerance)
+                    candidates.append((count, away))
+            for periods, away in candidates:
+                period_map = self.family.mapping(number, periods)
+                orbit = _orbit_near(period_map, period_map.rescaled(y, 1), self.tolerance)
                 if orbit is not None and orbit.stable and self._arrives(mapping, y, orbit, away):
                     orbit.jumped = True
                     return self._again(number, orbit)
@@ -247,7 +247,7 @@ class Follower:
         return Followed(y, none, float("nan"), 0, True)
 
     def _arrives(self, mapping: OrbitMap, y: Array, orbit: Followed, away: float) -> bool:
-        """Tell whether a marched motion goes to the orbit that Newton's method found from it."""
+        """Whether a motion converges to the orbit that Newton's method found from it."""
         before = float(np.linalg.norm(mapping.states(orbit.point - y)))
         size = float(np.linalg.norm(orbit.point))
         if before <= _SAME * size:
@@ -268,7 +268,7 @@ class Follower:
 
 
 def follow(
-    follower: Follower, order: Sequence[int], start: Array | None, told: Callable[[], None]
+    follower: Follower, order: Sequence[int], start: Array | None, report_speed: Callable[[], None]
 ) -> list[Followed]:
     """Follow the motion over the speeds in one direction."""
     family = follower.family
@@ -296,12 +296,12 @@ def follow(
                 orbit = _settled(follower, number, begin, share)
                 orbit.jumped = _is_jump(done, orbit)
         done.append(orbit)
-        told()
+        report_speed()
     return done
 
 
 def _is_jump(done: Sequence[Followed], orbit: Followed) -> bool:
-    """Tell a jump from a bend: the way from the last motion is long, and longer than the last."""
+    """Whether the distance from the last motion is large, and large compared with the previous."""
     last = done[-1]
     if last.period == 0 or orbit.period == 0:
         return last.period != orbit.period
@@ -318,14 +318,14 @@ def _settled(follower: Follower, number: int, begin: Array, share: float = 1.0) 
     try:
         return follower.lost(number, begin, patience)
     except ComputationError:
-        # The motion grew beyond all bounds: begin again at rest.
+        # The motion diverged: restart at rest.
         return follower.lost(number, follower.family.start(number), patience)
 
 
 def _guess(frequency: Array, order: Sequence[int], place: int, done: Sequence[Followed]) -> Array:
-    """Continue the last two orbits in a straight line where they belong together."""
+    """Extrapolate the last two orbits linearly if they belong to the same branch."""
     last = done[-1]
     if place < 2 or last.jumped or done[-2].period != last.period:
         return last.point
-    here, before, old = (float(frequency[order[place - k]]) for k in (0, 1, 2))
-    return last.point + (last.point - done[-2].point) * ((here - before) / (before - old))
+    current, before, old = (float(frequency[order[place - k]]) for k in (0, 1, 2))
+    return last.point + (last.point - done[-2].point) * ((current - before) / (before - old))

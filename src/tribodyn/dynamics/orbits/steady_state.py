@@ -1,9 +1,9 @@
-"""Periodic orbits: the steady state found directly, with a certified error.
+"""Periodic orbits: the steady state computed directly, with a certified error.
 
 The map of the state over the mesh cycles of one period has the orbit as its fixed point. Newton's
-method with the full matrix of the map (the monodromy matrix, one marched lane per column) finds
-it, after plain cycles where dead zones leave a choice of orbits, and after Anderson-accelerated
-iteration where the motion does not settle. The same matrix gives the Floquet
+method with the full matrix of the map (the monodromy matrix, one lane per column) finds it: after
+integrated cycles where dead zones allow several orbits, and after Anderson-accelerated iteration
+where the motion does not settle. The same matrix gives the Floquet
 multipliers and the error: the residual alone understates the distance to the orbit by a factor
 1/(1 - rho), where rho is the largest multiplier.
 """
@@ -34,7 +34,7 @@ from tribodyn.types import Array
 
 #: An orbit whose certified error is above this is not converged.
 TOLERANCE = 1e-8
-#: Distance to the orbit at half the step, over the size of the orbit, that is told.
+#: Distance to the orbit at half the step, over the size of the orbit, that causes a warning.
 STEP_LIMIT = 1e-2
 
 
@@ -61,12 +61,12 @@ def steady_state(
         Mesh cycles after which the motion repeats. With ``"auto"`` the motion from the start is
         followed, and the stable orbit of up to 8 mesh cycles that it approaches is returned.
     start : (position, velocity), optional
-        Two (n,) arrays from which to look [m or rad, m/s or rad/s]; the static equilibrium at
-        mean stiffness by default.
+        Two (n,) arrays from which the search starts [m or rad, m/s or rad/s]; the static
+        equilibrium at mean stiffness by default.
     tolerance : float
         Largest certified error of a converged orbit.
     progress : Progress
-        Told about the search.
+        Receives the progress of the search.
 
     Returns
     -------
@@ -74,8 +74,8 @@ def steady_state(
         With ``steps * periods`` rows, ``error``, ``step_error``, ``converged``, ``stable``,
         ``floquet_multipliers`` and ``period``, the mesh cycles after which it repeats. A warning
         is issued when the orbit is not converged (``steady-state``) or not stable
-        (``unstable-orbit``), when that at half the step is more than 1 % of its size away
-        (``step-size``), or when the forces speed the whole drive up (``unbalanced-drive``).
+        (``unstable-orbit``), when the orbit at half the step differs by more than 1 % of its size
+        (``step-size``), or when the forces accelerate the whole drive (``unbalanced-drive``).
 
     Raises
     ------
@@ -87,9 +87,9 @@ def steady_state(
     Notes
     -----
     With ``system.balance`` the size of the balancing torque is an unknown of the orbit and is
-    returned in ``extra_force``; without it every force is held and the mean acceleration of the
-    whole drive is left out of the orbit. With dead zones the start decides which of several
-    orbits is found. If the search ends on an unstable orbit, it is repeated from beside it.
+    returned in ``extra_force``; without it the forces are as prescribed and the mean acceleration
+    of the whole drive is left out of the orbit. With dead zones the start decides which of several
+    orbits is found. If the search ends on an unstable orbit, it is repeated from a point near it.
 
     Examples
     --------
@@ -108,12 +108,12 @@ def steady_state(
     progress.start("Steady motion", None)
     if count is None:
         any_orbit = find_any_orbit(mapping, y, tolerance)
-        mapping, orbit, apart = any_orbit.mapping, any_orbit.orbit, any_orbit.apart
+        mapping, orbit, recurrence = any_orbit.mapping, any_orbit.orbit, any_orbit.recurrence
         mapping.cycles = any_orbit.cycles
     else:
-        orbit, apart = find_orbit(mapping, y, tolerance), np.zeros(0)
+        orbit, recurrence = find_orbit(mapping, y, tolerance), np.zeros(0)
     progress.finish()
-    return _finish(mapping, orbit, mesh_frequency, tolerance, apart)
+    return _finish(mapping, orbit, mesh_frequency, tolerance, recurrence)
 
 
 def _whole_periods(periods: int | str) -> int | None:
@@ -123,10 +123,10 @@ def _whole_periods(periods: int | str) -> int | None:
     return require_whole("periods", periods, why='"auto", or')
 
 
-def _told_step(mapping: OrbitMap, cost: float) -> str:
+def _step_message(mapping: OrbitMap, cost: float) -> str:
     steps, number = mapping.compiled.grid.steps, mapping.compiled.step_number
     finding = (
-        f"the motion is {100.0 * cost:.2g} % of its size away from that at half the step"
+        f"the motion differs from that at half the step by {100.0 * cost:.2g} % of its size"
         if np.isfinite(cost)
         else "this motion does not exist at half the step"
     )
@@ -136,27 +136,27 @@ def _told_step(mapping: OrbitMap, cost: float) -> str:
     )
 
 
-def _advice(mapping: OrbitMap, apart: Array) -> str:
-    """What to do where no stable orbit was found."""
-    if np.isinf(apart).any():
-        return "The motion itself was marched on and grows without bounds: nothing holds it"
-    if apart.size:
-        listed = ", ".join(f"{value:.1e}" for value in apart)
+def _advice(mapping: OrbitMap, recurrence: Array) -> str:
+    """Diagnosis and remedy where no stable orbit was found."""
+    if np.isinf(recurrence).any():
+        return "The motion itself was integrated further and grows without bounds"
+    if recurrence.size:
+        listed = ", ".join(f"{value:.1e}" for value in recurrence)
         return (
-            f"The motion itself was marched on: it is {listed} of its size away from where it was "
-            f"1 to {apart.size} mesh cycles before. It repeats later, is quasi-periodic or "
-            "chaotic: tribodyn.analysis.lyapunov_exponents tells"
+            f"The motion itself was integrated further: its distance from itself 1 to "
+            f"{recurrence.size} mesh cycles earlier is {listed} of its size. It has a longer "
+            "period, is quasi-periodic or chaotic: check with tribodyn.analysis.lyapunov_exponents"
         )
     if mapping.affine:
-        return "The system is linear, so that its motion grows without bounds"
+        return "The system is linear, so its motion grows without bounds"
     return (
         'Try periods = "auto" and other starts; if no orbit of up to 8 mesh cycles is stable, '
-        "march over time, and let tribodyn.analysis.lyapunov_exponents tell whether it is chaos"
+        "simulate over time, and check for chaos with tribodyn.analysis.lyapunov_exponents"
     )
 
 
 def _finish(
-    mapping: OrbitMap, orbit: OrbitPoint, frequency: float, tolerance: float, apart: Array
+    mapping: OrbitMap, orbit: OrbitPoint, frequency: float, tolerance: float, recurrence: Array
 ) -> Response:
     error = max(orbit.error, float(np.finfo(float).eps))
     converged = bool(np.isfinite(error) and error <= tolerance)
@@ -164,20 +164,20 @@ def _finish(
         warn(
             "steady-state",
             f"no periodic orbit of {mapping.periods} mesh cycle(s) was found: certified error "
-            f"{error:.2e}, limit {tolerance:.0e}. {_advice(mapping, apart)}",
+            f"{error:.2e}, limit {tolerance:.0e}. {_advice(mapping, recurrence)}",
             stacklevel=3,
         )
     elif np.abs(orbit.multipliers[0]) > 1.0:
         warn(
             "unstable-orbit",
-            f"the orbit exists but a motion leaves it: largest multiplier "
-            f"{np.abs(orbit.multipliers[0]):.6g}, limit 1. {_advice(mapping, apart)}",
+            f"the orbit is unstable: largest Floquet multiplier "
+            f"{np.abs(orbit.multipliers[0]):.6g}, limit 1. {_advice(mapping, recurrence)}",
             stacklevel=3,
         )
     states, extra = mapping.without_drift(orbit.states.copy()), mapping.split(orbit.point)[1][0]
     cost = step_error(mapping, orbit, frequency) if converged else float("nan")
     if cost > STEP_LIMIT:
-        warn("step-size", _told_step(mapping, cost), stacklevel=3)
+        warn("step-size", _step_message(mapping, cost), stacklevel=3)
     return build_response(
         mapping.compiled,
         frequency,
@@ -193,14 +193,14 @@ def _finish(
     )
 
 
-#: Rounds with the matrix of the coarse orbit, and the part of the way that the last may still go.
+#: Iterations with the matrix of the coarse orbit, and the largest part of the way of the last one.
 ROUNDS, CLOSE = 6, 0.02
 #: An orbit this far away, over its size, is another one.
 OTHER = 0.5
 
 
 def step_error(mapping: OrbitMap, orbit: OrbitPoint, mesh_frequency: float) -> float:
-    """Greatest distance of an orbit to that at half the step over its size; else infinite."""
+    """Largest distance of an orbit to that at half the step, over its size; infinite if none."""
     # The scheme is of fourth order: the orbit at half the step is sixteen times as near to that of
     # the equations, and so near to this one that few periods lead to it.
     fine = copy(mapping)
@@ -224,19 +224,19 @@ def step_error(mapping: OrbitMap, orbit: OrbitPoint, mesh_frequency: float) -> f
             break
         point = point + step
         if way <= CLOSE * moved or way <= 1e-9 * orbit.scale:
-            if orbit.linear:  # What is left of the way moves both motions alike.
-                rest = orbit.slopes.reshape(-1, step.size) @ step
-                return _apart(mapping, orbit, states[::2] + rest.reshape(orbit.states.shape))
-            return _apart(mapping, orbit, fine.follow(point)[1][::2])
-    found = finish_orbit(fine, orbit.point, 1e-6)
-    same = np.linalg.norm(found.point - orbit.point) <= OTHER * orbit.scale
-    if not (same and found.error <= 1e-6):
+            if orbit.linear:  # The remaining distance shifts both motions by the same amount.
+                offset = orbit.slopes.reshape(-1, step.size) @ step
+                return _distance(mapping, orbit, states[::2] + offset.reshape(orbit.states.shape))
+            return _distance(mapping, orbit, fine.follow(point)[1][::2])
+    fine_orbit = finish_orbit(fine, orbit.point, 1e-6)
+    same = np.linalg.norm(fine_orbit.point - orbit.point) <= OTHER * orbit.scale
+    if not (same and fine_orbit.error <= 1e-6):
         return float("inf")
-    return _apart(mapping, orbit, found.states[::2])
+    return _distance(mapping, orbit, fine_orbit.states[::2])
 
 
-def _apart(mapping: OrbitMap, orbit: OrbitPoint, states: Array) -> float:
-    """Greatest distance at the ends of the whole steps; free motions of the drive do not count."""
+def _distance(mapping: OrbitMap, orbit: OrbitPoint, states: Array) -> float:
+    """Largest distance at the ends of the full steps, without free motions of the drive."""
     size = motion_size(mapping, states)
     coarse, fine = (mapping.coordinates.reduce(part) for part in (orbit.states, states))
     return float(np.linalg.norm(fine - coarse, axis=1).max()) / size

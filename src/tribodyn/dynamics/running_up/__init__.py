@@ -1,12 +1,12 @@
-"""Motions whose speed changes: run-ups and run-downs.
+"""Motions with varying speed: run-ups and run-downs.
 
-The public names stand on the page of :mod:`tribodyn.dynamics`.
+The public names are those of :mod:`tribodyn.dynamics`.
 
-| module | what it answers |
+| module | content |
 |---|---|
 | ``run_up`` | the motion while the speed changes as prescribed |
-| ``run_up_profile`` | when each mesh phase is reached |
-| ``run_up_tables`` | grids and tables that follow the speed |
-| ``run_up_march`` | the march over the cycles, and the samples kept of it |
+| ``run_up_profile`` | prescribed speed, and time over mesh phase |
+| ``run_up_tables`` | grids and row tables that follow the speed |
+| ``run_up_march`` | integration cycle by cycle, and the recorded samples |
 | ``run_up_result`` | samples and figures of every mesh cycle |
 """

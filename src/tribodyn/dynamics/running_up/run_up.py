@@ -24,7 +24,7 @@ from tribodyn.errors import ComputationError, InputError, quiet, require_positiv
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
-#: Mesh cycles whose pace is found at a time.
+#: Mesh cycles whose pace is computed at a time.
 _CHUNK = 64
 
 
@@ -42,37 +42,37 @@ def run_up(
     rotation: ArrayLike | None = None,
     progress: Progress = SILENT,
 ) -> RunUp:
-    """March a system while its speed changes as prescribed.
+    """Integrate a system while its speed changes as prescribed.
 
     Parameters
     ----------
     system : System or mapping of float to System
         One system, or several by mesh frequency [Hz] where friction, stiffness or loads change
-        with the speed: between two of them the rows are blended in a straight line.
+        with the speed: between two of them the rows are interpolated linearly.
     profile : SpeedProfile, (time, mesh_frequency) or function
         Mesh frequency [Hz] over time [s]: :func:`speed_ramp`, corners of straight lines, or a
         vectorized function of time.
     duration : float, optional
         Length of the run [s], for a function of time.
     teeth : int
-        Mesh cycles per revolution of the shaft whose speed is told.
+        Mesh cycles per revolution of the shaft whose speed is reported.
     start : (position, velocity), optional
         Two (n,) arrays [m or rad, m/s or rad/s]; the steady state at the first speed by default.
     steps : int, optional
         Steps per mesh cycle at all speeds; by default each speed has as many as it needs
         (``omega_max * dt`` up to 0.35, at least 256).
     samples : int
-        Equally spaced samples of each mesh cycle that are kept. What lies above mesh order
-        ``samples / 2`` folds down.
+        Equally spaced samples of each mesh cycle that are recorded. Content above mesh order
+        ``samples / 2`` is aliased.
     outputs : mapping of str to (2 n,) array, optional
         Further linear outputs of (position, velocity), for example bearing forces [N/m, N*s/m].
     output_unit : str
         Their unit.
     rotation : (n,) array, optional
-        Derivative of the coordinates with respect to the angle of the shaft [rad/rad]. Given, the
+        Derivative of the coordinates with respect to the angle of the shaft [rad/rad]. With it the
         inertia of the prescribed acceleration loads the structure.
     progress : Progress
-        Told about the mesh cycles.
+        Receives the progress over the mesh cycles.
 
     Raises
     ------
@@ -83,17 +83,17 @@ def run_up(
 
     Notes
     -----
-    The motion is marched in the mesh phase, so that events stay grid points at every speed: each
-    step takes the time in which the prescribed speed passes its width, exactly. The classical
+    The motion is integrated over the mesh phase, so that events are grid points at every speed:
+    each step takes exactly the time in which the prescribed speed passes its width. The classical
     Runge-Kutta scheme keeps its fourth order, and steps in which a contact opens or closes are
     split as at constant speed.
 
-    The mean motion is prescribed. Where friction unbalances the torques, ``system.balance`` says
-    which torque follows: it takes away what the drive gained in the last cycles (a weak servo of
-    eight cycles, whose mean at a constant speed is that of :func:`steady_state`). Without it the
-    mean acceleration of the whole drive is left out.
+    The mean motion is prescribed. Where friction unbalances the torques, ``system.balance`` defines
+    the torque that compensates the velocity which the drive gained in the last cycles (a weak servo
+    of eight cycles, whose mean at a constant speed is that of :func:`steady_state`). Without it
+    the mean acceleration of the whole drive is left out.
 
-    The last mesh cycle is finished at the last speed.
+    The last mesh cycle is completed at the last speed.
 
     Examples
     --------
@@ -115,12 +115,12 @@ def run_up(
     )
     state = _begin(marcher, path, start)
     count = max(math.ceil(path.cycles - 1e-9), 1)
-    kept = Samples(systems, frequency, count, int(samples))
+    collector = Samples(systems, frequency, count, int(samples))
     progress.start("Mesh cycles of the run-up", count)
-    figures = _march(marcher, path, count, state, kept, progress)
+    figures = _march(marcher, path, count, state, collector, progress)
     progress.finish()
     return RunUp(
-        **kept.series(linear),
+        **collector.series(linear),
         names=tuple(first.names),
         output_names=tuple(outputs or ()),
         output_unit=output_unit,
@@ -138,32 +138,36 @@ def _march(
     path: SpeedProfile,
     count: int,
     state: Array,
-    kept: Samples,
+    collector: Samples,
     progress: Progress,
 ) -> tuple[Array, Array, list[int], float]:
-    """March all cycles: their moments, extra forces and steps, and the largest step number."""
+    """Integrate all cycles: their moments, extra forces and steps, and the largest step number."""
     moments, extras, used, largest = [], [], [], 0.0
     for table, begin, end in _chunks(marcher.tables, path, count):
         pace = Pace.over(path, table, begin, end - begin)
         record = np.empty((table.grid.steps + 1, state.size, 1))
         period = pace.time[:, -1] - pace.time[:, 0]
         rate = np.diff(path.frequency_at(pace.time[:, [0, -1]]))[:, 0] / period
-        chunk = np.empty((end - begin, table.kept.size, state.size))
+        chunk = np.empty((end - begin, table.sample_steps.size, state.size))
         ends = np.empty((end - begin, state.size))
-        for here in range(end - begin):
-            program = marcher.program(table, pace, here, 1.0 / period[here])
+        for number in range(end - begin):
+            program = marcher.program(table, pace, number, 1.0 / period[number])
             state = marcher.without_free_motion(state)
-            marcher.time = float(pace.time[here, 0])
-            state, found, extra = marcher.cycle(program, period[here], rate[here], state, record)
-            chunk[here], ends[here] = record[table.kept, :, 0], state
-            moments.append(found)
+            marcher.time = float(pace.time[number, 0])
+            state, cycle_moments, extra = marcher.cycle(
+                program, period[number], rate[number], state, record
+            )
+            chunk[number], ends[number] = record[table.sample_steps, :, 0], state
+            moments.append(cycle_moments)
             extras.append(extra)
         used += [table.grid.steps] * (end - begin)
         largest = max(largest, table.step_number * float(period.max()))
-        time = pace.time[:, table.kept]
+        time = pace.time[:, table.sample_steps]
         _take_drift(marcher, chunk, ends, (time - pace.time[:, :1]) / period[:, None], period)
         weights = [marcher.weights(1.0 / each) for each in period]
-        kept.add(table, begin, time, path.frequency_at(time), chunk, weights, extras[begin:end])
+        collector.add(
+            table, begin, time, path.frequency_at(time), chunk, weights, extras[begin:end]
+        )
         progress.advance(end - begin)
     return np.array(moments).T, np.array(extras), used, largest
 
@@ -194,7 +198,7 @@ def _inertia(system: System, rotation: ArrayLike | None, teeth: int) -> Array:
     turning = np.asarray(rotation, dtype=float)
     if turning.shape != (system.size,):
         what = f"rotation has the shape {turning.shape}, not ({system.size},)"
-        why = "It says how fast each coordinate turns with the shaft"
+        why = "It is the rotation of each coordinate per rotation of the shaft"
         raise InputError(what, "argument rotation", why, "Give one number for each coordinate")
     return np.asarray(-np.asarray(system.mass) @ turning * (2.0 * np.pi / teeth))
 
@@ -202,14 +206,14 @@ def _inertia(system: System, rotation: ArrayLike | None, teeth: int) -> Array:
 def _begin(
     marcher: CycleMarcher, path: SpeedProfile, start: tuple[ArrayLike, ArrayLike] | None
 ) -> Array:
-    """State at the beginning; the balancing torque of a steady state is kept."""
+    """State at the start; the marcher takes over the balancing torque of a steady state."""
     beat = float(path.frequency_at(0.0))
     left, part = marcher.weights(beat)
     system = marcher.systems[left + round(part)]
     if start is not None:
         return read_start(system, start)
     with quiet():
-        # A motion that does not repeat is as good a beginning as any other.
+        # A start that is not periodic is acceptable.
         orbit = steady_state(system, beat, steps=marcher.tables.steps_at(beat))
     if orbit.converged and marcher.balance is not None:
         marcher.hold(orbit.extra_force)
@@ -217,7 +221,7 @@ def _begin(
 
 
 def _chunks(tables: Tables, path: SpeedProfile, count: int) -> Any:
-    """Runs of mesh cycles on one grid: table, first cycle, one past the last."""
+    """Yield runs of mesh cycles on one grid: table, first cycle, one past the last."""
     time = path.time_at(np.arange(count + 1))
     ends = path.frequency_at(time)
     slowest = np.minimum(ends[1:], ends[:-1])
@@ -238,13 +242,13 @@ def _chunks(tables: Tables, path: SpeedProfile, count: int) -> Any:
 def _take_drift(
     marcher: CycleMarcher, states: Array, ends: Array, passed: Array, period: Array
 ) -> None:
-    """Take mean acceleration and mean speed of every cycle out of the free motion."""
+    """Remove mean acceleration and mean speed of every cycle from the free motion."""
     size = marcher.size
     rise = (ends[:, size:] @ marcher.free)[:, None]
     travel = (ends[:, :size] @ marcher.free)[:, None] - 0.5 * period[:, None, None] * rise
-    part, whole = passed[:, :, None], period[:, None, None]
-    states[..., :size] -= part * travel + 0.5 * part**2 * whole * rise
-    states[..., size:] -= travel / whole + part * rise
+    part, duration = passed[:, :, None], period[:, None, None]
+    states[..., :size] -= part * travel + 0.5 * part**2 * duration * rise
+    states[..., size:] -= travel / duration + part * rise
 
 
 def _statistics(

@@ -1,4 +1,4 @@
-"""Marching over mesh cycles whose speed changes: one cycle after the other, one lane."""
+"""Integrate one lane over mesh cycles of varying speed, one cycle after the other."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.divergence import unparted_step
+from tribodyn.dynamics.equations.divergence import chattering_step
 from tribodyn.dynamics.equations.motion import compression, forces, has_gap, sides
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.program import Program
@@ -23,9 +23,9 @@ from tribodyn.errors import ComputationError
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array
 
-#: Part of the unbalanced torque of a cycle that is taken away in the next, after the first cycles.
+#: Part of the unbalanced torque of a cycle that is compensated in the next, after the first cycles.
 _SERVO = 0.125
-#: Shift of the middle of a step, as a part of its width, that matters.
+#: Smallest relevant shift of the middle of a step, as a part of its width.
 _SHIFT = 1e-8
 
 
@@ -40,7 +40,7 @@ class Pace:
 
     @classmethod
     def over(cls, profile: SpeedProfile, table: Table, first: int, count: int) -> Pace:
-        """Find the pace of some cycles."""
+        """Compute the pace of some cycles."""
         grid = table.grid
         cycle = first + np.arange(count)[:, None]
         time = profile.time_at(cycle + np.append(grid.left, 1.0))
@@ -54,7 +54,7 @@ class Pace:
 
 
 class CycleMarcher:
-    """Marches one mesh cycle at a time, with a balanced drive."""
+    """Integrate one mesh cycle at a time, with a balanced drive."""
 
     def __init__(
         self, tables: Tables, frequency: Array, lowest: float, outputs: Array, inertia: Array
@@ -83,7 +83,7 @@ class CycleMarcher:
         self._fresh = Statistics.of(first, outputs, 1).moments[:, 0]
 
     def weights(self, frequency: float) -> tuple[int, float]:
-        """Which two neighbouring systems there are at a speed, and the part of the second."""
+        """Number of the first of two neighbouring systems at a speed, and part of the second."""
         return blend_weight(self.frequency, frequency)
 
     def program(self, table: Table, pace: Pace, cycle: int, frequency: float) -> Program:
@@ -98,30 +98,30 @@ class CycleMarcher:
             return base._replace(width=np.ascontiguousarray(pace.share[cycle]))
         if self._rows.size != base.rows.size:
             self._rows = np.empty(base.rows.size)
-        own = self._rows.reshape(shape)
+        cycle_rows = self._rows.reshape(shape)
         if part > 0.0:
             other = table.programs[left + 1]
             if self._between[:2] != (table.grid.steps, left):
                 change = other.rows.reshape(shape) - rows
                 self._between = (table.grid.steps, left, change)
-            np.multiply(self._between[2], part, out=own)
-            own += rows
+            np.multiply(self._between[2], part, out=cycle_rows)
+            cycle_rows += rows
             steady = steady + part * (other.constant_load - steady)
         else:
-            np.copyto(own, rows)
+            np.copyto(cycle_rows, rows)
         if not level:
-            own[:, 1] += pace.shift[cycle][:, None] * (own[:, 2] - own[:, 0])
+            cycle_rows[:, 1] += pace.shift[cycle][:, None] * (cycle_rows[:, 2] - cycle_rows[:, 0])
         for column in table.slopes:
-            own[:, :, column] *= pace.ratio[cycle]
+            cycle_rows[:, :, column] *= pace.ratio[cycle]
         width = np.ascontiguousarray(pace.share[cycle])
-        return base._replace(rows=own.reshape(-1), width=width, constant_load=steady)
+        return base._replace(rows=cycle_rows.reshape(-1), width=width, constant_load=steady)
 
     def hold(self, torque: Array) -> None:
-        """Begin with a known balancing torque."""
+        """Start with a known balancing torque."""
         self.torque, self.count = torque.copy(), int(1.0 / _SERVO)
 
     def without_free_motion(self, state: Array) -> Array:
-        """Take the free motion out of a state."""
+        """Remove the free motion from a state."""
         n = self.size
         place, speed = state[:n], state[n:]
         return np.concatenate((place - place @ self.free, speed - speed @ self.free))
@@ -129,9 +129,9 @@ class CycleMarcher:
     def cycle(
         self, program: Program, period: float, change: float, state: Array, record: Array
     ) -> tuple[Array, Array, Array]:
-        """March one cycle."""
-        from tribodyn.dynamics._engine.marching import UNPARTED, march_block
-        from tribodyn.dynamics._engine.moments import Gathered
+        """Integrate one cycle: new state, moments and extra force."""
+        from tribodyn.dynamics._engine.marching import CHATTERING, march_block
+        from tribodyn.dynamics._engine.running_statistics import Gathered
 
         load = self.inertia * change
         extra = self.torque + load
@@ -143,11 +143,11 @@ class CycleMarcher:
         block = (0.0,), RungeKutta4(), program, program.rows, np.array([period]), load, lane, 1
         gathered = Gathered(self.outputs, np.zeros(0), 0, moments)
         failed = refuse_stopped(march_block(*block, record, gathered, stop_flag()))
-        if failed >= UNPARTED:
+        if failed >= CHATTERING:
             contacts = len(self.systems[0].contacts)
-            step, contact = divmod(failed - UNPARTED, contacts)
+            step, contact = divmod(failed - CHATTERING, contacts)
             phase = float(program.width[:step].sum())
-            raise unparted_step(contact, contacts, phase, self.time + phase * period, None)
+            raise chattering_step(contact, contacts, phase, self.time + phase * period, None)
         if failed >= 0:
             finite = np.isfinite(record[:failed, :, 0]).all(axis=1)
             last = max((failed if finite.all() else int(np.argmin(finite))) - 1, 0)
@@ -157,10 +157,11 @@ class CycleMarcher:
             name = self.systems[0].names[int(np.argmax(speed))]
             raise ComputationError(
                 f"the motion grew beyond all bounds after {self.time:.5g} s, at "
-                f"{1.0 / period:.5g} Hz, first of all {name}",
+                f"{1.0 / period:.5g} Hz, first in coordinate {name}",
                 why="The step is within the stability limit of the integrator, so the system "
-                "itself is unstable there",
-                remedy="Look for negative stiffness or damping, or friction that feeds energy in",
+                "itself is unstable at this speed",
+                remedy="Check for negative stiffness or damping, and for friction that feeds "
+                "energy in",
             )
         new = lane[0]
         if self.balance is not None:
@@ -173,7 +174,7 @@ class CycleMarcher:
 
 
 class Samples:
-    """Collects the samples of all mesh cycles."""
+    """Collect the samples of all mesh cycles."""
 
     def __init__(
         self, systems: Sequence[System], frequency: Array, cycles: int, samples: int
@@ -212,17 +213,17 @@ class Samples:
 
     def _rows(self, table: Table, name: str, weights: Sequence[tuple[int, float]]) -> Array:
         """Values at the samples, (cycles or 1, samples, ...)."""
-        own = [getattr(node, name)[table.kept, 0] for node in table.nodes]
+        values = [getattr(node, name)[table.sample_steps, 0] for node in table.nodes]
         if not self.several:
-            return np.asarray(own[0][None])
-        stacked = np.array(own)
+            return np.asarray(values[0][None])
+        stacked = np.array(values)
         left = np.array([number for number, _ in weights])
         part = np.array([share for _, share in weights])
         part = part.reshape(-1, *(1,) * (stacked.ndim - 1))
         return np.asarray((1.0 - part) * stacked[left] + part * stacked[left + 1])
 
     def series(self, outputs: Array) -> dict[str, Array]:
-        """Everything as series over time."""
+        """All signals as series over time."""
         cycles, samples = self.time.shape
         flat = self.state.reshape(cycles * samples, -1)
         return {

@@ -64,8 +64,8 @@ class SpeedProfile:
         require_positive("mesh_frequency", frequency, "Hz", remedy=remedy)
         if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
             what = "the times of the profile do not rise"
-            why = "Each corner comes after the one before"
-            remedy = "Give a sudden change of the speed a short time of its own"
+            why = "Each corner is later than the previous one"
+            remedy = "Spread a sudden change of the speed over a short time"
             raise InputError(what, "argument profile", why, remedy)
         time = time - time[0]
         mean = 0.5 * (frequency[1:] + frequency[:-1])
@@ -80,7 +80,7 @@ class SpeedProfile:
 
     @property
     def cycles(self) -> float:
-        """Mesh cycles in it [-]."""
+        """Number of mesh cycles [-]."""
         return float(self._phase[-1])
 
     @property
@@ -94,7 +94,7 @@ class SpeedProfile:
         return float(np.max(np.asarray(self.mesh_frequency)))
 
     def _pieces(self, index: NDArray[np.intp]) -> tuple[Array, Array, Array, Array]:
-        """Start time, start frequency, rate of change and start phase; level after the end."""
+        """Start time, start frequency, rate of change and start phase; constant after the end."""
         time, frequency = np.asarray(self.time), np.asarray(self.mesh_frequency)
         rate = np.append(np.diff(frequency) / np.diff(time), 0.0)
         return time[index], frequency[index], rate[index], self._phase[index]
@@ -118,7 +118,7 @@ class SpeedProfile:
         )
 
     def phase_at(self, time: ArrayLike) -> Array:
-        """Mesh cycles made until a time.
+        """Mesh cycles completed until a time.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class SpeedProfile:
         return np.asarray(phase + past * (frequency + 0.5 * rate * past))
 
     def time_at(self, phase: ArrayLike) -> Array:
-        """Time at which so many mesh cycles are made.
+        """Time at which a number of mesh cycles is completed.
 
         Parameters
         ----------
@@ -151,7 +151,7 @@ class SpeedProfile:
         index = np.searchsorted(self._phase, at, side="right") - 1
         start, frequency, rate, first = self._pieces(np.maximum(index, 0))
         past = at - first
-        # Rounding must not make a square negative where the speed falls to almost nothing.
+        # Rounding must not make the square negative where the speed falls to almost zero.
         square = np.maximum(frequency**2 + 2.0 * rate * past, 0.0)
         return np.asarray(start + 2.0 * past / (frequency + np.sqrt(square)))
 
@@ -166,7 +166,7 @@ class SpeedProfile:
 def speed_ramp(
     low: float, high: float, duration: float, *, hold: float = 0.0, down: bool = False
 ) -> SpeedProfile:
-    """Make a speed that rises evenly, stays, and falls as it rose.
+    """Speed profile that rises linearly, and optionally stays and falls at the same rate.
 
     Parameters
     ----------
@@ -206,13 +206,13 @@ def read_profile(
     profile: SpeedProfile | tuple[ArrayLike, ArrayLike] | Callable[[Array], ArrayLike],
     duration: float | None = None,
 ) -> SpeedProfile:
-    """Take a profile in any of its forms."""
+    """Convert a profile from any of its forms."""
     if isinstance(profile, SpeedProfile):
         return profile
     if callable(profile):
         if duration is None:
-            what = "a function of time without its length"
-            why = "A function does not tell when the run ends"
+            what = "duration is missing for a profile that is a function of time"
+            why = "A function does not define when the run ends"
             raise InputError(what, "argument duration", why, "Give duration in seconds")
         require_positive("duration", duration, "s")
         time = np.linspace(0.0, duration, _PIECES + 1)

@@ -63,7 +63,7 @@ class RunUp(Record):
     samples : int
         Samples of a mesh cycle.
     teeth : int
-        Mesh cycles per revolution of the shaft whose speed is told.
+        Mesh cycles per revolution of the shaft whose speed is reported.
     cycles : CycleStatistics
         Figures of every mesh cycle.
     profile : SpeedProfile
@@ -71,7 +71,7 @@ class RunUp(Record):
     step_number : float
         Largest ``omega_max * dt`` [-].
     modes : NaturalModes, optional
-        Natural modes at the middle of the speeds; None where there are none.
+        Natural modes of the system in the middle of the speed range; None without any.
     """
 
     time: Array = quantity("time", unit="s", axis=True)
@@ -104,7 +104,7 @@ class RunUp(Record):
         return 2.0 * np.pi * self.phase / self.teeth
 
     def signal(self, name: str) -> tuple[Array, str]:
-        """Take one signal by its name.
+        """Return one signal by its name.
 
         Parameters
         ----------
@@ -131,8 +131,8 @@ class RunUp(Record):
             return self.acceleration[:, self.names.index(name)], unit
         if name in self.output_names:
             return self.output[:, self.output_names.index(name)], self.output_unit
-        known = ("deflection", "contact_force", *self.names, *self.output_names)
-        why = f"There are {', '.join(known)}"
+        signals = ("deflection", "contact_force", *self.names, *self.output_names)
+        why = f"The signals are {', '.join(signals)}"
         raise InputError(f'no signal "{name}"', "argument signal", why, "Choose one of these")
 
     def __repr__(self) -> str:

@@ -1,9 +1,9 @@
-"""What a run-up marches on: grids fine enough for each speed, tables that follow the speed.
+"""Grids and row tables of a run-up: fine enough for each speed, and following the speed.
 
-The samples kept and all events are grid points, so that nothing is interpolated. The rows of a
-cycle are those of the constant speed, put right for what the change of speed does within a step:
-the middle row belongs to the middle in time, and slopes over the phase become rates with the speed
-at the place instead of that of the cycle.
+Recorded samples and all events are grid points, so that nothing is interpolated. The rows of a
+cycle are those of a constant speed, corrected for the change of speed within a step: the middle row
+belongs to the middle in time, and slopes over the phase become rates with the local speed instead
+of the mean speed of the cycle.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Table(NamedTuple):
     grid: Grid
     nodes: tuple[Nodes, ...]
     programs: tuple[Program, ...]
-    kept: Index  #: steps that begin at the samples
+    sample_steps: Index  #: steps that begin at the samples
     slopes: Index  #: columns of the rows that are slopes over the mesh phase
     step_number: float  #: ``omega_max * dt`` at a mesh frequency of 1 Hz [-]
 
@@ -42,18 +42,18 @@ class Table(NamedTuple):
 def systems_by_frequency(
     system: System | Mapping[float, System],
 ) -> tuple[Array, tuple[System, ...]]:
-    """Take one system, or several over the mesh frequency."""
+    """Read one system, or several over the mesh frequency."""
     if isinstance(system, System):
         return np.zeros(1), (system,)
     if not system:
         why = "The equations of motion belong to a system"
         remedy = "Give a System, or several by mesh frequency"
-        raise InputError("no system", "argument system", why, remedy)
+        raise InputError("the mapping of systems is empty", "argument system", why, remedy)
     frequency = np.array(sorted(system), dtype=float)
     require_positive("mesh_frequency", frequency, "Hz")
-    found = tuple(system[each] for each in sorted(system))
-    first = found[0]
-    for at, other in zip(frequency, found, strict=True):
+    systems = tuple(system[each] for each in sorted(system))
+    first = systems[0]
+    for at, other in zip(frequency, systems, strict=True):
         same = other.size == first.size and len(other.contacts) == len(first.contacts)
         same = same and len(other.frictions) == len(first.frictions)
         same = same and all(
@@ -62,22 +62,22 @@ def systems_by_frequency(
         )
         if not same or (other.balance is None) != (first.balance is None):
             raise InputError(
-                f"the system at {at:g} Hz is another structure",
+                f"the system at {at:g} Hz has another structure than that at {frequency[0]:g} Hz",
                 where="argument system",
                 why="Contacts, friction and loads may change with the speed; matrices, "
-                "coordinates, the number of contacts and the balanced torque stay",
-                remedy="Give systems of one structure",
+                "coordinates, the number of contacts and the balanced torque may not",
+                remedy="Give systems of the same structure",
             )
-    return frequency, found
+    return frequency, systems
 
 
-def blend_weight(known: Array, frequency: float) -> tuple[int, float]:
-    """Find the two neighbouring systems at a speed."""
-    last = known.size - 1
+def blend_weight(frequencies: Array, frequency: float) -> tuple[int, float]:
+    """Number of the first of two neighbouring systems at a speed, and part of the second."""
+    last = frequencies.size - 1
     if last == 0:
         return 0, 0.0
-    left = min(max(int(np.searchsorted(known, frequency)) - 1, 0), last - 1)
-    low, high = float(known[left]), float(known[left + 1])
+    left = min(max(int(np.searchsorted(frequencies, frequency)) - 1, 0), last - 1)
+    low, high = float(frequencies[left]), float(frequencies[left + 1])
     return left, min(max((frequency - low) / (high - low), 0.0), 1.0)
 
 
@@ -85,8 +85,8 @@ def sampled_grid(events: tuple[float, ...], steps: int, samples: int) -> Grid:
     """Divide the mesh cycle so that events and equally spaced samples are grid points."""
     jumps = np.array([*events, 1.0])
     marks = np.arange(1, samples) / samples
-    apart = np.abs(marks[:, None] - jumps).min(axis=1) > 1e-9
-    edges = np.sort(np.concatenate((jumps, marks[apart])))
+    separate = np.abs(marks[:, None] - jumps).min(axis=1) > 1e-9
+    edges = np.sort(np.concatenate((jumps, marks[separate])))
     lengths = np.diff(edges)
     counts = np.maximum(np.ceil(lengths * steps - 1e-6).astype(np.int64), 1)
     within = np.concatenate([np.arange(count) for count in counts])
@@ -99,18 +99,18 @@ def sampled_grid(events: tuple[float, ...], steps: int, samples: int) -> Grid:
 
 
 class Tables:
-    """Systems on grids that suit each speed, compiled where they are first needed."""
+    """Systems on grids that suit each speed, compiled on demand."""
 
     def __init__(
         self, systems: tuple[System, ...], samples: int, lowest: float, steps: int | None
     ) -> None:
         self.systems, self.samples, self.fixed = systems, samples, steps
         events = sorted({event for system in systems for event in system_events(system)})
-        near = [i for i in range(1, len(events)) if events[i] - events[i - 1] < 1e-9]
-        self.events = tuple(event for i, event in enumerate(events) if i not in near)
+        duplicates = [i for i in range(1, len(events)) if events[i] - events[i - 1] < 1e-9]
+        self.events = tuple(event for i, event in enumerate(events) if i not in duplicates)
         least = max(64, 2 * len(self.events))
         self.rate = max(rate_on_grid(system, least) for system in systems)
-        self._made: dict[int, Table] = {}
+        self._tables: dict[int, Table] = {}
         self._refuse(lowest)
 
     def _refuse(self, lowest: float) -> None:
@@ -124,16 +124,16 @@ class Tables:
                 f"cycle at {lowest:g} Hz and a fastest motion of {self.rate:.4g} rad/s",
                 where="argument steps",
                 why=f"The limit is {LIMIT}, and the lowest speed has the longest steps",
-                remedy=f"Use at least {64 * int(np.ceil(needed / 64))} steps, or leave steps "
-                "out: each speed then gets as many as it needs",
+                remedy=f"Use at least {64 * int(np.ceil(needed / 64))} steps, or omit steps: "
+                "each speed then has as many as it needs",
             )
         if needed > _MOST:
             raise InputError(
                 f"{lowest:g} Hz needs {needed:.3g} steps per mesh cycle",
                 where="argument profile",
-                why=f"The fastest motion is {self.rate:.4g} rad/s; {_MOST} steps are the most",
+                why=f"The fastest motion is {self.rate:.4g} rad/s, and the limit is {_MOST} steps",
                 remedy=f"Begin at {self.rate / (LIMIT * _MOST):.3g} Hz or above; below it the "
-                "load is carried statically",
+                "motion is quasi-static",
             )
 
     def steps_at(self, frequency: float) -> int:
@@ -147,9 +147,9 @@ class Tables:
     def at(self, frequency: float) -> Table:
         """Tables for a mesh frequency."""
         steps = self.steps_at(frequency)
-        if steps not in self._made:
-            self._made[steps] = self._make(steps)
-        return self._made[steps]
+        if steps not in self._tables:
+            self._tables[steps] = self._make(steps)
+        return self._tables[steps]
 
     def _make(self, steps: int) -> Table:
         grid = sampled_grid(self.events, steps, self.samples)
@@ -157,30 +157,32 @@ class Tables:
         pairs = list(zip(self.systems, nodes, strict=True))
         programs = tuple(build_program(system, grid, node) for system, node in pairs)
         if len(programs) > 1:
-            # A term that one speed has is kept at all.
-            kept_terms = np.any([each.pattern for each in programs], axis=0)
+            # All speeds have a term that one of them has.
+            pattern = np.any([each.pattern for each in programs], axis=0)
             programs = tuple(
-                build_program(system, grid, node, pattern=kept_terms) for system, node in pairs
+                build_program(system, grid, node, pattern=pattern) for system, node in pairs
             )
         if any(not np.array_equal(each.code, programs[0].code) for each in programs):
             raise InputError(
-                "the systems differ in which terms there are",
+                "the equations of the systems have different terms",
                 where="argument system",
-                why="Rows of neighbouring speeds are blended term by term",
-                remedy="Give every speed the same kinds of contacts: a gap everywhere or "
-                "nowhere, loads that vary over the mesh cycle everywhere or nowhere",
+                why="Rows of neighbouring speeds are interpolated term by term",
+                remedy="Use the same kinds of contacts at every speed: a gap at all or at none, "
+                "loads that vary over the mesh cycle at all or at none",
             )
         marks = np.arange(self.samples) / self.samples
-        kept = np.abs(grid.left[:, None] - marks).argmin(axis=0)
+        sample_steps = np.abs(grid.left[:, None] - marks).argmin(axis=0)
         number = self.rate * float(grid.width.max())
-        return Table(grid, tuple(nodes), programs, kept, _slope_columns(programs[0]), number)
+        return Table(
+            grid, tuple(nodes), programs, sample_steps, _slope_columns(programs[0]), number
+        )
 
 
 def _slope_columns(program: Program) -> Index:
-    code, column, found = program.code, 0, []
+    code, column, columns = program.code, 0, []
     for j in range(int(code[1])):
         along, turning = int(code[4 + 4 * j]), int(code[5 + 4 * j])
-        found.append(column + 3)
-        found += range(column + 5 + along, column + 5 + along + turning)
+        columns.append(column + 3)
+        columns += range(column + 5 + along, column + 5 + along + turning)
         column += 5 + along + turning
-    return np.array(found, dtype=np.int64)
+    return np.array(columns, dtype=np.int64)

@@ -1,13 +1,13 @@
-"""The structures that vibrate, and what their contacts read from a mesh.
+"""Lumped structures with gears, and the contacts of their meshes.
 
-The public names stand on the page of :mod:`tribodyn.dynamics`.
+The public names are those of :mod:`tribodyn.dynamics`.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| ``structures`` | which structures a case can choose, by name |
-| ``gear_pair`` | two gears that turn, on bearings or fixed axes; directions, torques, balance |
+| ``structures`` | registry of the structures that a case can choose |
+| ``gear_pair`` | two gears on bearings or fixed axes; directions, torques, balance |
 | ``fzg12`` | the gear test rig with twelve coordinates |
 | ``hypoid14`` | a hypoid pair in space with engine and load, fourteen coordinates |
 | ``shafts`` | drives of shafts, discs and several meshes |
-| ``force_law`` | contacts with a stiffness, a tangent or the whole force law |
+| ``force_law`` | contacts with a stiffness, a tangent or a force law |
 """

@@ -1,9 +1,9 @@
-"""Contacts of a gear mesh: a plain stiffness, the tangent to a force law, or the law itself.
+"""Contacts of a gear mesh: a stiffness, the tangent to a force law, or the force law.
 
-The kernel knows a contact as a spring with a dead zone. A convex force law made of ramps is then
-a bundle of contacts: all have the same direction, friction and error, each has the stiffness of
-its ramp, and half of its dead zone is half of the play plus the place where the ramp begins. The
-back flanks get the same law, mirrored at the middle of the play.
+For the kernel a contact is a spring with a dead zone. A convex force law made of ramps is therefore
+a bundle of contacts with the same direction, friction and error; each has the stiffness of its
+ramp, and half of its dead zone is half of the backlash plus the compression at which the ramp
+begins. The back flanks have the same law, mirrored at the middle of the backlash.
 """
 
 from __future__ import annotations
@@ -28,16 +28,18 @@ T = TypeVar("T")
 MeshForce = Literal["stiffness", "tangent", "force-law"]
 
 
-def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ...]:
-    """Turn the plain contact of a gear pair into those of the law by which its teeth carry."""
+def carried(contact: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ...]:
+    """Replace the contact of a gear pair by the contacts of its force law."""
     if mesh_force == "stiffness":
-        return (one,)
+        return (contact,)
     if mesh_force == "tangent":
         tangent = _needed(getattr(mesh, "tangent_stiffness", None), "tangent stiffness")
-        spring = replace(one, stiffness=tangent, error=sum_of(one.error, mesh.tangent_error))
-        return (replace(one, stiffness=0.0), replace(spring, damping=0.0))
+        spring = replace(
+            contact, stiffness=tangent, error=sum_of(contact.error, mesh.tangent_error)
+        )
+        return (replace(contact, stiffness=0.0), replace(spring, damping=0.0))
     if mesh_force == "force-law":
-        return law_contacts(one, _needed(getattr(mesh, "force_law", None), "force law"))
+        return law_contacts(contact, _needed(getattr(mesh, "force_law", None), "force law"))
     what, why = f'mesh_force = "{mesh_force}"', '"stiffness", "tangent" or "force-law"'
     raise InputError(what, "argument mesh_force", why, "Choose one of these")
 
@@ -45,7 +47,7 @@ def carried(one: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ..
 def _needed(value: T | None, name: str) -> T:
     if value is None:
         why = "It comes from a loaded tooth contact"
-        remedy = 'Take such a stiffness model, or mesh_force = "stiffness"'
+        remedy = 'Use such a stiffness model, or mesh_force = "stiffness"'
         raise InputError(f"this mesh has no {name}", "argument mesh_force", why, remedy)
     return value
 
@@ -53,23 +55,23 @@ def _needed(value: T | None, name: str) -> T:
 def sum_of(first: Entry, second: Callable[[Array], Array]) -> Callable[[Array], Array]:
     """Sum of an entry and a function of the mesh phase."""
 
-    def both(phase: Array) -> Array:
-        given = first(phase) if callable(first) else first
-        return np.asarray(np.asarray(given, dtype=float) + second(phase))
+    def total(phase: Array) -> Array:
+        value = first(phase) if callable(first) else first
+        return np.asarray(np.asarray(value, dtype=float) + second(phase))
 
-    return both
+    return total
 
 
 def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
-    """Give a contact a force law instead of its stiffness: one contact for each ramp.
+    """Replace the stiffness of a contact by a force law: one contact for each ramp.
 
     Parameters
     ----------
     contact : Contact
         Direction, error, friction, damping and events of all of them; its gap, a constant, is
-        half of the play.
+        half of the backlash.
     law : MeshForceLaw
-        Force over the compression beyond the play, at every mesh phase.
+        Force over the compression beyond the backlash, at every mesh phase.
 
     Returns
     -------
@@ -79,12 +81,12 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     Raises
     ------
     InputError
-        If the gap is a function, or a pair touches before the play is used up.
+        If the gap is a function, or a pair touches before the backlash is closed.
 
     Notes
     -----
-    The law acts on both flanks, mirrored at the middle of the play. Where no ramp is the lowest at
-    all phases, one more contact without stiffness carries the damping.
+    The law acts on both flanks, mirrored at the middle of the backlash. Where no ramp is the lowest
+    at all phases, one more contact without stiffness has the damping.
 
     Examples
     --------
@@ -95,15 +97,16 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     [900.0, 0.0]
     """
     if callable(contact.gap) or np.ndim(contact.gap):
-        what = "gap is no constant"
-        why = "It is half of the play; the law says where each ramp begins"
-        raise InputError(what, "argument contact", why, "Put what varies into the law")
+        what = "gap is not a constant"
+        why = "It is half of the backlash; the law defines where each ramp begins"
+        remedy = "Give a constant gap, and a law whose ramps vary"
+        raise InputError(what, "argument contact", why, remedy)
     half = float(np.asarray(contact.gap))
     first = float(law.knot_first_touch.min())
     if half + first < 0.0:
         raise InputError(
             f"a pair touches {-1e6 * first:.4g} um before the nominal flanks do, and half "
-            f"of the play is {1e6 * half:.4g} um",
+            f"of the backlash is {1e6 * half:.4g} um",
             where="argument backlash",
             why="The teeth would be clamped between both flanks",
             remedy=f"Give a backlash of at least {-2e6 * first:.4g} um",
@@ -134,7 +137,7 @@ _ACROSS = ("x", "v")
 
 
 def follow_load(system: System, friction: MeshFriction) -> System:
-    """Let friction follow the dynamic load of the teeth.
+    """Replace the friction of a mesh by friction that follows its dynamic load.
 
     Parameters
     ----------
@@ -157,8 +160,8 @@ def follow_load(system: System, friction: MeshFriction) -> System:
 
     Notes
     -----
-    Friction acts on the pinion against its sliding over the wheel, whichever gear drives, and with
-    the lever of its radius of curvature. Load shares are those of the loads at rest.
+    Friction acts on the pinion against its sliding relative to the wheel, for either driving gear,
+    with the radius of curvature as lever. Load shares are those of the static loads.
 
     Examples
     --------
@@ -196,11 +199,11 @@ def follow_load(system: System, friction: MeshFriction) -> System:
 
 
 def _directions(names: tuple[str, ...]) -> dict[str, Array]:
-    """How each friction sum of the mesh acts on the coordinates."""
+    """Direction of each friction sum of the mesh over the coordinates."""
     missing = [name for name in ("pinion_theta", "wheel_theta") if name not in names]
     if missing:
-        why = f"Friction has to find the gears among {', '.join(names)}"
-        remedy = "Name the coordinates, or give LoadFriction to the system yourself"
+        why = f"Friction acts on the gears, and the coordinates are {', '.join(names)}"
+        remedy = "Name the coordinates accordingly, or pass LoadFriction to System"
         raise InputError(f"no coordinate is named {missing[0]}", "argument system", why, remedy)
     unit = dict(zip(names, np.eye(len(names)), strict=True))
     nothing = np.zeros(len(names))

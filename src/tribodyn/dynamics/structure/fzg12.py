@@ -44,13 +44,13 @@ _BEGIN = 0.324239 * BASE_RADIUS[0]
 
 @dataclass(frozen=True)
 class RectangularMesh:
-    """Stiffness of one value while two pairs touch and of another while one does."""
+    """Rectangular mesh stiffness: one value in double-pair and one in single-pair contact."""
 
     single: float  #: [N/m]
     double: float  #: [N/m]
     duty: float = 1.0 / 3.0  #: part of the mesh cycle with two pairs [1]
     friction_coefficient: float = 0.0  #: constant friction coefficient [1]
-    driver: Driver = "pinion"  #: which gear drives: contacts run away from its base tangent point
+    driver: Driver = "pinion"  #: driving gear: contacts move away from its base tangent point
 
     @property
     def event_phases(self) -> tuple[float, ...]:
@@ -75,23 +75,23 @@ class RectangularMesh:
 
     @property
     def _pitch_point_age(self) -> float:
-        """Base pitches that a contact has travelled when it is at the pitch point."""
+        """Base pitches that a contact has travelled at the pitch point."""
         forward = (_PITCH_POINT - _BEGIN) / _PITCH
         return forward if self.driver == "pinion" else 1.0 + self.duty - forward
 
     def _pairs(self, phase: Array) -> list[tuple[Array, Array]]:
-        """Pull and lever on the pinion of the pair that came last and of the one before."""
+        """Friction coefficient and lever on the pinion of the last and of the previous pair."""
         phases = np.asarray(phase, dtype=float)
-        both = phases < self.duty
-        found = []
+        two_pairs = phases < self.duty
+        pairs = []
         for age in (0.0, 1.0):
             travelled = phases + age
             path = travelled if self.driver == "pinion" else 1.0 + self.duty - travelled
             lever = _BEGIN + path * _PITCH
-            share = np.where(both, 0.5, 1.0 - age)
+            share = np.where(two_pairs, 0.5, 1.0 - age)
             sense = np.sign(lever - _PITCH_POINT)
-            found.append((self.friction_coefficient * share * sense, lever))
-        return found
+            pairs.append((self.friction_coefficient * share * sense, lever))
+        return pairs
 
 
 _BODIES = ("shaft1", "wheel", "pinion", "shaft2")
@@ -137,7 +137,7 @@ def fzg12(
     damping_in_gap: bool = False,
     mesh_force: MeshForce = "stiffness",
 ) -> System:
-    """Build the rig of two shafts and one gear pair; by default the benchmark rig.
+    """Build the test rig of two shafts and one gear pair; by default the benchmark rig.
 
     Parameters
     ----------
@@ -169,9 +169,9 @@ def fzg12(
     friction_coefficient : float
         Constant coefficient of friction; unused with a mesh [1].
     backlash, error, driver, torque_balance, damping_in_gap
-        As :func:`spur6` takes them [m]; shaft 1 with the wheel carries the motor.
+        As in :func:`spur6` [m]; the motor is on shaft 1 with the wheel.
     mesh_force : "stiffness", "tangent" or "force-law"
-        How the teeth of a mesh carry.
+        Force law of the teeth of a mesh.
 
     Returns
     -------
@@ -182,15 +182,15 @@ def fzg12(
     Raises
     ------
     InputError
-        If a value is out of range, or the mesh does not have what ``mesh_force`` needs.
+        If a value is out of range, or the mesh does not have the data that ``mesh_force`` needs.
 
     Notes
     -----
     Source: the structure of a published model of the FZG rig, which gives no masses, stiffnesses
-    or damping. Known of the benchmark are the pair stiffness, the torque, the speed, the torsional
-    stiffness of the shafts and the first elastic mode of 492.000 Hz at mean mesh stiffness; the
-    rest is assumed: gears and supports as in the reference pair with six degrees of freedom,
-    shaft discs of 1.5 kg and of the moment of inertia that the 492 Hz ask for, shaft damping
+    or damping. The benchmark defines the pair stiffness, the torque, the speed, the torsional
+    stiffness of the shafts and the first elastic mode of 492.000 Hz at mean mesh stiffness. All
+    other values are assumed: gears and supports as in the reference pair with six degrees of
+    freedom, shaft discs of 1.5 kg with the moment of inertia that leads to 492 Hz, shaft damping
     of 1 N m s/rad (about 2 % of critical).
 
     Examples
@@ -230,13 +230,13 @@ def fzg12(
     turning = torques(float(torque) * np.array([1.0, radii[1] / radii[0]]), driver)
     system = assemble(shafts, [gears], {"shaft2": turning[0], "shaft1": turning[1]})
     balance = _at_the_ends(balance_direction(torque_balance, driver))
-    (one,) = system.contacts
-    contacts = carried(replace(one, damping_in_gap=damping_in_gap), teeth, mesh_force)
+    (contact,) = system.contacts
+    contacts = carried(replace(contact, damping_in_gap=damping_in_gap), teeth, mesh_force)
     return replace(system, names=FZG12_NAMES, balance=balance, contacts=contacts)
 
 
 def _at_the_ends(pair: Array | None) -> Array | None:
-    """Torque of the pinion's and of the wheel's side on the discs of their shafts."""
+    """Apply the torques of the pinion side and the wheel side to the discs of their shafts."""
     if pair is None:
         return None
     out = np.zeros(len(FZG12_NAMES))
@@ -269,8 +269,8 @@ def _shafts(**values: ArrayLike) -> list[Body]:
 
 
 def _refuse_directions(mesh: Any) -> None:
-    """Refuse a mesh whose contacts have directions of their own."""
+    """Refuse a mesh that defines contact directions."""
     if getattr(mesh, "direction", None) is not None or getattr(mesh, "friction", None) is not None:
-        what = "the mesh has contact directions of its own"
-        why = "The shafts of this structure move in one plane, with levers of base circles"
-        raise InputError(what, "argument mesh", why, "Take spur6, or a mesh with base radii")
+        what = "the mesh defines contact directions"
+        why = "The shafts of this structure move in one plane, with the base radii as levers"
+        raise InputError(what, "argument mesh", why, "Use spur6, or a mesh with base radii")

@@ -1,4 +1,4 @@
-"""What every model of one gear pair shares: contact directions, torques and their balance."""
+"""Models of one gear pair, and their contact directions, torques and balance."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TorqueBalance = Literal["drive", "load", "both"]
 def row_of(
     name: str, value: ArrayLike, count: int, unit: str, *, positive: bool = True, why: str = ""
 ) -> Array:
-    """Read one value for all of several, or one for each."""
+    """Read one value for all items, or one for each."""
     array = np.asarray(value, dtype=float)
     if array.shape not in ((), (count,)):
         raise InputError(
@@ -77,11 +77,11 @@ def gear_contact(
     keep = slice(None) if supports else [2, 5]
     towards: Entry = direction[keep]
     if (varying := getattr(mesh, "direction", None)) is not None:
-        keep = _kept(varying, supports)
+        keep = _direction_columns(varying, supports)
         towards = _columns(varying, keep)
     of_mesh = getattr(mesh, "friction", None)
     rub: Entry | None = None if of_mesh is None else _columns(of_mesh, keep)
-    # What rubs in space is told by its direction alone; the three sums are those of a plane.
+    # In space the friction follows from its direction; the three sums describe a plane.
     if of_mesh is None and keep != [4, 10] and mesh.friction_sum is not None:
         rub = _rub(mesh, onto[:, keep])
     return Contact(
@@ -96,12 +96,12 @@ def gear_contact(
     )
 
 
-def _kept(direction: Callable[[Array], Array], supports: bool) -> slice | list[int]:
-    """Columns of a direction that a structure has: all of a plane, or the turns of both gears."""
+def _direction_columns(direction: Callable[[Array], Array], supports: bool) -> slice | list[int]:
+    """Columns of a direction that a structure has: all of a plane, or both gear rotations."""
     in_space = np.shape(direction(np.zeros(1)))[-1] == 12
     if in_space and supports:
         why = "The gears of this structure move in one plane"
-        remedy = "Take hypoid14, or torsional, which has turning gears alone"
+        remedy = "Use hypoid14, or torsional, which has gear rotations only"
         raise InputError("the mesh has directions in space", "argument mesh", why, remedy)
     if supports:
         return slice(None)
@@ -109,7 +109,7 @@ def _kept(direction: Callable[[Array], Array], supports: bool) -> slice | list[i
 
 
 def with_error_of(mesh: object, error: Entry) -> Entry:
-    """Error of a contact: the one prescribed, and that of a mesh that has one of its own."""
+    """Error of a contact: the prescribed error plus that of the mesh, if it has one."""
     of_mesh = getattr(mesh, "error", None)
     return error if of_mesh is None else sum_of(error, of_mesh)
 
@@ -119,7 +119,7 @@ def _columns(function: Callable[[Array], Array], keep: slice | list[int]) -> Cal
 
 
 def _rub(mesh: Any, onto: Array) -> Callable[..., Array]:
-    """Friction of a mesh (p, n) from its three sums: on the knots, if all have the same."""
+    """Friction of a mesh (p, n) from its three sums; a table if all three share their grid."""
     sums = (mesh.friction_sum, mesh.friction_moment_pinion, mesh.friction_moment_wheel)
     kind, grid = type(sums[0]), getattr(sums[0], "grid", None)
     if hasattr(kind, "onto") and all(type(e) is kind and e.grid is grid for e in sums):
@@ -134,7 +134,7 @@ def torques(torque: Array, driver: Driver) -> Array:
 
 
 def balance_direction(torque_balance: TorqueBalance, driver: Driver) -> Array | None:
-    """Direction (pinion, wheel) of the torque that is found, or None if both are held."""
+    """Direction (pinion, wheel) of the balancing torque, or None if both torques are prescribed."""
     drives = np.array([1.0, 0.0]) if _sign(driver) > 0 else np.array([0.0, 1.0])
     if torque_balance == "both":
         return None
@@ -143,7 +143,7 @@ def balance_direction(torque_balance: TorqueBalance, driver: Driver) -> Array | 
     if torque_balance == "load":
         return drives
     what = f'torque_balance = "{torque_balance}"'
-    why = '"drive" holds the driving torque, "load" the load torque, "both" both'
+    why = '"drive" prescribes the driving torque, "load" the load torque, "both" both'
     raise InputError(what, "argument torque_balance", why, "Choose one of these")
 
 
@@ -189,32 +189,32 @@ def spur6(
     mesh_damping : float or function
         Damping along the line of action [N*s/m].
     driver : "pinion" or "wheel"
-        Which gear drives.
+        Driving gear.
     backlash : float
-        Total play along the line of action [m]. Zero keeps the flanks together: the force of one
-        stiffness is then linear, that of a force law the same for tension as for compression.
+        Total backlash along the line of action [m]. With zero the flanks never separate: the force
+        of one stiffness is then linear, that of a force law the same in tension and compression.
     error : float or function
-        Displacement error taken off the compression [m].
+        Displacement error subtracted from the compression [m].
     damping_in_gap : bool
         Keep the mesh damping in free flight.
     torque_balance : "drive", "load" or "both"
-        Which torque is held when friction acts; the other one is found by the steady state.
+        Torque that is prescribed when friction acts; the steady state determines the other one.
     mesh_force : "stiffness", "tangent" or "force-law"
-        How the teeth carry: with the mesh stiffness; with the tangent stiffness, displaced so that
-        the nominal load at rest gives the static transmission error; or with the force law of the
-        mesh, one contact for each of its ramps.
+        Force law of the teeth: the mesh stiffness; the tangent stiffness, displaced so that the
+        nominal static load gives the static transmission error; or the force law of the mesh, one
+        contact for each of its ramps.
 
     Returns
     -------
     System
         Coordinates ``pinion_x, pinion_y, pinion_theta, wheel_x, wheel_y, wheel_theta``: y along
-        the line of action from the driving to the driven gear for the pinion driving, x across
-        it in the direction of the surface speeds, angles positive in the running sense.
+        the line of action from the driving to the driven gear for a driving pinion, x across
+        it in the direction of the surface speeds, angles positive in the direction of rotation.
 
     Raises
     ------
     InputError
-        If a value is out of range, or the mesh does not have what ``mesh_force`` needs.
+        If a value is out of range, or the mesh does not have the data that ``mesh_force`` needs.
 
     Notes
     -----
@@ -237,7 +237,7 @@ def spur6(
     damping = pair_of("bearing_damping", bearing_damping, "N*s/m", positive=False)
     turning = torques(pair_of("torque", torque, "N*m", positive=False), driver)
     balance = balance_direction(torque_balance, driver)
-    one = gear_contact(
+    contact = gear_contact(
         mesh,
         base_radius=pair_of("base_radius", base_radius, "m"),
         driver=driver,
@@ -252,7 +252,7 @@ def spur6(
         damping=np.diag([damping[0], damping[0], 0.0, damping[1], damping[1], 0.0]),
         stiffness=np.diag([stiffness[0], stiffness[0], 0.0, stiffness[1], stiffness[1], 0.0]),
         force=[0.0, 0.0, turning[0], 0.0, 0.0, turning[1]],
-        contacts=carried(one, mesh, mesh_force),
+        contacts=carried(contact, mesh, mesh_force),
         names=SPUR6_NAMES,
         balance=None if balance is None else [0.0, 0.0, balance[0], 0.0, 0.0, balance[1]],
     )
@@ -281,21 +281,21 @@ def torsional(
     Parameters
     ----------
     mesh, moment_of_inertia, base_radius, torque
-        As :func:`spur6` takes them [kg*m^2], [m], [N*m].
+        As in :func:`spur6` [kg*m^2], [m], [N*m].
     mesh_damping, driver, backlash, error, damping_in_gap, torque_balance
-        Likewise [N*s/m], [m].
+        As in :func:`spur6` [N*s/m], [m].
     mesh_force : "stiffness", "tangent" or "force-law"
-        How the teeth carry.
+        Force law of the teeth.
 
     Returns
     -------
     System
-        Coordinates ``pinion_theta, wheel_theta``, positive in the running sense.
+        Coordinates ``pinion_theta, wheel_theta``, positive in the direction of rotation.
 
     Raises
     ------
     InputError
-        If a value is out of range, or the mesh does not have what ``mesh_force`` needs.
+        If a value is out of range, or the mesh does not have the data that ``mesh_force`` needs.
 
     Examples
     --------
@@ -307,7 +307,7 @@ def torsional(
     System(2 coordinates, 1 contact)
     """
     inertia = pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2")
-    one = gear_contact(
+    contact = gear_contact(
         mesh,
         base_radius=pair_of("base_radius", base_radius, "m"),
         driver=driver,
@@ -322,7 +322,7 @@ def torsional(
         damping=np.zeros((2, 2)),
         stiffness=np.zeros((2, 2)),
         force=torques(pair_of("torque", torque, "N*m", positive=False), driver),
-        contacts=carried(one, mesh, mesh_force),
+        contacts=carried(contact, mesh, mesh_force),
         names=TORSIONAL_NAMES,
         balance=balance_direction(torque_balance, driver),
     )

@@ -44,7 +44,7 @@ class HypoidSupports:
     Parameters
     ----------
     engine_moment_of_inertia, load_moment_of_inertia : float [kg*m^2]
-        What turns at the other end of the pinion's shaft, and of the wheel's.
+        Inertia at the other end of the pinion's shaft, and of the wheel's.
     diametral_moment_of_inertia : float or (2,) array [kg*m^2]
         Moments of inertia about any axis across that of the gear.
     bearing_stiffness, axial_bearing_stiffness : float or (2,) array [N/m]
@@ -54,7 +54,7 @@ class HypoidSupports:
     shaft_stiffness : float or (2,) array [N*m/rad]
         Against twist between engine and pinion, and between wheel and load.
     bearing_damping_ratio, shaft_damping_ratio : float
-        Damping of each of these springs over the critical value of what it holds.
+        Damping of each of these springs over the critical value with the supported inertia.
     """
 
     engine_moment_of_inertia: float = 0.006
@@ -110,17 +110,17 @@ def hypoid14(
     supports : HypoidSupports, optional
         Shafts and bearings; assumed where left out.
     mesh_damping, driver, backlash, error, damping_in_gap
-        As :func:`spur6` takes them [N*s/m], [m].
+        As in :func:`spur6` [N*s/m], [m].
     torque_balance : "drive", "load" or "both"
-        Which torque is held when friction acts; engine and load carry them.
+        Torque that is prescribed when friction acts; torques act on engine and load.
     mesh_force : "stiffness", "tangent" or "force-law"
-        How the teeth carry.
+        Force law of the teeth.
 
     Returns
     -------
     System
         Coordinates :data:`HYPOID14_NAMES`: for each gear x along the common perpendicular of the
-        axes, y along its own axis in the sense of its rotation, z = x cross y, about the point
+        axes, y along its axis in the sense of its rotation, z = x cross y, about the point
         where the perpendicular meets the axis; ``theta`` is the rotation about y.
 
     Raises
@@ -130,7 +130,7 @@ def hypoid14(
 
     Notes
     -----
-    Nothing holds the four rotations ``theta`` against the ground: the drive has one rigid motion.
+    The four rotations ``theta`` have no spring to the ground: the drive has one rigid motion.
     Source: the structure of a published study of hypoid gears with mixed lubrication, which
     gives masses of both gears and inertias of engine and load only.
 
@@ -143,14 +143,16 @@ def hypoid14(
     >>> hypoid14(flat, mass=(11.4, 49.5), moment_of_inertia=(0.0125, 0.9), torque=(500, 2000))
     System(14 coordinates, 1 contact)
     """
-    held = supports or HypoidSupports()
+    bearings = supports or HypoidSupports()
     require_between("backlash", backlash, 0.0, np.inf, "m")
     inertia = _inertia(
-        pair_of("mass", mass, "kg"), pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2"), held
+        pair_of("mass", mass, "kg"),
+        pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2"),
+        bearings,
     )
-    stiffness, damping = _springs(inertia, held)
+    stiffness, damping = _springs(inertia, bearings)
     along, rubbing = in_space(mesh)
-    one = Contact(
+    contact = Contact(
         direction=along,
         stiffness=mesh.stiffness,
         damping=mesh_damping,
@@ -166,14 +168,14 @@ def hypoid14(
         damping=damping,
         stiffness=stiffness,
         force=_at_the_ends(torques(pair_of("torque", torque, "N*m", positive=False), driver)),
-        contacts=carried(one, mesh, mesh_force),
+        contacts=carried(contact, mesh, mesh_force),
         names=HYPOID14_NAMES,
         balance=None if balance is None else _at_the_ends(balance),
     )
 
 
 def in_space(mesh: Any) -> tuple[Entry, Entry | None]:
-    """Direction and friction of a mesh over all coordinates: nothing touches engine and load."""
+    """Direction and friction of a mesh over all coordinates, zero for engine and load."""
     entries: list[Entry | None] = []
     for function in (getattr(mesh, "direction", None), getattr(mesh, "friction", None)):
         size = 0 if function is None else np.shape(function(np.zeros(1)))[-1]
@@ -182,41 +184,44 @@ def in_space(mesh: Any) -> tuple[Entry, Entry | None]:
         elif function is None and entries:
             entries.append(None)
         else:
-            why = "Gears whose axes cross need six components for each of them"
-            remedy = "Take the mesh table of a hypoid pair, or another structure"
+            why = "Gears with crossed axes need six components for each gear"
+            remedy = "Use the mesh table of a hypoid pair, or another structure"
             raise InputError("the mesh has no directions in space", "argument mesh", why, remedy)
     return entries[0], entries[1]  # type: ignore[return-value]
 
 
-def _inertia(mass: Array, polar: Array, held: HypoidSupports) -> Array:
-    across = np.asarray(held.diametral_moment_of_inertia)
+def _inertia(mass: Array, polar: Array, supports: HypoidSupports) -> Array:
+    across = np.asarray(supports.diametral_moment_of_inertia)
     gears = [[m, m, m, d, p, d] for m, p, d in zip(mass, polar, across, strict=True)]
     return np.concatenate(
-        ([held.engine_moment_of_inertia], *gears, [held.load_moment_of_inertia])
+        ([supports.engine_moment_of_inertia], *gears, [supports.load_moment_of_inertia])
     ).astype(float)
 
 
-def _springs(inertia: Array, held: HypoidSupports) -> tuple[Array, Array]:
-    """Stiffness, and dampers beside every spring as a part of their critical value."""
-    radial, axial = np.asarray(held.bearing_stiffness), np.asarray(held.axial_bearing_stiffness)
-    tilting = np.asarray(held.tilting_stiffness)
+def _springs(inertia: Array, supports: HypoidSupports) -> tuple[Array, Array]:
+    """Stiffness, and a damper parallel to every spring as a part of the critical value."""
+    radial, axial = (
+        np.asarray(supports.bearing_stiffness),
+        np.asarray(supports.axial_bearing_stiffness),
+    )
+    tilting = np.asarray(supports.tilting_stiffness)
     gears = [[r, a, r, t, 0.0, t] for r, a, t in zip(radial, axial, tilting, strict=True)]
     grounded = np.concatenate(([0.0], *gears, [0.0]))
     stiffness = np.diag(grounded)
-    damping = np.diag(2.0 * held.bearing_damping_ratio * np.sqrt(grounded * inertia))
+    damping = np.diag(2.0 * supports.bearing_damping_ratio * np.sqrt(grounded * inertia))
     twist = np.array([[1.0, -1.0], [-1.0, 1.0]])
     for spring, ends in zip(
-        np.asarray(held.shaft_stiffness), (_TRAIN[:2], _TRAIN[2:]), strict=True
+        np.asarray(supports.shaft_stiffness), (_TRAIN[:2], _TRAIN[2:]), strict=True
     ):
         reduced = 1.0 / np.sum(1.0 / inertia[ends])
         stiffness[np.ix_(ends, ends)] += spring * twist
         critical = 2.0 * np.sqrt(spring * reduced)
-        damping[np.ix_(ends, ends)] += held.shaft_damping_ratio * critical * twist
+        damping[np.ix_(ends, ends)] += supports.shaft_damping_ratio * critical * twist
     return stiffness, damping
 
 
 def _at_the_ends(pair: Array) -> Array:
-    """Torques of pinion and wheel side on engine and load."""
+    """Apply the torques of the pinion side and the wheel side to engine and load."""
     out = np.zeros(len(HYPOID14_NAMES))
     out[[0, -1]] = pair
     return out

@@ -1,4 +1,4 @@
-"""Shafts as chains of discs, and drives with several meshes put together from them."""
+"""Shafts as chains of discs, and drives with several meshes assembled from them."""
 
 from __future__ import annotations
 
@@ -53,23 +53,23 @@ class GearMesh:
     damping : float or function
         Damping along the line of action [N*s/m].
     error : float or function
-        Displacement error taken off the compression [m].
+        Displacement error subtracted from the compression [m].
     backlash : float
-        Total play along the line of action [m]. Zero keeps the flanks together.
+        Total backlash along the line of action [m]. With zero the flanks never separate.
     events : tuple of float
         Mesh phases at which an entry jumps.
     driver : "pinion" or "wheel"
-        Which gear drives the other.
+        Driving gear.
     line_angle : float
         Direction of the line of action from the driving to the driven gear in the plane of x and
-        y, from x to y, for the pinion driving [rad].
+        y, from x to y, for a driving pinion [rad].
     friction : object, optional
         With ``friction_sum``, ``friction_moment_pinion`` and ``friction_moment_wheel`` over the
         mesh phase, such as ``mesh_table.functions()``.
     cycles : int
         Mesh cycles of this mesh in the common cycle of all meshes.
     lag : float
-        Mesh phase of this mesh where the common cycle begins, in [0, 1) [1].
+        Mesh phase of this mesh at the start of the common cycle, in [0, 1) [1].
     """
 
     pinion: str
@@ -148,7 +148,7 @@ def shaft_chain(
     damping : float or (discs - 1,) array
         Torsional damping between neighbours [N*m*s/rad].
     mass : float or (discs,) array, optional
-        Masses of the discs [kg]; without them the discs only turn.
+        Masses of the discs [kg]; without them the discs only rotate.
     bearing_stiffness : float or (discs,) array
         Radial stiffness of the support of each disc, the same in x and y [N/m].
     bearing_damping : float or (discs,) array
@@ -162,7 +162,7 @@ def shaft_chain(
     Raises
     ------
     InputError
-        If a value is out of range or there are not as many as needed.
+        If a value is out of range or the number of values is wrong.
 
     Examples
     --------
@@ -182,16 +182,16 @@ def shaft_chain(
     support = row_of("bearing_stiffness", bearing_stiffness, count, "N/m", positive=False)
     losses = row_of("bearing_damping", bearing_damping, count, "N*s/m", positive=False)
 
-    def whole(radial: Array, turn: Array) -> Array:
+    def full_matrix(radial: Array, turn: Array) -> Array:
         out = np.diag(np.stack((radial, radial, np.zeros(count)), axis=1).reshape(-1))
         out[2::3, 2::3] = turn
         return out
 
     return Body(
         tuple(f"{name}_{axis}" for name in names for axis in ("x", "y", "theta")),
-        whole(masses, np.diag(inertia)),
-        whole(losses, turn_damping),
-        whole(support, turn_stiffness),
+        full_matrix(masses, np.diag(inertia)),
+        full_matrix(losses, turn_damping),
+        full_matrix(support, turn_stiffness),
     )
 
 
@@ -209,30 +209,30 @@ def assemble(
     *,
     balance: str | None = None,
 ) -> System:
-    """Put a drive together.
+    """Assemble a drive from shafts and meshes.
 
     Parameters
     ----------
     bodies : sequence of Body
-        Shafts; no disc may occur twice.
+        Shafts; every disc occurs once.
     meshes : sequence of GearMesh
         One contact each.
     torque : mapping of str to float
-        Torque on discs by name, positive in the running sense: positive where power enters
+        Torque on discs by name, positive in the direction of rotation: positive where power enters
         [N*m].
     balance : str, optional
-        Disc whose torque is found so that the drive keeps its mean speed.
+        Disc whose torque is determined so that the drive keeps its mean speed.
 
     Returns
     -------
     System
-        All angles are positive in the running sense of their shaft. The mesh phase is that of the
-        common cycle: of a mesh with ``cycles = 3`` three mesh cycles pass in it.
+        All angles are positive in the direction of rotation of their shaft. The mesh phase is that
+        of the common cycle, which contains ``cycles`` mesh cycles of each mesh.
 
     Raises
     ------
     InputError
-        If a disc is named twice or is not there, or a value is out of range.
+        If a disc occurs twice or does not exist, or a value is out of range.
 
     Examples
     --------
@@ -246,7 +246,7 @@ def assemble(
     doubled = sorted({name for name in names if names.count(name) > 1})
     if doubled:
         what, remedy = f'two bodies have a coordinate "{doubled[0]}"', "Rename one of them"
-        raise InputError(what, "argument bodies", "Each disc needs a name of its own", remedy)
+        raise InputError(what, "argument bodies", "Names of discs have to be unique", remedy)
     force = np.zeros(len(names))
     for disc, value in torque.items():
         force[_column(names, disc, "argument torque")] = value
@@ -276,14 +276,14 @@ def _diagonal(blocks: Sequence[Array]) -> Array:
 
 def _column(names: tuple[str, ...], disc: str, where: str) -> int:
     if f"{disc}_theta" not in names:
-        known = ", ".join(name.removesuffix("_theta") for name in names if name.endswith("_theta"))
-        why = "Springs and meshes name the discs of the shafts"
-        raise InputError(f'there is no disc "{disc}"', where, why, f"Known: {known}")
+        discs = ", ".join(name.removesuffix("_theta") for name in names if name.endswith("_theta"))
+        why = "Torques and meshes refer to the discs of the shafts"
+        raise InputError(f'there is no disc "{disc}"', where, why, f"Use one of {discs}")
     return names.index(f"{disc}_theta")
 
 
 def _along(names: tuple[str, ...], mesh: GearMesh, radial: Array, turns: Sequence[Any]) -> Any:
-    """Vector over the coordinates: ``radial`` on the pinion, less on the wheel, and both turns."""
+    """Vector over the coordinates: ``radial`` on pinion, minus that on wheel, and both moments."""
     columns = [np.zeros_like(np.asarray(turns[0], dtype=float)) for _ in names]
     for disc, sign, turn in zip((mesh.pinion, mesh.wheel), (1.0, -1.0), turns, strict=True):
         columns[_column(names, disc, "argument meshes")] = sign * np.asarray(turn)
@@ -297,19 +297,19 @@ def _contact(names: tuple[str, ...], mesh: GearMesh) -> Contact:
     require_between("backlash", mesh.backlash, 0.0, np.inf, "m")
     require_between("lag", mesh.lag, 0.0, 1.0, "")
     if int(mesh.cycles) != mesh.cycles or mesh.cycles < 1:
-        remedy = "Give cycles=1 for a pair of its own"
-        raise InputError(f"cycles = {mesh.cycles}", "GearMesh.cycles", "A whole number", remedy)
+        why, remedy = "It is a whole number of at least 1", "Give cycles=1 for a single pair"
+        raise InputError(f"cycles = {mesh.cycles}", "GearMesh.cycles", why, remedy)
     require_one_of("GearMesh.driver", mesh.driver, ("pinion", "wheel"))
     radii = row_of("base_radius", mesh.base_radius, 2, "m")
     along = np.array([np.cos(mesh.line_angle), np.sin(mesh.line_angle)])
     along[np.abs(along) < 1e-15] = 0.0
     across = np.array([along[1], -along[0]])
     sense = 1.0 if mesh.driver == "pinion" else -1.0
-    own = mesh.friction
+    friction = mesh.friction
 
     def rub(phase: Array) -> Array:
-        part = np.multiply.outer(across, np.asarray(own.friction_sum(phase), dtype=float))
-        turns = (own.friction_moment_pinion(phase), own.friction_moment_wheel(phase))
+        part = np.multiply.outer(across, np.asarray(friction.friction_sum(phase), dtype=float))
+        turns = (friction.friction_moment_pinion(phase), friction.friction_moment_wheel(phase))
         return np.asarray(_along(names, mesh, part, turns))
 
     return Contact(
@@ -318,7 +318,7 @@ def _contact(names: tuple[str, ...], mesh: GearMesh) -> Contact:
         damping=_shifted(mesh, mesh.damping),
         error=_shifted(mesh, mesh.error),
         gap=0.5 * mesh.backlash,
-        friction=None if own is None else _shifted(mesh, rub),
+        friction=None if friction is None else _shifted(mesh, rub),
         events=tuple(
             sorted(
                 (event - mesh.lag + cycle) / mesh.cycles % 1.0 % 1.0

@@ -1,7 +1,7 @@
-"""Structures by name: what vibrates, built from a mesh, its gears and the options of the structure.
+"""Registry of the lumped structures: built from a mesh, its gears and the options of the structure.
 
-The chosen structure brings its options into ``[dynamics]`` of a case file; one of a third party is
-one function, decorated with ``STRUCTURES.define``.
+The options of the chosen structure are keys of ``[dynamics]`` in a case file. A third party adds a
+structure as one function decorated with ``STRUCTURES.define``.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Support = float | tuple[float, ...]
 
 @dataclass(frozen=True)
 class Gearing:
-    """What every structure is given: the mesh and both gears, in the order (pinion, wheel).
+    """Mesh and gears from which a structure is built, in the order (pinion, wheel).
 
     Parameters
     ----------
@@ -44,9 +44,9 @@ class Gearing:
     torque : tuple [N*m]
         Sizes of the nominal torques.
     contact : mapping
-        How the teeth carry: ``mesh_damping``, ``driver``, ``backlash``, ``damping_in_gap``,
-        ``torque_balance``, ``mesh_force`` and, where one is prescribed, ``error``, as
-        :func:`tribodyn.dynamics.torsional` takes them.
+        Arguments of the contact: ``mesh_damping``, ``driver``, ``backlash``, ``damping_in_gap``,
+        ``torque_balance``, ``mesh_force`` and, if one is prescribed, ``error``, as in
+        :func:`tribodyn.dynamics.torsional`.
 
     Examples
     --------
@@ -76,21 +76,21 @@ class Structure(Model):
     name : str
         Name in the registry.
     function : callable
-        ``function(gearing, **options)``: takes a :class:`Gearing`, gives a :class:`System`.
+        ``function(gearing, **options)``: takes a :class:`Gearing`, returns a :class:`System`.
         Coordinates of the gears are called ``pinion_x``, ``pinion_y`` (across and along the line
         of action), ``pinion_theta``, and so on.
     options : mapping of str to Option or default
-        Its options; afterwards their defaults, None where there is none.
+        Its options; after construction their defaults, None without a default.
     turns_with : mapping of str to str
-        Gear with which a further turning coordinate runs: ``{"shaft1_theta": "wheel"}``.
+        Gear with which another rotational coordinate turns: ``{"shaft1_theta": "wheel"}``.
     source : str
-        Where the structure comes from.
+        Source of the structure.
     meaning : str
-        One line for whoever chooses a structure.
+        Description in one line.
     papers : tuple of str
         Keys of the bibliography of the package.
     gears : tuple of str
-        Kinds of gear pairs that it takes; empty: all.
+        Supported kinds of gear pairs; empty: all.
 
     Examples
     --------
@@ -115,7 +115,7 @@ class Structure(Model):
         gearing : Gearing
             Mesh and gears.
         **options : object
-            Options of the structure, in SI; those left out have their defaults.
+            Options of the structure, in SI; missing ones have their defaults.
 
         Raises
         ------
@@ -150,18 +150,18 @@ def _supports(default: Any) -> dict[str, Option]:
     }
 
 
-def both(value: Support | None) -> Pair:
-    """Values of the supports of pinion and wheel: two, or one for both; zero where none is."""
+def pair_values(value: Support | None) -> Pair:
+    """Values of the supports of pinion and wheel from two, one for both, or None for zero."""
     return (value[0], value[1]) if isinstance(value, tuple) else (value or 0.0, value or 0.0)
 
 
 def support_damping(
     stiffness: Support | None, mass: Pair, damping: Support | None, ratio: float | None
 ) -> Pair:
-    """Damping of the supports of both gears [N*s/m]: given, or a part of its critical value."""
+    """Damping of the supports of both gears [N*s/m]: prescribed, or a part of the critical one."""
     if damping is not None or stiffness is None:
-        return both(damping)
-    critical = [2.0 * math.sqrt(k * m) for k, m in zip(both(stiffness), mass, strict=True)]
+        return pair_values(damping)
+    critical = [2.0 * math.sqrt(k * m) for k, m in zip(pair_values(stiffness), mass, strict=True)]
     return ((ratio or 0.0) * critical[0], (ratio or 0.0) * critical[1])
 
 
@@ -185,7 +185,7 @@ def _spur6(
         moment_of_inertia=gears.moment_of_inertia,
         base_radius=gears.base_radius,
         torque=gears.torque,
-        bearing_stiffness=both(bearing_stiffness),
+        bearing_stiffness=pair_values(bearing_stiffness),
         bearing_damping=support_damping(
             bearing_stiffness, gears.mass, bearing_damping, bearing_damping_ratio
         ),
@@ -206,7 +206,7 @@ def _torsional(gears: Gearing) -> System:
     )
 
 
-#: Options of the two shafts of the rig: default, range, quantity, what is told of each shaft.
+#: Options of the two shafts of the rig: default, range, quantity, description of each shaft.
 _SHAFT = {
     "stiffness": (75397.3113, 1.0, 1e12, "shaft_stiffness", "torsional stiffness of shaft {0}{1}"),
     "damping": (1.0, 0.0, 1e6, "shaft_damping", "torsional damping of shaft {0}"),
@@ -258,8 +258,8 @@ def _fzg12(
     def bodies(of_gears: Pair, name: str) -> list[float]:
         return [shafts[f"shaft1_{name}"], of_gears[1], of_gears[0], shafts[f"shaft2_{name}"]]
 
-    masses, stiffness = bodies(gears.mass, "mass"), both(bearing_stiffness)
-    # Shaft 1 carries the wheel, shaft 2 the pinion, and each disc stands as its gear does.
+    masses, stiffness = bodies(gears.mass, "mass"), pair_values(bearing_stiffness)
+    # The wheel is on shaft 1, the pinion on shaft 2; each disc has the supports of its gear.
     discs = support_damping(
         stiffness, (masses[3], masses[0]), bearing_damping, bearing_damping_ratio
     )
@@ -278,17 +278,17 @@ def _fzg12(
     )
 
 
-_OWN_AXES = "That model has no axes that cross"
+_OWN_AXES = "That model has no crossed axes"
 
 
 def _hypoid_options() -> dict[str, Option]:
-    """Options of shafts and bearings in space: those of the class, in the same order."""
-    given: dict[str, Any] = {
+    """Options of shafts and bearings in space: those of :class:`HypoidSupports`, in its order."""
+    quantities: dict[str, Any] = {
         "engine_moment_of_inertia": ("moment_of_inertia", "of what drives the pinion's shaft"),
         "load_moment_of_inertia": ("moment_of_inertia", "of what the wheel's shaft drives"),
         "diametral_moment_of_inertia": (
             "moment_of_inertia",
-            "of each gear about an axis across its own",
+            "of each gear about an axis perpendicular to its own",
         ),
         "bearing_stiffness": ("bearing_stiffness", "of the bearings across the axis of each gear"),
         "axial_bearing_stiffness": ("bearing_stiffness", "of the bearings along the axis"),
@@ -298,34 +298,34 @@ def _hypoid_options() -> dict[str, Option]:
             "against twist from engine to pinion and from wheel to load",
         ),
     }
-    usual, found = HypoidSupports(), {}
-    for name, (of, words) in given.items():
+    usual, options = HypoidSupports(), {}
+    for name, (of, purpose) in quantities.items():
         value = getattr(usual, name)
         each = None if np.ndim(value) == 0 else tuple(float(v) for v in value)
         default = value if each is None else (each[0] if each[0] == each[1] else each)
         low, high = (1e-14, 1e7) if of == "moment_of_inertia" else (1.0, 1e13)
         kind = "moment of inertia" if of == "moment_of_inertia" else "stiffness"
-        found[name] = number(
+        options[name] = number(
             default,
             low,
             high,
             _GUARD,
             of=of,
-            meaning=f"{kind} {words}",
+            meaning=f"{kind} {purpose}",
             absent=_OWN_AXES,
             pair=each is not None,
         )
-    for part, words in (("bearing", "of each support"), ("shaft", "of each shaft")):
+    for part, purpose in (("bearing", "of each support"), ("shaft", "of each shaft")):
         name = f"{part}_damping_ratio"
-        found[name] = number(
+        options[name] = number(
             getattr(usual, name),
             0.0,
             2.0,
             "supports lie between 0.01 and 0.1",
-            meaning=f"damping {words} over its critical value",
+            meaning=f"damping {purpose} over its critical value",
             absent=_OWN_AXES,
         )
-    return found
+    return options
 
 
 @STRUCTURES.define(

@@ -1,4 +1,4 @@
-"""A motion in steps of its own length, known at every time between."""
+"""Motion in adaptive steps, with dense output at any time."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from tribodyn.interrupt import in_threads
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
 
-#: Steps of a mesh cycle for which room is made at first.
+#: Initial capacity for the steps of a mesh cycle.
 _ROOM = 4096
 
 
 @record
 class AdaptiveSolution(Record):
-    """Motion of a system in accepted steps; call it with times for the motion between.
+    """Motion of a system in accepted steps; call it with times for the dense output.
 
     Steps end at events of the mesh cycle and where a contact changes its side.
 
@@ -96,19 +96,19 @@ class AdaptiveSolution(Record):
         InputError
             If a time lies outside the motion.
         """
-        given = np.asarray(time, dtype=float)
-        outside = ~((given >= -1e-12 * self.time[-1]) & (given <= (1.0 + 1e-12) * self.time[-1]))
+        times = np.asarray(time, dtype=float)
+        outside = ~((times >= -1e-12 * self.time[-1]) & (times <= (1.0 + 1e-12) * self.time[-1]))
         if np.any(outside):
-            what = f"time = {given[outside].flat[0]:.6g} s"
+            what = f"time = {times[outside].flat[0]:.6g} s"
             why = f"The motion goes from 0 to {self.time[-1]:.6g} s"
-            raise InputError(what, "argument time", why, "Ask for a time within the motion")
-        phase = given.reshape(-1) * self.mesh_frequency
+            raise InputError(what, "argument time", why, "Give times within the motion")
+        phase = times.reshape(-1) * self.mesh_frequency
         step = np.clip(np.searchsorted(self.phase, phase, side="right") - 1, 0, self.steps - 1)
         part = self._trail[step]
         theta = np.clip((phase - self.phase[step]) / part[:, 1], 0.0, 1.0)
         n = self.state.shape[1] // 2
-        found = _hermite(part[:, 2:].reshape(-1, 6, n), part[:, 1] / self.mesh_frequency, theta)
-        return found.reshape(*given.shape, 2 * n)
+        states = _hermite(part[:, 2:].reshape(-1, 6, n), part[:, 1] / self.mesh_frequency, theta)
+        return states.reshape(*times.shape, 2 * n)
 
     def __repr__(self) -> str:
         """One line."""
@@ -119,9 +119,9 @@ class AdaptiveSolution(Record):
         )
 
     def _parts(self) -> Parts:
-        parts, both = super()._parts(), ("time", "coordinate")
-        parts.variables["position"] = (both, self.position, {"units": "m or rad"})
-        parts.variables["velocity"] = (both, self.velocity, {"units": "m/s or rad/s"})
+        parts, axes = super()._parts(), ("time", "coordinate")
+        parts.variables["position"] = (axes, self.position, {"units": "m or rad"})
+        parts.variables["velocity"] = (axes, self.velocity, {"units": "m/s or rad/s"})
         return parts
 
 
@@ -145,19 +145,19 @@ def solve_adaptive(
     *,
     extra_force: ArrayLike | None = None,
 ) -> AdaptiveSolution:
-    """March a system over time in steps as short as a tolerance needs.
+    """Integrate a system over time in steps as short as a tolerance needs.
 
     Parameters
     ----------
     system, mesh_frequency, cycles, start
-        As :func:`simulate` takes them [Hz], [m or rad, m/s or rad/s].
+        As in :func:`simulate` [Hz], [m or rad, m/s or rad/s].
     rtol : float
         Error over the largest size so far of each state [-].
     atol : float, (position, velocity) or (2 n,) array, optional
         Error allowed on top of that [m or rad, m/s or rad/s]; by default 0.001 ``rtol`` times the
         size of the static state.
     extra_force
-        As :func:`simulate` takes it [N or N*m].
+        As in :func:`simulate` [N or N*m].
 
     Raises
     ------
@@ -194,17 +194,17 @@ def solve_adaptive(
         state, trail, elapsed = task
         return lane.march_block(block, state, 1, np.zeros(1), None, trail, elapsed)
 
-    trails, room, counts = [], _ROOM, np.zeros(2, dtype=np.int64)
+    trails, capacity, counts = [], _ROOM, np.zeros(2, dtype=np.int64)
     for cycle in range(cycles):
         memory, begin = block.memory.copy(), state
         while True:
-            trail, state = np.zeros((room, 2 + 6 * n)), begin.copy()
-            # In a thread, so that an interruption ends it.
+            trail, state = np.zeros((capacity, 2 + 6 * n)), begin.copy()
+            # In a thread, so that an interruption stops it.
             (report,) = in_threads(march, [(state, trail, cycle)], 1)
             steps = int(report[8])
-            if steps <= room:
+            if steps <= capacity:
                 break
-            room, block.memory[:] = 2 * steps, memory
+            capacity, block.memory[:] = 2 * steps, memory
         trail[:, 0] += cycle
         trails.append(trail[:steps])
         counts += report[1:3].astype(np.int64)

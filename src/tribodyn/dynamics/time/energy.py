@@ -1,9 +1,9 @@
-"""Energy audit of a motion: what goes in, what is stored, what is lost.
+"""Energy audit of a motion: supplied, stored and dissipated energy.
 
-A stiffness prescribed over the mesh phase does work on the motion, and so do a moving error and
-a moving direction: the drive that keeps the phase supplies it. An audit that counts this closes
-to the accuracy of the integration. Where a contact opens or closes, the samples before and after
-are those of different sides, and the rows of the table are taken where these samples lie.
+A stiffness prescribed over the mesh phase does work on the motion, and so do a varying error and
+a varying direction: the drive that prescribes the phase supplies it. An audit that includes this
+work closes to the accuracy of the integration. Where a contact opens or closes, the samples before
+and after belong to different sides, and the rows of the table are evaluated at these samples.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.response import Response
 from tribodyn.types import Array
 
-#: Mesh phases nearer than this are the same; one-sided values are taken a little off an event.
+#: Mesh phases closer than this are the same; one-sided values lie slightly off an event.
 _SAME = 1e-9
 
 
@@ -38,8 +38,7 @@ class EnergyAudit:
     dissipated : float
         Loss in structural and contact dampers, positive [J].
     friction : float
-        Loss in sliding against the friction directions, as the motion of the structure counts
-        it [J].
+        Loss by sliding along the friction directions, in the motion of the structure [J].
     stored : float
         Gain of kinetic and elastic energy [J].
     """
@@ -52,11 +51,11 @@ class EnergyAudit:
 
     @property
     def imbalance(self) -> float:
-        """What does not add up, over the sum of the sizes of all terms."""
+        """Residual of the energy balance over the sum of the magnitudes of all terms."""
         terms = (self.external, self.parametric, self.dissipated, self.friction, self.stored)
-        rest = self.external + self.parametric - self.dissipated - self.friction - self.stored
+        residual = self.external + self.parametric - self.dissipated - self.friction - self.stored
         size = sum(abs(term) for term in terms)
-        return abs(rest) / size if size > 0.0 else 0.0
+        return abs(residual) / size if size > 0.0 else 0.0
 
 
 def energy_audit(system: System, response: Response) -> EnergyAudit:
@@ -91,7 +90,7 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
     )
     rows = _Rows(compiled, fine.phase.reshape(-1, 3))
     stiffness, gap, direction = rows.of("stiffness"), rows.of("gap"), rows.of("direction")
-    # The middle tells the side of a part: its ends may lie at the edge of the dead zone.
+    # The middle determines the side of a part: its ends may lie at the edge of the dead zone.
     side = sides(d, gap, gap > 0.0)
     side = np.where(rows.moved[:, None, None] & (gap > 0.0), side[:, 1:2], side)
     g = np.abs(side) * (d - side * gap)
@@ -107,8 +106,8 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
         rub = friction_force(system, rows.of("friction_coefficients"), n)
         rubbed = rubbed + np.einsum("tsfi,tsi,tsf->ts", rows.of("friction_direction"), v, rub)
     lost = _form(system.damping, v)
-    # The contact damper loses its force times the whole rate, the moving error included; what
-    # the error puts in is then the force, not the spring force alone, times its speed.
+    # The contact damper dissipates its force times the full rate, which includes the varying error;
+    # the error then supplies the total force, not only the spring force, times its rate.
     damper = n - stiffness * g
     lost = lost + (damper * (rate + beat * moved)).sum(axis=-1)
     parametric = parametric + damper * moved
@@ -130,25 +129,25 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
 
 
 class _Rows:
-    """Rows of the table at triples of samples, on whole steps or on parts of them."""
+    """Rows of the table at triples of samples, on full steps or on parts of them."""
 
     def __init__(self, compiled: Compiled, phase: Array) -> None:
         self._nodes, grid = compiled.nodes, compiled.grid
         self._step = np.arange(phase.shape[0]) % grid.steps
         cycle = np.arange(phase.shape[0]) // grid.steps
-        apart = phase - cycle[:, None] - self._nodes.phase[self._step]
-        #: Triples that are not a whole step.
-        self.moved = np.any(np.abs(apart) > _SAME, axis=1)
+        offset = phase - cycle[:, None] - self._nodes.phase[self._step]
+        #: Triples that are not a full step.
+        self.moved = np.any(np.abs(offset) > _SAME, axis=1)
         self._number, self._tau = within_steps(grid, cycle[self.moved], phase[self.moved])
 
     def at(self, rows: Array) -> Array:
-        """Take rows of shape (steps, 3, ...) to the samples."""
+        """Evaluate rows of shape (steps, 3, ...) at the samples."""
         values = rows[self._step]
         values[self.moved] = quadratic(rows, self._number, self._tau)
         return values
 
     def of(self, name: str) -> Array:
-        """Take the rows called ``name`` to the samples."""
+        """Evaluate the rows called ``name`` at the samples."""
         return self.at(getattr(self._nodes, name))
 
 

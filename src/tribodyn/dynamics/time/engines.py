@@ -1,4 +1,4 @@
-"""Engines by name: their options, what they need to begin, and how they march lanes on."""
+"""Registry of the time integration engines: their options, preparation and integration of lanes."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from tribodyn.errors import InputError
 from tribodyn.model import Model, Registry, choice, number
 from tribodyn.types import Array
 
-#: Ways to march over time.
+#: Methods of time integration.
 Method = Literal["rk4", "dormand-prince", "newmark"]
 
 
 class Setting(NamedTuple):
-    """What is to be marched."""
+    """Lanes to integrate."""
 
     systems: System | Sequence[System]
     frequency: Array  #: mesh frequency of every lane [Hz]
@@ -41,7 +41,7 @@ class Setting(NamedTuple):
 
 
 class FixedMarcher:
-    """Lanes that march in the steps of the grid."""
+    """Integrate lanes with the fixed steps of the grid."""
 
     def __init__(
         self,
@@ -54,7 +54,7 @@ class FixedMarcher:
         self.backend: Backend | None = backend
 
     def march(self, state: Array, cycles: int, **options: Any) -> Array:
-        """March by some mesh cycles."""
+        """Integrate over ``cycles`` mesh cycles."""
         setting = self.setting
         options |= {"extra_force": setting.extra_force, "parameters": setting.parameters}
         period = 1.0 / setting.frequency
@@ -63,7 +63,7 @@ class FixedMarcher:
 
 
 class AdaptiveMarcher:
-    """Lanes that march in steps of their own length; the grid is that of the samples."""
+    """Integrate lanes with adaptive steps; the grid defines the samples."""
 
     def __init__(
         self, setting: Setting, compiled: Compiled, rtol: float, atol: Tolerance | None
@@ -99,15 +99,17 @@ class AdaptiveMarcher:
         threads: int | None = None,
         elapsed: int = 0,
     ) -> Array:
-        """March by some mesh cycles; with statistics, cycle by cycle with records of each block."""
+        """Integrate over ``cycles`` mesh cycles; with statistics, record one cycle at a time."""
         setting, points, lanes = self.setting, self._compiled.grid.left, self.lanes
         facts = lanes.period, state, setting.extra_force
         run = Run(self._compiled, RungeKutta4(), setting.parameters, *facts)
         empty = np.zeros((0, 2 + 3 * state.shape[1]))
 
-        def march_lanes(block: AdaptiveBlock, part: Array, kept: Array | None) -> float:
+        def march_lanes(block: AdaptiveBlock, part: Array, block_record: Array | None) -> float:
             if statistics is None:
-                report = lanes.march_block(block, part, cycles, points, kept, empty, elapsed)
+                report = lanes.march_block(
+                    block, part, cycles, points, block_record, empty, elapsed
+                )
                 return float(report[3])
             cycle, widest = np.empty((points.size + 1, state.shape[1], block.index.size)), 0.0
             for before in range(elapsed, elapsed + cycles):
@@ -121,13 +123,13 @@ class AdaptiveMarcher:
         return new
 
 
-#: Lanes that march on from call to call.
+#: Lanes whose integration continues from call to call.
 Marcher = FixedMarcher | AdaptiveMarcher
 
 
 def _runge_kutta(setting: Setting, backend: Backend | None = None) -> Marcher:
     with marching_on(backend):
-        pass  # a processor that is not there is told before anything is computed
+        pass  # a missing processor is reported before anything is computed
     compiled = compile_lanes(setting.systems, setting.frequency, setting.steps, setting.parameters)
     return FixedMarcher(setting, compiled, RungeKutta4(), backend)
 
@@ -158,7 +160,7 @@ def _any_step(setting: Setting) -> Compiled:
     )
 
 
-#: How each method begins, from a :class:`Setting` and the options that belong to it alone.
+#: Preparation of each method from a :class:`Setting`, and the options of this method.
 _BEGIN: Mapping[str, tuple[Callable[..., Marcher], tuple[str, ...]]] = {
     "rk4": (_runge_kutta, ("backend",)),
     "dormand-prince": (_dormand_prince, ("rtol", "atol")),
@@ -167,28 +169,28 @@ _BEGIN: Mapping[str, tuple[Callable[..., Marcher], tuple[str, ...]]] = {
 
 
 def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
-    """Begin to march with a method, or an engine of a case file; options of another are refused."""
-    known = isinstance(method, str)
-    name = ENGINES[method].method if known and method in ENGINES else method
-    if not known or name not in _BEGIN:
+    """Prepare the integration with a method or an engine of a case file; check its options."""
+    is_name = isinstance(method, str)
+    name = ENGINES[method].method if is_name and method in ENGINES else method
+    if not is_name or name not in _BEGIN:
         why = "It is one of " + ", ".join(f'"{each}"' for each in _BEGIN)
         raise InputError(f'method = "{method}"', "argument method", why, "Choose one of these")
-    begin, own = _BEGIN[name]
-    given = {option: value for option, value in options.items() if value is not None}
-    for option in [each for each in given if each not in own]:
-        if given[option] == "cpu":
-            del given[option]  # where all engines march
+    begin, allowed = _BEGIN[name]
+    chosen = {option: value for option, value in options.items() if value is not None}
+    for option in [each for each in chosen if each not in allowed]:
+        if chosen[option] == "cpu":
+            del chosen[option]  # all engines run there
             continue
         owner = next(each for each, (_, others) in _BEGIN.items() if option in others)
-        what = f'{option} = {given[option]} with method = "{method}"'
-        remedy = f'Leave it out, or give method = "{owner}"'
+        what = f'{option} = {chosen[option]} with method = "{method}"'
+        remedy = f'Omit it, or set method = "{owner}"'
         raise InputError(what, f"argument {option}", f'It belongs to "{owner}"', remedy)
-    return begin(setting, **given)
+    return begin(setting, **chosen)
 
 
 @dataclass(frozen=True)
 class Engine(Model):
-    """A way to march over time.
+    """A time integration engine.
 
     Parameters
     ----------
@@ -199,11 +201,11 @@ class Engine(Model):
     options : mapping of str to Option or default
         Its options; ``argument`` of each is the argument of that function.
     meaning : str
-        One line for whoever chooses an engine.
+        Description in one line.
     papers : tuple of str
         Keys of the bibliography of the package.
     source : str
-        Where the engine comes from, of those without such a key.
+        Source of an engine without such a key.
 
     Examples
     --------

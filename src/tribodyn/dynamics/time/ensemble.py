@@ -1,4 +1,4 @@
-"""Many trajectories at once: lanes that differ in mesh frequency, load, start and parts."""
+"""Ensembles: many trajectories (lanes) that differ in frequency, load, start and parameters."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class LaneStatistics:
     mean, rms, minimum, maximum : (lanes, signals) array
         In the unit of the signal; ``rms`` includes the mean.
     harmonics : (lanes, signals, count) complex array
-        Amplitudes of the mesh harmonics 1, 2, ...; empty where none were gathered.
+        Amplitudes of the mesh harmonics 1, 2, ...; empty if none were computed.
     """
 
     mean: Array
@@ -55,11 +55,11 @@ class Ensemble:
     position, velocity : (lanes, n) array
         State after the last mesh cycle [m or rad, m/s or rad/s].
     deflection, contact_force, acceleration, output : LaneStatistics
-        Statistics over the last ``averaged`` mesh cycles [m, N, m/s^2 or rad/s^2, as given].
+        Statistics over the last ``averaged`` mesh cycles [m, N, m/s^2 or rad/s^2, output unit].
     contact_loss_share : (lanes, contacts) array
         Part of that time off the driving flank [-].
     averaged : int
-        Mesh cycles over which the statistics were gathered.
+        Mesh cycles over which the statistics were computed.
     """
 
     mesh_frequency: Array
@@ -111,7 +111,7 @@ def simulate_ensemble(
     preset: str | None = None,
     backend: Backend | None = None,
 ) -> Ensemble:
-    """March many trajectories and gather their statistics without storing a series.
+    """Integrate many trajectories and compute their statistics without storing time series.
 
     Parameters
     ----------
@@ -119,8 +119,8 @@ def simulate_ensemble(
         One for all lanes, or one for each, all with the same number of coordinates, contacts and
         frictions.
     mesh_frequency : float or (lanes,) array
-        Mesh frequency of each lane [Hz]. A single number holds for as many lanes as the systems
-        or the parameters have.
+        Mesh frequency of each lane [Hz]. A single number applies to all lanes of the systems or
+        the parameters.
     cycles : int
         Whole mesh cycles of each lane.
     start : (position, velocity)
@@ -132,20 +132,20 @@ def simulate_ensemble(
     parameters : LaneParameters, optional
         Factors by which each lane scales its system.
     averaged : int
-        The last mesh cycles, over which statistics are gathered.
+        Number of the last mesh cycles over which statistics are computed.
     harmonics : int
         Mesh harmonics of deflection and contact force.
     outputs : (m, 2 n) array, optional
         Linear outputs of (position, velocity), for example bearing forces [N/m, N*s/m].
     threads : int, optional
-        Blocks of lanes marched at a time; the number of processors by default.
+        Number of blocks of lanes integrated at a time; the number of processors by default.
     progress : Progress
-        Told about the mesh cycles.
+        Receives the progress over the mesh cycles.
     method, rtol, atol, gamma, beta, preset
-        As :func:`simulate` takes them [m or rad, m/s or rad/s].
+        As in :func:`simulate` [m or rad, m/s or rad/s].
     backend : "cpu" or "cuda", optional
-        Of "rk4": the processor that marches. A graphics processor of NVIDIA has one thread for each
-        trajectory, and is worth it from thousands of them on.
+        For "rk4": the processor. An NVIDIA graphics processor runs one thread for each trajectory,
+        which pays off for thousands of trajectories.
 
     Raises
     ------
@@ -164,8 +164,8 @@ def simulate_ensemble(
     frequency = _frequencies(system, mesh_frequency, parameters)
     if not 0 <= averaged <= cycles:
         what = f"averaged = {averaged} with cycles = {cycles}"
-        why = "Statistics cover some of the last mesh cycles"
-        raise InputError(what, "argument averaged", why, "Give 1 to cycles")
+        why = "Statistics cover at most all mesh cycles"
+        raise InputError(what, "argument averaged", why, f"Give a number from 1 to {cycles}")
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
     options |= {"backend": backend}
     lanes, size = frequency.size, (system if isinstance(system, System) else system[0]).size
@@ -208,7 +208,7 @@ def _frequencies(
     if frequency.ndim != 1 or odd:
         name = odd[0] if odd else "mesh_frequency"
         what = f"{name} is for {counts[name]} lanes, others are for {lanes}"
-        why = "One for each lane, or one for all"
+        why = "Each argument has one value for all lanes, or one for each lane"
         raise InputError(what, f"argument {name}", why, "Give one value, or one for each lane")
     return np.array(np.broadcast_to(frequency, (lanes,)))
 

@@ -1,8 +1,8 @@
 """Newmark's scheme on the event-aligned grid: average acceleration by default.
 
 Second order where the other engines have four or more, but stable at any step where ``2 beta >=
-gamma >= 1/2``: for stiff supports whose own motion does not matter, and for comparison with
-published results. The acceleration is found anew at every event and contact change, and a step in
+gamma >= 1/2``: for stiff supports whose motion is irrelevant, and for comparison with
+published results. The acceleration is recomputed at every event and contact change, and a step in
 which a contact opens or closes is split there: the scheme keeps its second order. ``gamma > 1/2``
 adds damping and leaves first order. Source: Newmark (1959); Hughes (1987), The finite element
 method, section 9.1, for the limits.
@@ -38,24 +38,24 @@ NEWMARK_PRESETS: Mapping[str, tuple[float, float]] = MappingProxyType(
     }
 )
 
-#: Below this tolerance the iteration would chase rounding.
+#: Smallest tolerance of the iteration: rounding limits it.
 _FINEST = 1e-14
 
 
 def newmark_law(
     gamma: float | None = None, beta: float | None = None, preset: str | None = None
 ) -> tuple[float, float]:
-    """Parameters of the scheme, given or by name."""
+    """Parameters of the scheme, from numbers or by the name of a preset."""
     if preset is None:
         return 0.5 if gamma is None else gamma, 0.25 if beta is None else beta
     if preset not in NEWMARK_PRESETS or gamma is not None or beta is not None:
-        beside = "" if gamma is None and beta is None else " with gamma or beta"
+        conflict = "" if gamma is None and beta is None else " with gamma or beta"
         raise InputError(
-            f'preset = "{preset}"{beside}',
+            f'preset = "{preset}"{conflict}',
             where="argument preset",
-            why="It names both parameters and is one of "
+            why="It defines both parameters and is one of "
             + ", ".join(f'"{name}"' for name in NEWMARK_PRESETS),
-            remedy="Choose one of these, and leave out the parameters",
+            remedy="Choose one of these, and omit gamma and beta",
         )
     return NEWMARK_PRESETS[preset]
 
@@ -84,8 +84,8 @@ def refuse_newmark(
     """Refuse parameters, or a step that is beyond the limit of a conditionally stable scheme."""
     if not (np.isfinite(gamma) and np.isfinite(beta) and gamma >= 0.5 and beta >= 0.0):
         what = f"gamma = {gamma:g}, beta = {beta:g}"
-        why = "With gamma < 1/2 the scheme feeds energy in at any step; beta < 0 has no meaning"
-        remedy = "Average acceleration is gamma = 0.5, beta = 0.25"
+        why = "With gamma < 1/2 the scheme is unstable at any step; beta is not negative"
+        remedy = "Use for example gamma = 0.5, beta = 0.25 (average acceleration)"
         raise InputError(what, "arguments gamma, beta", why, remedy)
     if 2.0 * beta >= gamma:
         return
@@ -99,12 +99,12 @@ def refuse_newmark(
 
 
 def _outermost(stiffness: Array, period: Array) -> list[int]:
-    """Lanes such that no other is both stiffer and slower."""
-    found: list[int] = []
+    """Lanes for which no other lane is both stiffer and slower."""
+    outermost: list[int] = []
     for lane in np.lexsort((-stiffness, -period)):
-        if not found or stiffness[lane] > stiffness[found[-1]]:
-            found.append(int(lane))
-    return found
+        if not outermost or stiffness[lane] > stiffness[outermost[-1]]:
+            outermost.append(int(lane))
+    return outermost
 
 
 def _undamped_rate(system: System, nodes: Nodes, factors: tuple[float, ...]) -> float:

@@ -70,11 +70,11 @@ class FineSamples:
 
 
 def sample_extremes(signal: Array) -> tuple[Array, Array]:
-    """Least and greatest value of (3 s, ...), with the vertices of the parabolas of the steps."""
+    """Minimum and maximum of (3 s, ...), including the vertices of the parabolas of the steps."""
     steps = signal.reshape(-1, 3, *signal.shape[1:])
     least, greatest = signal.min(axis=0), signal.max(axis=0)
     bend = steps[:, 0] - 2.0 * steps[:, 1] + steps[:, 2]
-    reach = 0.5 * np.abs(bend)  # a vertex within a step is no farther from its middle
+    reach = 0.5 * np.abs(bend)  # largest distance of a vertex from the middle value
     beyond = (steps[:, 1] + reach > greatest) | (steps[:, 1] - reach < least)
     rows = np.flatnonzero(beyond.any(axis=tuple(range(1, beyond.ndim))))
     (left, middle, right), bend = np.moveaxis(steps[rows], 1, 0), bend[rows]
@@ -121,16 +121,16 @@ class Response(Record):
     floquet_multipliers : (m,) array
         Multipliers of the orbit; empty for a transient.
     cycles_used : int
-        Mesh cycles that were marched to find the orbit; lanes marched at a time count once.
+        Integrated mesh cycles in total; lanes that are integrated together count once.
     search_cycles : int
-        Those of them that came before Newton's method found the orbit.
+        Integrated mesh cycles before Newton's method converged.
     extra_force : (n,) array
         Generalized force that the torque balance added [N or N*m].
     period : int
         Mesh cycles after which the orbit repeats, at most ``periods``; 0 for a transient.
     step_error : float
-        Distance to the orbit at half the step over its size [-]: what the step costs; infinite
-        where there is no such orbit, NaN for a transient and an orbit that is not converged.
+        Distance to the orbit at half the step over its size [-]: the discretisation error;
+        infinite without such an orbit, NaN for a transient and an orbit that is not converged.
     """
 
     time: Array = quantity("time", unit="s", axis=True)
@@ -201,17 +201,17 @@ def build_response(
     nodes = compiled.nodes
     cycles = (states.shape[0] - 1) // compiled.grid.steps
     size = compiled.system.size
-    whole = _step_samples(compiled, mesh_frequency, states, extra_force)
-    fine = _without_jumps(whole, compiled, mesh_frequency, states, extra_force)
+    samples = _step_samples(compiled, mesh_frequency, states, extra_force)
+    fine = _without_jumps(samples, compiled, mesh_frequency, states, extra_force)
 
     return Response(
-        time=whole.time[::3],
+        time=samples.time[::3],
         phase=np.tile(nodes.phase[:, 0], cycles),
         position=states[:-1, :size].copy(),
         velocity=states[:-1, size:].copy(),
-        acceleration=whole.acceleration[::3],
-        deflection=whole.deflection[::3],
-        contact_force=whole.contact_force[::3],
+        acceleration=samples.acceleration[::3],
+        deflection=samples.deflection[::3],
+        contact_force=samples.contact_force[::3],
         names=tuple(compiled.system.names),
         mesh_frequency=mesh_frequency,
         periods=cycles,
@@ -223,7 +223,7 @@ def build_response(
 
 
 def later(response: Response, begin: float) -> Response:
-    """A response whose record begins at a time."""
+    """Shift the times of a response by ``begin``."""
     fine = replace(response.fine, time=response.fine.time + begin)
     return replace(response, time=response.time + begin, fine=fine) if begin else response
 
@@ -256,48 +256,48 @@ def _step_samples(
 
 
 def _without_jumps(
-    whole: FineSamples, compiled: Compiled, mesh_frequency: float, states: Array, extra: Array
+    samples: FineSamples, compiled: Compiled, mesh_frequency: float, states: Array, extra: Array
 ) -> FineSamples:
-    """Part the samples where a contact opens or closes instead of at the nearest step."""
+    """Divide the samples where a contact opens or closes instead of at the nearest step."""
     nodes, steps = compiled.nodes, compiled.grid.steps
     dead = has_gap(nodes)
     if not dead.any():
-        return whole
-    ends = whole.deflection.reshape(-1, steps, 3, dead.size)[:, :, ::2]
+        return samples
+    ends = samples.deflection.reshape(-1, steps, 3, dead.size)[:, :, ::2]
     if np.all(ends > nodes.gap[:, ::2]):
-        return whole
+        return samples
     at_ends = sides(ends, nodes.gap[:, ::2], dead).reshape(-1, 2, dead.size)
     new = resample_crossings(compiled, mesh_frequency, states, extra, at_ends)
     if new is None:
-        return whole
+        return samples
 
     def replaced(values: Array, by: Array) -> Array:
         out = values.reshape(-1, 3, *values.shape[1:]).copy()
         out[new.step] = by
         return out.reshape(values.shape)
 
-    phase = replaced(whole.phase, new.phase)
+    phase = replaced(samples.phase, new.phase)
     return FineSamples(
         phase=phase,
         time=phase / mesh_frequency,
-        weight=replaced(whole.weight, new.weight),
-        position=replaced(whole.position, new.position),
-        velocity=replaced(whole.velocity, new.velocity),
-        acceleration=replaced(whole.acceleration, new.forces.acceleration),
-        deflection=replaced(whole.deflection, new.forces.deflection),
-        contact_force=replaced(whole.contact_force, new.forces.contact),
+        weight=replaced(samples.weight, new.weight),
+        position=replaced(samples.position, new.position),
+        velocity=replaced(samples.velocity, new.velocity),
+        acceleration=replaced(samples.acceleration, new.forces.acceleration),
+        deflection=replaced(samples.deflection, new.forces.deflection),
+        contact_force=replaced(samples.contact_force, new.forces.contact),
     )
 
 
 _HALVINGS = 48
-#: Contacts that cross nearer to each other, as parts of a step, cross together.
+#: Contacts that cross within this fraction of a step cross together.
 _TOGETHER = 1e-9
 
 
 class Resampled(NamedTuple):
-    """Three samples of each of some steps, in place of those that they had."""
+    """Three new samples for each of some steps."""
 
-    step: Index  #: numbers of the steps, counted from the beginning
+    step: Index  #: numbers of the steps, counted from the start
     phase: Array  #: [-]
     weight: Array  #: [-]
     position: Array  #: [m or rad, ...]
@@ -308,7 +308,7 @@ class Resampled(NamedTuple):
 def resample_crossings(
     compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array, sides: Array
 ) -> Resampled | None:
-    """Sample steps in which a contact opens or closes, and a neighbour of each, anew."""
+    """Resample steps in which a contact opens or closes, together with a neighbour of each."""
     crossed = np.any(sides[:, 0] != sides[:, 1], axis=1)
     if not crossed.any() or compiled.step_number > LIMIT:
         return None
@@ -316,20 +316,20 @@ def resample_crossings(
     parts = compiled.system, compiled.nodes, compiled.grid
     points = WithinSteps(*parts, mesh_frequency, extra_force)
     tau = _crossing(points, step, states[step], sides[step, 0], sides[step, 1])
-    kept = (tau > 1e-6) & (tau < 1.0 - 1e-6)
-    step, forward, tau = step[kept], forward[kept], tau[kept]
+    inside = (tau > 1e-6) & (tau < 1.0 - 1e-6)
+    step, forward, tau = step[inside], forward[inside], tau[inside]
     if step.size == 0:
         return None
     before, after = sides[step, 0], sides[step, 1]
     middle = points.advance(step, np.zeros(step.size), tau, states[step], before)
     grid = compiled.grid
     at = np.concatenate((grid.left, [1.0]))[step % grid.steps]
-    whole = step // grid.steps
-    cut = whole + at + tau * grid.width[step % grid.steps]
+    cycle = step // grid.steps
+    cut = cycle + at + tau * grid.width[step % grid.steps]
     first = np.where(forward, step, step - 1)
     outer = grid.left[first % grid.steps]
-    end = whole + outer + grid.width[first % grid.steps] + grid.width[(first + 1) % grid.steps]
-    left = _part(points, step, (whole + outer, cut), (states[first], middle), before)
+    end = cycle + outer + grid.width[first % grid.steps] + grid.width[(first + 1) % grid.steps]
+    left = _part(points, step, (cycle + outer, cut), (states[first], middle), before)
     right = _part(points, step, (cut, end), (middle, states[first + 2]), after)
     phase, q, v = (np.concatenate(pair) for pair in zip(left[:3], right[:3], strict=True))
     joined = Forces(*(np.concatenate(pair) for pair in zip(left[3], right[3], strict=True)))
@@ -341,36 +341,36 @@ def resample_crossings(
 def _with_neighbours(crossed: Mask, after_event: Mask) -> tuple[Index, Mask]:
     """Steps with a crossing that have a free neighbour, and whether it is the next one."""
     count, steps = crossed.size, after_event.size
-    taken = crossed.copy()
+    used = crossed.copy()
     chosen, forward = [], []
     for step in np.flatnonzero(crossed):
         following = step + 1
-        if following < count and not after_event[following % steps] and not taken[following]:
-            taken[following] = True
+        if following < count and not after_event[following % steps] and not used[following]:
+            used[following] = True
             chosen.append(step)
             forward.append(True)
-        elif step > 0 and not after_event[step % steps] and not taken[step - 1]:
-            taken[step - 1] = True
+        elif step > 0 and not after_event[step % steps] and not used[step - 1]:
+            used[step - 1] = True
             chosen.append(step)
             forward.append(False)
     return np.array(chosen, dtype=np.int64), np.array(forward, dtype=bool)
 
 
 def _crossing(points: WithinSteps, step: Index, state: Array, before: Array, after: Array) -> Array:
-    """Fraction of each step at which its contacts leave their sides; 0 if not one place."""
+    """Fraction of each step at which its contacts leave their sides; 0 if they differ."""
     end = points.advance(step, np.zeros(step.size), np.ones(step.size), state, before)
-    of, contact = np.nonzero(before != after)  # every crossing, all of them side by side
+    of, contact = np.nonzero(before != after)  # all crossings in one batch
     ends = (each[of] for each in (*np.split(state, 2, axis=1), *np.split(end, 2, axis=1)))
     (q0, v0, q1, v1), h = ends, points.duration(step)[of, None]
     pressed = points.contact_of_each(step[of], contact)
-    own = before[of, contact], after[of, contact]
+    sides_of_crossing = before[of, contact], after[of, contact]
 
     def distance(tau: Array) -> Array:
         """Clearance of the contacts at fractions of the steps in which they cross."""
         t = tau[:, None]
         q = (1.0 + 2.0 * t) * (1.0 - t) ** 2 * q0 + t**2 * (3.0 - 2.0 * t) * q1
         q = q + h * t * (1.0 - t) * ((1.0 - t) * v0 - t * v1)
-        return clearance(*pressed(tau, q), *own)
+        return clearance(*pressed(tau, q), *sides_of_crossing)
 
     low, high = np.zeros(of.size), np.ones(of.size)
     beyond = distance(low) <= 0.0

@@ -1,4 +1,4 @@
-"""Motion over time from a given start, with the engine of one's choice."""
+"""Motion over time from a start, with any of the engines."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from tribodyn.errors import Argument, InputError, real_numbers, require_positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
-#: Mesh cycles marched between two reports of progress.
+#: Mesh cycles between two reports of progress.
 _CHUNK = 64
 
 
 def read_start(
     system: System, start: tuple[ArrayLike, ArrayLike], lanes: int | None = None
 ) -> Array:
-    """Check a start and return it as one state (2 n,), or as those of all lanes."""
+    """Check a start and return it as one state (2 n,), or as the states of all lanes."""
     size, several = system.size, f" or ({lanes}, {system.size})" if lanes else ""
     try:
         parts = [np.broadcast_to(np.asarray(part, float), (lanes or 1, size)) for part in start]
@@ -37,7 +37,7 @@ def read_start(
 
 
 def read_force(system: System, extra_force: ArrayLike | None) -> Array:
-    """Check an extra force; zero where none is given."""
+    """Check an extra force; None stands for zero."""
     if extra_force is None:
         return np.zeros(system.size)
     force = real_numbers(Argument("extra_force"), extra_force)
@@ -67,7 +67,7 @@ def simulate(
     preset: str | None = None,
     backend: Backend | None = None,
 ) -> Response:
-    """March a system over time, every force held as given.
+    """Integrate a system over time with prescribed forces.
 
     Parameters
     ----------
@@ -83,23 +83,23 @@ def simulate(
     extra_force : (n,) array, optional
         Constant generalized force on top of the system's [N or N*m].
     kept : int, optional
-        Last mesh cycles that are recorded; all of them by default.
+        Number of the last mesh cycles that are recorded; all of them by default.
     progress : Progress
-        Told about every 64 cycles.
+        Receives the progress every 64 cycles.
     method : "rk4", "dormand-prince" or "newmark"
         Classical Runge-Kutta steps; adaptive steps of Dormand and Prince; Newmark's scheme.
     rtol : float, optional
-        Of "dormand-prince": error over the largest size so far of each state, 1e-6 by default [-].
+        For "dormand-prince": error over the largest size so far of each state, 1e-6 by default [-].
     atol : float, (position, velocity) or (2 n,) array, optional
-        Of "dormand-prince": error allowed on top of that [m or rad, m/s or rad/s]; by default
+        For "dormand-prince": error allowed on top of that [m or rad, m/s or rad/s]; by default
         0.001 ``rtol`` times the size of the static state.
     gamma, beta : float, optional
-        Of "newmark": its parameters, 1/2 and 1/4 (average acceleration) by default [-].
+        For "newmark": its parameters, 1/2 and 1/4 (average acceleration) by default [-].
     preset : str, optional
-        Of "newmark": "average acceleration", "linear acceleration", "central difference" or "seed"
+        For "newmark": "average acceleration", "linear acceleration", "central difference" or "seed"
         (1/2, 1/2) instead of the two numbers.
     backend : "cpu" or "cuda", optional
-        Of "rk4": the processor that marches; see :func:`simulate_ensemble`.
+        For "rk4": the processor; see :func:`simulate_ensemble`.
 
     Returns
     -------
@@ -115,9 +115,9 @@ def simulate(
 
     Notes
     -----
-    All methods keep to the event-aligned grid: events are ends of steps, and a step in which a
-    contact opens or closes is split there. The rows of "dormand-prince" are its dense output; means
-    and harmonics of the response are as good as ``steps`` resolves the motion.
+    All methods use the event-aligned grid: events are ends of steps, and a step in which a contact
+    opens or closes is split there. The rows of "dormand-prince" are its dense output; the accuracy
+    of means and harmonics of the response depends on ``steps``.
 
     Examples
     --------
@@ -135,8 +135,8 @@ def simulate(
     setting = Setting(system, frequency, cycles, steps, extra[None, :])
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
     marcher = prepare(method, setting, **options, backend=backend)
-    kept = cycles if kept is None else require_whole("kept", kept)
-    skipped = cycles - min(kept, cycles)
+    recorded = cycles if kept is None else require_whole("kept", kept)
+    skipped = cycles - min(recorded, cycles)
     record = np.empty(((cycles - skipped) * steps + 1, 2 * system.size, 1))
     progress.start("Mesh cycles", cycles)
     elapsed = 0

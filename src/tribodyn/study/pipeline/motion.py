@@ -52,12 +52,12 @@ def motions_of(
     points: Sequence[tuple[Case, System, float]],
 ) -> list[Callable[[], Response] | None]:
     """Motions of cases at mesh frequencies, side by side; None where one is found by itself."""
-    from tribodyn.dynamics.equations.alike import groups_alike, remember_rates
-    from tribodyn.dynamics.orbits.side_by_side import orbits_in_touch
+    from tribodyn.dynamics.equations.batched_tables import cache_rates, group_by_structure
+    from tribodyn.dynamics.orbits.batched_orbits import orbits_in_touch
 
-    for group in groups_alike([system for _, system, _ in points]):
+    for group in group_by_structure([system for _, system, _ in points]):
         with suppress(InputError), collected():
-            remember_rates([points[number][1] for number in group])
+            cache_rates([points[number][1] for number in group])
     alike: dict[int, list[int]] = {}
     for number, (case, system, frequency) in enumerate(points):
         if case.solver.method == "steady" and case.solver.engine == _ORBITS:

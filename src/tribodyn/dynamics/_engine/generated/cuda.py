@@ -1,8 +1,8 @@
-"""All lanes on a graphics processor, one thread for each.
+"""Integrate all lanes on a graphics processor, one thread per lane.
 
-The thread runs the engine's own functions, compiled for the processor, with the forces and the step
-of the structure at hand as straight lines of code. Numba's simulator (``NUMBA_ENABLE_CUDASIM=1``)
-runs them as they stand, in Python.
+The thread runs the functions of the engine, compiled for the graphics processor, with forces and
+step generated as straight-line code for the structure. Numba's simulator
+(``NUMBA_ENABLE_CUDASIM=1``) runs the same functions in Python.
 """
 
 from __future__ import annotations
@@ -18,7 +18,13 @@ import numba
 import numpy as np
 
 from tribodyn.compiled import announce
-from tribodyn.dynamics._engine import contact_forces, crossing, middle, moments, runge_kutta
+from tribodyn.dynamics._engine import (
+    contact_forces,
+    crossing,
+    midpoint,
+    runge_kutta,
+    running_statistics,
+)
 from tribodyn.dynamics._engine.generated.source import write_source
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.divergence import most_splits
@@ -29,21 +35,21 @@ from tribodyn.types import Array, Index
 
 #: Threads of a block, which share a multiprocessor, and lanes in the memory of the processor.
 _BLOCK, _LANES = 64, 1 << 16
-#: Steps of one lane, and of all, between two looks at an interruption: a fraction of a second, also
-#: on a processor that draws a screen.
+#: Steps of one lane, and of all, between two checks for an interruption: a fraction of a second,
+#: also on a processor that drives a display.
 _STEPS, _ALL_STEPS = 20_000, 20_000_000
 
 
 class MissingProcessorError(InputError, OSError):
-    """What the machine lacks, which is no fault of the input that asks for it."""
+    """The machine lacks a graphics processor or its software; the input is valid."""
 
 
 def require_gpu() -> None:
-    """Refuse where no graphics processor answers."""
+    """Raise unless a graphics processor of NVIDIA is available."""
     where, stay = Argument("backend"), 'or leave backend = "cpu"'
     try:
         if not numba.config.ENABLE_CUDASIM and importlib.util.find_spec("numba_cuda") is None:
-            raise ImportError("It compiles for graphics processors of NVIDIA")
+            raise ImportError("It compiles for NVIDIA graphics processors")
         from numba import cuda
     except ImportError as error:
         what, remedy = "numba-cuda is not installed", 'Install it: pip install "tribodyn[cuda]", '
@@ -51,13 +57,13 @@ def require_gpu() -> None:
     if not cuda.is_available():
         lines = [line.strip(" .") for line in str(cuda.cuda_error()).splitlines()]
         reason = [line for line in lines if line and not line.endswith(":")]
-        what, why = "no graphics processor of NVIDIA answers", "; ".join(reason[:1])
+        what, why = "no NVIDIA graphics processor available", "; ".join(reason[:1])
         remedy = f"Install its driver, so that nvidia-smi lists the processor, {stay}"
         raise MissingProcessorError(what, where, why, remedy)
 
 
 class _Kernel:
-    """The thread of one structure, and the sizes of what it works with."""
+    """Compiled thread of one structure, and the sizes of its buffers."""
 
     def __init__(self, source: str, n: int, contacts: int, frictions: int, columns: int) -> None:
         from numba import cuda
@@ -69,7 +75,7 @@ class _Kernel:
         sizes = (self.slots, 3 * columns, crossing.WIDTH * (contacts + 1), parts)
         self.ends = tuple(int(end) for end in np.cumsum(sizes))
         names: dict[str, Any] = {}
-        for module in (contact_forces, crossing, middle, moments, runge_kutta, thread):
+        for module in (contact_forces, crossing, midpoint, running_statistics, runge_kutta, thread):
             names.update(vars(module))
         for name, value in list(names.items()):
             function = getattr(value, "py_func", value)
@@ -97,52 +103,57 @@ def march_on_gpu(
     record: Array | None,
     statistics: Statistics | None,
 ) -> tuple[Array, Index]:
-    """March all lanes; returns their states and what the march of a block returns for each."""
+    """Integrate all lanes; returns their states and the code of each as from ``march_block``."""
     new, codes = np.empty_like(state), np.empty(len(state), dtype=np.int64)
     for first in range(0, len(state), _LANES):
         lanes = slice(first, first + _LANES)
-        kept = np.zeros((0, state.shape[1], codes[lanes].size))
-        kept = kept if record is None else np.empty((record.shape[0], *kept.shape[1:]))
+        lanes_record = np.zeros((0, state.shape[1], codes[lanes].size))
+        lanes_record = (
+            lanes_record if record is None else np.empty((record.shape[0], *lanes_record.shape[1:]))
+        )
         sums = None if statistics is None else np.ascontiguousarray(statistics.moments[:, lanes])
-        given = member[lanes], period[lanes], load[lanes], state[lanes]
+        lane_arrays = member[lanes], period[lanes], load[lanes], state[lanes]
         try:
-            new[lanes], codes[lanes] = _march(programs, given, cycles, kept, statistics, sums)
+            new[lanes], codes[lanes] = _march(
+                programs, lane_arrays, cycles, lanes_record, statistics, sums
+            )
         except Exception as error:
-            if not any(where.startswith(("numba.cuda", "cuda")) for where in _modules(error)):
+            if not any(module.startswith(("numba.cuda", "cuda")) for module in _modules(error)):
                 raise
-            what = f"the graphics processor gave up: {str(error).strip()}"
-            why = f"It was to march {len(given[0])} lanes and record {kept.nbytes / 2**20:.0f} MiB"
-            remedy = 'March fewer at a time, update the driver, or take backend = "cpu"'
+            what = f"the graphics processor failed: {str(error).strip()}"
+            size = f"{len(lane_arrays[0])} lanes with a record of"
+            why = f"It integrated {size} {lanes_record.nbytes / 2**20:.0f} MiB"
+            remedy = 'Use fewer lanes at a time, update the driver, or set backend = "cpu"'
             if not type(error).__module__.startswith(("numba", "cuda")):
-                found = [f"{name} {version(name)}" for name in ("numba-cuda", "numba", "numpy")]
-                why = f"These versions do not go together: {', '.join(found)}"
-                remedy = 'Install ones that do: pip install --upgrade "tribodyn[cuda]"'
+                versions = [f"{name} {version(name)}" for name in ("numba-cuda", "numba", "numpy")]
+                why = f"These versions are incompatible: {', '.join(versions)}"
+                remedy = 'Install compatible ones: pip install --upgrade "tribodyn[cuda]"'
             raise ComputationError(what, Argument("backend"), why, remedy) from error
         if record is not None:
-            record[:, :, lanes] = kept
+            record[:, :, lanes] = lanes_record
         if statistics is not None:
             statistics.moments[:, lanes] = sums
     return new, codes
 
 
 def _modules(error: Exception) -> list[str]:
-    """Modules that an error passed through, and its own."""
+    """Modules in the traceback of an error, and the module of its class."""
     frames = [frame.f_globals.get("__name__", "") for frame, _ in walk_tb(error.__traceback__)]
     return [*frames, type(error).__module__]
 
 
 def _march(
     programs: tuple[Program, ...],
-    lanes_given: tuple[Array | Index, ...],
+    lane_arrays: tuple[Array | Index, ...],
     cycles: int,
     record: Array,
     statistics: Statistics | None,
     sums: Array | None,
 ) -> tuple[Array, Index]:
-    """March lanes, of which member, period, load and state are given."""
+    """Integrate lanes with the arrays ``lane_arrays``: member, period, load and state."""
     from numba import cuda
 
-    first, lanes, double = programs[0], *lanes_given[-1].shape
+    first, lanes, double = programs[0], *lane_arrays[-1].shape
     contacts, frictions = int(first.code[1]), first.slots.end - first.slots.friction
     kernel = _kernel(write_source(first), double // 2, contacts, frictions, int(first.code[2]))
     outputs, waves = np.zeros((0, double)), np.zeros((0, 3, 0, 2))
@@ -150,12 +161,14 @@ def _march(
         outputs, waves = statistics.outputs, statistics.waves
     harmonics = waves.shape[2]
     tables = np.stack([program.rows for program in programs])
-    fixed = first.code, first.reads, tables, first.width, first.restart, *lanes_given
-    given = [cuda.to_device(np.ascontiguousarray(part)) for part in fixed]
-    kept = cuda.device_array((kernel.slots, lanes))
-    room = cuda.device_array((lanes, kernel.ends[-1] + 6 * harmonics))
-    gathered = [cuda.to_device(np.ascontiguousarray(part)) for part in (outputs, waves.reshape(-1))]
-    moments_there = cuda.to_device(np.zeros((0, lanes)) if sums is None else sums)
+    fixed = first.code, first.reads, tables, first.width, first.restart, *lane_arrays
+    program_arrays = [cuda.to_device(np.ascontiguousarray(part)) for part in fixed]
+    lane_slots = cuda.device_array((kernel.slots, lanes))
+    scratch = cuda.device_array((lanes, kernel.ends[-1] + 6 * harmonics))
+    statistics_arrays = [
+        cuda.to_device(np.ascontiguousarray(part)) for part in (outputs, waves.reshape(-1))
+    ]
+    device_moments = cuda.to_device(np.zeros((0, lanes)) if sums is None else sums)
     ended = cuda.to_device(np.full(lanes, -1, dtype=np.int64))
     steps = first.width.size
     most = max(1, min(_STEPS // steps, _ALL_STEPS // (steps * lanes)))
@@ -165,13 +178,13 @@ def _march(
         rows = slice(done * steps, (done + count) * steps + 1) if len(record) else slice(0, 0)
         states = cuda.device_array((rows.stop - rows.start, double, lanes))
         kernel.march[-(-lanes // threads), threads](
-            *given, count, done * steps, kept, room, states, *gathered, harmonics, moments_there,
-            1.0 / cycles, ended,
+            *program_arrays, count, done * steps, lane_slots, scratch, states, *statistics_arrays,
+            harmonics, device_moments, 1.0 / cycles, ended,
         )  # fmt: skip
         cuda.synchronize()
         states.copy_to_host(record[rows])
         if stop_flag()[0] != 0:
             refuse_stopped(STOPPED)
     if sums is not None:
-        moments_there.copy_to_host(sums)
-    return kept[:double].copy_to_host().T, ended.copy_to_host()
+        device_moments.copy_to_host(sums)
+    return lane_slots[:double].copy_to_host().T, ended.copy_to_host()

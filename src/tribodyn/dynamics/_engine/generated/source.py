@@ -1,8 +1,8 @@
-"""Source code of the law and the step of one structure: straight lines with constant places.
+"""Generate straight-line source code of the law and the step of one structure.
 
-The interpreting kernel reads from the arrays of a program which slot each term multiplies. Here the
-same terms, in the same order, stand as code, so that nothing is looked up and what a stage reads
-stays in registers. The functions replace those of the same names in
+The interpreting kernel reads from the arrays of a program which slot each term multiplies. The
+generated code holds the same terms in the same order, so that nothing is looked up and the values
+of a stage stay in registers. The functions replace those of the same names in
 :mod:`tribodyn.dynamics._engine.contact_forces` and :mod:`tribodyn.dynamics._engine.runge_kutta`,
 with one number per slot of ``w``.
 """
@@ -13,7 +13,7 @@ from tribodyn.dynamics.equations.program import Program
 
 
 class _Writer:
-    """Lines of code, and the place in the program up to which they are written."""
+    """Generated lines of code, and the position in the program that they have reached."""
 
     def __init__(self, program: Program) -> None:
         self.code, self.s = [int(item) for item in program.code], program.slots
@@ -21,23 +21,23 @@ class _Writer:
         self.lines: list[str] = []
 
     def begin(self, head: str) -> None:
-        """Begin a function; everything before the terms is set up alike."""
+        """Begin a function and return to the start of the program."""
         self.at, self.read, self.row, self.depth = 4, 0, 0, 0
         self.add(f"def {head}:")
         self.depth = 1
 
     def add(self, *lines: str) -> None:
-        """Write lines."""
+        """Append lines at the current indentation."""
         self.lines += ["    " * self.depth + line for line in lines]
 
     def take(self, count: int) -> list[tuple[str, int]]:
-        """Factors and slots of the next terms."""
+        """Return factors and slots of the next terms."""
         first, self.row, self.read = self.row, self.row + count, self.read + count
         reads = self.all_reads[self.read - count : self.read]
         return [(f"row[{first + item}]", reads[item]) for item in range(count)]
 
     def value(self, slot: int) -> str:
-        """The number in a slot: states and forces are variables."""
+        """Expression for the number in a slot: states and forces are variables."""
         s = self.s
         for name, first, count in (("x", 0, 2 * s.n), ("f", s.force, s.contacts)):
             if first <= slot < first + count:
@@ -119,17 +119,17 @@ def write_source(program: Program) -> str:
     out.add(*(f"w[out + {i}] = a{i}" for i in range(n)))
 
     out.begin("left_side(lanes, law, r, w)")
-    out.add("row = law.rows[r:]", f"error, gone = w[{s.error}] - 1.0, False")
+    out.add("row = law.rows[r:]", f"error, crossed = w[{s.error}] - 1.0, False")
     out.add(*(f"x{i} = w[{4 * n + i}]" for i in range(n)))
     for j in range(s.contacts):
         (_, _, gap), (dead, _) = out.compression(rate=False)
         if dead:
             out.add(f"side, gap = w[{s.side + j}], {gap}")
             out.add("inside = side * d - gap if side != 0.0 else gap - abs(d)")
-            out.add("gone = gone or inside < 0.0")
-    out.add("return gone")
+            out.add("crossed = crossed or inside < 0.0")
+    out.add("return crossed")
 
-    out.begin("step(lanes, method, law, number, base, w, seen)")
+    out.begin("step(lanes, method, law, number, base, w, statistics_slot)")
     out.add(once, f"h = w[{s.h}]", "sixth = (1.0 / 6.0) * h")
     out.add(*(f"x{i} = w[{i}]" for i in range(2 * n)))
     out.add(*(f"first{i} = inner{i} = a{i} = 0.0" for i in range(n)))

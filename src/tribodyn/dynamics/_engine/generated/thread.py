@@ -1,8 +1,8 @@
-"""One trajectory marched by one thread: the same steps, crossings and statistics as in a block.
+"""Integrate one trajectory by one thread: the same steps, crossings and statistics as in a block.
 
-Nothing here is compiled by itself: :mod:`tribodyn.dynamics._engine.generated.cuda` compiles it for
-the processor, with all that it calls. The functions of the engine that work on vectors of lanes
-work on numbers there, for which they find the first functions below in the place of those of
+:mod:`tribodyn.dynamics._engine.generated.cuda` compiles this module for the graphics processor,
+together with all functions that it calls. There the functions of the engine work on numbers
+instead of vectors of lanes: the first functions below replace those of
 :mod:`tribodyn.dynamics._engine.lanes`.
 """
 
@@ -18,16 +18,16 @@ from numba.extending import register_jitable
 from tribodyn.dynamics._engine.contact_forces import I64, Law, set_sides, slots_of
 from tribodyn.dynamics._engine.crossing import split_step
 from tribodyn.dynamics._engine.marching import (
-    UNPARTED,
+    CHATTERING,
     has_dead_zones,
     put_lane,
     set_up,
     take_lane,
 )
-from tribodyn.dynamics._engine.moments import Gathered, Place, gather, gather_parts
 from tribodyn.dynamics._engine.runge_kutta import take_over
+from tribodyn.dynamics._engine.running_statistics import Gathered, Place, gather, gather_parts
 
-#: Constants and functions of one structure, put in before compiling.
+#: Constants and functions of one structure, set before compilation.
 SLOTS, COLUMNS, ENDS = 0, 0, (0, 0, 0, 0)
 step: Any = None
 left_side: Any = None
@@ -74,33 +74,33 @@ def below(left: Any, right: Any) -> Any:
 
 
 def prepare(method: Any, law: Law, base: int, duration: float, kind: int, w: Any) -> None:
-    """The method keeps nothing of its own."""
+    """Do nothing: the method has no slots."""
 
 
 def restart(lanes: Any, method: Any, law: Law, base: int, w: Any) -> None:
-    """The method keeps nothing of its own."""
+    """Do nothing: the method has no slots."""
 
 
 @register_jitable
 def march_thread(
     code: Any, reads: Any, tables: Any, share: Any, again: Any, member: Any, period: Any, load: Any,
-    state: Any, cycles: int, marched: int, kept: Any, room: Any, record: Any, outputs: Any,
-    waves: Any, harmonics: int, moments: Any, weight: float, ended: Any,
+    state: Any, cycles: int, marched: int, lane_slots: Any, scratches: Any, record: Any,
+    outputs: Any, waves: Any, harmonics: int, moments: Any, weight: float, ended: Any,
 ) -> None:  # fmt: skip
-    """March one lane by ``cycles`` mesh cycles, the first time or on from its slots ``kept``.
+    """Integrate one lane over ``cycles`` mesh cycles, after the first call from ``lane_slots`` on.
 
-    ``marched`` counts the steps before; ``ended`` becomes what the march of a block returns.
+    ``marched`` counts the previous steps; ``ended`` receives the code of ``march_block``.
     """
     lane = cuda.grid(1)
     if lane >= period.size or ended[lane] >= 0:
         return
     w = cuda.local.array(SLOTS, np.float64)
     for slot in range(SLOTS):
-        w[slot] = kept[slot, lane] if marched > 0 else 0.0
-    law, own, scratch = Law(code, reads, tables[member[lane]]), lane + 1, room[lane]
+        w[slot] = lane_slots[slot, lane] if marched > 0 else 0.0
+    law, next_lane, scratch = Law(code, reads, tables[member[lane]]), lane + 1, scratches[lane]
     if marched == 0:
-        set_up(1, code, period[lane:own], load[lane:own], state[lane:own], w)
-    single, part, search, parts, near = (
+        set_up(1, code, period[lane:next_lane], load[lane:next_lane], state[lane:next_lane], w)
+    single, part, search, parts, part_waves = (
         scratch[:SLOTS], scratch[ENDS[0] : ENDS[1]], scratch[ENDS[1] : ENDS[2]],
         scratch[ENDS[2] : ENDS[3]], scratch[ENDS[3] :],
     )  # fmt: skip
@@ -118,21 +118,21 @@ def march_thread(
                     record[point, item, lane] = w[item]
             step((0.0,), 0, law, r, base, w, None)
             split = switching and left_side((0.0,), law, base + 2 * COLUMNS, w)
-            place = Place(base, 6 * harmonics * r, weight * share[r], I64(0))
+            location = Place(base, 6 * harmonics * r, weight * share[r], I64(0))
             if split:
                 take_lane(0, 1, SLOTS, w, single)
                 _, contact = split_step(0, law, base, w[s.h], part, single, parts, search)
                 if contact >= 0:
-                    ended[lane] = UNPARTED + (marched + point) * s.contacts + contact
+                    ended[lane] = CHATTERING + (marched + point) * s.contacts + contact
                     return
                 put_lane(0, 1, 4 * s.n, 6 * s.n, w, single)
                 put_lane(0, 1, s.side, s.side + s.contacts, w, single)
                 if gathering:
-                    gather_parts(law, place, parts, w[s.h], part, near, gathered, single)
+                    gather_parts(law, location, parts, w[s.h], part, part_waves, gathered, single)
                     set_sides((0.0,), law, base + 2 * COLUMNS, I64(2), w)
             elif gathering:
                 w[s.inverse] = 1.0 / w[s.h]
-                gather((0.0,), law, switching, place, gathered, w)
+                gather((0.0,), law, switching, location, gathered, w)
             take_over((0.0,), s.n, w)
             point += 1
         for item in range(state.shape[1]):
@@ -143,4 +143,4 @@ def march_thread(
         for item in range(state.shape[1]):
             record[point, item, lane] = w[item]
     for slot in range(SLOTS):
-        kept[slot, lane] = w[slot]
+        lane_slots[slot, lane] = w[slot]

@@ -1,9 +1,9 @@
-"""Steady motions of many systems alike, side by side, as operating maps ask for them.
+"""Steady motions of a batch of systems with the same structure, as operating maps need them.
 
-While the flanks stay in touch the equations are linear: one march of the start and of a disturbance
-of every coordinate gives the orbit, a second one its motion and error, and others at half the step
-what the step costs. That is what :func:`tribodyn.dynamics.steady_state` does for one system. Where
-anything else happens there is no answer here, and the system is looked at by itself.
+While the flanks stay in contact the equations are linear: one integration of the start and of a
+disturbance of every coordinate gives the orbit, a second one its motion and error, and others at
+half the step the step error. That is what :func:`tribodyn.dynamics.steady_state` does for one
+system. In all other cases there is no result, and the caller computes the system alone.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ import numpy as np
 
 from tribodyn.arrays.workspace import Memory, new_memory, reused_memory
 from tribodyn.dynamics._engine.blocks import WIDTH
-from tribodyn.dynamics.equations.alike import (
-    evaluate_alike,
-    every_other,
-    groups_alike,
-    rates_alike,
-    rows_of,
+from tribodyn.dynamics.equations.batched_tables import (
+    batch_rates,
+    coarsen_nodes,
+    evaluate_batch,
+    group_by_structure,
+    rows_of_system,
 )
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, halved_grid
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.alike_lanes import AlikeLanes, march_cycle
+from tribodyn.dynamics.orbits.batched_periods import BatchedLanes, march_cycle
 from tribodyn.dynamics.orbits.coordinates import (
     OrbitCoordinates,
     balanced_position,
@@ -42,56 +42,56 @@ from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.errors import InputError, collected
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
-#: Steps of all systems that are found together, and the fewest systems that are: rows of more are
-#: far from the core, and fewer march one by one.
+#: Steps of all systems of a batch, and the fewest systems of a batch: rows of more do not fit into
+#: the cache, and fewer are integrated one by one.
 _STEPS, _FEWEST = 16384, 8
 
 
 def orbits_in_touch(
     systems: Sequence[System], mesh_frequency: Array, steps: int
 ) -> list[Callable[[], Response] | None]:
-    """Steady motions of one mesh cycle in which no flanks part; None where there is none such.
+    """Steady motions of one mesh cycle without loss of contact; None if there is none.
 
-    Each is sampled where it is called for, as the samples of all would leave the nearest memory.
+    Each result is a function that samples its motion, as the samples of all exceed the cache.
     """
-    found: list[Callable[[], Response] | None] = [None] * len(systems)
-    size, groups = max(_FEWEST, _STEPS // steps), groups_alike(systems)
+    responses: list[Callable[[], Response] | None] = [None] * len(systems)
+    size, groups = max(_FEWEST, _STEPS // steps), group_by_structure(systems)
     parts = (group[at : at + size] for group in groups for at in range(0, len(group), size))
     for numbers in parts:
-        with collected() as told:
+        with collected() as warnings:
             try:
-                alike = [systems[i] for i in numbers]
-                group = _Group(alike, mesh_frequency[numbers], steps, reused_memory)
+                batch = [systems[i] for i in numbers]
+                group = SystemBatch(batch, mesh_frequency[numbers], steps, reused_memory)
                 orbits = _responses(group)
-            except InputError:  # which is told where each is looked at by itself
+            except InputError:  # reported when the caller computes each system alone
                 continue
-        if not told:
+        if not warnings:
             for number, orbit in zip(numbers, orbits, strict=True):
-                found[number] = orbit
-    return found
+                responses[number] = orbit
+    return responses
 
 
 #: A motion (rows, items, lanes) of the system with a number, and its last states (lanes, 2 n).
 _Motion = tuple[int, Array, Array]
 
 
-class _Group:
-    """Maps of systems alike over one mesh cycle, each at its own mesh frequency."""
+class SystemBatch:
+    """Maps of a batch of systems over one mesh cycle, each at its mesh frequency."""
 
     def __init__(
         self,
         systems: Sequence[System],
         beat: Array,
         steps: int,
-        room: Memory = new_memory,
+        memory: Memory = new_memory,
     ) -> None:
         self.systems, self.system, self.beat = systems, systems[0], beat
         grid = build_grid(system_events(self.system), steps)
         fine = halved_grid(grid)
-        nodes = evaluate_alike(systems, fine, room)
-        self.halved = AlikeLanes.of(self.system, fine, nodes, room)
-        self.whole = self.halved.every_other(grid)
-        self.grid, self.nodes = grid, every_other(nodes, grid)
+        nodes = evaluate_batch(systems, fine, memory)
+        self.halved = BatchedLanes.of(self.system, fine, nodes, memory)
+        self.full_steps = self.halved.coarsened(grid)
+        self.grid, self.nodes = grid, coarsen_nodes(nodes, grid)
         self.step_numbers = self._step_numbers()
         shared = orbit_coordinates(self.compiled(0), 1.0)
         rate = shared.rate * beat[:, None, None]
@@ -99,17 +99,17 @@ class _Group:
         self.balance = Balance.of(self.system, shared)
 
     def compiled(self, number: int) -> Compiled:
-        """One of the systems, without its rows, which nothing but a march reads."""
-        step_number, nodes = float(self.step_numbers[number]), rows_of(self.nodes, number)
-        program = self.whole.program
+        """One of the systems, without its rows, which only the integration reads."""
+        step_number, nodes = float(self.step_numbers[number]), rows_of_system(self.nodes, number)
+        program = self.full_steps.program
         program = program._replace(constant_load=program.constant_load[number])
         return Compiled(self.systems[number], self.grid, nodes, program, step_number)
 
     def _step_numbers(self) -> Array:
         """Products ``omega_max * dt`` of the widest steps."""
-        known = [system._rates.get(self.grid.steps, np.nan) for system in self.systems]
-        looked = not np.isfinite(known).all()
-        rates = rates_alike(self.systems, self.nodes) if looked else np.array(known)
+        cached_rates = [system._rates.get(self.grid.steps, np.nan) for system in self.systems]
+        incomplete = not np.isfinite(cached_rates).all()
+        rates = batch_rates(self.systems, self.nodes) if incomplete else np.array(cached_rates)
         return np.asarray(rates * float(self.grid.width.max()) / self.beat)
 
     def start(self) -> Array:
@@ -125,29 +125,29 @@ class _Group:
             return np.zeros((*points.shape[:-1], self.system.size))
         return np.asarray(points[..., -1:] * self.beat[:, None, None] * self.balance.force)
 
-    def beside(self, points: Array, keep: Callable[[int, Array], None]) -> Array:
-        """Images of many points (p, lanes, k) of each system; ``keep`` has their places first."""
+    def march_points(self, points: Array, keep: Callable[[int, Array], None]) -> Array:
+        """Images of many points (p, lanes, k) of each system; ``keep`` receives the positions."""
 
         def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
             lanes, size = state.shape[1], self.system.size
             parts = [slice(first, first + WIDTH) for first in range(0, lanes, WIDTH)]
-            for number, program in enumerate(self.whole.each_alone()):
-                own, times = state[number], np.full(lanes, period[number])
+            for number, program in enumerate(self.full_steps.each_alone()):
+                states, times = state[number], np.full(lanes, period[number])
                 records: list[Array] = []
                 for at in parts:
-                    given = program, program.rows, times[at], load[number, at], own[at]
-                    shape = self.grid.steps + 1, size, len(own[at])
-                    records.append(self.whole.room(f"record {len(records)}", shape))
-                    own[at] = march_cycle(*given, records[-1])
+                    lane_arrays = program, program.rows, times[at], load[number, at], states[at]
+                    shape = self.grid.steps + 1, size, len(states[at])
+                    records.append(self.full_steps.memory(f"record {len(records)}", shape))
+                    states[at] = march_cycle(*lane_arrays, records[-1])
                 record = records[0] if len(parts) == 1 else np.concatenate(records, axis=-1)
-                yield number, record, own
+                yield number, record, states
 
         return self._images(points, motions, keep)
 
     def march(
-        self, on: AlikeLanes, points: Array, which: Index, keep: Callable[[int, Array], None]
+        self, on: BatchedLanes, points: Array, which: Index, keep: Callable[[int, Array], None]
     ) -> Array:
-        """Images of a point (p, 1, k) of some systems; ``keep`` has its states first."""
+        """Images of a point (p, 1, k) of some systems; ``keep`` receives the states."""
 
         def motions(period: Array, load: Array, state: Array) -> Iterator[_Motion]:
             for number, record in on.march(period, load[:, 0], state, which):
@@ -161,10 +161,10 @@ class _Group:
         motions: Callable[[Array, Array, Array], Iterator[_Motion]],
         keep: Callable[[int, Array], None],
     ) -> Array:
-        """Images of points (p, lanes, k) whose states are marched from states (p, lanes, 2 n)."""
+        """Images of points (p, lanes, k), integrated by ``motions``."""
         y = points if self.balance is None else points[..., :-1]
         state, pushed = self.coordinates.expand(y), self.extra(points) @ self.system.inverse_mass.T
-        load = self.whole.program.constant_load[:, None] + pushed
+        load = self.full_steps.program.constant_load[:, None] + pushed
         for number, record, end in motions(1.0 / self.beat, load, state):
             keep(number, record)
             state[number] = end
@@ -176,9 +176,9 @@ class _Group:
 
 
 class _Touch(NamedTuple):
-    """How far the flanks of motions are from parting, at the ends of all steps (p, rows)."""
+    """Clearance of the flanks of motions from separation, at the ends of all steps (p, rows)."""
 
-    room: Array  #: clearance, the lesser of both sides of an event [m]
+    clearance: Array  #: clearance, the lesser of both sides of an event [m]
     flank: Array  #: side of the play (p, 1): 1 or -1
 
     @classmethod
@@ -187,33 +187,33 @@ class _Touch(NamedTuple):
         ends = np.stack((along[:, :-1], along[:, 1:]), axis=-1) - nodes.error[:, :, ::2, 0]
         flank = np.where(ends[:, :1, 0] < 0.0, -1.0, 1.0)
         clear = flank[..., None] * ends - nodes.gap[:, :, ::2, 0]
-        room = np.pad(clear[..., 0], ((0, 0), (0, 1)), constant_values=np.inf)
-        room[:, 1:] = np.minimum(room[:, 1:], clear[..., 1])
-        return cls(room, flank)
+        clearance = np.pad(clear[..., 0], ((0, 0), (0, 1)), constant_values=np.inf)
+        clearance[:, 1:] = np.minimum(clearance[:, 1:], clear[..., 1])
+        return cls(clearance, flank)
 
     @property
-    def kept(self) -> Mask:
-        """Whether the flanks of a motion never part."""
-        return np.asarray(np.all(self.room > 0.0, axis=1))
+    def in_touch(self) -> Mask:
+        """Whether the flanks of a motion never separate."""
+        return np.asarray(np.all(self.clearance > 0.0, axis=1))
 
     def stays(self, rates: Array, matrix: Array, distance: Array) -> Mask:
-        """Whether motions beside orbits reach them without parting; ``rates`` (p, k, rows)."""
-        least, kept = self.room.min(axis=1), self.kept
+        """Whether motions near orbits approach them in contact; ``rates`` (p, k, rows)."""
+        least, in_touch = self.clearance.min(axis=1), self.in_touch
         steepest = np.sqrt(np.einsum("pkr,pkr->pr", rates, rates).max(axis=1))
         first = np.abs(distance[:, None] @ rates)[:, 0].max(axis=1)
-        going = kept.copy()
+        going = in_touch.copy()
         for _ in range(HORIZON):
             size = steepest * np.linalg.norm(distance, axis=1)
-            near = going & (size > least)
-            going &= near | (size > GONE * first)
-            for number in np.flatnonzero(near):
+            close = going & (size > least)
+            going &= close | (size > GONE * first)
+            for number in np.flatnonzero(close):
                 moved = distance[number] @ rates[number]
-                kept[number] = np.all(self.room[number] + moved > 0.0)
-                going[number] = kept[number] and np.abs(moved).max() > GONE * first[number]
+                in_touch[number] = np.all(self.clearance[number] + moved > 0.0)
+                going[number] = in_touch[number] and np.abs(moved).max() > GONE * first[number]
             if not going.any():
                 break
             distance = _times(matrix, distance)
-        return kept
+        return in_touch
 
 
 def _times(matrix: Array, vector: Array) -> Array:
@@ -226,25 +226,27 @@ def _greatest(rows: Array) -> Array:
 
 
 class _Cycles(NamedTuple):
-    """Mesh cycles from a point of each system, as distances to the orbits tell; rows of all."""
+    """Mesh cycles from a point of each system, with the distance to its orbit."""
 
     point: Array  #: (p, 1, k)
     states: Array  #: (p, rows, 2 n), without drift
     reduced: Array  #: (p, rows, e + v)
     scale: Array  #: size of the motion
     way: Array  #: Newton step to the orbit (p, k)
-    error: Array  #: certified; infinite of systems that were not asked for
+    error: Array  #: certified; infinite for systems that were not requested
 
     @classmethod
-    def of(cls, group: _Group, point: Array, which: Index, slope: Array, inverse: Array) -> _Cycles:
-        """Cycles of some systems; ``slope`` is one less the matrix of each map (p, k, k)."""
+    def of(
+        cls, group: SystemBatch, point: Array, which: Index, slope: Array, inverse: Array
+    ) -> _Cycles:
+        """Cycles of some systems; ``slope`` is one minus the matrix of each map (p, k, k)."""
         states = np.empty((len(point), group.grid.steps + 1, 2 * group.system.size))
         states[np.delete(np.arange(len(point)), which)] = 0.0
 
         def motion(number: int, record: Array) -> None:
             states[number] = record[..., 0]
 
-        residual = (group.march(group.whole, point, which, motion) - point)[:, 0]
+        residual = (group.march(group.full_steps, point, which, motion) - point)[:, 0]
         way = _times(inverse, residual)
         distance = np.linalg.norm(way, axis=1)
         distance += np.linalg.norm(residual - _times(slope, way), axis=1)
@@ -256,40 +258,40 @@ class _Cycles(NamedTuple):
         return cls(point, states, reduced, scale, way, error)
 
     def take(self, other: _Cycles, which: Mask) -> None:
-        """Put the cycles of some systems in place of these."""
-        for own, new in zip(self, other, strict=True):
-            own[which] = new[which]
+        """Replace the cycles of some systems by those of ``other``."""
+        for values, new in zip(self, other, strict=True):
+            values[which] = new[which]
 
 
 class _Orbits(NamedTuple):
-    """Orbits of a group; those that are not ``good`` mean nothing."""
+    """Orbits of a batch; those that are not ``good`` are invalid."""
 
-    inverse: Array  #: of one less the matrix of the map, (p, k, k)
+    inverse: Array  #: of one minus the matrix of the map, (p, k, k)
     cycles: _Cycles
-    marched: Index  #: cycles marched to find each
+    marched: Index  #: integrated cycles of each
     multipliers: ComplexArray
     good: Mask
 
 
-def _orbits(group: _Group) -> _Orbits:
+def _orbits(group: SystemBatch) -> _Orbits:
     y, nodes, every = group.start(), group.nodes, np.arange(len(group.systems))
     count, steps, size = len(every), group.grid.steps, group.system.size
     k = y.shape[-1]
     step = APART * np.linalg.norm(y, axis=-1, keepdims=True)
-    along = group.whole.room("along", (count, k + 1, steps + 1))
+    along = group.full_steps.memory("along", (count, k + 1, steps + 1))
     direction = nodes.direction[0, 0, 0, 0]
     used = np.flatnonzero(direction)
 
-    def beside(number: int, record: Array) -> None:
-        # All lanes, which lie side by side, though the last ones are only there to fill the block.
+    def store_displacement(number: int, record: Array) -> None:
+        # All lanes, as they are contiguous, though the last ones only fill the block.
         total = direction[used[0]] * record[:, used[0]]
         for i in used[1:]:
             total += direction[i] * record[:, i]
         along[number] = total[:, : k + 1].T
 
     points = y + step * np.eye(-(-(k + 1) // WIDTH) * WIDTH, k, -1)
-    image = group.beside(points, beside)[:, : k + 1]
-    # Of motions that end there is no map: any other will do, as they are not good.
+    image = group.march_points(points, store_displacement)[:, : k + 1]
+    # Motions that end have no map: replace it by any other, as they are not good.
     ended = ~np.isfinite(image).all(axis=(1, 2))
     image[ended] = y[ended]
     matrix = np.swapaxes(image[:, 1:] - image[:, :1], 1, 2) / step
@@ -299,7 +301,7 @@ def _orbits(group: _Group) -> _Orbits:
     rates = along[:, 1:]
     rates -= along[:, :1]
     rates *= touch.flank[..., None] / step
-    good = touch.kept & np.all(touch.room + step[:, 0] * rates.min(axis=1) > 0.0, axis=1)
+    good = touch.in_touch & np.all(touch.clearance + step[:, 0] * rates.min(axis=1) > 0.0, axis=1)
     point = y + _times(inverse, (image[:, :1] - y)[:, 0])[:, None]
     cycles, marched = _Cycles.of(group, point, every, slope, inverse), np.full(count, 2)
     left = good.copy()
@@ -312,8 +314,8 @@ def _orbits(group: _Group) -> _Orbits:
         marched[left] += 1
         left &= trial.error < 0.5 * cycles.error
         cycles.take(trial, left)
-    held = matrix if group.balance is None else matrix[:, :-1, :-1]
-    values = np.linalg.eigvals(held).astype(complex)
+    state_matrix = matrix if group.balance is None else matrix[:, :-1, :-1]
+    values = np.linalg.eigvals(state_matrix).astype(complex)
     order = np.argsort(-np.abs(values), axis=1, kind="stable")
     multipliers = np.take_along_axis(values, order, axis=1)
     good &= (cycles.error <= TOLERANCE) & (np.abs(multipliers[:, 0]) < 1.0)
@@ -322,43 +324,43 @@ def _orbits(group: _Group) -> _Orbits:
     return _Orbits(inverse, cycles, marched, multipliers, good)
 
 
-def _step_errors(group: _Group, orbits: _Orbits) -> Array:
-    """Distance of each orbit to that at half the step over its size; NaN where it was not found."""
-    known = orbits.cycles
-    at, left = known.point.copy(), np.flatnonzero(orbits.good)
-    fine, moved = np.full_like(known.reduced, np.nan), np.zeros_like(known.point)
-    states, way = group.whole.room("states", known.states.shape), np.full(len(at), np.inf)
+def _step_errors(group: SystemBatch, orbits: _Orbits) -> Array:
+    """Distance of each orbit to that at half the step over its size; NaN without convergence."""
+    cycles = orbits.cycles
+    at, left = cycles.point.copy(), np.flatnonzero(orbits.good)
+    fine, moved = np.full_like(cycles.reduced, np.nan), np.zeros_like(cycles.point)
+    states, way = group.full_steps.memory("states", cycles.states.shape), np.full(len(at), np.inf)
     states[~orbits.good] = 0.0
 
-    def every_other(number: int, record: Array) -> None:
+    def store_coarse(number: int, record: Array) -> None:
         states[number] = record[::2, :, 0]
 
     for _ in range(ROUNDS):
         if not left.size:
             break
-        image = group.march(group.halved, at, left, every_other)
+        image = group.march(group.halved, at, left, store_coarse)
         step = _times(orbits.inverse, (image - at)[:, 0])[:, None]
         last, way = way, np.linalg.norm(step[:, 0], axis=1)
-        far = np.linalg.norm((at + step - known.point)[:, 0], axis=1)
-        left = left[((way < 0.5 * last) & (far <= OTHER * known.scale))[left]]
+        far = np.linalg.norm((at + step - cycles.point)[:, 0], axis=1)
+        left = left[((way < 0.5 * last) & (far <= OTHER * cycles.scale))[left]]
         at[left] += step[left]
-        near = ((way <= CLOSE * far) | (way <= 1e-9 * known.scale))[left]
-        if near.any():
-            moved[left[near]] = step[left[near]]
-            fine[left[near]] = group.coordinates.reduce(states)[left[near]]
-        left = left[~near]
+        close = ((way <= CLOSE * far) | (way <= 1e-9 * cycles.scale))[left]
+        if close.any():
+            moved[left[close]] = step[left[close]]
+            fine[left[close]] = group.coordinates.reduce(states)[left[close]]
+        left = left[~close]
     ended = np.flatnonzero(~np.isnan(fine[:, 0, 0]))
 
     def coarse(number: int, record: Array) -> None:
         states[number] = record[..., 0]
 
-    # What is left of the way moves both motions alike.
-    group.march(group.whole, known.point + moved, ended, coarse)
-    fine += group.coordinates.reduce(states) - known.reduced
-    return _greatest(fine - known.reduced) / _greatest(fine)
+    # The remaining distance shifts both motions by the same amount.
+    group.march(group.full_steps, cycles.point + moved, ended, coarse)
+    fine += group.coordinates.reduce(states) - cycles.reduced
+    return _greatest(fine - cycles.reduced) / _greatest(fine)
 
 
-def _responses(group: _Group) -> list[Callable[[], Response] | None]:
+def _responses(group: SystemBatch) -> list[Callable[[], Response] | None]:
     orbits = _orbits(group)
     cost, cycles = _step_errors(group, orbits), orbits.cycles
     extra = group.extra(cycles.point)[:, 0]

@@ -1,4 +1,4 @@
-"""The middle of a step, and what a step leaves behind for the statistics.
+"""The middle of a step, and the data of a step that the statistics need.
 
 The state in the middle is the cubic Hermite interpolant of the two ends.
 """
@@ -26,11 +26,11 @@ def set_inverse(lanes: Any, law: Law, share: float, w: Array) -> None:
 
 
 @nb.njit(**INNER)
-def seen_slots(contacts: int) -> int:
-    """Slots of what a step leaves.
+def statistics_slots(contacts: int) -> int:
+    """Count of slots that a step stores for the statistics.
 
-    Forces at the left end, sides in the middle and at the ends; and the weight of the left end as
-    the right one of the step before.
+    Forces at the left end, sides in the middle and at the ends, and the weight of the left end as
+    right end of the previous step.
     """
     return 3 * contacts + 1
 
@@ -43,8 +43,8 @@ def copy_slots(lanes: Any, source: int, target: int, count: int, w: Array) -> No
 
 
 @nb.njit(**INNER)
-def to_middle(lanes: Any, law: Law, row: int, seen: int, w: Array) -> None:
-    """Go to the middle between buffers 0 and 2: its state into buffer 1, and its sides."""
+def to_middle(lanes: Any, law: Law, row: int, statistics_slot: int, w: Array) -> None:
+    """Write the state in the middle between buffers 0 and 2 to buffer 1, and set its sides."""
     s = slots_of(law.code)
     n, h, inverse = s.n, load(lanes, w, s.h), load(lanes, w, s.inverse)
     for i in range(n):
@@ -53,14 +53,14 @@ def to_middle(lanes: Any, law: Law, row: int, seen: int, w: Array) -> None:
         q, v = cubic_middle(h, inverse, q0, v0, q1, v1)
         store(w, 2 * n + i, q)
         store(w, 3 * n + i, v)
-    if seen > 0:
-        copy_slots(lanes, s.side, seen + 2 * s.contacts, s.contacts, w)
+    if statistics_slot > 0:
+        copy_slots(lanes, s.side, statistics_slot + 2 * s.contacts, s.contacts, w)
         set_sides(lanes, law, row, I64(1), w)
 
 
 @nb.njit(**INNER)
-def from_middle(lanes: Any, law: Law, seen: int, w: Array) -> None:
-    """Keep the sides in the middle of the step, and take those at its ends again."""
+def from_middle(lanes: Any, law: Law, statistics_slot: int, w: Array) -> None:
+    """Store the sides in the middle of the step, and restore those at its ends."""
     s = slots_of(law.code)
-    copy_slots(lanes, s.side, seen + s.contacts, s.contacts, w)
-    copy_slots(lanes, seen + 2 * s.contacts, s.side, s.contacts, w)
+    copy_slots(lanes, s.side, statistics_slot + s.contacts, s.contacts, w)
+    copy_slots(lanes, statistics_slot + 2 * s.contacts, s.side, s.contacts, w)

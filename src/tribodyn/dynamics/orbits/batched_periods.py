@@ -1,4 +1,4 @@
-"""Systems alike marched over one mesh cycle: side by side, or one after the other with its rows."""
+"""Integrate a batch of systems over one mesh cycle, as lanes of a block or one after the other."""
 
 from __future__ import annotations
 
@@ -17,38 +17,38 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
-#: Systems that march side by side: fewer are no reason to compile that.
+#: Systems in one block of lanes: for fewer the kernel is not compiled.
 _MANY = 8
 
 
-class AlikeLanes(NamedTuple):
-    """One motion of each of systems alike, several side by side as lanes of a block."""
+class BatchedLanes(NamedTuple):
+    """One motion of each system of a batch; several are lanes of one block."""
 
     program: Program  #: without rows, with constant loads (p, n)
     rows: list[LaneRows]  #: of every block
     blocks: list[LaneBlock]
-    room: Memory
+    memory: Memory
 
     @classmethod
-    def of(cls, system: System, grid: Grid, nodes: Nodes, room: Memory) -> AlikeLanes:
-        """Lanes of systems alike on a grid."""
+    def of(cls, system: System, grid: Grid, nodes: Nodes, memory: Memory) -> BatchedLanes:
+        """Lanes of a batch of systems on a grid."""
         count = len(nodes.stiffness)
         blocks = lane_blocks(count, _MANY if count >= _MANY else 1)
         lanes = [block.index for block in blocks]
-        flat = program_of_lanes(system, grid, nodes, lanes, room)
-        return cls(*flat, blocks, room)
+        flat = program_of_lanes(system, grid, nodes, lanes, memory)
+        return cls(*flat, blocks, memory)
 
-    def every_other(self, grid: Grid) -> AlikeLanes:
-        """The same on the grid of which this one has the halves."""
+    def coarsened(self, grid: Grid) -> BatchedLanes:
+        """The same batch on the grid with full steps instead of their halves."""
         program = self.program._replace(width=grid.width, restart=grid.after_event)
-        rows = [rows.whole() for rows in self.rows]
+        rows = [rows.full_steps() for rows in self.rows]
         return self._replace(program=program, rows=rows)
 
     def each_alone(self) -> Iterator[Program]:
-        """Programs of all systems, with their rows, each in the memory of the one before."""
+        """Yield the programs of all systems with their rows, which share one array."""
         program, places = self.program, self.rows[0].places
         steps, columns, width = program.width.size, int(program.code[2]), self.blocks[0].index.size
-        table = self.room("alone", (steps, 3, columns))
+        table = self.memory("alone", (steps, 3, columns))
         constant = np.full(columns, np.nan)
         for rows, block in zip(self.rows, self.blocks, strict=True):
             firsts = rows.first.reshape(columns, width).T.copy()
@@ -67,23 +67,23 @@ class AlikeLanes(NamedTuple):
     def march(
         self, period: Array, load: Array, state: Array, which: Index
     ) -> Iterator[tuple[int, Array]]:
-        """Motions (rows, 2 n, 1) of some systems from states (p, 1, 2 n); NaN where one ends."""
+        """Yield motions (rows, 2 n, 1) of some systems from states (p, 1, 2 n); NaN if one ends."""
         wanted = np.zeros(len(period), dtype=bool)
         wanted[which] = True
         for rows, block in zip(self.rows, self.blocks, strict=True):
-            asked = wanted[block.index]
-            if not asked.any():
+            requested = wanted[block.index]
+            if not requested.any():
                 continue
-            # A lane that is not asked for marches with one that is.
-            lanes = np.where(asked, np.arange(asked.size), int(np.argmax(asked)))
-            given = block.index, period, load, state
-            record = self._marched("record 0", rows, lanes, *given)
-            for lane in np.flatnonzero(asked[: block.count]):
-                own = record[..., lane : lane + 1]
-                if np.isnan(own[0, 0, 0]):  # some lane ended, and the block with it
-                    again = np.full(asked.size, lane)
-                    own = self._marched("again", rows, again, *given)[..., :1]
-                yield int(block.index[lane]), own
+            # A lane that is not requested repeats one that is.
+            lanes = np.where(requested, np.arange(requested.size), int(np.argmax(requested)))
+            lane_arrays = block.index, period, load, state
+            record = self._marched("record 0", rows, lanes, *lane_arrays)
+            for lane in np.flatnonzero(requested[: block.count]):
+                lane_record = record[..., lane : lane + 1]
+                if np.isnan(lane_record[0, 0, 0]):  # some lane ended, and the block with it
+                    again = np.full(requested.size, lane)
+                    lane_record = self._marched("again", rows, again, *lane_arrays)[..., :1]
+                yield int(block.index[lane]), lane_record
 
     def _marched(
         self,
@@ -98,14 +98,14 @@ class AlikeLanes(NamedTuple):
         """States (rows, 2 n, lanes) of lanes of a block; NaN if any of them ends."""
         numbers, program = index[lanes], self.program
         program = program._replace(constant_load=program.constant_load[0])
-        own: Array | LaneRows = rows
-        memory = self.room(name, (program.width.size + 1, 2 * int(program.code[0]), lanes.size))
+        block_rows: Array | LaneRows = rows
+        record = self.memory(name, (program.width.size + 1, 2 * int(program.code[0]), lanes.size))
         if lanes.size == 1:
-            own = rows.table(program.width.size)
+            block_rows = rows.table(program.width.size)
         elif np.any(np.diff(lanes) != 1):
-            own = rows.take(lanes, lanes.size)
-        march_cycle(program, own, period[numbers], load[numbers], state[numbers, 0], memory)
-        return memory
+            block_rows = rows.take(lanes, lanes.size)
+        march_cycle(program, block_rows, period[numbers], load[numbers], state[numbers, 0], record)
+        return record
 
 
 def march_cycle(
@@ -116,9 +116,9 @@ def march_cycle(
     start: Array,
     record: Array,
 ) -> Array:
-    """Last states (lanes, 2 n) of a block over a mesh cycle, whose first items are recorded.
+    """Integrate a block over a mesh cycle; returns the last states (lanes, 2 n).
 
-    NaN if any lane ends.
+    ``record`` receives the first items of the states. All are NaN if any lane ends early.
     """
     from tribodyn.dynamics._engine.marching import march_block
 

@@ -1,10 +1,10 @@
-"""Statistics of every lane, gathered while marching, so that no time series is stored.
+"""Statistics of every lane, accumulated during the integration without storing time series.
 
 Each step contributes with Simpson's rule: both ends and the middle. The end of one step is the
 beginning of the next, which evaluates it anyway, so that only the middle and the ends at events
-are evaluated for the statistics; see :mod:`tribodyn.dynamics._engine.middle`. A lane in which a
-contact opens or closes within the step contributes with every part of it by itself, as the damping
-force jumps there. The signals and their order are those of
+are evaluated for the statistics; see :mod:`tribodyn.dynamics._engine.midpoint`. A step in which a
+contact opens or closes contributes part by part, as the damping force jumps there. The signals and
+their order are those of
 :mod:`tribodyn.dynamics._engine.statistics`.
 """
 
@@ -30,16 +30,16 @@ from tribodyn.dynamics._engine.contact_forces import (
 from tribodyn.dynamics._engine.crossing import row_within
 from tribodyn.dynamics._engine.lanes import greatest, least, load, store
 from tribodyn.dynamics._engine.method import INNER, ONCE
-from tribodyn.dynamics._engine.middle import to_middle
+from tribodyn.dynamics._engine.midpoint import to_middle
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.types import Array
 
-#: Shorter parts of a step are left out: their rate of change would be nothing but rounding.
+#: Shorter parts of a step are left out: their rate of change would be mere rounding.
 _SHORTEST = 1e-7
 
 
 class Gathered(NamedTuple):
-    """What statistics are gathered; in kernels with addresses instead of arrays."""
+    """Sums that are accumulated; in kernels with addresses instead of arrays."""
 
     outputs: Array  #: linear outputs of the state
     waves: Any  #: cosine and sine of every harmonic at the three nodes of every step
@@ -52,40 +52,42 @@ class Place(NamedTuple):
 
     row: int  #: of its left end in the table
     wave: int  #: of its left end in the cosines and sines
-    share: float  #: of all that is gathered
-    seen: int  #: slot from which the step left what is counted
+    share: float  #: of the accumulated time
+    statistics_slot: int  #: first slot of the data that the step stored
 
 
 @nb.njit(**INNER)
-def _add(lanes: Any, one: Any, other: Any, weights: Any, at: int, m: Array) -> None:
+def _add(lanes: Any, left: Any, right: Any, weights: Any, at: int, m: Array) -> None:
     """Add two values to the plain moments of a signal."""
-    heavy, weighted = weights[0] * one, weights[1] * other
+    heavy, weighted = weights[0] * left, weights[1] * right
     store(m, at, load(lanes, m, at) + heavy + weighted)
-    store(m, at + 1, load(lanes, m, at + 1) + heavy * one + weighted * other)
-    store(m, at + 2, least(load(lanes, m, at + 2), least(one, other)))
-    store(m, at + 3, greatest(load(lanes, m, at + 3), greatest(one, other)))
+    store(m, at + 1, load(lanes, m, at + 1) + heavy * left + weighted * right)
+    store(m, at + 2, least(load(lanes, m, at + 2), least(left, right)))
+    store(m, at + 3, greatest(load(lanes, m, at + 3), greatest(left, right)))
 
 
 @nb.njit(**INNER)
 def add_nodes(lanes: Any, law: Law, place: Place, kind: int, into: Gathered, w: Array) -> None:
     """Add the signals at one or two nodes of a step to the moments.
 
-    Kind 0 is the left end, as no more than the right end of the step before; 1 the left end as
-    both, and the middle, as the step left them; 2 the right end; from 3 on a node by itself.
+    Kind 0 is the left end, as right end of the previous step only; 1 the left end as end of both
+    steps, and the middle, as the step stored them; 2 the right end; from 3 on a single node.
     """
     s, m, zero = slots_of(law.code), into.moments, 0.0 * load(lanes, w, 0)
-    waves, own, both = 2 * into.harmonics, kind < 2, kind == 1
-    one = I64(0) if own else I64(2) if kind == 2 else kind - 3
-    other = I64(1) if both else one
+    waves, from_step, with_middle = 2 * into.harmonics, kind < 2, kind == 1
+    first_node = I64(0) if from_step else I64(2) if kind == 2 else kind - 3
+    second_node = I64(1) if with_middle else first_node
     heavy = zero + (4.0 / 6.0 if kind == 4 else 0.0 if kind == 0 else 1.0 / 6.0) * place.share
-    if own:
-        heavy = heavy + load(lanes, w, place.seen + 3 * s.contacts)
-    weights = heavy, zero + (4.0 / 6.0 * place.share if both else 0.0)
-    force = place.seen if own else s.force
-    far_force, far_side = (s.force, place.seen + s.contacts) if both else (force, s.side)
-    far = s.second if both else s.first
-    first = first_contact(law, place.row + one * law.code[2], one)
-    second = first_contact(law, place.row + other * law.code[2], other)
+    if from_step:
+        heavy = heavy + load(lanes, w, place.statistics_slot + 3 * s.contacts)
+    weights = heavy, zero + (4.0 / 6.0 * place.share if with_middle else 0.0)
+    force = place.statistics_slot if from_step else s.force
+    far_force, far_side = (
+        (s.force, place.statistics_slot + s.contacts) if with_middle else (force, s.side)
+    )
+    far = s.second if with_middle else s.first
+    first = first_contact(law, place.row + first_node * law.code[2], first_node)
+    second = first_contact(law, place.row + second_node * law.code[2], second_node)
     for j in range(s.contacts):
         slot = j * (PLAIN_MOMENTS + waves)
         left = compression(lanes, law, first, s.error, w)
@@ -98,8 +100,8 @@ def add_nodes(lanes: Any, law: Law, place: Place, kind: int, into: Gathered, w: 
             left, right = weights[0] * left, weights[1] * right
             for item in range(waves):
                 at, wave = slot + PLAIN_MOMENTS + item, place.wave + item
-                part = into.waves[wave + one * waves] * left
-                part = part + into.waves[wave + other * waves] * right
+                part = into.waves[wave + first_node * waves] * left
+                part = part + into.waves[wave + second_node * waves] * right
                 store(m, at, load(lanes, m, at) + part)
         if is_dead_zone(law, first):
             off = weights[0] * (1.0 - greatest(load(lanes, w, s.side + j), zero))
@@ -115,8 +117,8 @@ def add_nodes(lanes: Any, law: Law, place: Place, kind: int, into: Gathered, w: 
         left = right = zero
         for i in range(2 * s.n):
             if into.outputs[o, i] != 0.0:
-                left = left + into.outputs[o, i] * load(lanes, w, 2 * s.n * one + i)
-                right = right + into.outputs[o, i] * load(lanes, w, 2 * s.n * other + i)
+                left = left + into.outputs[o, i] * load(lanes, w, 2 * s.n * first_node + i)
+                right = right + into.outputs[o, i] * load(lanes, w, 2 * s.n * second_node + i)
         _add(lanes, left, right, weights, slot, m)
         slot += PLAIN_MOMENTS
 
@@ -135,26 +137,26 @@ def gather(lanes: Any, law: Law, switching: bool, place: Place, into: Gathered, 
 
 @nb.njit(**INNER)
 def _waves_within(
-    waves: Array, wave: int, harmonics: int, tau: float, near: Array, node: int
+    waves: Array, wave: int, harmonics: int, tau: float, part_waves: Array, node: int
 ) -> None:
-    """Cosine and sine of every harmonic at the fraction ``tau`` of a step, into ``near``."""
+    """Write cosine and sine of every harmonic at a fraction of a step to ``part_waves``."""
     for item in range(0, 2 * harmonics, 2):
         c0, s0 = waves[wave + item], waves[wave + item + 1]
         half = wave + 2 * harmonics + item
         c1, s1 = waves[half], waves[half + 1]
         angle = math.atan2(s0, c0) + 2.0 * tau * math.atan2(s1 * c0 - c1 * s0, c1 * c0 + s1 * s0)
-        near[2 * harmonics * node + item] = math.cos(angle)
-        near[2 * harmonics * node + item + 1] = math.sin(angle)
+        part_waves[2 * harmonics * node + item] = math.cos(angle)
+        part_waves[2 * harmonics * node + item + 1] = math.sin(angle)
 
 
 @nb.njit(**ONCE)
 def gather_parts(
-    law: Law, step: Place, parts: Array, width: float, part: Array, near: Array, into: Gathered,
-    w: Array,
+    law: Law, step: Place, parts: Array, width: float, part: Array, part_waves: Array,
+    into: Gathered, w: Array,
 ) -> None:  # fmt: skip
-    """Add one step of one lane, part by part as :func:`split_step` left them in ``parts``."""
-    s, own = slots_of(law.code), Law(law.code, law.reads, part)
-    here = Gathered(into.outputs, near, into.harmonics, into.moments)
+    """Add one step of one lane, part by part as :func:`split_step` listed them in ``parts``."""
+    s, part_law = slots_of(law.code), Law(law.code, law.reads, part)
+    part_sums = Gathered(into.outputs, part_waves, into.harmonics, into.moments)
     n, contacts, at = s.n, s.contacts, I64(1)
     for _ in range(I64(parts[0])):
         start, end = parts[at], parts[at + 1]
@@ -168,9 +170,9 @@ def gather_parts(
             for node in range(3):
                 tau = start + 0.5 * node * (end - start)
                 row_within(law, step.row, tau, part, I64(node))
-                _waves_within(into.waves, step.wave, into.harmonics, tau, near, I64(node))
+                _waves_within(into.waves, step.wave, into.harmonics, tau, part_waves, I64(node))
             w[s.h] = width * (end - start)
             w[s.inverse] = 1.0 / w[s.h]
-            whole = Place(I64(0), I64(0), step.share * (end - start), I64(0))
-            gather((0.0,), own, np.bool_(False), whole, here, w)
+            part_location = Place(I64(0), I64(0), step.share * (end - start), I64(0))
+            gather((0.0,), part_law, np.bool_(False), part_location, part_sums, w)
         at += contacts + 4 * n
