@@ -68,6 +68,11 @@ COMMANDS = (
         "Lay the printed tables of a source beside what is computed.",
     ),
     ("compare", "compare_command:compare", "Show what differs between two results."),
+    (
+        "signal",
+        "signal_command:signal",
+        "List the channels of a recording, or analyse one: spectra, orders, indicators.",
+    ),
     ("check", "case_commands:check", "Check a case and show its geometry."),
     (
         "import",

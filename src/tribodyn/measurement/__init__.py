@@ -8,6 +8,8 @@
 | ``orders`` | how strong each order is, over a whole record and over the speed |
 | ``vold_kalman`` | how single orders change with time |
 | ``comparison`` | how far a computed motion is from a measured one |
+| ``shaft_speed`` | angle and speed of the shaft, by the best source there is |
+| ``signal_analysis`` | spectra, envelope, orders, mean revolution and indicators of one channel |
 | ``synthetic`` | a run-up whose orders are known |
 """
 
@@ -16,6 +18,8 @@ from tribodyn.measurement.comparison import Comparison, compare
 from tribodyn.measurement.mesh_speed import MeshSpeed, mesh_speed
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, read
+from tribodyn.measurement.shaft_speed import ShaftSpeed
+from tribodyn.measurement.signal_analysis import SignalAnalysis, analyse_signal
 from tribodyn.measurement.synthetic import synthetic_run_up
 from tribodyn.measurement.tacho import shaft_angle
 from tribodyn.measurement.vold_kalman import TrackedOrders, track_orders
@@ -25,7 +29,10 @@ __all__ = [
     "MeshSpeed",
     "OrderSpectrum",
     "Recording",
+    "ShaftSpeed",
+    "SignalAnalysis",
     "TrackedOrders",
+    "analyse_signal",
     "compare",
     "mesh_speed",
     "order_map",

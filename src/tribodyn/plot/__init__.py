@@ -48,6 +48,7 @@ from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.papers import paper_comparison
+from tribodyn.plot.signals.analysed import signal_analysis, signal_history
 from tribodyn.plot.signals.bands import bands
 from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.lines import (
@@ -141,6 +142,8 @@ __all__ = [
     "run_up",
     "run_up_map",
     "sidebands",
+    "signal_analysis",
+    "signal_history",
     "signal_spectrum",
     "sobol_indices",
     "spectrogram",

@@ -41,6 +41,7 @@ class _Page:
     head: Sequence[str]  #: of the table
     rows: Sequence[Sequence[str]]
     more: str = ""  #: where rows are that the table leaves out
+    heading: str = ""  #: title of the report, where it is not that of the case
 
 
 @report_of("Sweep")
@@ -159,6 +160,8 @@ def write_study_report(
     figures: Sequence[tuple[str, Any, str]],
     head: Sequence[str],
     rows: Sequence[Sequence[str]],
+    title: str = "",
+    cards: Sequence[tuple[str, str]] = (),
 ) -> Path:
     """Write any other study of a case to a file.
 
@@ -176,6 +179,10 @@ def write_study_report(
         Heading, plotly figure and caption of each.
     head, rows : sequence of str, sequence of sequence of str
         The table.
+    title : str
+        Title of the report; that of the case, or the kind of study, by default.
+    cards : sequence of (str, str)
+        Headline figures: name and value with its unit.
 
     Raises
     ------
@@ -191,11 +198,12 @@ def write_study_report(
         lead=told[0],
         varied=[],
         blocks=blocks,
-        cards=[],
+        cards=cards,
         notice_heading="What it says",
         notices=list(told),
         head=head,
         rows=rows,
+        heading=title,
     )
     return _write(Path(path), case, page)
 
@@ -277,7 +285,7 @@ def _write(path: Path, case: Any, page: _Page) -> Path:
     gone = {_CHIPS.get(key, "") for key in page.varied}
     drawn = ",\n".join(f'"{block.name}": {block.json}' for block in page.blocks)
     text = template("study.html.j2").render(
-        title=case.title if case else page.kind.capitalize(),
+        title=page.heading or (case.title if case else page.kind.capitalize()),
         version=version(),
         operating_point=[
             chip for chip in (operating_point(case) if case else ()) if chip[0] not in gone

@@ -3,6 +3,7 @@
 ==============  ===============================================================
 module          what it draws
 ==============  ===============================================================
+``analysed``    one analysed channel of a recording, its history
 ``bands``       any figure of a run with the spread of variants on it
 ``learned``     spread motions with bands, learned over computed values
 ``lines``       spectra of a signal, sidebands, one order or the level over the speed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from tribodyn.plot.look.labels import (
     rounded,
     significant,
 )
-from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.types import Array
@@ -92,13 +93,32 @@ def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:
     of="SignalSpectrum",
     made_by="Call tribodyn.analysis.spectrum on a signal and its plot method.",
 )
-def signal_spectrum(spectrum: SignalSpectrum) -> Any:
-    """Draw the lines of a spectrum over the frequency."""
+def signal_spectrum(
+    spectrum: SignalSpectrum, *, marks: Iterable[tuple[str, float]] = (), to: float | None = None
+) -> Any:
+    """Draw the lines of a spectrum over the frequency.
+
+    Parameters
+    ----------
+    spectrum : SignalSpectrum
+        What :func:`tribodyn.analysis.spectrum` returns.
+    marks : iterable of (str, float)
+        Names and frequencies of dotted lines, such as the mesh frequency [Hz].
+    to : float, optional
+        Right end of the axis [Hz]; all lines by default.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    layout: dict[str, Any] = {"hovermode": "closest", **event_lines(marks)}
+    if to is not None:
+        layout["xaxis"] = {"range": [0.0, to]}
     return stack(
         spectrum_title(spectrum),
         axis_label("frequency"),
         [spectrum_panel(spectrum)],
-        {"hovermode": "closest"},
+        layout,
     )
 
 

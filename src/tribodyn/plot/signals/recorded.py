@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,9 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.measurement import Comparison, OrderSpectrum, Recording, TrackedOrders
 from tribodyn.plot.look.labels import readable, significant
-from tribodyn.plot.look.panels import Panel, stack
+from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, Trace, line, marked
+from tribodyn.plot.signals.lines import strongest_lines
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.types import Array
 
@@ -32,7 +34,7 @@ def recording(recording: Recording) -> Any:
     names = list(recording.channels)
     panels = []
     for name in names[:_PANELS]:
-        time, values = _outline(recording.time, recording[name])
+        time, values = outline(recording.time, recording[name])
         unit = recording.units[name]
         panels.append(Panel(_label(name, unit), [line(time, values, name, TOTAL, unit=unit)]))
     left_out = f"; {len(names) - _PANELS} more channels" if len(names) > _PANELS else ""
@@ -44,7 +46,7 @@ def _label(name: str, unit: str) -> str:
     return f"{name} [{readable(unit)}]" if unit else name
 
 
-def _outline(time: Array, values: Array) -> tuple[Array, Array]:
+def outline(time: Array, values: Array) -> tuple[Array, Array]:
     """Smallest and largest sample of every stretch, so that no peak is lost."""
     if values.size <= _POINTS:
         return time, values
@@ -62,22 +64,29 @@ def _outline(time: Array, values: Array) -> tuple[Array, Array]:
     of="OrderSpectrum",
     made_by="Call tribodyn.measurement.order_spectrum(...) and its plot method.",
 )
-def order_spectrum(spectrum: OrderSpectrum) -> Any:
-    """Draw the amplitudes over the orders of a shaft."""
+def order_spectrum(spectrum: OrderSpectrum, *, marks: Iterable[tuple[str, float]] = ()) -> Any:
+    """Draw the amplitudes over the orders of a shaft.
+
+    Parameters
+    ----------
+    spectrum : OrderSpectrum
+        What :func:`tribodyn.measurement.order_spectrum` returns.
+    marks : iterable of (str, float)
+        Names and orders of dotted lines, such as the mesh at its number of teeth.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
     top = 1 + int(np.argmax(spectrum.amplitudes[1:]))
-    order, size = spectrum.orders[1:], spectrum.amplitudes[1:]
-    if size.size > 2 * _POINTS:
-        length = -(-size.size // (2 * _POINTS))
-        starts = np.arange(0, size.size, length)
-        last = np.append(starts[1:], size.size)
-        largest = [a + int(np.argmax(size[a:b])) for a, b in zip(starts, last, strict=True)]
-        order, size = order[largest], size[largest]
+    order, size = strongest_lines(spectrum.orders[1:], spectrum.amplitudes[1:])
     curve = line(order, size, "amplitude", TOTAL, unit=spectrum.unit, width=1.2)
     return stack(
         f"Order {significant(float(spectrum.orders[top]), 4)} is the strongest: "
         f"{with_unit(float(spectrum.amplitudes[top]), spectrum.unit)}",
         "Order [cycles per revolution]",
         [Panel(amplitude_label(spectrum.unit), [curve], {"rangemode": "tozero"}, 1.4)],
+        event_lines(marks),
     )
 
 
@@ -92,13 +101,13 @@ def tracked_orders(tracked: TrackedOrders) -> Any:
     """Draw the amplitudes of the followed orders, and the speed of the shaft, over time."""
     curves: list[Trace] = []
     for number, (order, size) in enumerate(zip(tracked.order, tracked.amplitude, strict=True)):
-        time, values = _outline(tracked.time, size)
+        time, values = outline(tracked.time, size)
         color, dash = PAIR_COLORS[number % 4], _DASHES[number // 4 % 4]
         name = f"order {order:g}"
         curves.append(line(time, values, name, color, unit=tracked.unit, dash=dash))
     row, column = np.unravel_index(int(np.argmax(tracked.amplitude)), tracked.amplitude.shape)
     rpm = np.gradient(tracked.angle, tracked.time) * 30.0 / np.pi
-    speed = line(*_outline(tracked.time, rpm), "speed", TOTAL, unit="rpm")
+    speed = line(*outline(tracked.time, rpm), "speed", TOTAL, unit="rpm")
     return stack(
         f"Order {tracked.order[row]:g} reaches "
         f"{with_unit(float(tracked.amplitude[row, column]), tracked.unit)} at "
@@ -127,7 +136,7 @@ def comparison(comparison: Comparison) -> Any:
         rows = (comparison.channel == name) & np.char.startswith(comparison.measure, "mesh harm")
         top = (int(rows.sum()) + 0.5) * comparison.mesh_frequency
         shown = (lines.measured[0] > 0.1 * comparison.mesh_frequency) & (lines.measured[0] < top)
-        frequency, size = _outline(*(each[shown] for each in lines.measured))
+        frequency, size = outline(*(each[shown] for each in lines.measured))
         inside = (lines.computed[0] > 0.0) & (lines.computed[0] < top)
         told = f", gain {comparison.gains[name]:.4g}{' fitted' if comparison.fitted else ''}"
         at, made = (each[inside] for each in lines.computed)

@@ -1,0 +1,334 @@
+"""``tribodyn signal``: the channels of a recording, and the analysis of one of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from cyclopts import Parameter
+
+from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.settings import Flag, Output, check_place
+from tribodyn.errors import Argument, InputError, Problem, TribodynError, collected, did_you_mean
+
+if TYPE_CHECKING:
+    from tribodyn.measurement import Recording, SignalAnalysis
+
+Text = str | None
+_TEETH = "Write --teeth 29, or --teeth 29/67 with the mate, or name the case with --case"
+#: What each text option holds: unit in SI, and how it is written.
+_OPTIONS = {
+    "sample_rate": "--sample-rate",
+    "channels": "--channel",
+    "band": "--band",
+    "max_order": "--max-order",
+    "tacho": "--tacho",
+}
+_EXAMPLES = {
+    "--speed": ("rad/s", "1500 rpm"),
+    "--sample-rate": ("Hz", "25600 Hz"),
+    "--band": ("Hz", "2000..6000 Hz"),
+    "--between": ("s", "1..8 s"),
+}
+
+
+@Parameter(name="*")
+@dataclass
+class Shaft:
+    """Speed and teeth of the shaft.
+
+    Parameters
+    ----------
+    tacho : str
+        Channel with the pulses of a tachometer.
+    pulses : int
+        Pulses of the tachometer in one revolution.
+    speed : str
+        Speed where there is no tachometer: "1500 rpm". With teeth the exact speed is found in the
+        recording by its mesh lines, within 5 % of this.
+    teeth : str
+        Teeth of the gear on that shaft, "29", or with those of its mate, "29/67".
+    case : str
+        Built-in case or case file whose teeth are taken, and its speed where none is known.
+    gear : str
+        Gear of the case on that shaft: pinion or wheel.
+    """
+
+    tacho: Text = None
+    pulses: int = 1
+    speed: Text = None
+    teeth: Text = None
+    case: Text = None
+    gear: Literal["pinion", "wheel"] = "pinion"
+
+
+@Parameter(name="*")
+@dataclass
+class Channel:
+    """Channel and part of the recording.
+
+    Parameters
+    ----------
+    channel : str
+        Channel to analyse; without it the channels are listed.
+    sensitivity : str
+        Sensitivity of its sensor where it holds the voltage: "100 mV/g".
+    sample_rate : str
+        Sampling rate where the file holds none: "25600 Hz".
+    between : str
+        Part of the recording: "1..8 s".
+    band : str
+        Band that the envelope is taken of: "2000..6000 Hz"; by default about the
+        strongest mesh harmonic, or the whole signal where the mesh is not known.
+    max_order : float
+        Highest order of the shaft.
+    """
+
+    channel: Text = None
+    sensitivity: Text = None
+    sample_rate: Text = None
+    between: Text = None
+    band: Text = None
+    max_order: float | None = None
+
+
+def signal(
+    file: Path,
+    /,
+    *,
+    chosen: Channel | None = None,
+    shaft: Shaft | None = None,
+    out: Output = None,
+    force: Flag = False,
+    json: Flag = False,
+) -> None:
+    """List the channels of a recording, or analyse one: spectra, envelope, orders, indicators.
+
+    Parameters
+    ----------
+    file : Path
+        Recording: CSV, MAT, WAV, UFF 58, TDMS, HDF5 or netCDF.
+    out : Path
+        Directory for the report and the data; without it the figures are shown only.
+    force : bool
+        Replace an earlier report in that directory.
+    json : bool
+        Write channels or figures in SI as one JSON object to stdout.
+    """
+    options, turning = chosen or Channel(), shaft or Shaft()
+    if out is not None:
+        check_place(out, force)
+    recording = _recording(file, options)
+    name = options.channel or _only_channel(recording, options, turning, out)
+    if name is None:
+        _list(file, recording, json)
+        return
+    with collected() as warnings:
+        analysis = _analysis(recording, name, options, turning)
+    show_warnings(warnings)
+    _show(file, analysis, out, force, json)
+
+
+def _recording(file: Path, options: Channel) -> Recording:
+    from tribodyn.measurement import read
+
+    rate = None if options.sample_rate is None else _quantity("--sample-rate", options.sample_rate)
+    sensor = {}
+    if options.sensitivity is not None:
+        if options.channel is None:
+            why, remedy = "A sensitivity is that of one channel", "Name it with --channel"
+            raise InputError("no channel is named", "--sensitivity", why, remedy)
+        sensor = {options.channel: options.sensitivity}
+    try:
+        recording = read(file, sample_rate=rate, sensitivity=sensor)
+    except InputError as error:
+        raise InputError([_by_option(each) for each in error.problems]) from None
+    if options.between is None:
+        return recording
+    start, end = _ends("--between", options.between)
+    try:
+        return recording.cut(start, end)
+    except InputError as error:
+        raise InputError([_moved(each, "--between") for each in error.problems]) from None
+
+
+def _by_option(problem: Problem) -> Problem:
+    """A problem of reading with the option of the command line instead of the argument."""
+    for argument, option in _OPTIONS.items():
+        if problem.where in (Argument(argument), f"argument {argument}"):
+            example = f'Write {option} "{_EXAMPLES["--sample-rate"][1]}"'
+            remedy = example if option == "--sample-rate" else ""
+            return _moved(problem, option, remedy)
+    return problem
+
+
+def _moved(problem: Problem, where: str, remedy: str = "") -> Problem:
+    return Problem(problem.what, where, problem.why, remedy or problem.remedy)
+
+
+def _quantity(option: str, text: str) -> float:
+    """A number with its unit, in SI."""
+    from tribodyn.units import UnitProblemError, parse
+
+    unit, example = _EXAMPLES[option]
+    try:
+        value = parse(text, unit)
+    except UnitProblemError as error:
+        raise InputError(f'"{text}"', option, str(error), f'Write {option} "{example}"') from None
+    if not value > 0.0:
+        why = "It must be greater than zero"
+        raise InputError(f'"{text}"', option, why, f'Write {option} "{example}"')
+    return value
+
+
+def _ends(option: str, text: str) -> tuple[float, float]:
+    """Two ends of a range, in SI."""
+    from tribodyn.study.studies.range_words import UnreadError, read_range
+    from tribodyn.units import UnitProblemError, parse
+
+    unit, example = _EXAMPLES[option]
+    try:
+        first, last, _ = read_range(f"{text}:2")
+        low, high = parse(f"{first}", unit), parse(f"{last}", unit)
+    except (UnreadError, UnitProblemError) as error:
+        raise InputError(f'"{text}"', option, str(error), f'Write {option} "{example}"') from None
+    if not 0.0 <= low < high:
+        why = "It goes from a lower to a higher value"
+        raise InputError(f'"{text}"', option, why, f'Write {option} "{example}"')
+    return low, high
+
+
+def _only_channel(
+    recording: Recording, options: Channel, turning: Shaft, out: Output
+) -> str | None:
+    """The channel to analyse where none is named; None where the channels are to be listed."""
+    if (
+        out is None
+        and options == Channel(sample_rate=options.sample_rate, between=options.between)
+        and turning == Shaft()
+    ):
+        return None
+    names = [name for name in recording.channels if name != turning.tacho]
+    if len(names) == 1:
+        return names[0]
+    why = f"The recording has {', '.join(recording.channels)}"
+    example = next(iter(names), next(iter(recording.channels)))
+    raise InputError("no channel is named", "--channel", why, f'Write --channel "{example}"')
+
+
+def _list(file: Path, recording: Recording, json: bool) -> None:
+    """Write channels, units, rate and duration."""
+    import numpy as np
+
+    rows = [
+        (name, recording.units[name], *(float(f(values)) for f in (np.min, np.max, np.std)))
+        for name, values in recording.channels.items()
+    ]
+    size = next(iter(recording.channels.values())).size
+    if json:
+        keys = ("name", "unit", "least", "greatest", "alternating_rms")
+        channels = [dict(zip(keys, row, strict=True)) for row in rows]
+        facts = {"sample_rate": recording.sample_rate, "duration": recording.duration}
+        say_json({"file": str(file), **facts, "samples": size, "channels": channels})
+        return
+    say(
+        f"{file.name}: {size} samples at {recording.sample_rate:.6g} Hz, {recording.duration:.6g} s"
+    )
+    head = ["channel", "unit", "least", "greatest", "alternating rms"]
+    say(table([head, *([n, u or "-", *(f"{v:.4g}" for v in more)] for n, u, *more in rows)]))
+    tell(f'Analyse one: tribodyn signal {file} --channel "{rows[0][0]}" --out report')
+
+
+def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft) -> SignalAnalysis:
+    from tribodyn.measurement import analyse_signal
+
+    _known_channel(recording, name, "--channel")
+    if turning.tacho is not None:
+        _known_channel(recording, turning.tacho, "--tacho")
+        if turning.tacho == name:
+            why = "Pulses are not what is analysed"
+            raise InputError(f"{name} is both", "--channel and --tacho", why, "Name two channels")
+    if turning.pulses < 1:
+        what, remedy = f"pulses = {turning.pulses}", "Give the pulses in one revolution"
+        raise InputError(what, "--pulses", "It is a whole number from 1 on", remedy)
+    teeth, mate, speed = _teeth_and_speed(turning)
+    if turning.tacho is not None and turning.speed is not None:
+        what = f'--tacho {turning.tacho} and --speed "{turning.speed}" are both given'
+        raise InputError(what, "", "The tachometer measures the speed", "Keep one of them")
+    band = None if options.band is None else _ends("--band", options.band)
+    try:
+        return analyse_signal(
+            recording,
+            name,
+            tacho=turning.tacho,
+            pulses_per_revolution=turning.pulses,
+            speed=None if turning.tacho is not None else speed,
+            teeth=teeth,
+            mate_teeth=mate,
+            band=band,
+            max_order=options.max_order,
+        )
+    except TribodynError as error:
+        raise type(error)([_by_option(each) for each in error.problems]) from None
+
+
+def _known_channel(recording: Recording, name: str, option: str) -> None:
+    if name not in recording.channels:
+        names = list(recording.channels)
+        why = f"The recording has {', '.join(names[:20])}"
+        remedy = did_you_mean(name, names, "Write the name as it stands there")
+        raise InputError(f'there is no channel "{name}"', option, why, remedy)
+
+
+def _teeth_and_speed(turning: Shaft) -> tuple[int | None, int | None, float | None]:
+    """Teeth of both gears, and the speed, of the options or of the case."""
+    speed = None if turning.speed is None else _quantity("--speed", turning.speed)
+    if turning.case is None:
+        return (*_written_teeth(turning.teeth), speed)
+    if turning.teeth is not None:
+        what = f"--teeth {turning.teeth} and --case {turning.case} are both given"
+        raise InputError(what, "", "The case has its own teeth", "Keep one of them")
+    from tribodyn.cases.load import load_case
+
+    case = load_case(turning.case)
+    gears = {"pinion": case.gears.pinion, "wheel": case.gears.wheel}
+    other = "wheel" if turning.gear == "pinion" else "pinion"
+    teeth, mate = int(gears[turning.gear].teeth), int(gears[other].teeth)
+    if speed is None:
+        own = case.operation.speed_of == turning.gear
+        speed = case.operation.speed * (1.0 if own else mate / teeth)
+    return teeth, mate, float(speed)
+
+
+def _written_teeth(text: Text) -> tuple[int | None, int | None]:
+    if text is None:
+        return None, None
+    first, stroke, second = (part.strip() for part in text.partition("/"))
+    counts = [first, second] if stroke else [first]
+    if not all(part.isdecimal() and int(part) >= 3 for part in counts):
+        why = "Teeth are whole numbers from 3 on"
+        raise InputError(f'"{text}"', "--teeth", why, _TEETH)
+    return int(first), int(second) if stroke else None
+
+
+def _show(file: Path, analysis: SignalAnalysis, out: Output, force: bool, json: bool) -> None:
+    from tribodyn.report.signal_report import signal_answer, write_signal_report
+
+    answer = signal_answer(analysis)
+    if out is not None:
+        from tribodyn.stored import write_dataset
+        from tribodyn.study.pipeline.save import new_directory
+
+        with new_directory(out, force=force) as place:
+            write_dataset(analysis.to_xarray(), place / "study.nc")
+            title = f"{analysis.channel} of {file.name}"
+            write_signal_report(analysis, place / "report.html", title=title)
+    if json:
+        say_json({"file": str(file), **answer.facts})
+    else:
+        say("\n".join([answer.told[0], table([answer.head, *answer.rows])]))
+        for note in answer.told[1:]:
+            tell(f"note: {note}")
+    if out is not None:
+        tell(f"Report: {out / 'report.html'}")

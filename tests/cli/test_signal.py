@@ -1,0 +1,147 @@
+"""``tribodyn signal``: what it lists, analyses, writes and refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tribodyn.cli import call
+
+RATE, SPEED = 6400.0, 2.0 * np.pi * 15.0
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A rig: 16 teeth on a shaft of 900 rpm, 2 m/s^2 at the mesh, one pulse per revolution."""
+    time = np.arange(round(4.0 * RATE)) / RATE
+    wave = 2.0 * np.cos(16.0 * SPEED * time) + 0.3 * np.cos(3.0 * SPEED * time)
+    wave += 0.2 * np.random.default_rng(0).standard_normal(time.size)
+    path = tmp_path_factory.mktemp("rig") / "rig.csv"
+    table = np.stack([time, wave / 9.80665, np.sin(SPEED * time)], axis=1)
+    np.savetxt(path, table, "%.7g", ",", header="time [s],acc [g],pulses [V]", comments="")
+    return path
+
+
+def told(capsys: pytest.CaptureFixture[str], *words: Any) -> Any:
+    assert call(["signal", *map(str, words), "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_channels_are_listed_with_units_rate_and_duration(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(["signal", str(file)]) == 0
+    text = capsys.readouterr()
+    assert "25600 samples at 6400 Hz, 4 s" in text.out
+    assert "acc      g" in text.out
+    assert '--channel "acc"' in text.err
+    facts = told(capsys, file)
+    assert [each["name"] for each in facts["channels"]] == ["acc", "pulses"]
+    assert facts["sample_rate"] == pytest.approx(RATE)
+    assert facts["channels"][1]["alternating_rms"] == pytest.approx(np.sqrt(0.5), rel=1e-4)
+
+
+def test_figures_are_in_si_and_the_report_stands_alone(
+    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = (file, "--channel", "acc", "--tacho", "pulses", "--teeth", "16/24", "--out",
+             tmp_path / "r")  # fmt: skip
+    facts = told(capsys, *words)
+    assert facts["unit"] == "m/s^2"
+    assert facts["mesh_harmonic_1_amplitude"] == pytest.approx(2.0, rel=0.01)
+    assert facts["speed"] == pytest.approx(SPEED, rel=1e-4)
+    assert facts["average_revolutions_mate"] in (39, 40)
+    assert facts["notes"] == []
+    assert all(np.isscalar(value) for key, value in facts.items() if key != "notes")
+    assert {each.name for each in (tmp_path / "r").iterdir()} == {"report.html", "study.nc"}
+    page = (tmp_path / "r" / "report.html").read_text("utf-8")
+    assert "acc of rig.csv" in page
+    assert "Mean revolution of the mate, 24 teeth" in page
+    assert 'src="http' not in page
+    assert call(["signal", *map(str, words)]) == 2
+    assert "exists" in capsys.readouterr().err
+    assert call(["signal", *map(str, words), "--force"]) == 0
+    text = capsys.readouterr()
+    assert "Mesh harmonic 1" in text.out
+    assert "report.html" in text.err
+
+
+def test_teeth_and_speed_come_from_a_case(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    facts = told(capsys, file, "--channel", "acc", "--case", "fzg-roughness", "--speed", "910 rpm")
+    assert facts["speed"] == pytest.approx(SPEED, rel=1e-4)
+    assert facts["mesh_harmonic_1_amplitude"] == pytest.approx(2.0, rel=0.01)
+    assert "mesh harmonic" in facts["speed_source"]
+
+
+def test_what_is_missing_is_told_with_what_it_needs(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(["signal", str(file), "--channel", "acc"]) == 0
+    text = capsys.readouterr()
+    assert "Alternating rms" in text.out
+    assert "--tacho NAME --pulses N" in text.err
+    facts = told(capsys, file, "--channel", "acc", "--tacho", "pulses")
+    assert facts["order_peak_1"] == pytest.approx(16.0, abs=0.1)
+    assert "--teeth 29" in facts["notes"][0]
+
+
+def test_a_part_a_band_and_a_sensitivity_are_read(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    facts = told(capsys, file, "--channel", "pulses", "--between", "1..3 s", "--band",
+                 "10..20 Hz", "--sensitivity", "500 mV/N")  # fmt: skip
+    assert facts["duration"] == pytest.approx(2.0)
+    assert facts["unit"] == "N"
+    assert facts["envelope_mean"] == pytest.approx(2.0, rel=0.02)
+
+
+def test_a_file_without_a_rate_takes_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "bare.csv"
+    np.savetxt(path, np.sin(np.arange(640) / 5.0), "%.7g", header="acc [m/s^2]", comments="")
+    assert call(["signal", str(path)]) == 2
+    assert '--sample-rate "25600 Hz"' in capsys.readouterr().err
+    facts = told(capsys, path, "--sample-rate", "6.4 kHz", "--out", tmp_path / "r")
+    assert facts["channel"] == "acc", "the only channel needs no name"
+    assert facts["spectrum_peak_1_frequency"] == pytest.approx(6400.0 / (10 * np.pi), rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--channel", "ac"), '--channel: there is no channel "ac"'),
+        (("--channel", "ac"), 'Did you mean "acc"'),
+        (("--channel", "acc", "--tacho", "pulse"), '--tacho: there is no channel "pulse"'),
+        (("--channel", "acc", "--tacho", "acc"), "acc is both"),
+        (("--channel", "acc", "--tacho", "pulses", "--pulses", "0"), "--pulses"),
+        (("--channel", "acc", "--speed", "1500"), 'Write --speed "1500 rpm"'),
+        (("--channel", "acc", "--speed", "-5 rpm"), "greater than zero"),
+        (("--channel", "acc", "--tacho", "pulses", "--speed", "900 rpm"), "both given"),
+        (("--channel", "acc", "--teeth", "16.5"), "--teeth"),
+        (("--channel", "acc", "--teeth", "16", "--case", "fzg-roughness"), "both given"),
+        (("--channel", "acc", "--case", "fzg-ruffness"), "Did you mean"),
+        (("--channel", "acc", "--band", "5..2 kHz"), "--band"),
+        (("--channel", "acc", "--band", "2..4 kHz"), "--band: The upper end"),
+        (("--channel", "acc", "--between", "2..9 s"), "The recording lasts 4 s"),
+        (("--channel", "acc", "--tacho", "pulses", "--max-order", "900"), "--max-order"),
+        (("--speed", "900 rpm"), "no channel is named"),
+        (("--sensitivity", "100 mV/g"), "--sensitivity"),
+    ],
+)
+def test_wrong_input_names_the_option_and_the_remedy(
+    file: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, ...], message: str
+) -> None:
+    assert call(["signal", str(file), *words]) == 2
+    text = capsys.readouterr()
+    assert message in text.err
+    assert "fault of tribodyn" not in text.err
+
+
+def test_a_file_that_is_none_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["signal", "nowhere.csv"]) == 2
+    assert "there is no such file" in capsys.readouterr().err
