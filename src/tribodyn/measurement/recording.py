@@ -255,7 +255,7 @@ def _from_sensor(text: str, unit: str, name: str) -> tuple[float, str]:
     for si in MEASURED:
         try:
             return convert(1.0, below, si) / volts, si
-        except InputError:
+        except (InputError, UnitProblemError):
             continue
     raise InputError(wrong)
 

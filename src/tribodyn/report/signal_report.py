@@ -14,10 +14,11 @@ from tribodyn.drawing import report_of
 from tribodyn.measurement.signal_analysis import MATE, SHAFT
 from tribodyn.plot.look.labels import readable, significant
 from tribodyn.plot.signals.analysed import seen_frequency
-from tribodyn.report.answers import Answer, Picture, pictured
+from tribodyn.report.answers import Answer, Picture
 from tribodyn.report.study import write_study_report
 
 if TYPE_CHECKING:
+    from tribodyn.drawing import Drawing
     from tribodyn.errors import Problem
     from tribodyn.measurement import SignalAnalysis
 
@@ -196,6 +197,11 @@ def _order_rows(numbers: dict[str, float], unit: str) -> list[list[str]]:
     return rows
 
 
+def _sketched(figure: Drawing, result: Any) -> Picture:
+    """Heading, figure and caption, without the classes of plotly, which take long to load."""
+    return figure.heading, figure.sketch(result), figure.caption_of(result)
+
+
 def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
     """Figures of all that was computed."""
     steady = analysis.speed is not None and not analysis.speed.varies
@@ -218,17 +224,17 @@ def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
     if analysis.band is not None:
         band = f"the band from {analysis.band[0]:.5g} to {analysis.band[1]:.5g} Hz"
     pictures = [
-        pictured(plot.signal_history, analysis),
+        _sketched(plot.signal_history, analysis),
         (
             "Spectrum",
-            plot.signal_spectrum(analysis.spectrum, marks=marks),
+            plot.signal_spectrum.sketch(analysis.spectrum, marks=marks),
             plot.signal_spectrum.caption_of(analysis.spectrum)
             + (" Dotted lines are mesh harmonics." if marks else "")
             + (_SMEARED if analysis.smeared else ""),
         ),
         (
             "Envelope spectrum",
-            plot.signal_spectrum(hull, marks=shafts, to=reach),
+            plot.signal_spectrum.sketch(hull, marks=shafts, to=reach),
             f"The frequencies that modulate {band}; its mean of {hull.amplitude[0]:.4g} "
             f"{readable(analysis.unit)} is left out. A line at the frequency of a shaft is a load "
             "that changes with its rotation, a row of its multiples an impact in each revolution. "
@@ -239,12 +245,12 @@ def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
         top = analysis.orders.orders[-1]
         orders = [(name, k * teeth) for name, k in mesh if teeth and k * teeth < top]
         caption = plot.order_spectrum.caption_of(analysis.orders)
-        drawn = plot.order_spectrum(analysis.orders, marks=orders)
+        drawn = plot.order_spectrum.sketch(analysis.orders, marks=orders)
         pictures.append(("Orders", drawn, caption))
     if analysis.order_map is not None:
-        pictures.append(pictured(plot.order_map, analysis.order_map))
+        pictures.append(_sketched(plot.order_map, analysis.order_map))
     for shaft, average in analysis.averages.items():
-        heading, drawn, caption = pictured(plot.synchronous_average, average)
+        heading, drawn, caption = _sketched(plot.synchronous_average, average)
         of = "" if len(analysis.averages) == 1 else f" of the {shaft}, {average.teeth} teeth"
         pictures.append((f"{heading}{of}", drawn, caption))
     return pictures

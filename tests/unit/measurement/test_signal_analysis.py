@@ -216,6 +216,7 @@ def test_wrong_input_is_refused(arguments: dict[str, Any], message: str) -> None
         analyse_signal(run, **{"channel": "acc", **arguments})
 
 
+@pytest.mark.slow
 def test_it_exports_draws_and_reports_itself(tmp_path: Any) -> None:
     _, angle = shaft(20.0)
     wave = gears(angle) + 0.2 * np.random.default_rng(0).standard_normal(angle.size)

@@ -52,36 +52,6 @@ def order_panel(lines: OrderSpectrum) -> Panel:
 
 
 @drawing(
-    "signal_history",
-    heading="Signal",
-    caption="The channel as it was recorded, the envelope of its band, and the speed of the "
-    "shaft. Where there are more samples than the screen has points, the largest and the smallest "
-    "of each stretch are drawn.",
-    of="SignalAnalysis",
-    made_by=_MADE_BY,
-)
-def signal_history(analysis: SignalAnalysis) -> Any:
-    """Draw signal, envelope and speed of the shaft over the time."""
-    panels = [_signal_panel(analysis)]
-    speed = _speed(analysis)
-    if speed is not None:
-        rpm = displayed("speed", speed[1])
-        curve = line(speed[0], rpm, "speed", MUTED, unit="rpm")
-        margin = max(0.6 * float(np.ptp(rpm)), 0.01 * float(rpm.mean()))
-        middle = 0.5 * float(rpm.min() + rpm.max())
-        ends = {"range": [middle - margin, middle + margin]}
-        panels.append(Panel(axis_label("speed"), [curve], ends, 0.6))
-    numbers = analysis.figures()
-    return stack(
-        f"{significant(numbers['duration'], 4)} s: alternating rms "
-        f"{with_unit(numbers['alternating_rms'], analysis.unit)}, crest factor "
-        f"{significant(numbers['crest_factor'])}, kurtosis {significant(numbers['kurtosis'])}",
-        "Time [s]",
-        panels,
-    )
-
-
-@drawing(
     "signal_analysis",
     heading="Signal at a glance",
     caption="The channel over the time with its envelope, its spectrum, the spectrum of its "
@@ -111,6 +81,36 @@ def signal_analysis(analysis: SignalAnalysis) -> Any:
     if top:
         title += f", strongest at {significant(top[0].frequency, 4)} Hz"
     return stack_rows(title, rows, {"hovermode": "closest"})
+
+
+@drawing(
+    "signal_history",
+    heading="Signal",
+    caption="The channel as it was recorded, the envelope of its band, and the speed of the "
+    "shaft. Where there are more samples than the screen has points, the largest and the smallest "
+    "of each stretch are drawn.",
+    of="SignalAnalysis",
+    made_by=_MADE_BY,
+)
+def signal_history(analysis: SignalAnalysis) -> Any:
+    """Draw signal, envelope and speed of the shaft over the time."""
+    panels = [_signal_panel(analysis)]
+    speed = _speed(analysis)
+    if speed is not None:
+        rpm = displayed("speed", speed[1])
+        curve = line(speed[0], rpm, "speed", MUTED, unit="rpm")
+        margin = max(0.6 * float(np.ptp(rpm)), 0.01 * float(rpm.mean()))
+        middle = 0.5 * float(rpm.min() + rpm.max())
+        ends = {"range": [middle - margin, middle + margin]}
+        panels.append(Panel(axis_label("speed"), [curve], ends, 0.6))
+    numbers = analysis.figures()
+    return stack(
+        f"{significant(numbers['duration'], 4)} s: alternating rms "
+        f"{with_unit(numbers['alternating_rms'], analysis.unit)}, crest factor "
+        f"{significant(numbers['crest_factor'])}, kurtosis {significant(numbers['kurtosis'])}",
+        "Time [s]",
+        panels,
+    )
 
 
 def seen_frequency(analysis: SignalAnalysis, share: float = 0.05) -> float:

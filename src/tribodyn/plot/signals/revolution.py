@@ -55,28 +55,28 @@ def synchronous_average(average: SynchronousAverage) -> Any:
         {**edge, "x": angle, "y": mean - error, "fill": "tonexty", "fillcolor": FILLS[PINION],
          "name": "2 standard errors"},
     ]  # fmt: skip
-    residual, difference = average.residual(), average.difference()
+    residual, difference = _fine(average.residual()), _fine(average.difference())
     curve = line(angle, mean, "mean revolution", PINION, unit=unit, width=1.4)
     zero = {"zeroline": True, "zerolinecolor": "#c5ccd3"}
     panels = [
         Panel(label("Mean"), [*band, curve], height=1.2),
         Panel(
             label("Residual"),
-            [line(angle, _fine(residual), "residual", TOTAL, unit=unit, width=1.4)],
+            [line(angle, residual, "residual", TOTAL, unit=unit, width=1.4)],
             zero,
         ),
         Panel(
             label("Difference"),
-            [line(angle, _fine(difference), "difference", WHEEL, unit=unit, width=1.4)],
+            [line(angle, difference, "difference", WHEEL, unit=unit, width=1.4)],
             zero,
         ),
     ]
     top = int(np.argmax(np.abs(difference)))
-    swing, bump = float(np.ptp(average.signal)), float(abs(difference[top]))
+    swing, bump = float(np.ptp(mean)), float(abs(difference[top]))
     return stack(
         f"{average.revolutions} revolutions: {with_unit(swing, average.unit)} peak to peak, "
         f"difference up to {with_unit(bump, average.unit)} "
-        f"at {significant(float(np.degrees(average.angle[top])))}°",
+        f"at {significant(float(angle[top]))}°",
         "Angle of the shaft [°]",
         panels,
         {"xaxis": {"range": [0.0, 360.0], "dtick": 45}},
