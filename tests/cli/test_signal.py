@@ -94,7 +94,7 @@ def test_a_part_a_band_and_a_sensitivity_are_read(
     file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     facts = told(capsys, file, "--channel", "pulses", "--between", "1..3 s", "--band",
-                 "10..20 Hz", "--sensitivity", "500 mV/N")  # fmt: skip
+                 "3..60 Hz", "--sensitivity", "500 mV/N")  # fmt: skip
     assert facts["duration"] == pytest.approx(2.0)
     assert facts["unit"] == "N"
     assert facts["envelope_mean"] == pytest.approx(2.0, rel=0.02)

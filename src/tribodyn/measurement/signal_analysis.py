@@ -22,7 +22,7 @@ from tribodyn.measurement.shaft_speed import ShaftSpeed, shaft_speed
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.signals.envelope import envelope, envelope_spectrum
 from tribodyn.signals.order_map import OrderMap
-from tribodyn.signals.spectrum import Peak, SignalSpectrum, spectrum
+from tribodyn.signals.spectrum import SignalSpectrum, distinct_peaks, spectrum
 from tribodyn.signals.synchronous_average import (
     ConditionIndicators,
     SynchronousAverage,
@@ -38,10 +38,6 @@ _PEAKS, _HARMONICS = 5, 5
 _ORDERS, _RESOLVED = 100.0, 0.95
 #: Revolutions of a block of the order map.
 _BLOCK = 8.0
-#: Local maxima that are looked at for peaks, and distance over the frequency that parts two.
-_CANDIDATES, _NEAR = 200, 0.005
-#: Share of the largest peak below which there may be rounding only.
-_LEAST = 1e-4
 #: Share of the highest speed below which the shaft turns too slowly for a mean revolution.
 _SLOW = 0.1
 #: Lines of a spectrum over which a smeared one reads clearly low.
@@ -228,25 +224,9 @@ def order_peaks(lines: OrderSpectrum, count: int) -> list[tuple[float, float]]:
     return peaks
 
 
-def spectrum_peaks(lines: SignalSpectrum, count: int = _PEAKS) -> list[Peak]:
-    """Largest peaks that do not belong to one line that the speed smears."""
-    peaks: list[Peak] = []
-    candidates = lines.peaks(_CANDIDATES)
-    least = _LEAST * max((peak.amplitude for peak in candidates), default=0.0)
-    for peak in candidates:
-        apart = max(_NEAR * peak.frequency, _LOBE * float(lines.frequency[1]))
-        if (
-            peak.frequency > 0.0
-            and peak.amplitude > least
-            and all(abs(peak.frequency - larger.frequency) > apart for larger in peaks)
-        ):
-            peaks.append(peak)
-    return peaks[:count]
-
-
 def _peak_figures(name: str, lines: SignalSpectrum) -> dict[str, float]:
     numbers = {}
-    for number, peak in enumerate(spectrum_peaks(lines), 1):
+    for number, peak in enumerate(distinct_peaks(lines, _PEAKS), 1):
         numbers[f"{name}_peak_{number}_frequency"] = peak.frequency
         numbers[f"{name}_peak_{number}_amplitude"] = peak.amplitude
     return numbers

@@ -310,6 +310,26 @@ class SignalSpectrum(Record):
         return self.scaling
 
 
+#: Local maxima that are looked at for distinct peaks, distance of two over the frequency and in
+#: lines, and share of the largest below which there may be rounding only.
+_CANDIDATES, _NEAR, _LOBE, _LEAST = 200, 0.005, 12, 1e-4
+
+
+def distinct_peaks(lines: SignalSpectrum, count: int) -> list[Peak]:
+    """Largest peaks above zero that do not belong to one line that a changing speed smears."""
+    candidates = [peak for peak in lines.peaks(_CANDIDATES) if peak.frequency > 0.0]
+    least = _LEAST * max((peak.amplitude for peak in candidates), default=0.0)
+    apart = _LOBE * float(lines.frequency[1] - lines.frequency[0])
+    peaks: list[Peak] = []
+    for peak in candidates:
+        near = max(_NEAR * peak.frequency, apart)
+        if peak.amplitude > least and all(
+            abs(peak.frequency - larger.frequency) > near for larger in peaks
+        ):
+            peaks.append(peak)
+    return peaks[:count]
+
+
 def zoom_spectrum(
     signal: Any,
     sampling_rate: float,

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 #: Points of the curve of the speed.
 _POINTS = 1500
+#: Multiples of the strongest line of the envelope that its axis reaches at least.
+_MULTIPLES = 6.5
 _MADE_BY = "Call tribodyn.measurement.analyse_signal(recording, channel) and its plot method."
 
 
@@ -62,24 +64,26 @@ def order_panel(lines: OrderSpectrum) -> Panel:
 def signal_analysis(analysis: SignalAnalysis) -> Any:
     """Draw signal, spectrum, envelope spectrum and orders below one another."""
     hertz = axis_label("frequency")
-    hull = spectrum_panel(analysis.envelope_spectrum)
+    reach = seen_frequency(analysis)
     rows = [
         Row("Time [s]", _signal_panel(analysis)),
         Row(hertz, spectrum_panel(analysis.spectrum)),
         Row(
             axis_label("frequency", "Frequency of the envelope"),
-            Panel(hull.label, hull.traces, hull.axis, hull.height),
-            {"range": [0.0, seen_frequency(analysis)]},
+            spectrum_panel(analysis.envelope_spectrum, reach),
+            {"range": [0.0, reach]},
         ),
     ]
     if analysis.orders is not None:
         rows.append(Row("Order [cycles per revolution]", order_panel(analysis.orders)))
-    top = analysis.spectrum.peaks(1)
+    numbers = analysis.figures()
     title = f"{analysis.channel}: alternating rms " + with_unit(
-        analysis.figures()["alternating_rms"], analysis.unit
+        numbers["alternating_rms"], analysis.unit
     )
-    if top:
-        title += f", strongest at {significant(top[0].frequency, 4)} Hz"
+    if "order_peak_1" in numbers:
+        title += f", strongest at order {significant(numbers['order_peak_1'], 4)}"
+    elif "spectrum_peak_1_frequency" in numbers:
+        title += f", strongest at {significant(numbers['spectrum_peak_1_frequency'], 4)} Hz"
     return stack_rows(title, rows, {"hovermode": "closest"})
 
 
@@ -117,5 +121,6 @@ def seen_frequency(analysis: SignalAnalysis, share: float = 0.05) -> float:
     """Frequency beyond which all lines of the envelope are small [Hz]."""
     lines = analysis.envelope_spectrum
     size = np.where(lines.frequency > 0.0, lines.amplitude, 0.0)
-    last = int(np.flatnonzero(size >= share * size.max())[-1])
-    return float(min(1.15 * lines.frequency[last], lines.frequency[-1]))
+    last = float(lines.frequency[np.flatnonzero(size >= share * size.max())[-1]])
+    strongest = float(lines.frequency[int(np.argmax(size))])
+    return float(min(max(1.15 * last, _MULTIPLES * strongest), lines.frequency[-1]))

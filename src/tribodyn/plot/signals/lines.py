@@ -19,6 +19,7 @@ from tribodyn.plot.look.labels import (
 from tribodyn.plot.look.panels import Panel, event_lines, stack
 from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
+from tribodyn.signals.spectrum import distinct_peaks
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -41,15 +42,15 @@ def strongest_lines(place: Array, size: Array, most: int = _LINES) -> tuple[Arra
     return place[largest], size[largest]
 
 
-def spectrum_panel(spectrum: SignalSpectrum, label: str = "") -> Panel:
+def spectrum_panel(spectrum: SignalSpectrum, to: float | None = None) -> Panel:
     """Lines above zero, with the largest peaks marked where they are amplitudes."""
-    above = spectrum.frequency > 0.0
+    above = (spectrum.frequency > 0.0) & (spectrum.frequency <= (to or np.inf))
     frequency, size = strongest_lines(spectrum.frequency[above], spectrum.amplitude[above])
     unit = readable(spectrum.value_unit)
     curve = line(frequency, size, "spectrum", TOTAL, unit=unit, width=1.2)
     if spectrum.scaling == "amplitude":
         return Panel(
-            label or amplitude_label(spectrum.value_unit),
+            amplitude_label(spectrum.value_unit),
             [curve, *_peaks(spectrum, unit)],
             {"rangemode": "tozero"},
             1.4,
@@ -62,13 +63,13 @@ def spectrum_panel(spectrum: SignalSpectrum, label: str = "") -> Panel:
         "exponentformat": "power",
         "range": [max(low, top - _DECADES) - 0.2, top + 0.3],
     }
-    return Panel(label or (f"{scaling} [{unit}]" if unit else scaling), [curve], axis, 1.4)
+    return Panel(f"{scaling} [{unit}]" if unit else scaling, [curve], axis, 1.4)
 
 
 def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:
     if not spectrum.window_length:
         return []
-    peaks = [each for each in spectrum.peaks(2 * _PEAKS) if each.frequency > 0.0][:_PEAKS]
+    peaks = distinct_peaks(spectrum, _PEAKS)
     peaks = [each for each in peaks if each.amplitude > _LEAST * peaks[0].amplitude]
     if not peaks:
         return []
@@ -117,7 +118,7 @@ def signal_spectrum(
     return stack(
         spectrum_title(spectrum),
         axis_label("frequency"),
-        [spectrum_panel(spectrum)],
+        [spectrum_panel(spectrum, to)],
         layout,
     )
 
