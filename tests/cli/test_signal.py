@@ -26,7 +26,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def told(capsys: pytest.CaptureFixture[str], *words: Any) -> Any:
+def run_json(capsys: pytest.CaptureFixture[str], *words: Any) -> Any:
     assert call(["signal", *map(str, words), "--json"]) == 0
     return json.loads(capsys.readouterr().out)
 
@@ -39,7 +39,7 @@ def test_channels_are_listed_with_units_rate_and_duration(
     assert "25600 samples at 6400 Hz, 4 s" in text.out
     assert "acc      g" in text.out
     assert '--channel "acc"' in text.err
-    facts = told(capsys, file)
+    facts = run_json(capsys, file)
     assert [each["name"] for each in facts["channels"]] == ["acc", "pulses"]
     assert facts["sample_rate"] == pytest.approx(RATE)
     assert facts["channels"][1]["alternating_rms"] == pytest.approx(np.sqrt(0.5), rel=1e-4)
@@ -51,7 +51,7 @@ def test_figures_are_in_si_and_the_report_stands_alone(
 ) -> None:
     words = (file, "--channel", "acc", "--tacho", "pulses", "--teeth", "16/24", "--out",
              tmp_path / "r")  # fmt: skip
-    facts = told(capsys, *words)
+    facts = run_json(capsys, *words)
     assert facts["unit"] == "m/s^2"
     assert facts["mesh_harmonic_1_amplitude"] == pytest.approx(2.0, rel=0.01)
     assert facts["speed"] == pytest.approx(SPEED, rel=1e-4)
@@ -72,20 +72,22 @@ def test_figures_are_in_si_and_the_report_stands_alone(
 
 
 def test_teeth_and_speed_come_from_a_case(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    facts = told(capsys, file, "--channel", "acc", "--case", "fzg-roughness", "--speed", "910 rpm")
+    facts = run_json(
+        capsys, file, "--channel", "acc", "--case", "fzg-roughness", "--speed", "910 rpm"
+    )
     assert facts["speed"] == pytest.approx(SPEED, rel=1e-4)
     assert facts["mesh_harmonic_1_amplitude"] == pytest.approx(2.0, rel=0.01)
     assert "mesh harmonic" in facts["speed_source"]
 
 
-def test_what_is_missing_is_told_with_what_it_needs(
+def test_what_is_missing_is_named_with_what_it_needs(
     file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call(["signal", str(file), "--channel", "acc"]) == 0
     text = capsys.readouterr()
     assert "Alternating rms" in text.out
     assert "--tacho NAME --pulses N" in text.err
-    facts = told(capsys, file, "--channel", "acc", "--tacho", "pulses")
+    facts = run_json(capsys, file, "--channel", "acc", "--tacho", "pulses")
     assert facts["order_peak_1"] == pytest.approx(16.0, abs=0.1)
     assert "--teeth 29" in facts["notes"][0]
 
@@ -93,7 +95,7 @@ def test_what_is_missing_is_told_with_what_it_needs(
 def test_a_part_a_band_and_a_sensitivity_are_read(
     file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    facts = told(capsys, file, "--channel", "pulses", "--between", "1..3 s", "--band",
+    facts = run_json(capsys, file, "--channel", "pulses", "--between", "1..3 s", "--band",
                  "3..60 Hz", "--sensitivity", "500 mV/N")  # fmt: skip
     assert facts["duration"] == pytest.approx(2.0)
     assert facts["unit"] == "N"
@@ -109,7 +111,7 @@ def test_a_file_without_a_rate_takes_one(
     np.savetxt(path, np.stack([wave, wave], axis=1), "%.7g", ",", header=head, comments="")
     assert call(["signal", str(path)]) == 2
     assert '--sample-rate "25600 Hz"' in capsys.readouterr().err
-    facts = told(capsys, path, "--sample-rate", "6.4 kHz", "--tacho", "pulses")
+    facts = run_json(capsys, path, "--sample-rate", "6.4 kHz", "--tacho", "pulses")
     assert facts["channel"] == "acc", "the only other channel needs no name"
     assert facts["spectrum_peak_1_frequency"] == pytest.approx(6400.0 / (10 * np.pi), rel=1e-2)
 

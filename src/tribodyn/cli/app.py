@@ -92,7 +92,7 @@ COMMANDS = (
     ),
     ("explain", "explain_commands:explain", "Explain a symbol, key, model or warning."),
     ("units", "explain_commands:units", "List the units and their spellings."),
-    ("warm-up", "warm_up_command:warm_up", "Compile what runs need, ahead of the first one."),
+    ("warm-up", "run_command:warm_up", "Compile what runs need, ahead of the first one."),
     ("cite", "explain_commands:cite", "Print the papers behind a result."),
 )
 

@@ -88,7 +88,7 @@ def shaft_speed(
             "Record a tachometer" if teeth else "Give the teeth (--teeth 29), or a tachometer",
         )
     )
-    angle = speed / rate * np.arange(values.size)
+    angle = np.asarray(speed / rate * np.arange(values.size), dtype=np.float64)
     return ShaftSpeed(angle, "stated, not measured", speed, speed, speed, steady=True)
 
 

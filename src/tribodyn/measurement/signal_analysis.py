@@ -216,7 +216,7 @@ def order_peaks(lines: OrderSpectrum, count: int) -> list[tuple[float, float]]:
     """Orders and amplitudes of the largest lines that are no neighbours of larger ones."""
     size = lines.amplitudes.copy()
     size[: _LOBE + 1] = 0.0
-    peaks = []
+    peaks: list[tuple[float, float]] = []
     while len(peaks) < count and size.max() > 0.0:
         top = int(np.argmax(size))
         peaks.append((float(lines.orders[top]), float(size[top])))
@@ -309,10 +309,11 @@ def analyse_signal(
     --------
     >>> from tribodyn.measurement import synthetic_run_up
     >>> run = synthetic_run_up({29: 2.0}, 150.0, duration=4.0)
-    >>> found = analyse_signal(run, "signal", tacho="tacho", pulses_per_revolution=60, teeth=29)
-    >>> found
+    >>> options = {"tacho": "tacho", "pulses_per_revolution": 60, "teeth": 29}
+    >>> analysis = analyse_signal(run, "signal", **options)
+    >>> analysis
     SignalAnalysis(signal, 4 s at 25600 Hz, rms 1.414 m/s^2, 1432.4 rpm)
-    >>> round(found.figures()["mesh_harmonic_1_amplitude"], 2)
+    >>> round(analysis.figures()["mesh_harmonic_1_amplitude"], 2)
     2.0
     """
     values, unit = in_si(recording[channel], recording.units[channel])

@@ -46,17 +46,17 @@ def test_mesh_harmonics_are_exact_at_a_wandering_speed_with_a_tachometer(pulses:
     _, angle = shaft()
     square = 5.0 * (np.mod(pulses * angle / (2.0 * np.pi), 1.0) < 0.2)
     run = Recording({"acc": gears(angle), "pulse": square}, RATE, {"acc": "m/s^2"})
-    found = analyse_signal(run, "acc", tacho="pulse", pulses_per_revolution=pulses, teeth=TEETH)
-    numbers = found.figures()
+    analysis = analyse_signal(run, "acc", tacho="pulse", pulses_per_revolution=pulses, teeth=TEETH)
+    numbers = analysis.figures()
     assert numbers["mesh_harmonic_1_amplitude"] == pytest.approx(4.0, rel=0.01)
     assert numbers["mesh_harmonic_2_amplitude"] == pytest.approx(1.5, rel=0.01)
     assert numbers["order_peak_1"] == pytest.approx(TEETH, abs=0.02)
     assert numbers["speed"] == pytest.approx(SPEED, rel=1e-4)
     assert numbers["highest_speed"] == pytest.approx((1.0 + WANDER) * SPEED, rel=2e-3)
     assert numbers["mesh_frequency"] == pytest.approx(TEETH * 15.0, rel=1e-4)
-    assert found.averages["shaft"].mesh_amplitudes(2) == pytest.approx([4.0, 1.5], rel=0.01)
-    assert found.smeared
-    assert not found.notes
+    assert analysis.averages["shaft"].mesh_amplitudes(2) == pytest.approx([4.0, 1.5], rel=0.01)
+    assert analysis.smeared
+    assert not analysis.notes
 
 
 @pytest.mark.parametrize("error", [-0.03, 0.02])
@@ -64,35 +64,35 @@ def test_the_speed_is_found_by_mesh_lines_where_the_stated_one_is_off(error: flo
     _, angle = shaft()
     noise = 0.3 * np.random.default_rng(1).standard_normal(angle.size)
     run = recording(gears(angle) + noise, angle)
-    found = analyse_signal(run, "acc", speed=(1.0 + error) * SPEED, teeth=TEETH)
-    numbers = found.figures()
+    analysis = analyse_signal(run, "acc", speed=(1.0 + error) * SPEED, teeth=TEETH)
+    numbers = analysis.figures()
     assert numbers["speed"] == pytest.approx(SPEED, rel=1e-4)
     assert 0.0 < numbers["speed_uncertainty"] < 1e-3 * SPEED
     assert numbers["mesh_harmonic_1_amplitude"] == pytest.approx(4.0, rel=0.02)
-    assert "mesh harmonics" in found.speed.source
+    assert "mesh harmonics" in analysis.speed.source
 
 
 def test_a_stated_speed_without_teeth_says_that_it_is_not_measured() -> None:
     time, angle = shaft(wander=0.0)
-    found = analyse_signal(recording(gears(angle), angle), "acc", speed=SPEED)
-    assert found.figures()["order_peak_1_amplitude"] == pytest.approx(4.0, rel=0.01)
-    assert "exactly 900 rpm" in missing(found)
-    assert "--teeth" in missing(found)
-    assert not found.averages
+    analysis = analyse_signal(recording(gears(angle), angle), "acc", speed=SPEED)
+    assert analysis.figures()["order_peak_1_amplitude"] == pytest.approx(4.0, rel=0.01)
+    assert "exactly 900 rpm" in missing(analysis)
+    assert "--teeth" in missing(analysis)
+    assert not analysis.averages
     noise = recording(np.random.default_rng(0).standard_normal(time.size), angle)
-    found = analyse_signal(noise, "acc", speed=SPEED, teeth=TEETH)
-    assert "No steady line of the mesh" in missing(found)
-    assert found.speed.steady
+    analysis = analyse_signal(noise, "acc", speed=SPEED, teeth=TEETH)
+    assert "No steady line of the mesh" in missing(analysis)
+    assert analysis.speed.steady
 
 
 def test_without_speed_the_rest_is_computed_and_the_notes_say_what_is_missing() -> None:
     _, angle = shaft(2.0)
-    found = analyse_signal(recording(gears(angle), angle), "acc", teeth=TEETH)
-    assert found.orders is None
-    assert found.averages == {}
-    assert "--tacho NAME --pulses N" in missing(found)
-    assert found.mesh_frequency is None
-    numbers = found.figures()
+    analysis = analyse_signal(recording(gears(angle), angle), "acc", teeth=TEETH)
+    assert analysis.orders is None
+    assert analysis.averages == {}
+    assert "--tacho NAME --pulses N" in missing(analysis)
+    assert analysis.mesh_frequency is None
+    numbers = analysis.figures()
     wave = gears(angle)
     assert numbers["alternating_rms"] == pytest.approx(np.std(wave))
     assert numbers["crest_factor"] == pytest.approx(np.abs(wave - wave.mean()).max() / np.std(wave))
@@ -103,9 +103,9 @@ def test_a_modulated_carrier_gives_the_depth_of_its_modulation() -> None:
     time, angle = shaft(4.0, wander=0.0)
     wave = 5.0 * (1.0 + 0.3 * np.cos(angle)) * np.cos(TEETH * angle)
     stray = 2.0 * np.cos(2.0 * np.pi * 1700.0 * time)
-    found = analyse_signal(recording(wave + stray, angle), "acc", tacho="pulse", teeth=TEETH)
-    assert found.band == pytest.approx((TEETH * 15.0 / 2.0, TEETH * 15.0 * 1.5), rel=1e-3)
-    numbers = found.figures()
+    analysis = analyse_signal(recording(wave + stray, angle), "acc", tacho="pulse", teeth=TEETH)
+    assert analysis.band == pytest.approx((TEETH * 15.0 / 2.0, TEETH * 15.0 * 1.5), rel=1e-3)
+    numbers = analysis.figures()
     assert numbers["envelope_peak_1_frequency"] == pytest.approx(15.0, rel=1e-3)
     assert numbers["envelope_peak_1_amplitude"] == pytest.approx(1.5, rel=0.01)
     assert numbers["envelope_mean"] == pytest.approx(5.0, rel=0.01)
@@ -135,17 +135,17 @@ def test_each_gear_has_the_mean_revolution_of_its_own_shaft() -> None:
     _, angle = shaft(20.0)
     of_mate = TEETH / MATE * angle
     wave = gears(angle) + 0.8 * np.cos(5.0 * of_mate) + 0.5 * np.cos(7.0 * angle)
-    found = analyse_signal(
+    analysis = analyse_signal(
         recording(wave, angle), "acc", tacho="pulse", teeth=TEETH, mate_teeth=MATE
     )
     lines = {
         name: 2.0 * np.abs(np.fft.rfft(each.signal)) / each.signal.size
-        for name, each in found.averages.items()
+        for name, each in analysis.averages.items()
     }
     assert lines["mate"][[5, MATE, 2 * MATE]] == pytest.approx([0.8, 4.0, 1.5], rel=0.01)
     assert lines["shaft"][[7, TEETH, 2 * TEETH]] == pytest.approx([0.5, 4.0, 1.5], rel=0.01)
     assert lines["mate"][7] < 0.02
-    numbers = found.figures()
+    numbers = analysis.figures()
     assert numbers["average_revolutions_mate"] == pytest.approx(300 * TEETH / MATE, abs=1.0)
     # One bad line is a sine in the difference signal: kurtosis 1.5.
     assert numbers["fm4"] == pytest.approx(1.5, abs=0.02)
@@ -158,17 +158,17 @@ def test_each_gear_has_the_mean_revolution_of_its_own_shaft() -> None:
 )
 def test_units_that_are_known_become_si(unit: str, factor: float, si: str) -> None:
     _, angle = shaft(1.0)
-    found = analyse_signal(recording(gears(angle), angle, unit), "acc")
-    assert found.unit == si
-    assert found.signal == pytest.approx(factor * gears(angle))
-    assert found.spectrum.unit == si
+    analysis = analyse_signal(recording(gears(angle), angle, unit), "acc")
+    assert analysis.unit == si
+    assert analysis.signal == pytest.approx(factor * gears(angle))
+    assert analysis.spectrum.unit == si
 
 
 def test_a_temperature_is_offset_not_scaled() -> None:
     _, angle = shaft(1.0, wander=0.0)
-    found = analyse_signal(recording(40.0 + np.cos(angle), angle, "degC"), "acc")
-    assert found.unit == "K"
-    assert found.figures()["mean"] == pytest.approx(313.15, abs=1e-9)
+    analysis = analyse_signal(recording(40.0 + np.cos(angle), angle, "degC"), "acc")
+    assert analysis.unit == "K"
+    assert analysis.figures()["mean"] == pytest.approx(313.15, abs=1e-9)
 
 
 def run_up() -> Recording:
@@ -178,20 +178,20 @@ def run_up() -> Recording:
 
 
 def test_a_run_up_from_rest_has_orders_over_the_speed_and_a_mean_of_its_fast_part() -> None:
-    found = analyse_signal(run_up(), "acc", tacho="pulse", pulses_per_revolution=30, teeth=TEETH)
-    assert found.order_map is not None
-    cut = found.order_map.cut(TEETH)
+    analysis = analyse_signal(run_up(), "acc", tacho="pulse", pulses_per_revolution=30, teeth=TEETH)
+    assert analysis.order_map is not None
+    cut = analysis.order_map.cut(TEETH)
     assert np.asarray(cut.amplitude)[3:] == pytest.approx(2.0, rel=0.03)
-    assert "mean revolution is that from" in missing(found)
-    average = found.averages["shaft"]
+    assert "mean revolution is that from" in missing(analysis)
+    average = analysis.averages["shaft"]
     assert average.mesh_amplitudes(1)[0] == pytest.approx(2.0, rel=0.03)
 
 
 def test_a_mesh_above_the_sampling_is_named() -> None:
     _, angle = shaft(2.0, wander=0.0)
-    found = analyse_signal(recording(gears(angle), angle), "acc", tacho="pulse", teeth=300)
-    assert "above what the sampling resolves" in missing(found)
-    assert found.averages == {}
+    analysis = analyse_signal(recording(gears(angle), angle), "acc", tacho="pulse", teeth=300)
+    assert "above what the sampling resolves" in missing(analysis)
+    assert analysis.averages == {}
 
 
 @pytest.mark.parametrize(
@@ -220,22 +220,22 @@ def test_wrong_input_is_refused(arguments: dict[str, Any], message: str) -> None
 def test_it_exports_draws_and_reports_itself(tmp_path: Any) -> None:
     _, angle = shaft(20.0)
     wave = gears(angle) + 0.2 * np.random.default_rng(0).standard_normal(angle.size)
-    found = analyse_signal(
+    analysis = analyse_signal(
         recording(wave, angle, "g"), "acc", tacho="pulse", teeth=TEETH, mate_teeth=MATE
     )
-    data = found.to_xarray()
+    data = analysis.to_xarray()
     assert data.signal.units == data.mean_revolution_shaft.units == "m/s^2"
-    assert data.attrs["fm4_mate"] == found.indicators["mate"].fm4
-    stored = xarray.load_dataset(found.save(tmp_path / "a.nc"), engine="h5netcdf")
+    assert data.attrs["fm4_mate"] == analysis.indicators["mate"].fm4
+    stored = xarray.load_dataset(analysis.save(tmp_path / "a.nc"), engine="h5netcdf")
     assert stored.order_spectrum.equals(data.order_spectrum)
-    for figure in (found.plot(), FIGURES["signal_history"](found)):
+    for figure in (analysis.plot(), FIGURES["signal_history"](analysis)):
         labels = [figure.layout[k].title.text for k in figure.layout if k[1:5] == "axis"]
         assert all("[" in label for label in labels if label)
-    page = write_signal_report(found, tmp_path / "report.html", title="acc of rig.csv")
+    page = write_signal_report(analysis, tmp_path / "report.html", title="acc of rig.csv")
     text = page.read_text("utf-8")
     assert "<h1>acc of rig.csv</h1>" in text
     assert "FM4 of the mate" in text
-    answer = signal_answer(found)
+    answer = signal_answer(analysis)
     headings = [heading for heading, _, _ in answer.figures]
     assert headings == [
         "Signal",
@@ -245,5 +245,5 @@ def test_it_exports_draws_and_reports_itself(tmp_path: Any) -> None:
         "Mean revolution of the shaft, 20 teeth",
         "Mean revolution of the mate, 31 teeth",
     ]
-    assert all(np.isfinite(value) for value in found.figures().values())
+    assert all(np.isfinite(value) for value in analysis.figures().values())
     assert {len(row) for row in answer.rows} == {4}

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
 from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import Flag, Output, check_place
+from tribodyn.cli.settings import Output, check_place
 from tribodyn.errors import Argument, InputError, Problem, TribodynError, collected, did_you_mean
 
 if TYPE_CHECKING:
@@ -33,89 +33,88 @@ _EXAMPLES = {
 }
 
 
+def _help(text: str) -> Any:
+    return Parameter(help=text)
+
+
 @Parameter(name="*")
 @dataclass
 class Shaft:
-    """Speed and teeth of the shaft.
+    """Speed and teeth of the shaft."""
 
-    Parameters
-    ----------
-    tacho : str
-        Channel with the pulses of a tachometer.
-    pulses : int
-        Pulses of the tachometer in one revolution.
-    speed : str
-        Speed where there is no tachometer: "1500 rpm". With teeth the exact speed is found in the
-        recording by its mesh lines, within 5 % of this.
-    teeth : str
-        Teeth of the gear on that shaft, "29", or with those of its mate, "29/67".
-    case : str
-        Built-in case or case file whose teeth are taken, and its speed where none is known.
-    gear : str
-        Gear of the case on that shaft: pinion or wheel.
-    """
-
-    tacho: Text = None
-    pulses: int = 1
-    speed: Text = None
-    teeth: Text = None
-    case: Text = None
-    gear: Literal["pinion", "wheel"] = "pinion"
+    tacho: Annotated[Text, _help("Channel with the pulses of a tachometer.")] = None
+    pulses: Annotated[int, _help("Pulses of the tachometer in one revolution.")] = 1
+    speed: Annotated[
+        Text,
+        _help(
+            'Speed where there is no tachometer: "1500 rpm". With teeth the exact speed is found '
+            "in the recording by its mesh lines, within 5 % of this."
+        ),
+    ] = None
+    teeth: Annotated[
+        Text, _help('Teeth of the gear on that shaft, "29", or with those of its mate, "29/67".')
+    ] = None
+    case: Annotated[
+        Text,
+        _help(
+            "Built-in case or case file whose teeth are taken, and its speed where none is known."
+        ),
+    ] = None
+    gear: Annotated[
+        Literal["pinion", "wheel"], _help("Gear of the case on that shaft: pinion or wheel.")
+    ] = "pinion"
 
 
 @Parameter(name="*")
 @dataclass
 class Channel:
-    """Channel and part of the recording.
+    """Channel and part of the recording."""
 
-    Parameters
-    ----------
-    channel : str
-        Channel to analyse; without it the channels are listed.
-    sensitivity : str
-        Sensitivity of its sensor where it holds the voltage: "100 mV/g".
-    sample_rate : str
-        Sampling rate where the file holds none: "25600 Hz".
-    between : str
-        Part of the recording: "1..8 s".
-    band : str
-        Band that the envelope is taken of: "2000..6000 Hz"; by default about the
-        strongest mesh harmonic, or the whole signal where the mesh is not known.
-    max_order : float
-        Highest order of the shaft.
-    """
+    channel: Annotated[Text, _help("Channel to analyse; without it the channels are listed.")] = (
+        None
+    )
+    sensitivity: Annotated[
+        Text, _help('Sensitivity of its sensor where it holds the voltage: "100 mV/g".')
+    ] = None
+    sample_rate: Annotated[Text, _help('Sampling rate where the file holds none: "25600 Hz".')] = (
+        None
+    )
+    between: Annotated[Text, _help('Part of the recording: "1..8 s".')] = None
+    band: Annotated[
+        Text,
+        _help(
+            'Band that the envelope is taken of: "2000..6000 Hz"; by default about the strongest '
+            "mesh harmonic, or the whole signal where the mesh is not known."
+        ),
+    ] = None
+    max_order: Annotated[float | None, _help("Highest order of the shaft.")] = None
 
-    channel: Text = None
-    sensitivity: Text = None
-    sample_rate: Text = None
-    between: Text = None
-    band: Text = None
-    max_order: float | None = None
+
+File = Annotated[Path, _help("Recording: CSV, MAT, WAV, UFF 58, TDMS, HDF5 or netCDF.")]
+Report = Annotated[
+    Output,
+    _help("Directory for the report and the data; without it the figures are shown only."),
+]
+Replace = Annotated[
+    bool, Parameter(negative="", help="Replace an earlier report in that directory.")
+]
+Json = Annotated[
+    bool,
+    Parameter(negative="", help="Write channels or figures in SI as one JSON object to stdout."),
+]
 
 
 def signal(
-    file: Path,
+    file: File,
     /,
     *,
     chosen: Channel | None = None,
     shaft: Shaft | None = None,
-    out: Output = None,
-    force: Flag = False,
-    json: Flag = False,
+    out: Report = None,
+    force: Replace = False,
+    json: Json = False,
 ) -> None:
-    """List the channels of a recording, or analyse one: spectra, envelope, orders, indicators.
-
-    Parameters
-    ----------
-    file : Path
-        Recording: CSV, MAT, WAV, UFF 58, TDMS, HDF5 or netCDF.
-    out : Path
-        Directory for the report and the data; without it the figures are shown only.
-    force : bool
-        Replace an earlier report in that directory.
-    json : bool
-        Write channels or figures in SI as one JSON object to stdout.
-    """
+    """List the channels of a recording, or analyse one: spectra, envelope, orders, indicators."""
     options, turning = chosen or Channel(), shaft or Shaft()
     if out is not None:
         check_place(out, force)
@@ -221,7 +220,7 @@ def _list(file: Path, recording: Recording, json: bool) -> None:
     """Write channels, units, rate and duration."""
     import numpy as np
 
-    rows = [
+    rows: list[tuple[Any, ...]] = [
         (name, recording.units[name], *(float(f(values)) for f in (np.min, np.max, np.std)))
         for name, values in recording.channels.items()
     ]
@@ -236,7 +235,10 @@ def _list(file: Path, recording: Recording, json: bool) -> None:
         f"{file.name}: {size} samples at {recording.sample_rate:.6g} Hz, {recording.duration:.6g} s"
     )
     head = ["channel", "unit", "least", "greatest", "alternating rms"]
-    say(table([head, *([n, u or "-", *(f"{v:.4g}" for v in more)] for n, u, *more in rows)]))
+    cells: list[list[str]] = [
+        [row[0], row[1] or "-", *(f"{level:.4g}" for level in row[2:])] for row in rows
+    ]
+    say(table([head, *cells]))
     tell(f'Analyse one: tribodyn signal {file} --channel "{rows[0][0]}" --out report')
 
 
@@ -317,8 +319,8 @@ def _show(file: Path, analysis: SignalAnalysis, out: Output, force: bool, json: 
 
     answer = signal_answer(analysis)
     if out is not None:
-        from tribodyn.stored import write_dataset
         from tribodyn.study.pipeline.save import new_directory
+        from tribodyn.validated_files import write_dataset
 
         with new_directory(out, force=force) as place:
             write_dataset(analysis.to_xarray(), place / "study.nc")
