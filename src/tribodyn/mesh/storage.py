@@ -92,6 +92,9 @@ def _values(data: xarray.Dataset) -> dict[str, Any]:
             values[field.name] = data[field.name].values
         elif field.name not in values and (told is None or _is_required(field)):
             values[field.name] = _plain(data.attrs.get(field.name))
+        if field.name == "film_offset":
+            # Tables of earlier versions count from the flanks.
+            values[field.name] = float(data.attrs.get(field.name, 0.0))
     return values
 
 

@@ -79,11 +79,16 @@ def transmission_error(result: Computed, samples: FineSamples) -> Array:
 
 
 def film_offset(result: Computed) -> float:
-    """Distance before the flanks touch at which the first oil film carries, from where laws count.
+    """Distance before the flanks touch from which the compression of the mesh is counted.
 
-    A plain stiffness begins at the flanks.
+    A force law and its tangent count from where the first oil film in series carries; a plain
+    stiffness from where its mean deflection is zero.
     """
-    return 0.0 if mesh_law_of(result.case) == "stiffness" else result.mesh.film_offset
+    mesh = result.mesh
+    if mesh.film_offset == 0.0 or mesh_law_of(result.case) != "stiffness":
+        return mesh.film_offset
+    deflection = mesh.total_normal_force / mesh.mesh_stiffness
+    return float(mesh.grid.mean(deflection - mesh.transmission_error_at_rest))
 
 
 def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
