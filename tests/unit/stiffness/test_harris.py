@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification
 from tribodyn.stiffness import (
@@ -60,6 +61,37 @@ def test_relief_makes_one_torque_the_quietest(pair):
     assert plain.unloaded_transmission_error.max() == 0.0
 
 
+@pytest.mark.parametrize(("amount", "length"), [(0.0, 1e-3), (12e-6, 4.3e-3), (25e-6, 3e-3)])
+def test_corners_of_the_curves_are_where_they_are(pair, amount, length):
+    """A grid ten times as fine finds no value beyond the corners, and no other curve between."""
+    relieved = with_tip_relief(pair, amount, length)
+    torques = [60.0, 150.0]
+    found = transmission_error_over_torque(relieved, torques, provider="analytic")
+    fine = transmission_error_over_torque(relieved, torques, provider="analytic", phases=2560)
+    phase, error = found.curves()
+    assert np.all(np.diff(phase) >= 0.0)
+    for row, exact in enumerate(fine.transmission_error):
+        swing = np.ptp(exact)
+        curve = np.interp(fine.phase, np.append(phase, 1.0), np.append(error[row], error[row, 0]))
+        np.testing.assert_allclose(curve, exact, atol=1e-2 * swing, rtol=0)
+        over = found.peak_to_peak_transmission_error[row] / swing - 1.0
+        assert -3e-4 < over < 2e-3  # the corners may lie beyond the fine phases
+        even = np.append(found.transmission_error[row], found.transmission_error[row, 0])
+        cut = np.interp(found.corner_phase, np.append(found.phase, 1.0), even)
+        cut = np.abs(cut - found.corner_transmission_error[row]).max()
+        assert cut > 1e-3 * swing  # what even phases alone leave out
+
+
+def test_corners_are_the_ends_of_the_path_and_of_the_reliefs(pair):
+    relieved = with_tip_relief(pair, 12e-6, 4.3e-3)
+    found = transmission_error_over_torque(relieved, [60.0], provider="analytic")
+    path = path_of_contact(relieved)
+    wanted = [path.contact_ratio, 4.3e-3 / pair.base_pitch]
+    wanted.append(path.contact_ratio - 4.3e-3 / pair.base_pitch)
+    for age in wanted:
+        assert np.min(np.abs(found.corner_phase - age % 1.0)) < 1e-9
+
+
 def test_teeth_that_differ_are_followed_over_the_hunting_period(fzg):
     steps = (3e-6, -3e-6) * 8
     pair = fzg(pinion_modification=FlankModification(single_pitch_deviation=steps))
@@ -90,9 +122,11 @@ def test_models_whose_stiffness_knows_the_load(pair):
 def test_data_set_and_line(pair):
     found = transmission_error_over_torque(pair, [60.0, 120.0], provider="analytic", harmonics=4)
     data = found.to_xarray()
-    assert dict(data.sizes) == {"torque": 2, "phase": 256, "order": 4}
+    corners = data.sizes["corner"]
+    assert dict(data.sizes) == {"torque": 2, "phase": 256, "order": 4, "corner": corners}
     assert data["harmonics"].attrs["units"] == "m"
-    peak = data["transmission_error"].max("phase") - data["transmission_error"].min("phase")
+    both = [data["transmission_error"], data["corner_transmission_error"]]
+    peak = np.ptp(np.concatenate([values.values for values in both], axis=1), axis=1)
     np.testing.assert_allclose(data["peak_to_peak_transmission_error"], peak)
     assert "2 torques from 60 to 120 N*m" in repr(found)
 

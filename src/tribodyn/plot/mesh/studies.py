@@ -45,19 +45,21 @@ def _curves(study: HarrisMap) -> Row:
     unit, cycles = display_unit(_QUANTITY), 2 if study.mesh_cycles == 1 else 1
     rigid = study.unloaded_transmission_error
 
-    def over(values: Array) -> tuple[Array, Array]:
-        return whole_cycles(study.phase, displayed(_QUANTITY, values), study.mesh_cycles, cycles)
+    phases, errors = study.curves()
+
+    def over(values: Array, at: Array) -> tuple[Array, Array]:
+        return whole_cycles(at, displayed(_QUANTITY, values), study.mesh_cycles, cycles)
 
     traces = []
     if np.any(rigid):
-        phase, shown = over(rigid)
+        phase, shown = over(rigid, study.phase)
         traces.append(line(phase, shown, "no load", MUTED, unit=unit, dash="dash", width=1.2))
     count = study.torque.size
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_CURVES)).round().astype(int))
     labels, looks = torque_names(study.torque), torque_colors(count)
     for number, known in zip(chosen[::-1], named(chosen.size)[::-1], strict=True):
         trace = line(
-            *over(study.transmission_error[number]),
+            *over(errors[number], phases),
             labels[number],
             looks[number],
             unit=unit,
@@ -101,12 +103,24 @@ def _harris_swings(study: HarrisMap) -> Row:
     )
 
 
+def _harris_caption(study: HarrisMap) -> str:
+    words = (
+        "Above, the transmission error of the mesh at rest under rising torque; below, how far it "
+        "varies and how much of that falls on each mesh harmonic."
+    )
+    least, ends = study.quietest_torque, (study.torque.min(), study.torque.max())
+    if ends[0] < least < ends[1]:
+        return f"{words} These flanks are quietest at the torque for which their shape is right."
+    if study.torque.size == 1:
+        return words
+    end = "least" if least == ends[0] else "greatest"
+    return f"{words} The least variation is at the {end} of these torques: no other one is best."
+
+
 @drawing(
     "harris_map",
     heading="Transmission error over torque",
-    caption="Above, the transmission error of the mesh at rest under rising torque; below, how far "
-    "it varies and how much of that falls on each mesh harmonic. At which torque modified flanks "
-    "are quietest depends on the modification.",
+    caption=_harris_caption,
     of="HarrisMap",
     made_by="Call tribodyn.harris_map(case) and its plot method.",
 )

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import one_or_more
-from tribodyn.contact import path_of_contact
+from tribodyn.contact import PathOfContact, path_of_contact
 from tribodyn.errors import Argument, InputError
-from tribodyn.gear import Material, SpurPair
+from tribodyn.gear import Material, SpurPair, default_relief_length
+from tribodyn.gear.mesh_geometry import flank_ranges
 from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Labels, Record, fact, quantity, record
-from tribodyn.stiffness.loaded import loaded_contact
+from tribodyn.stiffness.loaded import LoadedContact, loaded_contact
 from tribodyn.stiffness.loaded.problem import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.result import harmonic_amplitudes
 from tribodyn.types import Array, Index
@@ -24,6 +25,10 @@ _AT_ONCE = 4_000_000
 #: Phases and harmonics where nothing is said.
 _PHASES = 256
 _HARMONICS = 10
+#: Part of the greatest force that counts as load.
+_LOADED = 1e-9
+#: Distance from an event that shows its other side, and digits of a phase that tell both apart.
+_SIDE, _DIGITS = 1e-9, 10
 #: Tooth pairs that may touch, about.
 _PAIRS = 4
 
@@ -54,6 +59,12 @@ class HarrisMap(Record):
         Peak amplitudes of the orders 1, 2, ... of the mesh frequency.
     mean_mesh_stiffness_secant, mean_mesh_stiffness_tangent : array (t,) [N/m]
         Means over the phases.
+    corner_phase : array (c,) or None
+        Mesh phases between the even ones at which curves have corners: where a pair enters and
+        leaves, at the ends of reliefs, and where a pair begins or ceases to carry under one of the
+        torques. None where slices of the face or teeth that differ multiply the work.
+    corner_transmission_error : array (t, c) [m] or None
+        Transmission error there.
     """
 
     DERIVED: ClassVar[Mapping[str, Labels]] = {
@@ -73,6 +84,8 @@ class HarrisMap(Record):
     harmonics: Array = quantity("torque", "order", unit="m")
     mean_mesh_stiffness_secant: Array = quantity("torque", unit="N/m")
     mean_mesh_stiffness_tangent: Array = quantity("torque", unit="N/m")
+    corner_phase: Array | None = quantity("corner", unit="1", axis=True, default=None)
+    corner_transmission_error: Array | None = quantity("torque", "corner", unit="m", default=None)
 
     @property
     def mean_transmission_error(self) -> Array:
@@ -81,8 +94,23 @@ class HarrisMap(Record):
 
     @property
     def peak_to_peak_transmission_error(self) -> Array:
-        """Largest less least transmission error (t,) [m]."""
-        return np.asarray(np.ptp(self.transmission_error, axis=1))
+        """Largest less least transmission error (t,) [m], corners included."""
+        return np.asarray(np.ptp(self.curves()[1], axis=1))
+
+    def curves(self) -> tuple[Array, Array]:
+        """Transmission error over all phases, corners between the even ones included.
+
+        Returns
+        -------
+        tuple of array (q,), (t, q)
+            Phases in order, and the transmission error under each torque [m].
+        """
+        if self.corner_phase is None or self.corner_transmission_error is None:
+            return self.phase, self.transmission_error
+        phase = np.concatenate((self.phase, self.corner_phase))
+        order = np.argsort(phase, kind="stable")
+        errors = (self.transmission_error, self.corner_transmission_error)
+        return phase[order], np.concatenate(errors, axis=1)[:, order]
 
     @property
     def order(self) -> Index:
@@ -179,13 +207,20 @@ def transmission_error_over_torque(
     }
     size = max(phases, 1) * work * _PAIRS
     count = min(torques.size, 1 + torques.size * size // _AT_ONCE)
-    rows = []
+    rows, ends = [], []
     for some_torques in np.array_split(torques, count):
         contact = loaded_contact(pair, some_torques, **given)
         secant = contact.mesh_stiffness_secant.mean(axis=1)
         tangent = contact.mesh_stiffness_tangent.mean(axis=1)
         rows.append((contact.transmission_error, secant, tangent))
+        ends.append(_ends_of_contact(contact))
     error, secant, tangent = (np.concatenate(column) for column in zip(*rows, strict=True))
+    corners: Array | None = None
+    corner_error: Array | None = None
+    if work == 1:
+        corners = _corners(path, np.concatenate(ends))
+        at_corners = loaded_contact(pair, torques, **{**given, "phases": corners})
+        corner_error = at_corners.transmission_error
     return HarrisMap(
         gear_pair=pair,
         provider=contact.provider,
@@ -198,7 +233,45 @@ def transmission_error_over_torque(
         harmonics=harmonic_amplitudes(contact.phase, error, contact.mesh_cycles, orders),
         mean_mesh_stiffness_secant=secant,
         mean_mesh_stiffness_tangent=tangent,
+        corner_phase=corners,
+        corner_transmission_error=corner_error,
     )
+
+
+def _ends_of_contact(contact: LoadedContact) -> Array:
+    """Mesh phases between two even ones at which a pair begins or ceases to carry."""
+    force = np.moveaxis(contact.normal_force, -1, 0)  # pairs, torques, phases
+    force = force.reshape(-1, contact.phase.size)
+    loaded = force > _LOADED * force.max()
+    row, left = np.nonzero(loaded[:, 1:] != loaded[:, :-1])
+    begins = loaded[row, left + 1]
+    last = np.where(begins, left + 1, left)
+    sense = np.where(begins, 1, -1)
+    before = np.clip(last + sense, 0, contact.phase.size - 1)
+    rise = force[row, before] - force[row, last]
+    share = force[row, last] / np.where(rise > 0.0, rise, np.inf)
+    step = contact.phase[1] - contact.phase[0]
+    return np.asarray(contact.phase[last] - sense * step * np.minimum(share, 1.0))
+
+
+def _corners(path: PathOfContact, ends: Array) -> Array:
+    """Phases of all corners in order: ends of the path from both sides, of reliefs, of contact."""
+    pair = path.pair
+    lowest, highest = flank_ranges(pair)[0]
+    bends = []
+    for gear, tip, root in ((pair.pinion, highest, lowest), (pair.wheel, lowest, highest)):
+        given = gear.modification
+        for amount, length, end in (
+            (given.tip_relief, given.tip_relief_length, tip),
+            (given.root_relief, given.root_relief_length, root),
+        ):
+            if amount:
+                reach = default_relief_length(pair) if length is None else length
+                bends.append(end - reach if end == highest else end + reach)
+    ages = path.direction * (np.array(bends) - path.A) / pair.base_pitch
+    leaves = path.contact_ratio % 1.0
+    sides = [1.0 - _SIDE, leaves, (leaves - _SIDE) % 1.0]
+    return np.unique(np.round(np.concatenate((ages % 1.0, sides, ends % 1.0)), _DIGITS) % 1.0)
 
 
 def _orders(harmonics: int | None, phases: int) -> int:
