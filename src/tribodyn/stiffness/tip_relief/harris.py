@@ -94,8 +94,8 @@ class HarrisMap(Record):
 
     @property
     def peak_to_peak_transmission_error(self) -> Array:
-        """Largest less least transmission error (t,) [m], corners included."""
-        return np.asarray(np.ptp(self.curves()[1], axis=1))
+        """Largest less least transmission error over the even phases (t,) [m]."""
+        return np.asarray(np.ptp(self.transmission_error, axis=1))
 
     def curves(self) -> tuple[Array, Array]:
         """Transmission error over all phases, corners between the even ones included.
