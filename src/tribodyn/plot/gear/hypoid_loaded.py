@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Points of a map along and across the flank.
 _GRID = (90, 45)
+#: Interpolated part of carrying cells (1 or 0) above which a place belongs to the contact pattern.
+_PATTERN = 0.5
 _COLORS = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
 _ALONG = "Along the pitch cone of the wheel, towards the heel [mm]"
 _MADE_BY = "tribodyn.mesh.hypoid_loaded_contact makes one."
@@ -42,13 +44,19 @@ def _flank(
     """Map of values of the cells that carry; ``bar`` is centre and length of its colour bar."""
     from scipy.interpolate import griddata
 
-    carries = loaded.cell_force > 0.0
-    places = 1e3 * np.stack([loaded.along[carries], loaded.across[carries]], axis=-1)
+    touch = loaded.cells.in_contact
+    places = 1e3 * np.stack([loaded.along[touch].ravel(), loaded.across[touch].ravel()], axis=-1)
+    carries = loaded.cell_force[touch].ravel() > 0.0
+    pattern = places[carries]
     x, y = (
         np.linspace(low, high, count)
-        for low, high, count in zip(places.min(0), places.max(0), _GRID, strict=True)
+        for low, high, count in zip(pattern.min(0), pattern.max(0), _GRID, strict=True)
     )
-    shown = griddata(places, values[carries], tuple(np.meshgrid(x, y)))
+    grid = tuple(np.meshgrid(x, y))
+    shown = griddata(pattern, values[touch].ravel()[carries], grid)
+    if not carries.all():  # no values between cells that carry across those that do not
+        part = griddata(places, carries.astype(float), grid)
+        shown = np.where(part > _PATTERN, shown, np.nan)
     heat: Trace = {
         "type": "heatmap",
         "x": x,
@@ -137,11 +145,30 @@ def hypoid_load(loaded: HypoidLoadedContact) -> Any:
     return stack(title, "Mesh cycle", panels)
 
 
+def _friction_caption(rubbed: HypoidFriction) -> str:
+    flank = "The flank of the wheel: friction coefficient of every cell, and"
+    blank = "Cells that never carry load are blank: they have neither film nor friction."
+    if rubbed.composite_roughness == 0.0:
+        return f"{flank} the film. {blank}"
+    low, high = REGIME_LIMITS
+    ratio = rubbed.film_ratio[rubbed.loaded.cell_force > 0.0]
+    least, most = float(ratio.min()), float(ratio.max())
+    drawn = [f"{limit:g}" for limit in (low, high) if least < limit < most]
+    if drawn:
+        words = (
+            f"lines at {' and '.join(drawn)} separate lubrication regimes (boundary below {low:g}, "
+            f"full film from {high:g}, mixed in between)."
+        )
+    else:
+        regime = "boundary" if most < low else "mixed" if most < high else "full film"
+        words = f"its values of {least:.3g} to {most:.3g} are {regime} lubrication everywhere."
+    return f"{flank} the film over the composite roughness; {words} {blank}"
+
+
 @drawing(
     "hypoid_friction",
     heading="Friction and film on the flank",
-    caption="The flank of the wheel: friction coefficient of every cell, and the film over the "
-    "composite roughness; lines at 0.2 and 2 part boundary, mixed and full film lubrication.",
+    caption=_friction_caption,
     of=("HypoidFriction", "Result.hypoid_friction"),
     made_by="tribodyn.mesh.hypoid_friction makes one.",
 )

@@ -1,0 +1,124 @@
+"""Warnings and figures of film and friction count contacts that carry load."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import collected
+from tribodyn.mesh import MeshTable
+from tribodyn.plot import FIGURES
+from tribodyn.study.pipeline.cautions import mesh_cautions
+from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of, mesh_of
+
+RELIEVED: dict[str, Any] = {
+    "stiffness.model": "analytic",
+    "film.model": "dowson-higginson",
+    "friction.law": "xu-2007",
+    "gears.pinion.modification.tip_relief": "60 um",
+    "gears.pinion.modification.tip_relief_length": "4 mm",
+    "gears.wheel.modification.tip_relief": "60 um",
+    "gears.wheel.modification.tip_relief_length": "4 mm",
+}
+
+
+def mesh(case: Any, **options: Any) -> tuple[MeshTable, dict[str, str]]:
+    with collected() as warnings:
+        table = mesh_of(case, **options)
+    return table, {each.code: each.message for each in warnings}
+
+
+@pytest.fixture(scope="module")
+def relieved() -> Any:
+    return td.load_case("fzg-roughness").replace(RELIEVED)
+
+
+@pytest.mark.parametrize("law", ["xu-2007", "mixed"])
+def test_a_law_is_judged_at_contacts_that_carry(relieved: Any, law: str) -> None:
+    table, warnings = mesh(relieved.replace({"friction.law": law}))
+    assert np.any(table.in_contact & (table.load_share == 0.0))
+    low, high = map(float, re.findall(r"hertz_pressure ([\d.]+) to ([\d.]+) GPa",
+                                      warnings["friction-range"])[0])  # fmt: skip
+    # A quarter of the load per width: half the pressure, for radii that hardly differ.
+    load = table.load_per_width
+    judged = 1e-9 * table.hertz_pressure[load >= 0.25 * load.max()]
+    assert (low, high) == pytest.approx((judged.min(), judged.max()), rel=1e-3)
+    assert low > 0.4 * high
+
+
+def test_pairs_that_do_not_touch_warn_of_nothing(relieved: Any) -> None:
+    heavy = relieved.replace({"operation.torque": "300 N*m", "operation.speed": "1000 rpm"})
+    table, warnings = mesh(heavy)
+    load, pressure = table.load_per_width, table.hertz_pressure
+    carry = load >= 0.25 * load.max()
+    assert pressure[carry].min() > 0.5e9 > pressure[table.in_contact].min()
+    assert "hertz_pressure" not in warnings.get("friction-range", "")
+    assert "film-range" not in warnings
+
+
+def test_friction_is_the_same_whether_it_warns_or_not(relieved: Any) -> None:
+    table, _ = mesh(relieved)
+    constant, warnings = mesh(relieved.replace({"friction.law": "none"}))
+    assert np.array_equal(table.load_share, constant.load_share)
+    carry = table.load_share > 1e-3
+    assert np.all(table.friction_coefficient[carry] >= 0.0)
+    assert "friction-range" not in warnings
+
+
+@pytest.mark.parametrize("name", ["friction", "film", "lubrication"])
+def test_curves_have_gaps_where_no_load_is_carried(relieved: Any, name: str) -> None:
+    table, _ = mesh(relieved.replace({"friction.law": "mixed"}))
+    touching = table.in_contact.T
+    carries = table.load_share.T[touching] > 1e-3
+    assert 0.3 < carries.mean() < 0.95
+    figure = FIGURES[name](table)
+    shown = {"friction": ["friction coefficient", "friction force"],
+             "film": ["in the centre", "at its thinnest", "film ratio"],
+             "lubrication": ["film ratio", "oil film", "asperities"]}[name]  # fmt: skip
+    drawn = [trace for trace in figure.data if trace.name in shown]
+    assert len(drawn) >= 2
+    for trace in drawn:
+        assert np.array_equal(np.isfinite(np.asarray(trace.y, dtype=float)), carries), trace.name
+    assert "no load" in FIGURES[name].caption_of(table)
+    plain, _ = mesh(td.load_case("fzg-roughness").replace({"film.model": "dowson-higginson"}))
+    assert "no load" not in FIGURES[name].caption_of(plain)
+
+
+def hypoid(**changes: Any) -> MeshTable:
+    case = td.load_case("hypoid-mixed-ehl").replace(
+        {"gears.composite_roughness": 0.6e-6, "operation.speed": "600 rpm",
+         **{name.replace("__", "."): value for name, value in changes.items()}}
+    )  # fmt: skip
+    return mesh(case, rehearsal=True)[0]
+
+
+@pytest.mark.parametrize("teeth", [(10, 43), (11, 39)])
+@pytest.mark.parametrize("law", ["mixed", "mixed-ehl", "constant"])
+def test_the_advice_of_mixed_lubrication_follows_the_law(law: str, teeth: tuple[int, int]) -> None:
+    coefficient = {"friction__coefficient": 0.05} if law == "constant" else {}
+    changes = {"gears__pinion__teeth": teeth[0], "gears__wheel__teeth": teeth[1]}
+    table = hypoid(friction__law=law, **coefficient, **changes)
+    (told,) = (each.message for each in mesh_cautions(table) if each.code == "mixed-lubrication")
+    assert ('friction.law = "mixed"' in told) == (law == "constant")
+    assert ("so is the friction" in told) == (law == "constant")
+    assert "film stiffness" not in told  # there is none in a formula of the ellipse
+    (share,) = map(float, re.findall(r"up to (\d+)% of the load", told))
+    assert 20.0 < share < 100.0
+
+
+def test_the_caption_of_film_on_the_flank_names_the_lines_that_are_drawn() -> None:
+    with collected():
+        rich = hypoid_friction_of(td.load_case("hypoid-mixed-ehl"), rehearsal=True)
+    figure = FIGURES["hypoid_friction"]
+    assert "full film lubrication everywhere" in figure.caption_of(rich)
+    assert "lines at" not in figure.caption_of(rich)
+    thin = td.load_case("hypoid-mixed-ehl").replace(
+        {"gears.composite_roughness": 0.2e-6, "operation.speed": "1500 rpm"}
+    )
+    with collected():
+        rubbed = hypoid_friction_of(thin, rehearsal=True)
+    assert "lines at 2 separate" in figure.caption_of(rubbed)
