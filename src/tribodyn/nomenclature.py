@@ -159,6 +159,7 @@ static_transmission_error | STE | m | um | approach of the gears along the line 
 unloaded_transmission_error | e_0 | m | um | transmission error of the mesh without load
 transmission_error | e | m | um | displacement of the wheel behind its ideal place on the line of action | "2 um"
 dynamic_transmission_error | DTE | m | um | compression of the mesh along the line of action while running
+dynamic_transmission_error_rate | dDTE/dt | m/s | um/s | rate at which the dynamic transmission error changes
 deflection | delta | m | um | compression of a contact
 acceleration | a | m/s^2 | m/s^2 | acceleration
 frequency | f | Hz | Hz | frequency

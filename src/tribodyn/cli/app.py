@@ -30,8 +30,28 @@ COMMANDS = (
     ),
     (
         "bifurcation",
-        "bifurcation_command:bifurcation",
+        "nonlinear_commands:bifurcation",
         "Follow the motion of a case over one value.",
+    ),
+    (
+        "continuation",
+        "nonlinear_commands:continuation",
+        "Follow the periodic motion of a case over one value, stable or not.",
+    ),
+    (
+        "basins",
+        "nonlinear_commands:basins",
+        "Find which motion of a case a disturbed start comes to.",
+    ),
+    (
+        "lyapunov",
+        "nonlinear_commands:lyapunov",
+        "Find the Lyapunov exponents of a case: whether it is chaos.",
+    ),
+    (
+        "sobol",
+        "ensemble_command:sobol",
+        "Find which tolerance of a case the spread of its figures comes from.",
     ),
     (
         "study",

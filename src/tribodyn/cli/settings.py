@@ -118,11 +118,11 @@ def read_ranges(words: Sequence[str], *, lists: bool = True) -> dict[str, Any]:
     return found
 
 
-def read_ends(text: str) -> tuple[Any, Any]:
+def read_ends(text: str, example: str = "400..3500 rpm") -> tuple[Any, Any]:
     """Read the two ends of a range without points."""
     try:
         first, last, _ = read_range(f"{text}:2")
     except UnreadError as fault:
-        what, remedy = f'cannot read "{text}"', 'Write "400..3500 rpm"'
+        what, remedy = f'cannot read "{text}"', f'Write "{example}"'
         raise InputError(what, "", str(fault), remedy) from None
     return first, last

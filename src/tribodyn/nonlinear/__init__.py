@@ -5,7 +5,7 @@ The public names stand on the page of :mod:`tribodyn.analysis`.
 | module | what it answers |
 |---|---|
 | ``attractors`` | how many motions are marched side by side until they repeat |
-| ``basins``, ``basins_attractors`` | which motion a start comes to, and which motions there are |
+| ``basins``, ``basins_attractors``, ``start_plane`` | which motion each start comes to |
 | ``bifurcation``, ``bifurcation_sweep`` | how motions change over a parameter, up and down |
 | ``lyapunov``, ``lyapunov_tangent``, ``lyapunov_products`` | how fast neighbouring motions part |
 | ``parameter_map`` | how motions change over two parameters |

@@ -14,6 +14,7 @@ from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.nonlinear.basins_attractors import Attractor, Basins, Catalogue, multiplier_of
+from tribodyn.nonlinear.start_plane import StartPlane, start_plane
 from tribodyn.nonlinear.survey import Survey, signal_name, step_verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, Index, Mask
@@ -24,8 +25,6 @@ _NEAR = 1e-4
 _REST = 1e-9
 #: Lanes of one block.
 _WIDTH = 64
-#: Ending of the name of a velocity.
-_VELOCITY = "_velocity"
 
 
 def basins(
@@ -56,7 +55,9 @@ def basins(
         Range of each of the two components of the state [m, rad, m/s or rad/s].
     coordinates : two str, optional
         The components: the name of a coordinate, or of one followed by ``_velocity``; the first
-        coordinate and its velocity by default.
+        coordinate and its velocity by default. Or ``("dynamic_transmission_error",
+        "dynamic_transmission_error_rate")``: the compression of the first contact from where its
+        driving flank first touches, and its rate, as a push at the contact changes them.
     points : two int
         Values of each.
     start : (position, velocity), optional
@@ -106,10 +107,10 @@ def basins(
     (('x', 'x_velocity'), [1, 1])
     """
     compiled = compile_for(system, mesh_frequency, steps)
-    names = coordinates or (system.names[0], system.names[0] + _VELOCITY)
+    plane = start_plane(compiled, float(mesh_frequency), coordinates)
     axes = _axes(between, points, cycles)
     rest = static_start(compiled) if start is None else read_start(system, start)
-    starts = _starts(_columns(system, names), axes, rest)
+    starts = plane.starts(axes, rest)
     force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     name = signal_name(system, signal)
     kept = signal if system.contacts else name
@@ -121,7 +122,7 @@ def basins(
     survey.settle(motions, np.arange(len(starts)), progress)
     label = catalogue.label(motions)
     attractors = [
-        _attractor(catalogue, n, label[motions.finished] == n, motions, steps)
+        _attractor(catalogue, n, label[motions.finished] == n, motions, steps, plane)
         for n in range(len(catalogue.known))
     ]
     refined = np.full(label.shape, -3)
@@ -135,8 +136,8 @@ def basins(
     rank = np.argsort(np.array(order, dtype=np.int64))
     shape = (axes[0].size, axes[1].size)
     return Basins(
-        coordinates=(names[0], names[1]),
-        units=(_unit(names[0]), _unit(names[1])),
+        coordinates=plane.names,
+        units=plane.units,
         first=axes[0],
         second=axes[1],
         attractor=_renumbered(label, rank).reshape(shape),
@@ -160,21 +161,18 @@ def _followed_again(
     return fine
 
 
-def _starts(columns: tuple[int, int], axes: tuple[Array, Array], rest: Array) -> Array:
-    """States of all starts of the plane."""
-    starts = np.tile(rest, (axes[0].size * axes[1].size, 1))
-    for column, values in zip(columns, np.meshgrid(*axes, indexing="ij"), strict=True):
-        starts[:, column] = values.ravel()
-    return starts
-
-
 def _motions(compiled: Compiled, starts: Array, beat: float, force: Array) -> Motions:
     count = len(starts)
     return Motions(compiled, np.full(count, beat), starts, np.tile(force, (count, 1)))
 
 
 def _attractor(
-    catalogue: Catalogue, number: int, mine: Mask, motions: Motions, steps: int
+    catalogue: Catalogue,
+    number: int,
+    mine: Mask,
+    motions: Motions,
+    steps: int,
+    plane: StartPlane,
 ) -> Attractor:
     found = catalogue.known[number]
     half = found.full.shape[1] // 2
@@ -188,6 +186,7 @@ def _attractor(
         largest_multiplier=multiplier,
         stable=not multiplier >= 1.0,
         share=float(np.mean(mine)) if mine.size else 0.0,
+        section=plane.section(found.full),
     )
 
 
@@ -220,14 +219,6 @@ def _renumbered(label: Index, rank: Index) -> Index:
     return out
 
 
-def _columns(system: System, names: tuple[str, str]) -> tuple[int, int]:
-    known = [*system.names, *(name + _VELOCITY for name in system.names)]
-    if len(names) != 2 or names[0] == names[1] or not set(names) <= set(known):
-        what, why = f"coordinates = {names!r}", f"Two different ones of {', '.join(known)}"
-        raise InputError(what, "argument coordinates", why, "Choose two of these")
-    return known.index(names[0]), known.index(names[1])
-
-
 def _axes(
     between: tuple[tuple[float, float], tuple[float, float]], points: tuple[int, int], cycles: int
 ) -> tuple[Array, Array]:
@@ -244,10 +235,3 @@ def _axes(
         for (low, high), n in zip(ends, counts, strict=True)
     )
     return first, second
-
-
-def _unit(name: str) -> str:
-    angle = "theta" in name
-    if name.endswith(_VELOCITY):
-        return "rad/s" if angle else "m/s"
-    return "rad" if angle else "m"

@@ -55,6 +55,8 @@ class Attractor:
         Period with half the step [mesh cycles].
     refined_rms : float
         Rms with half the step [m or rad].
+    section : (p, 2) array, optional
+        Its states in the coordinates of the plane of starts [their units].
     """
 
     position: Array = field(repr=False)
@@ -68,6 +70,7 @@ class Attractor:
     verdict: str = ""
     refined_period: int = field(default=0, repr=False)
     refined_rms: float = field(default=float("nan"), repr=False)
+    section: Array | None = field(default=None, repr=False)
 
 
 @dataclass
@@ -229,7 +232,8 @@ class Basins(Record):
     Parameters
     ----------
     coordinates : tuple of two str
-        Components of the state that vary; a velocity ends in ``_velocity``.
+        Components of the state that vary, a velocity ends in ``_velocity``; or the transmission
+        error and its rate.
     units : tuple of two str
         Their units.
     first, second : (nx,), (ny,) array

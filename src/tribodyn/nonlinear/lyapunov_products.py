@@ -35,10 +35,7 @@ def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:
 
 
 def floquet_growth(cycles: Sequence[Array], frame: Array, directions: Array) -> tuple[Array, Array]:
-    """Growth of disturbances over one period, from matrices and a frame that has turned in.
-
-    Also how far each lies in some directions; disturbances are in the order of the frame.
-    """
+    """Growth of disturbances over one period, in the order of the frame; shares in directions."""
     old, uppers = frame, []
     for product in (product for groups in cycles for product in groups):
         frame, upper = np.linalg.qr(product @ frame)

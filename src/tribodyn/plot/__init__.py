@@ -62,6 +62,7 @@ from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
 from tribodyn.plot.signals.recorded import comparison, order_spectrum, recording, tracked_orders
 from tribodyn.plot.signals.revolution import synchronous_average
 from tribodyn.plot.signals.run_up import run_up, run_up_map
+from tribodyn.plot.signals.sensitivity import sensitivity
 from tribodyn.plot.signals.uncertain import band, data_set, sobol_indices
 
 __all__ = [
@@ -141,6 +142,7 @@ __all__ = [
     "result_comparison",
     "run_up",
     "run_up_map",
+    "sensitivity",
     "sidebands",
     "signal_analysis",
     "signal_history",

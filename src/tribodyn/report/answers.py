@@ -94,10 +94,11 @@ def modes_answer(case: Case, ends: Any, progress: Progress = SILENT) -> Answer:
     from tribodyn.dynamics import natural_modes
     from tribodyn.report.numbers import HEAD, cells
     from tribodyn.study.studies.axes import operation_values
-    from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows, system_of_case
+    from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows
+    from tribodyn.study.studies.structure import build_system
 
     speeds = None if ends is None else operation_values("speed", ends, case)
-    system, mesh_frequency = system_of_case(case, progress)
+    system, mesh_frequency = build_system(case, progress=progress)
     found = natural_modes(system)
     diagram = diagram_of(system, case, mesh_frequency, speeds)
     rows = mode_rows(found, case, mesh_frequency)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tribodyn.study.studies.friction_experiment import friction_experiment
     from tribodyn.study.studies.losses import loss_map, rig_power_flow
     from tribodyn.study.studies.modes import campbell, natural_modes
+    from tribodyn.study.studies.nonlinear import basins, continuation, lyapunov_exponents
     from tribodyn.study.studies.run_up import run_up, speed_sweep
     from tribodyn.study.studies.static import (
         comprehensive_stiffness,
@@ -26,25 +27,31 @@ if TYPE_CHECKING:
         harris_map,
         optimize_tip_relief,
     )
+    from tribodyn.study.studies.structure import build_system
     from tribodyn.study.studies.sweep import sweep
     from tribodyn.study.studies.sweep_result import Sweep
     from tribodyn.study.uncertain.data_set import DataSet, load_data
     from tribodyn.study.uncertain.ensemble import CaseEnsemble, ensemble
     from tribodyn.study.uncertain.operating_data import operating_data
+    from tribodyn.study.uncertain.sensitivity import CaseSensitivity, sobol_indices
     from tribodyn.study.uncertain.vibration_data import vibration_data
 
 __all__ = [
     "SUMMARY",
     "Case",
     "CaseEnsemble",
+    "CaseSensitivity",
     "DataSet",
     "Result",
     "ResultComparison",
     "Sweep",
+    "basins",
     "bifurcation",
+    "build_system",
     "campbell",
     "compare_results",
     "comprehensive_stiffness",
+    "continuation",
     "ensemble",
     "film_over_operation",
     "friction_experiment",
@@ -52,6 +59,7 @@ __all__ = [
     "load_data",
     "loaded_contact",
     "loss_map",
+    "lyapunov_exponents",
     "natural_modes",
     "operating_data",
     "optimize_tip_relief",
@@ -59,6 +67,7 @@ __all__ = [
     "rig_power_flow",
     "run",
     "run_up",
+    "sobol_indices",
     "speed_sweep",
     "summary_figure",
     "sweep",
@@ -78,13 +87,16 @@ _NAMES = {
     "studies.friction_experiment": "friction_experiment",
     "studies.losses": "loss_map rig_power_flow",
     "studies.modes": "campbell natural_modes",
+    "studies.nonlinear": "basins continuation lyapunov_exponents",
     "studies.run_up": "run_up speed_sweep",
     "studies.static": "comprehensive_stiffness film_over_operation harris_map optimize_tip_relief",
+    "studies.structure": "build_system",
     "studies.sweep": "sweep",
     "studies.sweep_result": "Sweep",
     "uncertain.data_set": "DataSet load_data",
     "uncertain.ensemble": "CaseEnsemble ensemble",
     "uncertain.operating_data": "operating_data",
+    "uncertain.sensitivity": "CaseSensitivity sobol_indices",
     "uncertain.vibration_data": "vibration_data",
 }
 _HOMES = {name: home for home, names in _NAMES.items() for name in names.split()}

@@ -34,10 +34,7 @@ _JOBS = {
 
 @contextmanager
 def compiled_beside(case: Case, study: str = "run") -> Iterator[bool]:
-    """Share what a study of the case compiles inside the block with a process beside it.
-
-    The block is told whether there is anything to compile.
-    """
+    """Compile in parallel what a study needs inside the block; yield whether there is anything."""
     jobs = _missing(case, study) if allowed and processors() > 1 else []
     with ExitStack() as stack:
         if jobs:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,9 @@ from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 from tribodyn.uncertainty.sampling import distribution
+
+#: Bootstrap resamples of the intervals.
+_RESAMPLES = 400
 
 
 @record
@@ -28,12 +31,25 @@ class SobolIndices(Record):
         Share that would be gone if the input were known, its interactions included [-].
     evaluations : int
         Evaluations of the function.
+    first_order_band, total_order_band : (2, k) array, optional
+        Lower and upper end of the bootstrap intervals of both [-].
+    level : float
+        Probability that such an interval holds the share of an endless sample; 0 without them [-].
     """
 
     name: Any = quantity("input", axis=True, unit="")
     first_order: Array = quantity("input", unit="1")
     total_order: Array = quantity("input", unit="1")
     evaluations: int = fact()
+    first_order_band: Array | None = quantity("end", "input", unit="1", default=None)
+    total_order_band: Array | None = quantity("end", "input", unit="1", default=None)
+    level: float = fact(default=0.0)
+
+    def __repr__(self) -> str:
+        """One line."""
+        shares = zip(self.name, self.first_order, self.total_order, strict=True)
+        words = ", ".join(f"{name} {first:.2g} ({whole:.2g})" for name, first, whole in shares)
+        return f"SobolIndices(alone, with interactions in brackets: {words})"
 
 
 def sobol_indices(
@@ -42,6 +58,7 @@ def sobol_indices(
     size: int = 1024,
     *,
     seed: int,
+    level: float = 0.0,
 ) -> SobolIndices:
     """Share the variance of an output among independent inputs.
 
@@ -56,6 +73,8 @@ def sobol_indices(
         inputs and two more values.
     seed : int
         The same seed gives the same indices.
+    level : float
+        Probability of bootstrap intervals, such as 0.95; 0 leaves them out.
 
     Raises
     ------
@@ -88,29 +107,74 @@ def sobol_indices(
         why = "A Sobol sequence is even in powers of two only"
         near = 1 << (count.bit_length() - 1)
         raise InputError(f"size = {count}", Argument("size"), why, f"Take {near}")
+    if not 0.0 <= level < 1.0:
+        why, remedy = "A probability below 1, or 0 for no intervals", "Take 0.95"
+        raise InputError(f"level = {level}", Argument("level"), why, remedy)
     made = {str(name): distribution(str(name), text) for name, text in distributions.items()}
-    total = 0
+    outputs: list[Array] = []
 
     def answer(columns: Array) -> Array:
-        nonlocal total
-        total += columns.shape[1]
-        found = np.asarray(function(dict(zip(made, columns, strict=True))))
-        if found.shape != (columns.shape[1],) or found.dtype.kind not in "biuf":
-            what = f"the function returns {found.dtype} values of the shape {found.shape}"
-            why = f"It was given {columns.shape[1]} values of each input"
-            raise InputError(what, Argument("function"), why, "Return one number for each")
-        if not np.all(np.isfinite(found)):
-            raise ComputationError(
-                "the function returns values that are not finite",
-                why="Shares of a variance need every sample",
-                remedy="Look for the sample at which the function fails",
-            )
-        if np.ptp(found) == 0.0:
-            why = "Shares of a variance need one above zero"
-            raise ComputationError("the output does not vary", why=why, remedy="Widen the inputs")
-        return found.astype(float)
+        outputs.append(_checked(function(dict(zip(made, columns, strict=True))), columns.shape[1]))
+        return outputs[-1]
 
     random = np.random.default_rng(require_whole("seed", seed, 0))
-    found = indices(func=answer, n=count, dists=list(made.values()), random_state=random)
-    first, whole = np.asarray(found.first_order), np.asarray(found.total_order)
-    return SobolIndices(np.array(list(made)), first.reshape(-1), whole.reshape(-1), total)
+    bands: Sequence[Array | None] | Array = (None, None)
+    if len(made) == 1:  # all of the variance comes from it
+        answer(np.asarray(next(iter(made.values())).ppf(random.random((1, count)))))
+        first = whole = np.ones(1)
+        bands = [np.ones((2, 1))] * 2 if level else (None, None)
+    else:
+        shares = indices(func=answer, n=count, dists=list(made.values()), random_state=random)
+        first, whole = np.asarray(shares.first_order), np.asarray(shares.total_order)
+        bands = _bootstrapped(outputs, len(made), level, random) if level else (None, None)
+    return SobolIndices(
+        name=np.array(list(made)),
+        first_order=first.reshape(-1),
+        total_order=whole.reshape(-1),
+        evaluations=sum(values.size for values in outputs),
+        first_order_band=bands[0],
+        total_order_band=bands[1],
+        level=float(level),
+    )
+
+
+def _checked(values: Any, count: int) -> Array:
+    """Output of the function, one finite number for each sample, not all of them equal."""
+    output = np.asarray(values)
+    if output.shape != (count,) or output.dtype.kind not in "biuf":
+        what = f"the function returns {output.dtype} values of the shape {output.shape}"
+        why = f"It was given {count} values of each input"
+        raise InputError(what, Argument("function"), why, "Return one number for each")
+    if not np.all(np.isfinite(output)):
+        raise ComputationError(
+            "the function returns values that are not finite",
+            why="Shares of a variance need every sample",
+            remedy="Look for the sample at which the function fails",
+        )
+    if np.ptp(output) == 0.0:
+        why = "Shares of a variance need one above zero"
+        raise ComputationError("the output does not vary", why=why, remedy="Widen the inputs")
+    return output.astype(float)
+
+
+def _bootstrapped(outputs: list[Array], inputs: int, level: float, random: Any) -> Array:
+    """Percentiles of first and total order over resampled rows of the sequence (2, 2, inputs)."""
+    from scipy.stats import sobol_indices as indices
+
+    first, second = outputs[0], outputs[1]
+    size = first.size
+    mixed = outputs[2].reshape(size, inputs)
+    drawn = np.empty((_RESAMPLES, 2, inputs))
+    for number in range(_RESAMPLES):
+        rows = random.integers(size, size=size)
+        if np.ptp(np.concatenate((first[rows], second[rows]))) == 0.0:
+            rows = np.arange(size)  # a sample that does not vary has no shares
+        parts = {
+            "f_A": first[None, rows],
+            "f_B": second[None, rows],
+            "f_AB": mixed[rows].T[:, None, :],
+        }
+        answer = indices(func=parts, n=size)
+        drawn[number] = np.reshape(answer.first_order, -1), np.reshape(answer.total_order, -1)
+    ends = np.quantile(drawn, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
+    return np.asarray(np.moveaxis(ends, 1, 0))

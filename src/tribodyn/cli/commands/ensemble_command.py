@@ -1,4 +1,4 @@
-"""``tribodyn ensemble``."""
+"""``tribodyn ensemble`` and ``sobol``: what tolerances of a case lead to."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from tribodyn.cli.commands.study_commands import begun, finish
-from tribodyn.cli.settings import Flag, Output, Words
+from tribodyn.cli.settings import CaseName, Flag, Force, Output, Words
 
 #: Part of the variants between the ends that are told.
 _SHARE = 0.95
@@ -79,3 +79,46 @@ def ensemble(
     share = f"{_SHARE:.0%} of the variants"
     head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")
     finish("ensemble", ready, target, Answer(found, figures, told, head, rows, facts), force, json)
+
+
+def sobol(
+    case: CaseName,
+    /,
+    *figures: str,
+    size: int = 64,
+    seed: int = 0,
+    out: Output = None,
+    set_: Words = None,
+    force: Force = False,
+    json: Flag = False,
+) -> None:
+    """Find which tolerance of a case the spread of its figures comes from (Sobol indices).
+
+    Parameters
+    ----------
+    figures : str
+        Figures of the summary such as peak_mesh_force; by default those that a sweep shows.
+    size : int
+        Size of the Sobol sequence, a power of two: the case is computed this many times the number
+        of its tolerances and two more.
+    seed : int
+        The same seed gives the same shares.
+    out : Path
+        Directory to write; by default that of the case with "-sobol".
+    set_ : list of str
+        Tolerances and other changes of the case, such as "operation.torque=150 N*m +- 5 %".
+    json : bool
+        Write the shares of the variance as one JSON object to stdout.
+    """
+    from tribodyn.cli.bar import progress_bar
+    from tribodyn.errors import InputError
+    from tribodyn.report.nonlinear_answers import sobol_answer
+
+    ready, target = begun("sobol", case, out, set_, force)
+    if not ready.uncertain:
+        remedy = 'Give values their tolerances, as in --set "operation.torque=90 N*m +- 5 %"'
+        why = "Shares of a variance need keys with tolerances"
+        raise InputError("no value of the case has a tolerance", case, why, remedy)
+    with progress_bar() as progress:
+        answer = sobol_answer(ready, figures, size, seed, progress)
+    finish("sobol", ready, target, answer, force, json)

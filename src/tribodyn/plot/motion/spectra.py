@@ -97,10 +97,8 @@ def _strongest(panel: Panel) -> str:
 
 
 def _natural(result: Result, last: float) -> tuple[dict[str, Any], list[Trace]]:
-    """Mark the natural frequencies as far as the harmonics go; their numbers stand in the legend.
-
-    Numbers of neighbours stand together, above the panels, where no bar reaches.
-    """
+    """Mark the natural frequencies as far as the harmonics go; their numbers are in the legend."""
+    # Numbers of neighbours stand together, above the panels, where no bar reaches.
     modes, places = result.natural_modes, list[tuple[str, float]]()
     legend: list[Trace] = []
     for number, hertz in enumerate(modes.frequency[modes.rigid :], start=1):

@@ -174,9 +174,15 @@ def bifurcation(diagram: Bifurcation) -> Any:
     return stack(_bifurcation_title(diagram, parameter, label), label, panels)
 
 
+def _quantity_of(branch: Branch) -> str:
+    """Quantity that a branch goes over, also where it is a key of a case; empty if it has none."""
+    name = branch.name.rpartition(".")[2]
+    return name if name in QUANTITIES else ""
+
+
 def _branch_parameter(branch: Branch, values: Any) -> Array:
-    known = branch.name in QUANTITIES
-    return displayed(branch.name, values) if known else np.asarray(values, dtype=float)
+    name = _quantity_of(branch)
+    return displayed(name, values) if name else np.asarray(values, dtype=float)
 
 
 def _signal(branch: Branch) -> tuple[Array, list[float], str]:
@@ -214,8 +220,8 @@ def _points(branch: Branch, values: list[float], unit: str, legend: bool) -> lis
 
 
 def _told(branch: Branch, value: float) -> str:
-    known = branch.name in QUANTITIES
-    return rounded(branch.name, value, 4) if known else f"{branch.name} {significant(value, 4)}"
+    name = _quantity_of(branch)
+    return rounded(name, value, 4) if name else f"{branch.name} {significant(value, 4)}"
 
 
 def _branch_title(branch: Branch) -> str:
@@ -246,11 +252,11 @@ def continuation(branch: Branch) -> Any:
     rms, special, unit = _signal(branch)
     largest = np.abs(branch.floquet_multipliers[:, 0])
     critical = [float(np.abs(p.floquet_multipliers[0])) for p in branch.special_points]
-    known = branch.name in QUANTITIES
+    name = _quantity_of(branch)
     ends = [float(x.min()), float(x.max())]
     return stack(
         _branch_title(branch),
-        axis_label(branch.name) if known else branch.name,
+        axis_label(name) if name else branch.name,
         [
             Panel(
                 f"Alternating rms of {branch.signals[0]} [{unit}]",

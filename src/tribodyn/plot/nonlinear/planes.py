@@ -8,12 +8,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import parameter_axis, scaled, significant, unit_of
+from tribodyn.nomenclature import QUANTITIES
+from tribodyn.plot.look.labels import (
+    axis_label,
+    displayed,
+    parameter_axis,
+    scaled,
+    significant,
+    unit_of,
+)
 from tribodyn.plot.look.panels import Panel, Row, stack_rows
 from tribodyn.plot.look.style import PAIR_COLORS, PINION, WHEEL, figure
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Basins, ParameterMap
+    from tribodyn.types import Array
 
 #: Colours of the attractors in the order of their shares; more of them begin anew.
 _COLORS = (PINION, PAIR_COLORS[3], PAIR_COLORS[0], PAIR_COLORS[1], PAIR_COLORS[2], WHEEL)
@@ -70,12 +79,27 @@ def _plane(plane: Basins, x: Any, y: Any) -> dict[str, Any]:
     }
 
 
-def _component(plane: Basins, number: int, name: str) -> Any:
-    """Component of the states of an attractor; ``plane`` has names of coordinates only."""
-    each = plane.attractors[number]
+def _component(plane: Basins, number: int, axis: int) -> Any:
+    """Component of the states of an attractor along an axis of the plane."""
+    each, name = plane.attractors[number], plane.coordinates[axis]
+    if each.section is not None:
+        return each.section[:, axis]
     base, velocity = name.removesuffix("_velocity"), name.endswith("_velocity")
     column = plane.names.index(base)
     return (each.velocity if velocity else each.position)[:, column]
+
+
+def _plane_axis(name: str, values: Any, unit: str) -> tuple[Array, str]:
+    """Values along an axis as they are drawn, and its label."""
+    if name in QUANTITIES:
+        return displayed(name, values), axis_label(name)
+    return parameter_axis(name, values, unit)
+
+
+def _ratio(drawn: Array, values: Any) -> float:
+    """Factor between the values of an axis and what is drawn."""
+    largest = int(np.argmax(np.abs(values)))
+    return float(drawn[largest] / values[largest]) if values[largest] else 1.0
 
 
 @drawing(
@@ -90,11 +114,9 @@ def _component(plane: Basins, number: int, name: str) -> Any:
 def basins(plane: Basins) -> Any:
     """Draw the plane of starts."""
     one, two = plane.coordinates
-    x, x_label = parameter_axis(one, plane.first, plane.units[0])
-    y, y_label = parameter_axis(two, plane.second, plane.units[1])
-    factors = [
-        float(d[-1] / v[-1]) if v[-1] else 1.0 for d, v in ((x, plane.first), (y, plane.second))
-    ]
+    x, x_label = _plane_axis(one, plane.first, plane.units[0])
+    y, y_label = _plane_axis(two, plane.second, plane.units[1])
+    factors = [_ratio(d, v) for d, v in ((x, plane.first), (y, plane.second))]
     factor, unit = scaled([each.rms for each in plane.attractors], unit_of(plane.signal))
     traces = [_plane(plane, x, y)]
     for number in range(len(plane.attractors)):
@@ -103,8 +125,8 @@ def basins(plane: Basins) -> Any:
             {
                 "type": "scatter",
                 "mode": "markers",
-                "x": factors[0] * _component(plane, number, one),
-                "y": factors[1] * _component(plane, number, two),
+                "x": factors[0] * _component(plane, number, 0),
+                "y": factors[1] * _component(plane, number, 1),
                 "name": _name(plane, number, factor, unit),
                 "marker": {
                     "symbol": "x",

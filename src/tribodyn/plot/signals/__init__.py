@@ -11,6 +11,7 @@ module          what it draws
 ``recorded``    channels of a recording, its orders, orders through time
 ``revolution``  the mean revolution of a shaft, its residual and difference
 ``run_up``      level and mesh orders over the speed, amplitudes over frequency
+``sensitivity`` shares of the variance of figures of a case by tolerance
 ``uncertain``   shares of a variance, the band of a mean, columns of computed data
 ==============  ===============================================================
 """

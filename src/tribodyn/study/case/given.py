@@ -212,8 +212,8 @@ def without_spread(
     return plain, spreads, faults
 
 
-def _middle(key: str, text: str) -> str:
-    """The value about which a quantity is spread, as text."""
+def _middle(key: str, text: str) -> str | float:
+    """The value about which a quantity is spread, as text; a pure number as such."""
     spread = _SPREAD.search(text)
     first = _KIND.sub("", text[: (spread or _RANGE.search(text) or spread).start()])  # type: ignore[union-attr]
     known = QUANTITIES.get(key.rpartition(".")[2])
@@ -222,7 +222,8 @@ def _middle(key: str, text: str) -> str:
     except UnitProblemError as error:
         raise InputError(str(error)) from None
     drawn = distribution(key, text, unit)
-    return first if spread else f"{float(drawn.ppf(0.5))!r} {unit}".strip()
+    middle = first if spread else f"{float(drawn.ppf(0.5))!r} {unit}".strip()
+    return middle if unit else float(middle)
 
 
 class Stated(NamedTuple):

@@ -14,9 +14,9 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.first_use import compiled_beside
-from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.axes import Axis, ends_of
 from tribodyn.study.studies.grid import contact_without_speed, identity, varied
+from tribodyn.study.studies.structure import study_steps
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
-#: Steps over those at which a single motion is accurate to about 1e-6, and the fewest.
-_COARSER, _FEWEST = 4, 512
 #: Steps of all values are those of the slowest where these are no more than this times as many;
 #: values of one structure are then marched side by side.
 _ALIKE = 2
@@ -123,16 +121,11 @@ def _systems(
             frequency = [frequency[0] * float(value) / float(values[0]) for value in values]
             cases = [case.replace(change) for change in changes]
         counts = [
-            steps or _steps(*member) for member in zip(cases, systems, frequency, strict=True)
+            steps or study_steps(*member) for member in zip(cases, systems, frequency, strict=True)
         ]
     if same and max(counts) <= _ALIKE * min(counts):
         counts = [max(counts)] * len(counts)
     return systems, frequency, counts
-
-
-def _steps(case: Case, system: System, mesh_frequency: float) -> int:
-    accurate = steps_of(case, system, mesh_frequency)
-    return case.solver.steps_per_mesh_cycle or max(_FEWEST, accurate // _COARSER)
 
 
 def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int, by: str) -> Any:

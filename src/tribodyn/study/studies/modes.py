@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import placed
 from tribodyn.study.studies.axes import operation_values
-from tribodyn.study.studies.grid import built
+from tribodyn.study.studies.structure import build_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -68,7 +66,7 @@ def natural_modes(case: Case, progress: Progress = SILENT) -> NaturalModes:
     """
     from tribodyn.dynamics import natural_modes as compute
 
-    return compute(system_of_case(case, progress)[0])
+    return compute(build_system(case, progress=progress)[0])
 
 
 def campbell(
@@ -110,18 +108,9 @@ def campbell(
     >>> [(met.order, round(met.speed * 30 / np.pi)) for met in diagram.resonances]
     [(5, 3784), (4, 4730)]
     """
-    system, mesh_frequency = system_of_case(case, progress)
+    system, mesh_frequency = build_system(case, progress=progress)
     ends = None if between is None else operation_values("speed", between, case)
     return diagram_of(system, case, mesh_frequency, ends, orders)
-
-
-def system_of_case(case: Case, progress: Progress) -> tuple[System, float]:
-    """Structure of a case, and its mesh frequency."""
-    with placed(case), collected():
-        progress.start("Tooth contact")
-        member = built(case)
-        progress.finish()
-    return member.system, member.mesh.mesh_frequency
 
 
 def diagram_of(

@@ -208,10 +208,8 @@ def _first_use(
     places: Sequence[Sequence[tuple[Any, ...]]],
     keep: Callable[[Sequence[SweepPoint]], None],
 ) -> int:
-    """Compute the first group by itself where kernels are to be compiled; how many groups that are.
-
-    Several groups at a time, be it in threads or processes, would wait for the same kernels.
-    """
+    """Compute the first group by itself where kernels are to be compiled; return their number."""
+    # Several groups at a time, be it in threads or processes, would wait for the same kernels.
     known = _tried(partial(asked, *places[0][0])) if places else None
     if not isinstance(known, Asked):
         return 0

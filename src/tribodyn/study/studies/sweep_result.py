@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 #: Figures that tables and reports show, and those of the film where it varies.
-_SHOWN = (
+_MOTIONS = (
     "rms_mesh_force",
     "peak_mesh_force",
     "peak_to_peak_dynamic_transmission_error",
@@ -37,6 +37,8 @@ _SHOWN = (
     "contact_loss_share",
 )
 _FILMS = ("central_film", "minimum_film_ratio", "mean_friction_coefficient")
+#: All of them.
+SHOWN = (*_MOTIONS, *_FILMS)
 #: Reason where a sweep was interrupted before.
 _NOT_REACHED = "not computed: the sweep was interrupted before"
 
@@ -237,7 +239,7 @@ class Sweep(Record):
         for name in names:
             self[name]  # tells what there is
         film = any(axis.key.startswith(("film", "lubricant")) for axis in self.axes)
-        usual = (*_SHOWN, *(_FILMS if film else ()))
+        usual = (*_MOTIONS, *(_FILMS if film else ()))
         return list(names) or [name for name in usual if name in self.figures]
 
     def to_csv(self) -> str:

@@ -58,13 +58,18 @@ def draw(
     case: Case, spread: Mapping[str, Any], size: int, *, method: Any = "monte-carlo", seed: int
 ) -> dict[str, Array]:
     """Values of keys of a case and of factors, each in the unit that it has there."""
+    return sample(distributions_of(case, spread), size, method=method, seed=seed)
+
+
+def distributions_of(case: Case, spread: Mapping[str, Any]) -> dict[str, Any]:
+    """Distributions of keys of a case and of factors, each in the unit that it has there."""
     known = {}
     for key, text in spread.items():
         spec = None if key in SCALES else spec_of(case, str(key))
         if spec is None and key not in SCALES:
             case.replace({str(key): text}, by="distributions")  # tells which keys there are
         known[str(key)] = distribution(str(key), text, spec.unit if spec else "")
-    return sample(known, size, method=method, seed=seed)
+    return known
 
 
 def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILENT) -> Lanes:
@@ -76,7 +81,7 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
         if key in SCALES:
             factors[key] = factors[key] * column
             continue
-        _check_key(case, key, column)
+        check_spread_key(case, key, column)
         if key == "operation.speed" and contact_without_speed(case):
             speed = np.asarray(column) / case.operation.speed
         elif (name := _factor(case, key, column)) is not None:
@@ -99,7 +104,7 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
     return Lanes(members, frequency, used, _steps(members, frequency, factors))
 
 
-def _check_key(case: Case, key: str, column: Array) -> None:
+def check_spread_key(case: Case, key: str, column: Array) -> None:
     """Refuse what is no number of the case, and the ends of the values where the case does."""
     spec = spec_of(case, key)
     value = effective(case).get(key)

@@ -1,0 +1,251 @@
+"""``tribodyn bifurcation``, ``continuation``, ``basins`` and ``lyapunov``: nonlinear motions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from cyclopts import Parameter
+
+from tribodyn.cli.commands.study_commands import begun, finish
+from tribodyn.cli.commands.sweep_command import INTERRUPTED
+from tribodyn.cli.screen import say, say_json, show_resumed, tell
+from tribodyn.cli.settings import (
+    RANGE,
+    CaseName,
+    Flag,
+    Force,
+    Output,
+    Settings,
+    read_ends,
+    read_ranges,
+)
+from tribodyn.errors import InputError
+
+#: Range whose first value may have a sign.
+_Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
+
+
+def bifurcation(
+    case: CaseName,
+    /,
+    *over: str,
+    sweep: Literal["up", "down", "both", "independent"] = "up",
+    cycles: int = 64,
+    transient: int = 300,
+    steps: int | None = None,
+    out: Path | None = None,
+    set_: Settings = None,
+    force: Force = False,
+    json: Flag = False,
+) -> int:
+    """Follow the motion of a case over one value; tell periods, jumps and step errors.
+
+    Parameters
+    ----------
+    over : str
+        What varies: "operation.speed=400..3500 rpm:300".
+    sweep : str
+        Each value from the end of the one before (up), the other way (down), both ways, or each
+        by itself (independent).
+    cycles : int
+        Mesh cycles of the statistics at each value.
+    transient : int
+        Mesh cycles before, fewer where the motion repeats.
+    steps : int
+        Steps per mesh cycle.
+    out : Path
+        Directory to write; by default that of the case with "-bifurcation".
+    json : bool
+        Write what was found in SI as one JSON object to stdout.
+    """
+    from tribodyn.checkpoints import Members
+    from tribodyn.cli.bar import progress_bar
+
+    key, (first, last, points) = _one(over)
+    _check_lengths(cycles, transient)
+    ready, target = begun("bifurcation", case, out, set_, force)
+    options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
+    with Members(target, force) as members:
+        with progress_bar() as progress:
+            from tribodyn.study.studies.axes import read_axes
+            from tribodyn.study.studies.bifurcation import Findings
+            from tribodyn.study.studies.bifurcation import bifurcation as compute
+
+            read_axes(ready, {key: (first, last, points)}, by="bifurcation")
+            found = compute(
+                ready, key, (first, last), points, steps=steps, sweep=sweep, by="bifurcation",
+                keep_partial=True, progress=progress, members=members, **options,
+            )  # fmt: skip
+        show_resumed(members)
+        if not found.finished.any():
+            raise KeyboardInterrupt
+        judged = int((found.finished & (found.verdict != "")).sum())
+        complete = judged == found.finished.size
+        if not complete:
+            tell(
+                f"interrupted: {int(found.finished.sum())} of {found.finished.size} motions are "
+                f"done, {judged} of them judged, and being written; the same command with --force "
+                "goes on from there; Ctrl-C again stops at once"
+            )
+        findings = Findings(ready, found)
+        with progress_bar() as progress:
+            progress.start("Report")
+            from tribodyn.report.answers import save_bifurcation
+
+            save_bifurcation(found, ready, findings, target, force)
+            progress.finish()
+        members.close_after(complete)
+    if json:
+        say_json({**findings.figures(), "complete": complete})
+    else:
+        say("\n".join([ready.title, *(f"  {line}" for line in findings.sentences())]))
+    tell(f"Diagram: {target / 'bifurcation.html'}")
+    return 0 if complete else INTERRUPTED
+
+
+def continuation(
+    case: CaseName,
+    over: str,
+    /,
+    *,
+    periods: int = 1,
+    longest_step: float = 0.02,
+    out: Output = None,
+    set_: Settings = None,
+    force: Force = False,
+    json: Flag = False,
+) -> None:
+    """Follow the periodic motion of a case over one value, stable or not; tell where it turns back.
+
+    Parameters
+    ----------
+    over : str
+        What varies: "operation.speed=400..3500 rpm". The branch begins at the first value.
+    periods : int
+        Mesh cycles after which the motion repeats.
+    longest_step : float
+        Longest step along the branch, relative to the range.
+    out : Path
+        Directory to write; by default that of the case with "-continuation".
+    json : bool
+        Write the branch in SI as one JSON object to stdout.
+    """
+    from tribodyn.cli.bar import progress_bar
+
+    key, ends = _branch_range(over)
+    ready, target = begun("continuation", case, out, set_, force)
+    with progress_bar() as progress:
+        from tribodyn.report.nonlinear_answers import continuation_answer
+
+        answer = continuation_answer(
+            ready, key, ends, periods, longest_step, "continuation", progress
+        )
+    finish("continuation", ready, target, answer, force, json)
+
+
+def basins(
+    case: CaseName,
+    /,
+    *,
+    transmission_error: _Signed = None,
+    rate: _Signed = None,
+    points: int = 31,
+    out: Output = None,
+    set_: Settings = None,
+    force: Force = False,
+    json: Flag = False,
+) -> int:
+    """Find which motion of a case a disturbed start comes to, over transmission error and its rate.
+
+    Parameters
+    ----------
+    transmission_error : str
+        Its range at the start, counted from where the driving flanks first touch:
+        "-20..40 um". By default about the static equilibrium.
+    rate : str
+        Range of its rate: "-400000..400000 um/s". By default what a free vibration reaches.
+    points : int
+        Values of each.
+    out : Path
+        Directory to write; by default that of the case with "-basins".
+    json : bool
+        Write the motions with their shares in SI as one JSON object to stdout.
+    """
+    from tribodyn.cli.bar import progress_bar
+
+    error = None if transmission_error is None else read_ends(transmission_error, "-20..40 um")
+    speed = None if rate is None else read_ends(rate, "-400000..400000 um/s")
+    ready, target = begun("basins", case, out, set_, force)
+    with progress_bar() as progress:
+        from tribodyn.report.nonlinear_answers import basins_answer
+
+        answer = basins_answer(ready, error, speed, points, True, progress)
+    finish("basins", ready, target, answer, force, json)
+    return 0 if answer.facts["complete"] else INTERRUPTED
+
+
+def lyapunov(
+    case: CaseName,
+    /,
+    *,
+    cycles: int = 1000,
+    transient: int = 300,
+    out: Output = None,
+    set_: Settings = None,
+    force: Force = False,
+    json: Flag = False,
+) -> None:
+    """Find the Lyapunov exponents of the motion of a case: whether it is chaos.
+
+    Parameters
+    ----------
+    cycles : int
+        Mesh cycles over which to average.
+    transient : int
+        Mesh cycles before.
+    out : Path
+        Directory to write; by default that of the case with "-lyapunov".
+    json : bool
+        Write the exponents in SI as one JSON object to stdout.
+    """
+    from tribodyn.cli.bar import progress_bar
+
+    _check_lengths(cycles, transient)
+    ready, target = begun("lyapunov", case, out, set_, force)
+    with progress_bar() as progress:
+        from tribodyn.report.nonlinear_answers import lyapunov_answer
+
+        answer = lyapunov_answer(ready, cycles, transient, progress)
+    finish("lyapunov", ready, target, answer, force, json)
+
+
+_BRANCH = 'Write "operation.speed=400..3500 rpm"'
+
+
+def _branch_range(over: str) -> tuple[str, tuple[Any, Any]]:
+    """Key and ends of a branch, which chooses its points itself."""
+    key, equals, text = (part.strip() for part in over.partition("="))
+    if not (key and equals and text):
+        raise InputError(f'cannot read "{over}"', "", "It is not KEY=LOW..HIGH", _BRANCH)
+    if ":" in text:
+        why = "A branch chooses its points itself"
+        raise InputError(f'cannot read "{over}"', "", why, f"{_BRANCH}, without a number of points")
+    return key, read_ends(text, _BRANCH.removeprefix('Write "').removesuffix('"'))
+
+
+def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
+    """The one key that varies."""
+    ranges = read_ranges(over, lists=False)
+    if len(ranges) > 1:
+        what = f"{len(ranges)} keys vary: {', '.join(ranges)}"
+        raise InputError(what, "", "A diagram goes over one of them", RANGE)
+    return next(iter(ranges.items()))
+
+
+def _check_lengths(cycles: int, transient: int) -> None:
+    """Refuse mesh cycles that make no diagram."""
+    for name, value, least in (("cycles", cycles, 2), ("transient", transient, 0)):
+        if value < least:
+            why = f"At least {least} are needed" if least else "It is a count"
+            raise InputError(f"{value} mesh cycles", f"--{name}", why, "Give more of them")

@@ -1,0 +1,285 @@
+"""Nonlinear motions of a case: Lyapunov exponents, basins of attraction, branches of orbits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import InputError, collected
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.derive import placed
+from tribodyn.study.first_use import compiled_beside
+from tribodyn.study.studies.axes import ends_of
+from tribodyn.study.studies.grid import built, contact_without_speed
+from tribodyn.study.studies.structure import build_system, study_steps
+
+if TYPE_CHECKING:
+    from tribodyn.analysis import Basins, LyapunovExponents
+    from tribodyn.dynamics import Branch, System
+    from tribodyn.study.case.case import Case
+
+#: Half the width of the plane of starts over the static deflection of the mesh.
+_WIDE = 5.0
+
+
+def lyapunov_exponents(
+    case: Case,
+    *,
+    cycles: int = 1000,
+    transient: int = 300,
+    steps: int | None = None,
+    verdict: bool = True,
+    progress: Progress = SILENT,
+) -> LyapunovExponents:
+    """Find the Lyapunov exponents of the motion of a case: whether it is chaos.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`. The motion starts at its static equilibrium.
+    cycles : int
+        Mesh cycles over which to average.
+    transient : int
+        Mesh cycles marched before.
+    steps : int, optional
+        Steps per mesh cycle; those of the case, else a quarter of what a single run takes and at
+        least 512.
+    verdict : bool
+        Whether to find them again with half the step.
+    progress : Progress
+        Told about the mesh cycles; silent by default.
+
+    Returns
+    -------
+    LyapunovExponents
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or the friction follows the load with more than one
+        coefficient.
+    ComputationError
+        If the motion grows beyond all bounds.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"friction.law": "none"})
+    >>> found = lyapunov_exponents(case, cycles=40, transient=40, verdict=False)
+    >>> found.chaotic, found.rotating
+    (False, ('pinion_theta', 'wheel_theta'))
+    """
+    from tribodyn.analysis import lyapunov_exponents as compute
+
+    system, frequency = build_system(case, progress=progress)
+    with placed(case), compiled_beside(case, "bifurcation"):
+        return compute(
+            system,
+            frequency,
+            cycles=cycles,
+            transient=transient,
+            steps=steps or study_steps(case, system, frequency),
+            verdict=verdict,
+            progress=progress,
+        )
+
+
+def basins(
+    case: Case,
+    transmission_error: tuple[Any, Any] | None = None,
+    rate: tuple[Any, Any] | None = None,
+    *,
+    points: int | Sequence[int] = 41,
+    cycles: int = 400,
+    steps: int | None = None,
+    verdict: bool = True,
+    keep_partial: bool = False,
+    progress: Progress = SILENT,
+) -> Basins:
+    """Find which motion of a case a disturbed start comes to.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    transmission_error : tuple, optional
+        Range of the dynamic transmission error at the start, counted from where the driving flank
+        first touches: floats in m, or text such as ``"-50 um"``. By default five times the static
+        deflection of the mesh to both sides of the static equilibrium.
+    rate : tuple, optional
+        Range of its rate: floats in m/s, or text such as ``"2e5 um/s"``. By default what a free
+        vibration as large as the other range reaches.
+    points : int or two int
+        Values of each.
+    cycles : int
+        Mesh cycles at most for a start to come near its motion.
+    steps : int, optional
+        As of :func:`lyapunov_exponents`.
+    verdict : bool
+        Repeat everything with half the step, and judge.
+    keep_partial : bool
+        Return what is finished when interrupted (Ctrl-C), see ``finished``.
+    progress : Progress
+        Told about the starts; silent by default.
+
+    Returns
+    -------
+    Basins
+        Its coordinates are the transmission error and its rate; all else of the start is at the
+        static equilibrium, and free rotations get no momentum.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range.
+    """
+    from tribodyn.analysis import basins as compute
+    from tribodyn.nonlinear.start_plane import MESH_PLANE
+
+    counts = (points, points) if isinstance(points, int) else tuple(points)
+    ends = [
+        None if each is None else _read_ends(name, each, unit)
+        for name, each, unit in (
+            ("transmission_error", transmission_error, "m"),
+            ("rate", rate, "m/s"),
+        )
+    ]
+    system, frequency = build_system(case, progress=progress)
+    with placed(case), compiled_beside(case, "bifurcation"):
+        count = steps or study_steps(case, system, frequency)
+        usual = _plane_about_rest(system, frequency, count)
+        first, second = (own or other for own, other in zip(ends, usual, strict=True))
+        return compute(
+            system,
+            frequency,
+            between=(first, second),
+            coordinates=MESH_PLANE,
+            points=counts,  # type: ignore[arg-type]
+            cycles=cycles,
+            steps=count,
+            verdict=verdict,
+            keep_partial=keep_partial,
+            progress=progress,
+        )
+
+
+def _read_ends(name: str, ends: Sequence[Any], unit: str) -> tuple[float, float]:
+    from tribodyn.units import UnitProblemError, parse
+
+    remedy = 'Write, for example, ("-50 um", "50 um")' if unit == "m" else 'Write ("0 um/s", ...)'
+    try:
+        low, high = (parse(each, unit) if isinstance(each, str) else float(each) for each in ends)
+    except (UnitProblemError, TypeError, ValueError) as error:
+        raise InputError(f"{name} = {ends}", f"argument {name}", str(error), remedy) from None
+    if not (np.isfinite(low) and np.isfinite(high) and low < high):
+        why = "A range goes from the smaller value to the larger"
+        raise InputError(f"{name} = {ends}", f"argument {name}", why, remedy)
+    return low, high
+
+
+def _plane_about_rest(
+    system: System, mesh_frequency: float, steps: int
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Ranges of transmission error and rate about the static equilibrium."""
+    from tribodyn.dynamics.equations.compiled import compile_for
+    from tribodyn.dynamics.orbits.coordinates import static_start
+    from tribodyn.nonlinear.start_plane import MESH_PLANE, start_plane
+
+    compiled = compile_for(system, mesh_frequency, steps)
+    rest = start_plane(compiled, mesh_frequency, MESH_PLANE).section(static_start(compiled))
+    nodes, along = compiled.nodes, compiled.nodes.direction[0, 0, 0]
+    stiffness = float(np.einsum("rs,rsc->", nodes.weight, nodes.stiffness))
+    mass = 1.0 / float(along @ np.linalg.solve(np.asarray(system.mass), along))
+    width = _WIDE * abs(float(rest[0]))
+    swing = width * float(np.sqrt(stiffness / mass))
+    return (float(rest[0]) - width, float(rest[0]) + width), (-swing, swing)
+
+
+def continuation(
+    case: Case,
+    over: str = "operation.speed",
+    between: tuple[Any, Any] | None = None,
+    *,
+    periods: int = 1,
+    steps: int | None = None,
+    longest_step: float = 0.02,
+    points: int = 2000,
+    by: str = "",
+    progress: Progress = SILENT,
+) -> Branch:
+    """Follow the periodic motion of a case over one of its values, stable or not.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    over : str
+        Dotted key of the value that varies.
+    between : tuple
+        Its two ends: floats in SI, or text with a unit. The branch begins at the first.
+    periods : int
+        Mesh cycles after which the motion repeats.
+    steps : int, optional
+        As of :func:`lyapunov_exponents`, at the end with the slower mesh.
+    longest_step : float
+        Longest step relative to the range [-]; shorter ones separate neighbouring special points.
+    points : int
+        Points at most.
+    by : str
+        What asks, for messages; then a bare number for a dimension is refused as in a file.
+    progress : Progress
+        Told about the points; silent by default.
+
+    Returns
+    -------
+    Branch
+        Its parameter is in the unit of the key, SI.
+
+    Raises
+    ------
+    InputError
+        If the key is unknown or not a number, or a value is out of range.
+    ComputationError
+        If no first orbit is found.
+
+    Warns
+    -----
+    ModelWarning
+        ``steady-state`` if the branch ends where it cannot be followed further.
+    """
+    from tribodyn.dynamics import continuation as compute
+
+    if between is None or len(between) != 2:
+        remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
+        why = "A branch goes from one value to another"
+        raise InputError(f"between = {between}", "argument between", why, remedy)
+    first, last = ends_of(case, over, between, by=by)
+    if first == last:
+        why, remedy = "A branch goes from one value to another", "Give two different ones"
+        raise InputError(f"{over} goes from {between[0]} to {between[1]}", by or "argument between",
+                         why, remedy)  # fmt: skip
+    same = over == "operation.speed" and contact_without_speed(case)
+    if same:
+        system, frequency = build_system(case, progress=progress)
+
+    def at(value: float) -> tuple[System, float]:
+        if same:
+            return system, frequency * value / case.operation.speed
+        member = built(case.replace({over: value}))
+        return member.system, member.mesh.mesh_frequency
+
+    with placed(case), collected(), compiled_beside(case, "bifurcation"):
+        counts = [study_steps(case.replace({over: value}), *at(value)) for value in (first, last)]
+        progress.start("Branch")
+        return compute(
+            at,
+            parameter=over,
+            between=(first, last),
+            periods=periods,
+            steps=steps or max(counts),
+            longest_step=longest_step,
+            points=points,
+            progress=progress,
+        )
