@@ -81,6 +81,11 @@ def test_a_run_up_tells_its_levels(tmp_path: Path, capsys: pytest.CaptureFixture
         (["harris", "fzg-roughness", "60 mm"], "torque"),
         (["relief", "fzg-roughness", "--gears", "both of them"], "both"),
         (["compare", "nothing", "nothing"], "no such directory"),
+        (["harris", "fzg-roughness", "-5 N*m"], 'torque = "-5 N*m". Allowed: 1e-06 N*m to'),
+        (["relief", "fzg-roughness", "-5 N*m", "9 N*m"], "without its sign it is in the range"),
+        (["losses", "fzg-roughness", "--torque", "-5 N*m"], '--torque: torque = "-5 N*m"'),
+        (["run-up", "fzg-roughness", "0..3000 rpm"], "argument between"),
+        (["run-up", "fzg-roughness", "-5..3000 rpm"], "above standstill"),
     ],
 )
 def test_wrong_words_are_told(

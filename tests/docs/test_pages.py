@@ -11,8 +11,10 @@ from glossary import PAGE, page
 from pages import PAGES, ROOT, anchors, blocks, broken_links
 
 from registries import as_before
+from tribodyn.study.case.section import section_at
 
 README = (ROOT / "README.md").read_text("utf-8")
+INDEX = (ROOT / "docs" / "index.md").read_text("utf-8")
 # Their examples solve films and compile what few others need.
 SLOW = {"film.md", "stiffness.md", "dynamics.md", "hypoid.md"}
 # Those of the cookbook run in test_cookbook.py.
@@ -31,6 +33,16 @@ def test_readme_has_exactly_the_two_commands() -> None:
     assert " .venv/bin/tribodyn run fzg-roughness --out fzg-report" in main
     assert '".[test]"' in suite
     assert suite.rstrip().endswith("-m pytest -n auto")
+
+
+def test_the_first_pages_name_all_kinds_of_gears() -> None:
+    """Gears of a case are spur gears or hypoid pairs, or the mesh table of another program."""
+    kinds = set(dict(section_at(("gears",)).specs())["kind"].names())
+    assert kinds == {"spur", "hypoid", "table"}
+    scope = next(text for text in README.split("\n\n") if "(docs/scope.md)" in text)
+    index = next(line for line in INDEX.splitlines() if "(scope.md)" in line)
+    for text in (scope, index):
+        assert all(kind in text for kind in kinds - {"table"})
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")

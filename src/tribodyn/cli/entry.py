@@ -124,6 +124,8 @@ _EXAMPLES = {
 }
 
 _TRACEBACK = "TRIBODYN_TRACEBACK"
+#: A negative quantity or range, such as "-5 N*m": no option begins with a digit.
+_NEGATIVE = re.compile(r"-\s*\.?\d")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -222,9 +224,11 @@ def _dispatch(arguments: list[str]) -> int:
     names = [name for name, _, _ in COMMANDS]
     if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
         raise InputError(_no_command(arguments[0], names))
+    # A leading space marks a negative value as a word: the parser takes "-..." for an option.
+    words = [f" {word}" if _NEGATIVE.match(word) else word for word in arguments]
     try:
         with reserved_outputs:
-            result: Any = make_app()(arguments, exit_on_error=False, print_error=False)
+            result: Any = make_app()(words, exit_on_error=False, print_error=False)
     except CycloptsError as error:
         what = re.sub(r"^Unused Tokens: \[(.*)\]", r"too many words: \1", str(error).strip())
         why = "Commands take the words and options that their help lists"

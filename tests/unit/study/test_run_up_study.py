@@ -56,7 +56,9 @@ def test_friction_and_inertia_follow_the_speed(case: tribodyn.Case) -> None:
     [
         (None, "from one speed"),
         (("900 rpm", "400 rpm"), "the lowest"),
-        (("0 rpm", "9 rpm"), "speed"),
+        (("0 rpm", "9 rpm"), '^argument between: .*"0 rpm".* 0.01 rpm to 200000 rpm.*standstill'),
+        (("9 rpm", "9e6 rpm"), '^argument between: .*"9e6 rpm".* to 200000 rpm.*Correct the value'),
+        (("9 rpm", "9 mm"), '^argument between: .*"9 mm".*wrong kind'),
     ],
 )
 def test_bad_ranges_are_refused(case: tribodyn.Case, between: object, words: str) -> None:

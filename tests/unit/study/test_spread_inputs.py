@@ -200,3 +200,27 @@ def test_every_figure_of_a_run_takes_bands() -> None:
     assert names == ["Mesh force", "Spectra"]
     with pytest.raises(InputError, match="stiffness_scale: of no case"):
         td.ensemble(LINEAR, {"stiffness_scale": "1 +- 2 %"}, 3, seed=1).plot("mesh_force")
+
+
+@pytest.mark.parametrize(
+    ("text", "ends", "remedy"),
+    [
+        ("90 N*m +- 200 %", "from -450 N.m to 630 N.m", "at most 33.3 %: it is cut at three"),
+        ("90 N*m +- 45 N*m", "from -45 N.m to 225 N.m", 'at most 29.9 N.m.*"lognormal 90 N'),
+        ("normal 90 N*m +- 45 N*m", "from -123.9 N.m to 303.9 N.m", "at most 18.9 N"),
+        ("-5 N*m .. 9 N*m", "from -5 N.m to 9 N.m", "Correct the ends"),
+        ("lognormal 90 N*m +- 1e9 %", "to .*e\\+.* N", "smaller standard deviation"),
+    ],
+)
+def test_a_spread_beyond_the_range_of_its_key_is_refused(text: str, ends: str, remedy: str) -> None:
+    """A case that passes its check has only variants that can be computed."""
+    message = rf"operation\.torque: .*{ends}.*Allowed: 1e-06 N\*m to 100000000 N\*m.*{remedy}"
+    with pytest.raises(InputError, match=message):
+        LINEAR.replace({"operation.torque": text})
+    with pytest.raises(InputError, match=message):
+        td.ensemble(LINEAR, {"operation.torque": text}, 4, seed=1)
+
+
+def test_the_standard_deviation_of_the_remedy_is_accepted() -> None:
+    for text in ("90 N*m +- 33.3 %", "90 N*m +- 29.9 N*m", "normal 90 N*m +- 18.9 N*m"):
+        assert LINEAR.replace({"operation.torque": text}).uncertain == {"operation.torque": text}

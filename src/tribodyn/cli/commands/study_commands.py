@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,11 @@ def begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tu
     ready = changed_case(case, settings or [])
     check_place(target, force)
     return ready, target
+
+
+def stripped(words: Sequence[str]) -> list[str]:
+    """Words of the command line without spaces around them."""
+    return [word.strip() for word in words]
 
 
 def finish(kind: str, case: Case, target: Path, found: Answer, force: bool, json: bool) -> None:
@@ -98,7 +104,8 @@ def harris(
     from tribodyn.report.answers import harris_answer
 
     ready, target = begun("harris", case, out, set_, force)
-    finish("harris", ready, target, harris_answer(ready, list(torque) or None), force, json)
+    answer = harris_answer(ready, stripped(torque) or None)
+    finish("harris", ready, target, answer, force, json)
 
 
 def relief(
@@ -129,7 +136,7 @@ def relief(
     from tribodyn.report.answers import relief_answer
 
     ready, target = begun("relief", case, out, set_, force)
-    answer = relief_answer(ready, list(torque) or None, gears)
+    answer = relief_answer(ready, stripped(torque) or None, gears)
     finish("relief", ready, target, answer, force, json)
 
 

@@ -8,12 +8,19 @@ from functools import cached_property
 from inspect import Signature
 from typing import Any, ClassVar
 
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, Problem
 from tribodyn.study.case import derive
 from tribodyn.study.case.checks import cross_problems, left_behind
 from tribodyn.study.case.data import CaseData
 from tribodyn.study.case.gears import is_needed
-from tribodyn.study.case.given import Given, Source, plain, unsound, without_spread
+from tribodyn.study.case.given import (
+    Given,
+    Source,
+    plain,
+    spread_problem,
+    unsound,
+    without_spread,
+)
 from tribodyn.study.case.provenance import (
     changed_after,
     effective_values,
@@ -90,6 +97,7 @@ class Case(CaseData, whole=True):
         found = [fault for fault in found if is_needed(fault[0], given.get("gears.kind"))]
         found += [*misspelt, *reason_faults(marks)]
         found = [fault for fault in found if fault[0] not in dict(spread_faults)] + spread_faults
+        found += self._spread_faults({key for key, _ in found})
         readable = not any(key.startswith("gears") for key, _ in found)
         found += cross_problems(given, chosen, {key for key, _ in found})
         if not found:
@@ -105,6 +113,15 @@ class Case(CaseData, whole=True):
         for key in stale:
             del self._assumed[key]
         self._given = Given({**given.data, **tables(self._stated, self._assumed)})
+
+    def _spread_faults(self, faulty: set[str]) -> list[tuple[str, Problem]]:
+        """Spread values that reach beyond the range of their key."""
+        faults = []
+        for key, text in self._spread.items():
+            spec = None if key in faulty else spec_of(self, key)
+            problem = spread_problem(spec, key, text) if spec else None
+            faults += [(key, problem)] if problem else []
+        return faults
 
     def __getstate__(self) -> dict[str, Any]:
         """What makes a case, without what is derived from it."""

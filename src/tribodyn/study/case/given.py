@@ -5,6 +5,7 @@ A value that is known within bounds is written as ``"0.05 +- 0.83 %"``.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -13,10 +14,11 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from tribodyn.errors import InputError, Problem
+from tribodyn.model import Option
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.study.case.values import Plain, written
 from tribodyn.uncertainty import distribution
-from tribodyn.units import UnitProblemError, split
+from tribodyn.units import UnitProblemError, convert, split
 
 #: Keys of a case, tables inside each other, and characters of one text, at most.
 _MOST, _DEEPEST, _LONGEST = 3000, 12, 10_000
@@ -25,6 +27,8 @@ _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff]")
 _SPREAD, _RANGE = re.compile(r"\s*(?:\+-|\+/-|±)"), re.compile(r"\s\.\.\s")
 _KIND = re.compile(r"^\s*(?:normal|lognormal|uniform)\s+", re.IGNORECASE)
 _ELSEWHERE = ("title", "origin", "assumed", "based_on")
+#: Share of the values of an unbounded distribution that may lie beyond the range of its key.
+_TAIL = 1e-6
 #: Items of lists that are looked into.
 _NESTED = (Mapping, list, tuple, str, Plain)
 
@@ -224,6 +228,79 @@ def _middle(key: str, text: str) -> str | float:
     drawn = distribution(key, text, unit)
     middle = first if spread else f"{float(drawn.ppf(0.5))!r} {unit}".strip()
     return middle if unit else float(middle)
+
+
+def spread_problem(spec: Option, key: str, text: Any) -> Problem | None:
+    """Check the values of a spread quantity against the range of its key; None if all are inside.
+
+    A distribution without ends is followed out to one value in a million on either side.
+    """
+    if spec.kind not in ("number", "integer"):
+        return None
+    try:
+        low, high = _reach(distribution(key, text, spec.unit))
+    except InputError as error:
+        return replace(error.problems[0], where="")
+    if _within(spec, low, high):
+        return None
+    name = key.rpartition(".")[2]
+    ends = f"{_short(spec, low)} to {_short(spec, high)}"
+    what = f"{name} = {written(text)} has values from {ends}"
+    why = f"Allowed: {spec.allowed()}" + (f" ({spec.origin})" if spec.origin else "")
+    return Problem(what, "", why, _narrower(spec, key, text))
+
+
+def _reach(drawn: Any) -> tuple[float, float]:
+    """Least and greatest value of a distribution; quantiles in its tails where it has no ends."""
+    ends = float(drawn.ppf(0.0)), float(drawn.ppf(1.0))
+    if all(map(math.isfinite, ends)):
+        return ends
+    return float(drawn.ppf(_TAIL)), float(drawn.ppf(1.0 - _TAIL))
+
+
+def _within(spec: Option, low: float, high: float) -> bool:
+    return spec.low <= low and high <= spec.high and not (spec.positive and low == spec.low)
+
+
+def _short(spec: Option, value: float) -> str:
+    """Write a value with four significant digits in the display unit."""
+    if not spec.unit:
+        return f"{value:.4g}"
+    return f"{convert(value, spec.unit, spec.display_unit):.4g} {spec.display_unit}"
+
+
+def _narrower(spec: Option, key: str, text: Any) -> str:
+    """Say how wide a normal distribution may be about its mean, or what else to write."""
+    match = _SPREAD.search(text) if isinstance(text, str) else None
+    if match is None:
+        return "Correct the ends of the range, or their unit"
+    kind = _KIND.match(text)
+    if kind is not None and kind[0].strip().lower() == "lognormal":
+        return "Write a smaller standard deviation"
+    drawn = distribution(key, text, spec.unit)
+    mean, reach = float(drawn.ppf(0.5)), 0.5 * (_reach(drawn)[1] - _reach(drawn)[0])
+    deviation = float(drawn.std()) if kind else reach / 3.0
+    largest = deviation * min(mean - spec.low, spec.high - mean) / reach
+    middle = _KIND.sub("", text).strip()
+    cut = "" if kind else ": it is cut at three of them"
+    remedy = f"Write a standard deviation of at most {_deviation(spec, text, largest, mean)}{cut}"
+    positive = f"lognormal {middle}"
+    if mean > 0.0 <= spec.low and _within(spec, *_reach(distribution(key, positive, spec.unit))):
+        remedy += f', or "{positive}", whose values are all positive'
+    return remedy
+
+
+def _deviation(spec: Option, text: str, value: float, mean: float) -> str:
+    """Standard deviation, rounded down to three digits: in percent where the user wrote that."""
+    unit = spec.display_unit
+    if text.rstrip().endswith("%"):
+        value, unit = 100.0 * value / abs(mean), "%"
+    elif spec.unit == "K":
+        unit = "K"
+    elif spec.unit:
+        value = convert(value, spec.unit, unit)
+    step = 10.0 ** (math.floor(math.log10(value)) - 2) if value > 0.0 else 1.0
+    return f"{math.floor(value / step) * step:.3g} {unit}".strip()
 
 
 class Stated(NamedTuple):

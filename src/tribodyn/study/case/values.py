@@ -177,9 +177,10 @@ def _in_range(spec: Option, name: str, value: float, typed: Any) -> None:
         display = spec.show(value)
         shown += "" if display == str(typed) else f" ({display})"
     why = f"Allowed: {spec.allowed()} ({spec.origin})" if spec.origin else spec.allowed()
-    raise FaultError(
-        shown, why, "Correct the value or its unit" if spec.unit else "Correct the value"
-    )
+    remedy = "Correct the value or its unit" if spec.unit else "Correct the value"
+    if value < 0.0 <= spec.low <= -value <= spec.high:
+        remedy = f"{remedy}; without its sign it is in the range"
+    raise FaultError(shown, why, remedy)
 
 
 def _whole(spec: Option, name: str, value: Any) -> int:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
-from tribodyn.study.case.provenance import effective
+from tribodyn.study.case.sections import Operation
+from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.first_use import compiled_beside
 from tribodyn.study.studies.axes import read_axes
 from tribodyn.study.studies.grid import varied
@@ -116,12 +118,25 @@ def _ends(case: Case, between: tuple[Any, Any] | None) -> tuple[float, float]:
         why = "A run-up goes from one speed to another"
         remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
         raise InputError(f"between = {between}", "argument between", why, remedy)
-    found = [effective(case.replace({_SPEED: end})).get(_SPEED) for end in between]
-    low, high = cast("float", found[0]), cast("float", found[1])
+    low, high = (_speed(end, between) for end in between)
     if not low < high:
         what, remedy = f"between = {between}", "Turn them round; down=True adds the way back"
         raise InputError(what, "argument between", "The first speed is the lowest", remedy)
     return low, high
+
+
+def _speed(end: Any, between: tuple[Any, Any]) -> float:
+    """One end of a run-up in SI."""
+    spec = dict(Operation.specs())["speed"]
+    try:
+        return float(read_value(spec, "speed", Plain(end)))
+    except FaultError as fault:
+        problem = fault.problem
+    why = problem.why.replace("Allowed:", "Speeds of a run-up lie within")
+    remedy = problem.remedy
+    if why != problem.why and end is between[0]:
+        remedy = 'Begin the run-up above standstill, for example at "30 rpm"'
+    raise InputError(replace(problem, where="argument between", why=why, remedy=remedy))
 
 
 def supports(system: System) -> dict[str, Any]:

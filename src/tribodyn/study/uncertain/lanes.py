@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from tribodyn.errors import Argument, InputError, quiet
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import placed
+from tribodyn.study.case.given import spread_problem
 from tribodyn.study.case.provenance import effective, spec_of
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.grid import Member, built, contact_without_speed, varied
@@ -69,6 +70,9 @@ def distributions_of(case: Case, spread: Mapping[str, Any]) -> dict[str, Any]:
         if spec is None and key not in SCALES:
             case.replace({str(key): text}, by="distributions")  # tells which keys there are
         known[str(key)] = distribution(str(key), text, spec.unit if spec else "")
+        problem = spread_problem(spec, str(key), text) if spec and isinstance(text, str) else None
+        if problem is not None:
+            raise InputError(replace(problem, where=f"distributions {key}"))
     return known
 
 
