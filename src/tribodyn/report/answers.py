@@ -145,7 +145,7 @@ def relief_answer(case: Case, torque: Sequence[Any] | None, gears: str) -> Answe
     ]
     head = ["Pinion torque [N*m]", "Peak to peak before [um]", "Peak to peak after [um]"]
     told = [
-        f"A relief of {found.amount * 1e6:.3g} um over {found.length * 1e3:.4g} mm of roll "
+        f"A relief of {found.amount * 1e6:.4g} um over {found.length * 1e3:.4g} mm of roll "
         f"length; best.toml is the case with it."
     ]
     if found.on_edge:

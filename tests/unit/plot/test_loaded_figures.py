@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +17,7 @@ from tribodyn.gear import FlankModification, spur_pair
 from tribodyn.plot import FIGURES, Drawing
 from tribodyn.plot.gear.outlines import bent_mesh, loads_at, on_line_of_action
 from tribodyn.plot.mesh.loaded_contact import Life, roll_angle_of, span
-from tribodyn.stiffness import loaded_contact
+from tribodyn.stiffness import loaded_contact, optimize_tip_relief
 
 STUDIES = ("loaded_contact", "loaded_sharing", "mesh_deformation", "harris_map", "tip_relief_map")
 
@@ -259,10 +260,10 @@ def test_tip_relief_map_has_amount_across_and_length_upwards() -> None:
     assert after.y == pytest.approx([2, 1, 2])
     courses = on_axis(figure, "y3")
     assert [trace.name for trace in courses] == [
-        "50 N·m, without",
-        "50 N·m, with",
-        "150 N·m, without",
-        "150 N·m, with",
+        "50 N·m, without relief",
+        "50 N·m, with the best relief",
+        "150 N·m, without relief",
+        "150 N·m, with the best relief",
     ]
     assert courses[1].y[0] == pytest.approx(20.0)
     assert "6.00 µm to 2.00 µm" in figure.layout.title.text
@@ -342,3 +343,19 @@ def test_the_phase_of_a_hunting_pair_counts_all_mesh_cycles() -> None:
         for phase in (0.25, 1.25)
     ]
     assert words[0] != words[1]
+
+
+@pytest.mark.parametrize(("relief", "name"), [(18e-6, "before"), (0.0, "without relief")])
+def test_the_pair_before_a_search_is_called_what_it_is(relief: float, name: str) -> None:
+    """One that has a relief already is not a pair without."""
+    pair = loaded(90.0).gear_pair
+    wheel = FlankModification(tip_relief=relief)
+    pair = replace(pair, wheel=replace(pair.wheel, modification=wheel))
+    study = optimize_tip_relief(pair, 90.0, provider="analytic", phases=8, grid=(2, 2))
+    names = [trace.name for trace in study.plot().data]
+    assert names[2:] == [
+        name,
+        "with the best relief",
+        f"90 N·m, {name}",
+        "90 N·m, with the best relief",
+    ]

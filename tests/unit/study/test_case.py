@@ -267,3 +267,13 @@ def test_numbers_in_the_place_of_numbers_make_the_case_that_reading_it_anew_make
         assert one == other
         assert one.to_toml() == other.to_toml()
         assert one._given == other._given
+
+
+@pytest.mark.parametrize("relief", [3.8799123456789e-06, 18e-6, 1e-5 / 3.0])
+def test_a_length_is_written_in_its_usual_unit_with_the_digits_that_it_has(relief: float) -> None:
+    """Exactly the same number is read again, and no length of a few um is written in m."""
+    key = "gears.pinion.modification.tip_relief"
+    text = td.load_case("fzg-roughness").replace({key: relief}).to_toml()
+    line = next(line for line in text.splitlines() if line.startswith("tip_relief = "))
+    assert line.partition("  #")[0].endswith(' um"')
+    assert read_case(text).gears.pinion.modification.tip_relief == relief

@@ -63,6 +63,34 @@ def test_tip_relief_reads_amounts_and_lengths_with_units(case):
     np.testing.assert_allclose(after, found.peak_to_peak_after, rtol=1e-9)
 
 
+def test_an_optimal_relief_is_written_as_a_drawing_states_it(case):
+    """Four digits, in um and mm; the errors are those of the rounded relief."""
+    found = td.optimize_tip_relief(case, ("60 N*m", "120 N*m"), phases=16, grid=(5, 4))
+    lines = [line.partition("  #")[0] for line in found.case.to_toml().splitlines()]
+    for name, value, unit in (
+        ("tip_relief", found.amount * 1e6, "um"),
+        ("tip_relief_length", found.length * 1e3, "mm"),
+    ):
+        assert lines.count(f'{name} = "{value:.4g} {unit}"') == 2
+        assert float(f"{value:.4g}") == pytest.approx(value, rel=1e-14)
+    after = td.harris_map(found.case, found.torque, phases=16).peak_to_peak_transmission_error
+    np.testing.assert_allclose(after, found.peak_to_peak_after, rtol=1e-9)
+    assert found.objective == pytest.approx(after.max(), rel=1e-9)
+    exact = td.optimize_tip_relief(case, ("60 N*m", "120 N*m"), phases=16, grid=(5, 4), digits=15)
+    assert found.objective == pytest.approx(exact.objective, rel=1e-3)
+    assert exact.amount != found.amount
+
+
+def test_a_rounded_relief_stays_on_the_flank(case):
+    """The longest relief is the used flank, whose length has more than two digits."""
+    longest = td.optimize_tip_relief(case, 90.0, phases=16, grid=(3, 3)).map_length[-1]
+    ends = (0.98 * longest, longest)
+    found = td.optimize_tip_relief(
+        case, 90.0, phases=16, grid=(2, 2), length=ends, digits=1, amount=("10 um", "20 um")
+    )
+    assert found.length <= longest
+
+
 def test_tip_relief_range_is_half_the_torque_of_the_case_to_all_of_it(case):
     found = td.optimize_tip_relief(case, phases=16, grid=(3, 3))
     assert found.torque[0] == pytest.approx(0.5 * case.pinion_torque)

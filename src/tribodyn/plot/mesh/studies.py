@@ -179,15 +179,22 @@ def _map(study: TipReliefOptimum) -> Row:
     )
 
 
+def _present(study: TipReliefOptimum) -> str:
+    """Name of the pair before the search: it may have a relief already, on either gear."""
+    pair = study.gear_pair
+    reliefs = (pair.pinion.modification.tip_relief, pair.wheel.modification.tip_relief)
+    return "before" if any(reliefs) else "without relief"
+
+
 def _relief_swings(study: TipReliefOptimum) -> Row:
-    """Peak-to-peak value over the torque, without and with the relief."""
+    """Peak-to-peak value over the torque, before the search and with its relief."""
     unit, torque = display_unit(_QUANTITY), displayed("torque", study.torque)
     mode = {"mode": "lines+markers", "marker": {"size": 6}}
     traces = [
         {**line(torque, displayed(_QUANTITY, swing), name, color, unit=unit, dash=dash), **mode}
         for name, color, dash, swing in (
-            ("without", MUTED, "dash", study.peak_to_peak_before),
-            ("with relief", WHEEL, "solid", study.peak_to_peak_after),
+            (_present(study), MUTED, "dash", study.peak_to_peak_before),
+            ("with the best relief", WHEEL, "solid", study.peak_to_peak_after),
         )
     ]
     return Row(
@@ -197,14 +204,14 @@ def _relief_swings(study: TipReliefOptimum) -> Row:
 
 
 def _courses(study: TipReliefOptimum) -> Row:
-    """Transmission error over two mesh cycles, without and with the relief, at both ends."""
+    """Transmission error over two mesh cycles, before and with the best relief, at both ends."""
     unit, names = display_unit(_QUANTITY), torque_names(study.torque)
     ends = sorted({0, study.torque.size - 1})
     traces = []
     for number, color in zip(ends, torque_colors(len(ends)), strict=True):
         for words, dash, course in (
-            ("without", "dash", study.transmission_error_before),
-            ("with", "solid", study.transmission_error_after),
+            (_present(study), "dash", study.transmission_error_before),
+            ("with the best relief", "solid", study.transmission_error_after),
         ):
             shown = displayed(_QUANTITY, course[number])
             curve = whole_cycles(study.phase, shown, 1, _CYCLES)

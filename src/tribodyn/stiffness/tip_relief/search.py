@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -9,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import one_or_more
+from tribodyn.checks import one_or_more, require_whole
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError, Problem, quiet, require_one_of
 from tribodyn.gear import (
@@ -322,6 +323,7 @@ def optimize_tip_relief(
     material: Material | None = None,
     slices: int | None = None,
     options: Mapping[str, Any] = NO_OPTIONS,
+    digits: int | None = None,
 ) -> TipReliefOptimum:
     """Find the tip relief that leaves least transmission error over a range of torques.
 
@@ -355,11 +357,14 @@ def optimize_tip_relief(
         width or the hunting tooth period multiply the work, but 64 at least.
     extended_contact, reference, material, slices, options
         As there.
+    digits : int, optional
+        Significant digits of the amount and the length of the result, as a drawing states them;
+        all by default. The transmission errors are those of the rounded relief.
 
     Returns
     -------
     TipReliefOptimum
-        Never worse than any point of its map.
+        Never worse than any point of its map, but for the rounding.
 
     Raises
     ------
@@ -386,6 +391,7 @@ def optimize_tip_relief(
     >>> bool(best.objective < 0.7 * best.objective_before)
     True
     """
+    digits = None if digits is None else require_whole("digits", digits)
     check_choices(grid, gears=gears, shape=shape, objective=objective)
     torques, weights = torques_and_weights(torque, weight)
     phase = _phases(pair, phases, slices)
@@ -407,6 +413,9 @@ def optimize_tip_relief(
 
     mapped = np.array([[value(np.array([a, b])) for b in axes[1]] for a in axes[0]])
     best, least = _search(value, axes, mapped)
+    if digits is not None:
+        best = (_rounded(best[0], axes[0], digits), _rounded(best[1], axes[1], digits))
+        least = value(np.array(best))
     return TipReliefOptimum(
         gear_pair=pair,
         modified_pair=with_tip_relief(pair, *best, gears=gears, shape=shape),
@@ -426,6 +435,15 @@ def optimize_tip_relief(
         map_length=axes[1],
         map_objective=mapped,
     )
+
+
+def _rounded(value: float, axis: Array, digits: int) -> float:
+    """Value with so many significant digits, not beyond the greatest of its axis."""
+    nearest = float(f"{value:.{digits - 1}e}")
+    if nearest <= axis[-1] or value == 0.0:
+        return nearest
+    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    return float(f"{math.floor(value / step) * step:.{digits - 1}e}")
 
 
 def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> Array:

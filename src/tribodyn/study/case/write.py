@@ -23,14 +23,20 @@ if TYPE_CHECKING:
     from tribodyn.study.case.data import CaseData
 
 
+#: Significant digits with which a number is written: usual ones first, then all of a float.
+_DIGITS = (10, 15, 16, 17)
+
+
 def _quantity(spec: Option, value: float) -> str:
-    """Text with a unit that reads back to exactly the same float."""
+    """Text with a unit that reads back to exactly the same float: as few digits as that takes."""
     if not spec.unit:
         return repr(value)
     for unit in (spec.display_unit, spec.unit):
-        text = units.format_quantity(value, spec.unit, unit)
-        if units.parse(text, spec.unit) == value:
-            return f'"{text}"'
+        shown = units.convert(value, spec.unit, unit)
+        for digits in _DIGITS:
+            text = f"{shown:.{digits}g} {unit}"
+            if units.parse(text, spec.unit) == value:
+                return f'"{text}"'
     return f'"{value!r} {spec.unit}"'
 
 
@@ -65,7 +71,7 @@ def _line(
 def _unset_example(spec: Option) -> str:
     """A value that makes the line valid TOML when its comment sign is taken away."""
     if spec.kind == "numbers":
-        return f"[{spec.example}]"
+        return spec.example if spec.example.startswith("[") else f"[{spec.example}]"
     if spec.kind == "flag":
         return "true"
     return f'"{spec.names()[0]}"' if spec.names is not None else spec.example or '"..."'

@@ -21,6 +21,7 @@ from tribodyn.study.pipeline.tooth_contact import (
     model_settings,
 )
 from tribodyn.study.studies.axes import pinion_speeds, pinion_torques
+from tribodyn.units import format_quantity
 
 if TYPE_CHECKING:
     from tribodyn.mesh import ComprehensiveStiffness, FilmOverOperation
@@ -33,6 +34,8 @@ _RANGE = (0.1, 2.0)
 _TORQUES = 20
 #: Phases of a mesh cycle of a hypoid pair, least and most.
 _PHASES = (16, 2000)
+#: Significant digits of an optimal relief: finer ones can neither be drawn nor ground.
+_DIGITS = 4
 
 
 @record
@@ -45,9 +48,10 @@ class CaseTipReliefOptimum(TipReliefOptimum):
     def case(self) -> Case:
         """The case that was studied, with the relief that was found."""
         gears = ("pinion", "wheel") if self.gears == "both" else (self.gears,)
+        # As text in the units of the case file, which then shows these digits.
         values = {
-            "tip_relief": self.amount,
-            "tip_relief_length": self.length,
+            "tip_relief": format_quantity(self.amount, "m", "um"),
+            "tip_relief_length": format_quantity(self.length, "m", "mm"),
             "tip_relief_shape": self.shape,
         }
         changed: Case = self.studied.replace(
@@ -128,8 +132,9 @@ def optimize_tip_relief(
     amount, length : tuple, optional
         Least and greatest amount and roll length: floats in m, or text with a unit.
     **options : object
-        ``gears``, ``shape``, ``objective``, ``weight``, ``grid`` and ``phases`` of
-        :func:`tribodyn.stiffness.optimize_tip_relief`.
+        ``gears``, ``shape``, ``objective``, ``weight``, ``grid``, ``phases`` and ``digits`` of
+        :func:`tribodyn.stiffness.optimize_tip_relief`; amount and length have four significant
+        digits by default.
 
     Returns
     -------
@@ -162,7 +167,7 @@ def optimize_tip_relief(
             torques,
             amount=_lengths("amount", amount),
             length=_lengths("length", length),
-            **{**loaded_settings(case), **options},
+            **{**loaded_settings(case), "digits": _DIGITS, **options},
         )
     return CaseTipReliefOptimum(**vars(found), studied=case)
 
