@@ -136,6 +136,45 @@ def test_a_wrong_value_is_told_beside_its_field(visit: Visit) -> None:
     tab.wait_for_selector("#case-operation-speed[aria-invalid=false]")
 
 
+def test_a_wrong_value_dims_the_figures_and_marks_its_closed_box(visit: Visit) -> None:
+    tab = visit.tab
+    opacity = "getComputedStyle(document.querySelector('#bench .main-svg').closest('{}')).opacity"
+    visit.fill("operation.torque", "-5")
+    visit.wait("#bench h3", "out of date")
+    tab.wait_for_selector("#bench .outdated .main-svg")
+    assert float(tab.evaluate(opacity.format(".outdated"))) < 0.6
+    mark = "getComputedStyle(document.querySelector('#case-table-operation .title'), '::after')"
+    assert tab.evaluate(f"{mark}.content") == "none"
+    tab.click("#case-table-operation")
+    tab.wait_for_function(f"{mark}.content.includes('not in order')")
+    badge = tab.locator("#case-values-operation")
+    assert (badge.inner_text(), badge.is_visible()) == ("4 values", True)
+    tab.click("#case-table-operation")
+    badge.wait_for(state="hidden")
+    visit.fill("operation.torque", "120")
+    tab.wait_for_selector("#case-operation-torque[aria-invalid=false]")
+    visit.drawn()
+    assert tab.locator("#bench .outdated").count() == 0
+
+
+def test_a_message_leaves_by_itself_unless_it_is_about_a_fault(visit: Visit) -> None:
+    tab = visit.tab
+    tab.click("#tab-files")
+    tab.fill("#case-name", "again")
+    tab.click("#save")
+    visit.wait("#notice p.good", "saved as again.toml")
+    tab.locator("#notice").wait_for(state="hidden")
+    tab.click("#save")
+    visit.wait("#notice p.bad", "again.toml")
+    tab.wait_for_timeout(7500)  # longer than a message stays
+    assert tab.is_visible("#notice")
+    tab.keyboard.press("Escape")
+    tab.locator("#notice").wait_for(state="hidden")
+    tab.click("text=Replace")
+    visit.wait("#notice p.good", "saved as again.toml")
+    tab.click("#tab-pair")
+
+
 def test_another_unit_leaves_the_value(visit: Visit) -> None:
     visit.tab.select_option("[aria-label='Unit of Torque']", "kN*m")
     visit.tab.wait_for_function("document.getElementById('case-operation-torque').value === '0.12'")

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 RUNS = 6
 #: Characters that a value may have.
 _LONGEST = 10_000
+#: Amount and length of a tip relief.
+_GEARS = ("pinion", "wheel")
+_RELIEF = ("tip_relief", "tip_relief_length")
 #: Who asks for a change, in messages.
 _BY = "form"
 
@@ -136,6 +139,24 @@ class Desk:
             self.take(job.case, self.name)
             self.view = "pair"
             self.tell(f"This is the case of {job.title}.")
+
+    def take_relief(self, number: int) -> None:
+        """Put the tip relief of a study into the case; its other values stay as they are."""
+        job = self.job(number)
+        relief = job.shown.get("relief") if job is not None else None
+        if not relief:
+            return
+        self._refuse_faults()
+        with collected():
+            self.case = self.case.replace(relief, by=_BY)
+        self.edits += 1
+        self.view = "pair"
+        gears = [g for g in _GEARS if f"gears.{g}.modification.tip_relief" in relief]
+        values = [relief[f"gears.{gears[0]}.modification.{name}"] for name in _RELIEF]
+        of = " over ".join(values)
+        self.tell(
+            f"The case has a tip relief of {of} now: {' and '.join(gears)}. Save it to keep it."
+        )
 
     def _switch(self, key: str, option: Option, unit: str) -> None:
         """Show a value in another unit; the value stays what it is."""

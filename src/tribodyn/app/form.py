@@ -200,6 +200,7 @@ class CaseForm:
             "title": _TITLES.get(key, title),
             "meaning": meaning,
             "note": str(self._chosen(chosen)) if chosen else "",
+            "values": len({*given} - {chosen}) + sum(group["values"] for group in inner),
             "open": key.partition(".")[0] in _OPEN and not key.endswith("modification"),
             "fields": [field for name, field in fields if name in first],
             "more": [field for name, field in fields if name not in first],

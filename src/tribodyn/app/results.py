@@ -133,12 +133,22 @@ def pair(desk: Desk) -> list[Any]:
     rows = [[n.words, f"{n.shown} {n.unit}".strip(), n.meaning] for n in numbers]
     every = [html.Summary(f"All derived values ({len(rows)})")]
     every.append(table(["Quantity", "Value", "Meaning"], rows))
-    return [
+    parts = [
         cards([[n.words, n.shown, n.unit] for n in first]),
         *notice("Take care", told),
         *_drawing(case),
         html.Details(every, className="block"),
     ]
+    return [*_outdated(desk), html.Div(parts, className="outdated" if desk.faults else "")]
+
+
+def _outdated(desk: Desk) -> list[Any]:
+    """Say that drawing and figures are not those of the form while a value is not in order."""
+    if not desk.faults:
+        return []
+    labels = ", ".join(dict.fromkeys(fault["label"] or "Case" for fault in desk.faults))
+    line = f"They belong to the last case in order. To bring them up to date, correct: {labels}."
+    return notice("Drawing and figures are out of date", [line])
 
 
 def _drawing(case: Case) -> list[Any]:
@@ -247,6 +257,9 @@ def tools(desk: Desk) -> list[Any]:
         parts.append(html.A("Report", href=f"report/{number}", target="_blank"))
     elif job.state == "done" and job.kind != "overlay":
         parts.append(html.Span("The files are being written …"))
+    if job.state == "done" and job.shown.get("relief"):
+        text = "Take this relief into my case"
+        parts.append(button(text, "take-relief", number, className="main"))
     if job.kind == "run":
         parts.append(button("Edit its case", "case-of", number, className="plain"))
     parts.append(button(f"Remove {job.title}", "remove", number, className="plain"))

@@ -271,6 +271,7 @@ _ACTS: dict[str, Callable[[Desk, str, str], None]] = {
     "replace": lambda desk, of, text: desk.save(text, force=True),
     "save-job": lambda desk, of, text: desk.save_job(_number(of), text),
     "case-of": lambda desk, of, text: desk.case_of(_number(of)),
+    "take-relief": lambda desk, of, text: desk.take_relief(_number(of)),
     "study": lambda desk, of, text: desk.choose_study(of),
     "start": lambda desk, of, text: desk.start_study(),
 }
@@ -293,7 +294,11 @@ def _versions(desk: Desk) -> dict[str, Any]:
 
 
 def _notice(desk: Desk) -> Any:
-    return html.P(desk.notice, className="bad" if desk.bad else "good") if desk.notice else ""
+    """The last message; its number lets the same text appear anew."""
+    if not desk.notice:
+        return ""
+    kind = "bad" if desk.bad else "good"
+    return html.P(desk.notice, className=kind, **{"data-number": str(desk.told)})
 
 
 _DRAW: dict[str, Callable[[Desk], Any]] = {

@@ -21,6 +21,8 @@ Values = Mapping[str, str]
 #: What a study shows: ``told``, ``tables``, and figures as (heading, figure, caption).
 Shown = dict[str, Any]
 
+#: Gears that may have a tip relief, and the ends of the keys of one.
+_GEARS, _RELIEF = ("pinion", "wheel"), ("", "_length", "_shape")
 _RANGE = "400..3500 rpm:20, or 50, 150, 300 N*m"
 _ENDS = "400..3500 rpm"
 
@@ -141,7 +143,11 @@ def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Sho
     progress.start("Tip relief")
     torque = _read("torque", values["torque"], read_list) if values.get("torque") else None
     answer = relief_answer(case, torque, values.get("gears") or "both")
-    return _of(answer, "relief", case, target)
+    shown = _of(answer, "relief", case, target)
+    gears = [values["gears"]] if values.get("gears") in _GEARS else list(_GEARS)
+    reliefs = [f"gears.{g}.modification.tip_relief{part}" for g in gears for part in _RELIEF]
+    given = answer.best.given if answer.best is not None else {}
+    return {**shown, "relief": {key: given[key] for key in reliefs if key in given}}
 
 
 def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Shown:

@@ -13,8 +13,10 @@ from tribodyn.app import results
 from tribodyn.app.desk import Desk
 from tribodyn.app.folder import Folder
 from tribodyn.app.form import CaseForm
+from tribodyn.app.jobs import Job
 from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
+from tribodyn.errors import InputError
 from tribodyn.study.case.reference import case_keys
 
 
@@ -39,6 +41,10 @@ def fields(desk: Desk) -> dict[str, dict[str, Any]]:
     return {f["key"]: f for group in pending for f in (*group["fields"], *group["more"])}
 
 
+def shown_parts(desk: Desk) -> list[Any]:
+    return [part.to_plotly_json()["props"] for part in results.bench(desk)]
+
+
 @pytest.mark.parametrize("name", case_files())
 def test_every_given_value_has_its_field_and_the_pair_is_drawn(desk: Desk, name: str) -> None:
     desk.take(load_case(name), "")
@@ -48,7 +54,8 @@ def test_every_given_value_has_its_field_and_the_pair_is_drawn(desk: Desk, name:
     known = {key for key, _, _ in case_keys()}
     assert set(shown) <= known
     assert set(shown) == set(CaseForm(desk.case, {}, {}).options())
-    assert len(results.bench(desk)) >= 2
+    (pair,) = shown_parts(desk)
+    assert len(pair["children"]) >= 2
 
 
 def test_a_value_becomes_the_case_that_its_text_would(desk: Desk) -> None:
@@ -108,3 +115,75 @@ def test_a_saved_case_opens_as_it_was(desk: Desk, tmp_path: Path) -> None:
     assert {k for k, f in fields(desk).items() if f["value"]} == {
         k for k, f in before.items() if f["value"]
     }
+
+
+def boxes(desk: Desk) -> dict[str, dict[str, Any]]:
+    pending = list(desk.forms()["case"]["groups"])
+    for group in pending:
+        pending += group["groups"]
+    return {group["key"]: group for group in pending}
+
+
+def test_a_box_counts_the_values_in_it(desk: Desk) -> None:
+    """Those of the boxes inside it too; the model that it names stands there by itself."""
+    before = boxes(desk)
+    assert before["gears.pinion.modification"]["values"] == 0
+    assert before["operation"]["values"] == len(set(desk.case.given) & {*fields(desk)} & {
+        f"operation.{name}" for name in ("speed", "torque", "speed_of", "torque_balance")
+    })  # fmt: skip
+    assert before["stiffness"]["note"] == desk.case.stiffness.model
+    keys = [key for key in desk.case.given.typed if key.startswith("stiffness.")]
+    assert before["stiffness"]["values"] == len(set(keys) - {"stiffness.model"})
+    typed(desk, "gears.pinion.modification.tip_relief", value="18", unit="um")
+    after = boxes(desk)
+    assert after["gears.pinion.modification"]["values"] == 1
+    assert after["gears"]["values"] == before["gears"]["values"] + 1
+
+
+def test_drawing_and_figures_are_marked_while_a_value_is_not_in_order(desk: Desk) -> None:
+    assert [part["className"] for part in shown_parts(desk)] == [""]
+    typed(desk, "operation.torque", value="-5", unit="N*m")
+    notice, figures = shown_parts(desk)
+    assert figures["className"] == "outdated"
+    assert "out of date" in str(notice["children"])
+    assert "correct: Torque" in str(notice["children"])
+    typed(desk, "operation.torque", value="90", unit="N*m")
+    assert [part["className"] for part in shown_parts(desk)] == [""]
+
+
+def relief_study(folder: Path, gears: tuple[str, ...]) -> Job:
+    """A finished study of the tip relief."""
+    values = {"": "3.88 um", "_length": "5.752 mm", "_shape": "linear"}
+    relief = {f"gears.{g}.modification.tip_relief{k}": v for g in gears for k, v in values.items()}
+    job = Job(1, "study", "Tip relief", {}, folder, state="done", saved=True)
+    job.shown = {"relief": relief}
+    return job
+
+
+@pytest.mark.parametrize("gears", [("pinion", "wheel"), ("wheel",)])
+def test_the_relief_of_a_study_goes_into_the_case(
+    desk: Desk, gears: tuple[str, ...], tmp_path: Path
+) -> None:
+    typed(desk, "operation.torque", value="77", unit="N*m")
+    before, study = desk.case, relief_study(tmp_path, gears)
+    desk.studies.append(study)
+    desk.view = "job-1"
+    assert "Take this relief into my case" in str(results.tools(desk))
+    desk.take_relief(2)
+    assert desk.case is before
+    desk.take_relief(1)
+    assert desk.case == before.replace(study.shown["relief"], by="form")
+    assert desk.case.operation.torque == 77.0
+    for gear in ("pinion", "wheel"):
+        field = fields(desk)[f"gears.{gear}.modification.tip_relief"]
+        expected = ("3.88", "um") if gear in gears else ("", "um")
+        assert (field["value"], field["unit"]) == expected
+    assert "3.88 um over 5.752 mm" in desk.notice
+    assert desk.view == "pair"
+
+
+def test_the_relief_of_a_study_waits_for_a_case_in_order(desk: Desk, tmp_path: Path) -> None:
+    desk.studies.append(relief_study(tmp_path, ("pinion",)))
+    typed(desk, "operation.torque", value="-5", unit="N*m")
+    with pytest.raises(InputError, match="not in order"):
+        desk.take_relief(1)

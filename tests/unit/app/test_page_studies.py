@@ -40,3 +40,20 @@ def test_every_study_shows_and_saves_what_it_finds(kind: str, tmp_path: Path) ->
 def test_a_range_that_is_none_is_told_with_one_that_is() -> None:
     with pytest.raises(InputError, match=r'"fast".*Write for example "90 N\*m"'):
         STUDIES["harris"].compute(load_case("fzg-roughness"), {"torque": "fast"}, SILENT, Path())
+
+
+@pytest.mark.parametrize("gears", ["both", "wheel"])
+def test_the_relief_that_a_study_offers_is_that_of_its_better_case(
+    gears: str, tmp_path: Path
+) -> None:
+    """Keys of the relieved gears alone: the rest of the case may have changed meanwhile."""
+    case = load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
+    case = case.replace({"gears.pinion.modification.tip_relief": "30 um"})
+    shown = STUDIES["relief"].compute(
+        case, {"torque": "90 N*m", "gears": gears}, SILENT, tmp_path / "r"
+    )
+    best = load_case(tmp_path / "r" / "best.toml")
+    assert case.replace(shown["relief"]).gears == best.gears
+    relieved = {key.split(".")[1] for key in shown["relief"]}
+    assert relieved == ({"pinion", "wheel"} if gears == "both" else {"wheel"})
+    assert all(key.partition(".")[0] == "gears" for key in shown["relief"])

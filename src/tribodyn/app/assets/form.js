@@ -112,8 +112,14 @@ class Form {
     const collect = (group) => {
       every.push(...group.fields, ...group.more);
       group.groups.forEach(collect);
-      const note = document.getElementById(`${this.name}-note-${group.key}`);
+      const part = (name) => document.getElementById(`${this.name}-${name}-${group.key}`);
+      const note = part("note");
       if (note) note.textContent = group.note;
+      const values = part("values");
+      if (values) values.textContent = group.values ? `${group.values} value${group.values > 1 ? "s" : ""}` : "";
+      const inside = (each) => [...each.fields, ...each.more].some((field) => faults.has(field.key))
+        || each.groups.some(inside);
+      part("table")?.classList.toggle("wrong", inside(group));
     };
     data.groups.forEach(collect);
     for (const each of every) this.fields.get(each.key).update(each, faults.get(each.key) ?? "");
@@ -143,8 +149,10 @@ class Form {
     const fields = make("div", { class: "fields" }, ...rows(data.fields));
     const within = make("div", { class: twins ? "twins" : "inner" }, ...inner);
     const note = make("span", { class: "note", id: `${this.name}-note-${data.key}` }, data.note);
+    const values = make("span", { class: "values", id: `${this.name}-values-${data.key}`,
+      title: "Values of the case in this box; all others have their defaults" });
     const head = make("summary", { id: `${this.name}-table-${data.key}` }, make("span", { class: "title" }, data.title),
-      make("span", { class: "meaning" }, data.meaning), note);
+      make("span", { class: "meaning" }, data.meaning), note, values);
     return this.details(data.key, data.open, { class: "group" }, head, fields, within, folded);
   }
 
@@ -190,6 +198,28 @@ new MutationObserver(() => {
   }
 }).observe(document.documentElement, { childList: true, subtree: true });
 
+// A message that all is well leaves by itself; one about a fault stays until it is closed.
+const STAY = 7000; // ms
+let leaving = null;
+const closeNotice = () => document.getElementById("notice")?.classList.add("gone");
+const watchNotice = (place) => new MutationObserver(() => {
+  clearTimeout(leaving);
+  place.classList.remove("gone");
+  const leave = () => {
+    if (place.matches(":hover")) leaving = setTimeout(leave, 1000);
+    else closeNotice();
+  };
+  if (place.querySelector("p.good")) leaving = setTimeout(leave, STAY);
+}).observe(place, { childList: true, subtree: true, attributeFilter: ["data-number"] });
+const awaitNotice = new MutationObserver(() => {
+  const place = document.getElementById("notice");
+  if (!place) return;
+  awaitNotice.disconnect();
+  place.addEventListener("click", closeNotice);
+  watchNotice(place);
+});
+awaitNotice.observe(document.documentElement, { childList: true, subtree: true });
+
 // Everything that can be pressed says what it does; a text beside it goes with it.
 const act = (button) => {
   const { do: what, of, from } = button.dataset;
@@ -202,6 +232,7 @@ document.addEventListener("click", (event) => {
   if (button && !button.disabled) act(button);
 });
 document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape") closeNotice();
   if (event.key === "Enter" && event.target.dataset?.enter) act(document.getElementById(event.target.dataset.enter));
   if (event.key === "Enter" && event.ctrlKey) document.querySelector('[data-do="run"]')?.click();
   // Arrow keys go along a row of tabs.
