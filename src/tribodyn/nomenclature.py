@@ -87,7 +87,8 @@ poissons_ratio | nu | | | Poisson's ratio
 density | rho | kg/m^3 | kg/m^3 | density | "880 kg/m^3"
 effective_modulus | E' | Pa | GPa | 2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2 (Dowson-Higginson convention)
 dynamic_viscosity | eta_0 | Pa*s | mPa*s | absolute viscosity at ambient pressure and working temperature | "82 mPa*s"
-kinematic_viscosity | nu | m^2/s | mm^2/s | viscosity divided by density
+kinematic_viscosity | nu | m^2/s | mm^2/s | viscosity divided by density | "220 mm^2/s"
+viscosity_index | VI | | | how little the viscosity falls with temperature, by ISO 2909 | 95
 pressure_viscosity_coefficient | alpha | 1/Pa | 1/GPa | slope of ln(viscosity) over pressure at ambient pressure | "21.9 1/GPa"
 temperature_viscosity_coefficient | beta | 1/K | 1/K | fall of ln(viscosity) per kelvin at ambient pressure | "0.04 1/K"
 eyring_stress | tau_0 | Pa | MPa | shear stress from which the oil thins under shear | "5 MPa"

@@ -6,13 +6,17 @@ from functools import lru_cache
 from typing import Any
 
 from tribodyn.errors import Argument, InputError
-from tribodyn.lubricant.astm_d341 import MARGIN
+from tribodyn.lubricant.astm_d341 import MARGIN, walther_slope, walther_viscosity
+from tribodyn.lubricant.data_sheet import SHEET_RANGE, points_through
 from tribodyn.lubricant.oil import Lubricant
+from tribodyn.lubricant.pressure_viscosity import agma_925_coefficient
 from tribodyn.model import Registry
 from tribodyn.units import ZERO_CELSIUS
 
 #: Temperatures closer than this [K] are the same.
 _SAME_TEMPERATURE = 0.01
+#: Entries of an oil known at one temperature that only other temperatures need.
+_OF_OTHER_TEMPERATURES = ("viscosity_index", "density_fall", "base_oil")
 
 
 @lru_cache(maxsize=1)
@@ -58,10 +62,11 @@ def from_library(name: str, temperature: float | None = None) -> Lubricant:
     Raises
     ------
     InputError
-        If there is no such oil, or nothing is known of it at that temperature.
+        If there is no such oil, or the temperature is outside :func:`temperature_range`.
 
-    An oil known at one temperature has no other; one known at two follows ASTM D341 up to 30 K
-    beyond them. Source: ``library.toml``, where every number names its own.
+    An oil known at two temperatures follows ASTM D341 up to 30 K beyond them; one known at one
+    temperature follows the line of its viscosity index through that point, and says so in
+    ``assumptions``. Source: ``library.toml``, where every number names its own.
 
     Examples
     --------
@@ -85,7 +90,6 @@ def temperature_range(name: str) -> tuple[float, float]:
     Returns
     -------
     (float, float)
-        Both the same for an oil that is known at one temperature.
 
     Raises
     ------
@@ -99,24 +103,25 @@ def temperature_range(name: str) -> tuple[float, float]:
     """
     record = _records()[name]
     if "kinematic_viscosity" not in record:
-        known = float(record["temperature"]["value"])
-        return known, known
+        return SHEET_RANGE
     cold, warm = (float(point["temperature"]) for point in record["kinematic_viscosity"])
     return cold - MARGIN, warm + MARGIN
 
 
-def _common(name: str, record: dict[str, Any]) -> dict[str, Any]:
-    """Return the arguments that every oil of the library has."""
+def _common(
+    name: str, record: dict[str, Any], unused: tuple[str, ...] = (), remark: str = ""
+) -> dict[str, Any]:
+    """Return the arguments that every oil of the library has; unused entries name no source."""
     quantities_of: dict[str, list[str]] = {}
     for key, value in record.items():
         for entry in value if isinstance(value, list) else [value]:
-            if isinstance(entry, dict):
+            if isinstance(entry, dict) and key not in unused:
                 quantities_of.setdefault(entry["source"], []).append(key.replace("_", " "))
     return {
         "name": name,
         "thermal_conductivity": float(record["thermal_conductivity"]["value"]),
         "source": "; ".join(f"{', '.join(q)}: {source}" for source, q in quantities_of.items()),
-        "assumptions": tuple(record.get("assumptions", ())),
+        "assumptions": (*record.get("assumptions", ()), *([remark] if remark else [])),
     }
 
 
@@ -136,17 +141,10 @@ def _at_temperature(name: str, record: dict[str, Any], temperature: float | None
 
 
 def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> Lubricant:
-    """Return an oil that is known at one temperature only."""
+    """Return an oil that is known at one temperature, there or at another."""
     known = float(record["temperature"]["value"])
     if temperature is not None and not abs(temperature - known) <= _SAME_TEMPERATURE:
-        raise InputError(
-            f'"{name}" at {temperature - ZERO_CELSIUS:g} degC',
-            where=Argument("temperature"),
-            why=f"the properties of this oil are known at {known - ZERO_CELSIUS:g} degC only",
-            remedy=f"Leave the temperature out or give {known:g} K ({known - ZERO_CELSIUS:g} "
-            "degC), or give dynamic_viscosity, density and pressure_viscosity_coefficient "
-            "at your temperature",
-        )
+        return _by_index(name, record, temperature)
     return Lubricant(
         float(record["dynamic_viscosity"]["value"]),
         float(record["density"]["value"]),
@@ -155,5 +153,48 @@ def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> L
         temperature_viscosity_coefficient=float(
             record["temperature_viscosity_coefficient"]["value"]
         ),
-        **_common(name, record),
+        **_common(name, record, _OF_OTHER_TEMPERATURES),
+    )
+
+
+def _by_index(name: str, record: dict[str, Any], temperature: float) -> Lubricant:
+    """Oil away from its known point: along the line of its viscosity index through that point."""
+    known = float(record["temperature"]["value"])
+    low, high = SHEET_RANGE
+    if not low <= temperature <= high:
+        raise InputError(
+            f'"{name}" at {temperature - ZERO_CELSIUS:g} degC',
+            where=Argument("temperature"),
+            why=f"the oil is known at {known - ZERO_CELSIUS:g} degC, and its viscosity index holds "
+            f"from {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC",
+            remedy="Give a temperature of this range, or dynamic_viscosity, density and "
+            "pressure_viscosity_coefficient at yours",
+        )
+    viscosity, density, coefficient, index, fall = (
+        float(record[key]["value"])
+        for key in (
+            "dynamic_viscosity", "density", "pressure_viscosity_coefficient", "viscosity_index",
+            "density_fall",
+        )
+    )  # fmt: skip
+    points = points_through(known, viscosity / density, index)
+    thinning = walther_viscosity(temperature, points) / walther_viscosity(known, points)
+    density_there = density - fall * (temperature - known)
+    viscosity_there = viscosity * thinning * density_there / density
+    base_oil = record["base_oil"]["value"]
+    estimates = [agma_925_coefficient(each, base_oil) for each in (viscosity_there, viscosity)]
+    return Lubricant(
+        viscosity_there,
+        density_there,
+        coefficient * estimates[0] / estimates[1],
+        temperature=temperature,
+        temperature_viscosity_coefficient=walther_slope(temperature, points) + fall / density_there,
+        **_common(
+            name,
+            record,
+            remark=f"At {temperature - ZERO_CELSIUS:g} degC: the oil is known at "
+            f"{known - ZERO_CELSIUS:g} degC; from there the viscosity follows the ASTM D341 line "
+            f"of viscosity index {index:g}, the pressure-viscosity coefficient AGMA 925-A03 for "
+            f"{base_oil} oils.",
+        ),
     )

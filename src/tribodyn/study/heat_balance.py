@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, collected
 from tribodyn.lubricant import temperature_range
+from tribodyn.lubricant.data_sheet import SHEET_RANGE
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.pipeline.first_look import gearbox_losses_of
 from tribodyn.types import Array
@@ -64,13 +65,13 @@ def balanced(
     """
     oil = case.lubricant
     assert oil is not None
-    assert oil.name is not None
     assert oil.heat_transfer is not None
     transfer, ambient = oil.heat_transfer, oil.ambient_temperature or _ROOM
-    coldest, hottest = temperature_range(oil.name)
+    coldest, hottest = temperature_range(oil.name) if oil.name else SHEET_RANGE
+    name = oil.name or "the oil of the data sheet"
     if ambient < coldest:
         what = f"ambient_temperature = {ambient - ZERO_CELSIUS:.4g} degC"
-        why = f"{oil.name} is known from {coldest - ZERO_CELSIUS:.4g} degC on"
+        why = f"{name} is known from {coldest - ZERO_CELSIUS:.4g} degC on"
         remedy = "Give warmer surroundings, or another oil"
         raise ComputationError(what, "lubricant.ambient_temperature", why, remedy)
     low, high = 0.0, hottest - ambient
@@ -90,7 +91,7 @@ def balanced(
                 f"no temperature up to {hottest - ZERO_CELSIUS:.4g} degC balances the losses: "
                 f"there {loss:.4g} W are lost and {transfer * rise:.4g} W given off",
                 where="lubricant.heat_transfer",
-                why=f"{oil.name} is known up to {hottest - ZERO_CELSIUS:.4g} degC",
+                why=f"{name} is known up to {hottest - ZERO_CELSIUS:.4g} degC",
                 remedy=f"Give more than {loss / rise:.4g} W/K, or less torque or speed",
             )
         low, high = (rise, high) if excess > 0.0 else (low, rise)

@@ -27,6 +27,8 @@ UNITS = {
     "pressure_viscosity_coefficient": "1/Pa",
     "temperature_viscosity_coefficient": "1/K",
     "thermal_conductivity": "W/m/K",
+    "viscosity_index": "1",
+    "density_fall": "kg/m^3/K",
 }
 
 
@@ -156,9 +158,10 @@ def test_iso_grade_has_viscosity_index_95(grade):
     assert 100 * (low - grade) / (low - high) == pytest.approx(95.0, abs=0.1)
 
 
-def test_oil_known_once_refuses_another_temperature_and_names_its_own():
-    with pytest.raises(InputError, match=r'"80W" at 80 degC.*known at 40 degC only.*313\.15 K'):
-        from_library("80W", 353.15)
+@pytest.mark.parametrize("celsius", [9.0, 131.0])
+def test_oil_known_once_refuses_a_temperature_far_outside(celsius):
+    with pytest.raises(InputError, match=rf'"80W" at {celsius:g} degC.*from 10 to 130 degC'):
+        from_library("80W", celsius + 273.15)
 
 
 def test_oil_known_once_accepts_its_own_temperature():

@@ -69,6 +69,8 @@ _DYNAMICS = 'bearing_stiffness = "3.5e9 N/m"'
 _SOLVER = 'method = "steady"'
 _LAW = 'law = "constant"\ncoefficient = 0.05'
 _OIL = 'name = "80W"'
+_SHEET = 'kinematic_viscosity_at_40 = "220 mm^2/s"\nviscosity_index = 95'
+_REST = 'density_at_15 = "892 kg/m^3"\ntemperature = "60 degC"'
 _ROUGH = 'composite_roughness = "0.53 um"'
 
 
@@ -211,6 +213,21 @@ BROKEN = (
            ("roughness_rms of the wheel is missing", '"0.4 um"')),
     Broken("oil-twice", _OIL, _OIL + '\ndynamic_viscosity = "82 mPa*s"', _OIL,
            ('"80W"', '"82 mPa*s"', "two ways", "Keep one")),
+    Broken("sheet-and-name", _OIL, _OIL + '\nviscosity_index = 95', _OIL,
+           ('"80W"', "viscosity_index = 95", "two ways", "Keep one")),
+    Broken("sheet-with-one-figure", _OIL, f'kinematic_viscosity_at_40 = "220 mm^2/s"\n{_REST}',
+           "[lubricant]", ("kinematic_viscosity_at_100 is missing", "Two of three", "Add one")),
+    Broken("sheet-without-density", _OIL, _SHEET + '\ntemperature = "60 degC"', "[lubricant]",
+           ("density_at_15 is missing", '"892 kg/m^3"')),
+    Broken("sheet-without-temperature", _OIL, _SHEET + '\ndensity_at_15 = "892 kg/m^3"',
+           "[lubricant]", ("temperature is missing", '"60 degC"')),
+    Broken("sheet-and-property", _OIL, f'{_SHEET}\n{_REST}\ndynamic_viscosity = "82 mPa*s"',
+           "dynamic_viscosity", ('"82 mPa*s"', '"220 mm^2/s"', "follows from", "Remove it")),
+    Broken("sheet-that-contradicts-itself", _OIL,
+           f'{_SHEET}\n{_REST}\nkinematic_viscosity_at_100 = "30 mm^2/s"', "viscosity_index",
+           ("viscosity index 95", "220 mm^2/s at 40 degC and 30 mm^2/s at 100", "of 178", "leave")),
+    Broken("oil-too-cold", _OIL, _OIL + '\ntemperature = "5 degC"', "temperature",
+           ('"80W" at 5 degC', "from 10 to 130 degC", "Give a temperature of this range")),
     Broken("damping-twice", _DYNAMICS,
            _DYNAMICS + '\nmesh_damping = "900 N*s/m"\nmesh_damping_ratio = 0.04', "mesh_damping",
            ('"900 N*s/m"', "0.04", "two ways", "Keep one")),

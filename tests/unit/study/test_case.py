@@ -277,3 +277,25 @@ def test_a_length_is_written_in_its_usual_unit_with_the_digits_that_it_has(relie
     line = next(line for line in text.splitlines() if line.startswith("tip_relief = "))
     assert line.partition("  #")[0].endswith(' um"')
     assert read_case(text).gears.pinion.modification.tip_relief == relief
+
+
+def test_an_oil_of_a_data_sheet_stands_in_a_case(case: Any) -> None:
+    """Written and read again it is the same; what the sheet does not state is assumed."""
+    sheet = {
+        "lubricant.name": None,
+        "lubricant.kinematic_viscosity_at_40": "220 cSt",
+        "lubricant.viscosity_index": 95,
+        "lubricant.density_at_15": "0.9071 g/cm^3",
+        "lubricant.temperature": "60 degC",
+    }
+    other = case.replace(sheet)
+    known = case.replace({"lubricant.name": "ISO VG 220", "lubricant.temperature": "60 degC"})
+    oil, library_oil = other.lubricant_properties, known.lubricant_properties
+    assert oil.dynamic_viscosity == pytest.approx(library_oil.dynamic_viscosity, rel=1e-4)
+    assert oil.density == pytest.approx(library_oil.density, rel=1e-12)
+    again = read_case(other.to_toml())
+    assert again == other
+    assert again.lubricant_properties == oil
+    reasons = [row for row in assumptions(other) if row.key == "lubricant"]
+    assert all(row.kind == "assumed" for row in reasons)
+    assert any("AGMA 925" in row.reason for row in reasons)

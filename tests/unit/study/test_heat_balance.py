@@ -133,7 +133,9 @@ def test_a_run_ends_at_the_balance_with_and_without_coupling(law: str, local: bo
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"lubricant.name": "80W", "lubricant.temperature": None}, "known at one temperature"),
+        ({"lubricant.name": None, "lubricant.dynamic_viscosity": "82 mPa*s",
+          "lubricant.density": "880 kg/m^3",
+          "lubricant.pressure_viscosity_coefficient": "21.9 1/GPa"}, "at one temperature"),
         ({"lubricant.heat_transfer": None, "lubricant.ambient_temperature": "30 degC"},
          "keeps its temperature"),
         ({"lubricant.heat_transfer": "5 W"}, "heat_transfer"),
@@ -143,6 +145,22 @@ def test_a_run_ends_at_the_balance_with_and_without_coupling(law: str, local: bo
 def test_wrong_keys_are_refused(changes: dict[str, Any], told: str) -> None:
     with pytest.raises(InputError, match=told):
         _case().replace(changes)
+
+
+@pytest.mark.parametrize(
+    "oil",
+    [
+        {"lubricant.name": "80W"},
+        {"lubricant.name": None, "lubricant.kinematic_viscosity_at_40": "100 mm^2/s",
+         "lubricant.viscosity_index": 95.0, "lubricant.density_at_15": "892.2 kg/m^3"},
+    ],
+)  # fmt: skip
+def test_any_oil_over_temperature_takes_part_in_the_balance(oil: dict[str, Any]) -> None:
+    found, heat = _balance(_case().replace(oil))
+    assert heat.power_loss[-1] == pytest.approx(heat.dissipated[-1], rel=1e-6)
+    if "lubricant.density_at_15" in oil:
+        same, _ = _balance(_case())
+        assert found.lubricant.temperature == pytest.approx(same.lubricant.temperature, abs=0.01)
 
 
 def test_range_of_an_oil_is_where_it_can_be_made() -> None:

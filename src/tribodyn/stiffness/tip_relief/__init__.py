@@ -3,5 +3,6 @@
 | module | what it answers |
 | --- | --- |
 | `harris` | static transmission error over phase and torque |
+| `minimum` | least point of an objective over amount and length |
 | `search` | which amount and length of tip relief is best over torques, and the map of all |
 """

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import one_or_more, require_whole
+from tribodyn.checks import one_or_more
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError, Problem, quiet, require_one_of
 from tribodyn.gear import (
@@ -28,6 +27,7 @@ from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.stiffness.loaded.contact import contact_problem, contact_settings, phases_of
 from tribodyn.stiffness.loaded.problem import ContactProblem, mesh_period, slice_widths
 from tribodyn.stiffness.model import MODELS
+from tribodyn.stiffness.tip_relief.minimum import least_point
 from tribodyn.types import Array
 
 
@@ -299,10 +299,6 @@ def relief_mesh(
 
 #: Phases of a mesh cycle where nothing multiplies the work, and where something does.
 _MOST, _LEAST = 512, 64
-#: Points of the map from which the search goes on: the best one, and others that lie apart.
-_STARTS = 3
-#: Steps of a simplex; it ends when neither place nor value move by more than these parts.
-_SIMPLEX = {"maxfev": 200, "xatol": 1e-4, "fatol": 1e-5}
 
 
 def optimize_tip_relief(
@@ -391,7 +387,6 @@ def optimize_tip_relief(
     >>> bool(best.objective < 0.7 * best.objective_before)
     True
     """
-    digits = None if digits is None else require_whole("digits", digits)
     check_choices(grid, gears=gears, shape=shape, objective=objective)
     torques, weights = torques_and_weights(torque, weight)
     phase = _phases(pair, phases, slices)
@@ -412,10 +407,7 @@ def optimize_tip_relief(
         return measure(mesh.error(float(place[0]), float(place[1])))
 
     mapped = np.array([[value(np.array([a, b])) for b in axes[1]] for a in axes[0]])
-    best, least = _search(value, axes, mapped)
-    if digits is not None:
-        best = (_rounded(best[0], axes[0], digits), _rounded(best[1], axes[1], digits))
-        least = value(np.array(best))
+    best, least = least_point(value, axes, mapped, digits)
     return TipReliefOptimum(
         gear_pair=pair,
         modified_pair=with_tip_relief(pair, *best, gears=gears, shape=shape),
@@ -437,63 +429,9 @@ def optimize_tip_relief(
     )
 
 
-def _rounded(value: float, axis: Array, digits: int) -> float:
-    """Value with so many significant digits, not beyond the greatest of its axis."""
-    nearest = float(f"{value:.{digits - 1}e}")
-    if nearest <= axis[-1] or value == 0.0:
-        return nearest
-    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
-    return float(f"{math.floor(value / step) * step:.{digits - 1}e}")
-
-
 def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> Array:
     """Mesh phases, as many as asked for or as there is time for."""
     contact = path_of_contact(pair)
     cycles = mesh_period(contact)
     work = cycles * slice_widths(contact, slices).size
     return phases_of(max(_LEAST, _MOST // work) if phases is None else phases, cycles)
-
-
-def _search(
-    value: Callable[[Array], float], axes: list[Array], mapped: Array
-) -> tuple[tuple[float, float], float]:
-    """Go on from the best points of the map; amount and length, and the objective there."""
-    from scipy.optimize import minimize
-
-    low = np.array([axis[0] for axis in axes])
-    span = np.array([axis[-1] - axis[0] for axis in axes])
-    starts = _starts(mapped)
-    first = starts[0]
-    best, least = np.array([axes[k][first[k]] for k in (0, 1)]), float(mapped[first])
-    step = [0.5 / (axis.size - 1) for axis in axes]
-    for row, column in starts:
-        start = (np.array([axes[0][row], axes[1][column]]) - low) / span
-        toward = np.where(start + step > 1.0, -1.0, 1.0) * step
-        simplex = start + np.array([[0.0, 0.0], [toward[0], 0.0], [0.0, toward[1]]])
-        minimum = minimize(
-            lambda unit: value(low + span * unit) / mapped.max(),
-            start,
-            method="Nelder-Mead",
-            bounds=[(0.0, 1.0), (0.0, 1.0)],
-            options={"initial_simplex": simplex, **_SIMPLEX},
-        )
-        place = low + span * np.clip(minimum.x, 0.0, 1.0)
-        reached = value(place)
-        if reached < least:
-            best, least = place, reached
-    return (float(best[0]), float(best[1])), least
-
-
-def _starts(mapped: Array) -> list[tuple[int, int]]:
-    """Rows and columns of the least local minima of the map, the least of all first."""
-    padded = np.pad(mapped, 1, constant_values=np.inf)
-    rows, columns = mapped.shape
-    around = [
-        padded[1 + i : 1 + i + rows, 1 + j : 1 + j + columns]
-        for i in (-1, 0, 1)
-        for j in (-1, 0, 1)
-        if (i, j) != (0, 0)
-    ]
-    valleys = np.argwhere(mapped <= np.min(around, axis=0))
-    order = np.argsort([mapped[row, column] for row, column in valleys], kind="stable")
-    return [(int(row), int(column)) for row, column in valleys[order[:_STARTS]]]

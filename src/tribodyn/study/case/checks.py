@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, cast
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
 from tribodyn.study.case.gears import HYPOID_KEYS, heat_of_bodies, is_idle
-from tribodyn.study.case.given import Given
+from tribodyn.study.case.given import TWO_WAYS, Given, both_given
 from tribodyn.study.case.section import Choice, Known, choices, section_at
-from tribodyn.study.case.sections import heat_balance
+from tribodyn.study.case.sections import THERMAL, lubricant_problems
 
 if TYPE_CHECKING:
     from tribodyn.ehl import FilmModel
@@ -22,10 +22,8 @@ DEFAULT_MARK = "default"
 
 Found = Iterator[tuple[str, Problem]]
 
-_PROPERTIES = ("dynamic_viscosity", "density", "pressure_viscosity_coefficient")
 #: Options of the friction of the film, and the properties that only they need.
 _HEAT = ("inlet_heating", "flash_temperature")
-_THERMAL = ("temperature_viscosity_coefficient", "thermal_conductivity")
 #: Tables about values of the other tables.
 _ABOUT = ("assumed", "based_on")
 #: Abscissae of a stiffness table.
@@ -33,12 +31,6 @@ _ABSCISSAE = ("phase", "roll_angle")
 _RECTANGULAR = ("single_pair_stiffness", "double_pair_stiffness")
 #: Roughness of one flank, in one way or the other.
 _HEIGHTS = ("roughness_rms", "roughness_ra")
-_SAME = "They are two ways of saying the same thing"
-
-
-def _both(given: Given, one: str, other: str) -> tuple[str, Problem]:
-    what = f"{given.show(one)} and {given.show(other)} are both given"
-    return one, Problem(what, "", _SAME, "Keep one of them")
 
 
 def _roughness(given: Given) -> Found:
@@ -48,14 +40,14 @@ def _roughness(given: Given) -> Found:
         if keys:
             present[gear] = keys[0]
         if len(keys) == 2:
-            yield _both(given, *keys)
+            yield both_given(given, *keys)
     if "gears.composite_roughness" in given:
         for gear, key in present.items():
             what = (
                 f"{given.show('gears.composite_roughness')} and {given.show(key)} "
                 f"of the {gear} are both given"
             )
-            yield "gears.composite_roughness", Problem(what, "", _SAME, "Keep one of them")
+            yield "gears.composite_roughness", Problem(what, "", TWO_WAYS, "Keep one of them")
     elif len(present) == 1:
         ((gear, key),) = present.items()
         absent = key.replace(*(("pinion", "wheel") if gear == "pinion" else ("wheel", "pinion")))
@@ -170,22 +162,6 @@ def _size(given: Given) -> Found:
         yield "gears.pinion.teeth", Problem(what, "", why, remedy)
 
 
-def _lubricant(given: Given) -> Found:
-    if "lubricant" not in given:
-        return
-    present = [name for name in (*_PROPERTIES, *_THERMAL) if f"lubricant.{name}" in given]
-    yield from heat_balance(given)
-    if "lubricant.name" in given:
-        for name in present:
-            yield _both(given, "lubricant.name", f"lubricant.{name}")
-        return
-    for name in _PROPERTIES:
-        if name not in present:
-            why = "Without a name from the library all three properties are needed"
-            remedy = f'Add {name}, or name an oil, for example name = "80W"'
-            yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
-
-
 def _needs(given: Given, law: FrictionLaw | None) -> Found:
     """What the friction law and the film model need to know."""
     film = given.get("film.model", "none")
@@ -221,8 +197,8 @@ def _film_of_friction(given: Given, law: FrictionLaw | None, film: FilmModel | N
         why = "That law shears the solved film, and this model gives no pressure"
         yield "friction.law", Problem(what, "", why, 'Set model = "newton" in [film]')
     heated = [key for key in _HEAT if given.get(f"friction.{key}")]
-    if heated and "lubricant" in given and "lubricant.name" not in given:
-        for name in _THERMAL:
+    if heated and "lubricant.dynamic_viscosity" in given:
+        for name in THERMAL:
             if f"lubricant.{name}" not in given:
                 remedy = f"Add {name}, or set {heated[0]} = false in [friction]"
                 why = f"{heated[0]} = true needs it"
@@ -250,7 +226,7 @@ def _dampings(given: Given) -> Found:
     for name in ("mesh_damping", "bearing_damping"):
         value, ratio = f"dynamics.{name}", f"dynamics.{name}_ratio"
         if value in given and ratio in given:
-            yield _both(given, value, ratio)
+            yield both_given(given, value, ratio)
 
 
 def _friction_load(given: Given) -> Found:
@@ -429,7 +405,7 @@ def _rectangular(given: Given) -> Found:
     zones = [f"stiffness.{name}" for name in _RECTANGULAR]
     present = [key for key in zones if key in given]
     if pair in given:
-        yield from ((key, _both(given, pair, key)[1]) for key in present)
+        yield from ((key, both_given(given, pair, key)[1]) for key in present)
     elif not present:
         why = "It needs pair_stiffness, or both single_pair_stiffness and double_pair_stiffness"
         yield _lacks("pair_stiffness", "rectangular", why, 'Add pair_stiffness = "2e8 N/m"')
@@ -448,7 +424,7 @@ def _fourier(given: Given) -> Found:
 def _table(given: Given) -> Found:
     forms = [f"stiffness.{name}" for name in _ABSCISSAE if f"stiffness.{name}" in given]
     if len(forms) == 2:
-        yield _both(given, *forms)
+        yield both_given(given, *forms)
     if not forms:
         why = "The stiffness of the mesh needs phase, that of one pair needs roll_angle"
         yield _lacks("phase", "table", why, "Add phase = [...] or roll_angle = [...]")
@@ -468,7 +444,7 @@ _STIFFNESS_CHECKS = {"rectangular": _rectangular, "table": _table, "fourier": _f
 
 
 _CHECKS: tuple[Callable[[Given], Found], ...] = (
-    _kind, _roughness, heat_of_bodies, _face_width, _size, _lubricant, _dampings,
+    _kind, _roughness, heat_of_bodies, _face_width, _size, lubricant_problems, _dampings,
     _friction_load, _solver, _coupling,
 )  # fmt: skip
 

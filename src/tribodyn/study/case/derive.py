@@ -161,11 +161,22 @@ def thermal_contact_coefficients(case: CaseData) -> tuple[float, float]:
 
 @lru_cache(maxsize=64)
 def lubricant(data: LubricantData) -> Lubricant:
-    """Build the oil, from the library or from its properties."""
-    from tribodyn.lubricant import Lubricant, from_library
+    """Build the oil: of the library, of a data sheet, or from its properties."""
+    from tribodyn.lubricant import Lubricant, from_data_sheet, from_library
 
     if data.name is not None:
         return from_library(data.name, data.temperature)
+    if data.density_at_15 is not None:
+        return from_data_sheet(
+            data.temperature or 0.0,
+            data.density_at_15,
+            viscosity_at_40=data.kinematic_viscosity_at_40,
+            viscosity_at_100=data.kinematic_viscosity_at_100,
+            index=data.viscosity_index,
+            base_oil=data.base_oil,
+            pressure_viscosity_coefficient=data.pressure_viscosity_coefficient,
+            thermal_conductivity=data.thermal_conductivity,
+        )
     properties = (data.dynamic_viscosity, data.density, data.pressure_viscosity_coefficient)
     viscosity, density, coefficient = (float(value or 0.0) for value in properties)
     return Lubricant(

@@ -151,6 +151,16 @@ def _copy(data: Any) -> Any:
     return data
 
 
+#: Why of two keys one is enough.
+TWO_WAYS = "They are two ways of saying the same thing"
+
+
+def both_given(given: Given, one: str, other: str) -> tuple[str, Problem]:
+    """Problem of two keys that exclude each other, under the first of them."""
+    what = f"{given.show(one)} and {given.show(other)} are both given"
+    return one, Problem(what, "", TWO_WAYS, "Keep one of them")
+
+
 @dataclass(frozen=True)
 class Source:
     """Origin of the keys of a case."""
@@ -231,10 +241,7 @@ def _middle(key: str, text: str) -> str | float:
 
 
 def spread_problem(spec: Option, key: str, text: Any) -> Problem | None:
-    """Check the values of a spread quantity against the range of its key; None if all are inside.
-
-    A distribution without ends is followed out to one value in a million on either side.
-    """
+    """Check the values of a spread quantity against the range of its key; None if all fit."""
     if spec.kind not in ("number", "integer"):
         return None
     try:

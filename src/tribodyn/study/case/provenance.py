@@ -19,6 +19,7 @@ from tribodyn.study.case.gears import RQ_OVER_RA, is_idle
 from tribodyn.study.case.given import Given, Stated
 from tribodyn.study.case.hypoid import solid
 from tribodyn.study.case.section import Section, in_force, section_at
+from tribodyn.study.case.sections import PROPERTIES, SHEET
 from tribodyn.study.case.values import FaultError, Plain, read_value, written
 
 if TYPE_CHECKING:
@@ -184,10 +185,7 @@ _TEETH = tuple(
     for gear in ("pinion", "wheel")
     for name in ("teeth", "profile_shift_coefficient")
 )
-_OIL = tuple(
-    f"lubricant.{name}"
-    for name in ("name", "dynamic_viscosity", "density", "pressure_viscosity_coefficient")
-)
+_OIL = tuple(f"lubricant.{name}" for name in ("name", *PROPERTIES, *SHEET))
 _LOAD = ("operation.speed", "operation.torque")
 _ROUGHNESS = (
     "gears.composite_roughness",

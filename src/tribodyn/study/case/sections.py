@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, choice, flag, integer, model_choice, number
-from tribodyn.study.case.given import Given
+from tribodyn.study.case.given import Given, both_given
 from tribodyn.study.case.section import Section, table
 
 if TYPE_CHECKING:
@@ -18,6 +18,20 @@ if TYPE_CHECKING:
 _GUARD = "guards against a wrong unit"
 _RPM = math.pi / 30.0
 _TWO_PI = 2.0 * math.pi
+#: Properties of an oil at its working temperature, and those that only a heated film needs.
+PROPERTIES = ("dynamic_viscosity", "density", "pressure_viscosity_coefficient")
+THERMAL = ("temperature_viscosity_coefficient", "thermal_conductivity")
+#: Figures of a data sheet: those of the viscosity first.
+SHEET = (
+    "kinematic_viscosity_at_40",
+    "kinematic_viscosity_at_100",
+    "viscosity_index",
+    "density_at_15",
+    "base_oil",
+)
+_SHEET_SAYS = (
+    "the figures of a data sheet: kinematic_viscosity_at_40, viscosity_index, density_at_15"
+)
 
 
 def _films() -> Registry[Any]:
@@ -76,8 +90,15 @@ class MaterialData(Section):
     density: float = number(7800.0, 500.0, 25000.0, "from polymers to tungsten", of="density")
 
 
+@cache
+def _base_oils() -> list[str]:
+    from tribodyn.lubricant import BASE_OILS
+
+    return list(BASE_OILS)
+
+
 class LubricantData(Section):
-    """The ``[lubricant]`` table: a name from the library, or the properties themselves."""
+    """The ``[lubricant]`` table: a name from the library, a data sheet, or the properties."""
 
     name: str | None = choice(
         None, _lubricants, meaning="name of an oil of the library", argument="lubricant"
@@ -96,6 +117,55 @@ class LubricantData(Section):
     )
     thermal_conductivity: float | None = number(
         None, 0.01, 2.0, "mineral oil has about 0.13 W/m/K", of="thermal_conductivity"
+    )
+    kinematic_viscosity_at_40: float | None = number(
+        None,
+        2e-6,
+        0.1,
+        _GUARD,
+        of="kinematic_viscosity",
+        symbol="nu_40",
+        example='"220 mm^2/s"',
+        meaning="kinematic viscosity at 40 degC, of a data sheet",
+        argument="viscosity_at_40",
+    )
+    kinematic_viscosity_at_100: float | None = number(
+        None,
+        2e-6,
+        1e-3,
+        "the viscosity index begins at 2 mm^2/s",
+        of="kinematic_viscosity",
+        symbol="nu_100",
+        example='"18.7 mm^2/s"',
+        meaning="kinematic viscosity at 100 degC, of a data sheet",
+        argument="viscosity_at_100",
+    )
+    viscosity_index: float | None = number(
+        None,
+        -100.0,
+        400.0,
+        "gear oils lie between 80 and 250",
+        of="viscosity_index",
+        meaning="viscosity index by ISO 2909, in the place of one of the two viscosities",
+        argument="index",
+    )
+    density_at_15: float | None = number(
+        None,
+        700.0,
+        1300.0,
+        "liquid lubricants",
+        of="density",
+        symbol="rho_15",
+        example='"892 kg/m^3"',
+        meaning="density at 15 degC, of a data sheet",
+        argument="density_at_15_degc",
+    )
+    base_oil: str | None = choice(
+        None,
+        _base_oils,
+        meaning="base oil of a data sheet, for the estimate of pressure_viscosity_coefficient by "
+        "AGMA 925-A03; mineral if not given",
+        argument="base_oil",
     )
     temperature: float | None = number(
         None, 233.15, 473.15, "gear oils work between -40 and 200 degC", of="temperature"
@@ -337,7 +407,7 @@ class Losses(Section):
     wheel: ShaftData = table(ShaftData, "shaft of the wheel", "empty")
 
 
-def heat_balance(given: Given) -> Iterator[tuple[str, Problem]]:
+def _heat_balance(given: Given) -> Iterator[tuple[str, Problem]]:
     """A heat balance needs an oil that is known at every temperature, and gears that rub."""
     key, other = "lubricant.heat_transfer", "lubricant.ambient_temperature"
     if key not in given:
@@ -345,15 +415,53 @@ def heat_balance(given: Given) -> Iterator[tuple[str, Problem]]:
             why, remedy = "Without heat_transfer the oil keeps its temperature", "Remove it"
             yield other, Problem(given.show(other), "", why, f"{remedy}, or add heat_transfer")
         return
-    from tribodyn.lubricant import library, temperature_range
-
-    name, known = given.get("lubricant.name"), library()
-    grades = [each for each in known if len(set(temperature_range(each))) == 2]
-    if name not in grades:
-        what = f"{given.show(key)} with an oil that is known at one temperature"
-        why = "The balance asks for its viscosity at others"
-        remedy = f'Name another oil, for example name = "{grades[0]}", or remove heat_transfer'
-        yield key, Problem(what, "", why, remedy)
+    if "lubricant.dynamic_viscosity" in given:
+        what = f"{given.show(key)} with properties at one temperature"
+        why = "The balance needs the viscosity at others"
+        remedy = 'Name an oil, for example name = "ISO VG 220", or give the figures of a data sheet'
+        yield key, Problem(what, "", why, f"{remedy}, or remove heat_transfer")
     if given.get("gears.kind", "spur") != "spur":
         why = "The losses at other temperatures are known of spur gears"
         yield key, Problem(given.show(key), "", why, "Remove it")
+
+
+def lubricant_problems(given: Given) -> Iterator[tuple[str, Problem]]:
+    """An oil is one of the library, one of a data sheet, or its properties at one temperature."""
+    if "lubricant" not in given:
+        return
+    yield from _heat_balance(given)
+    stated = [name for name in (*PROPERTIES, *THERMAL, *SHEET) if f"lubricant.{name}" in given]
+    if "lubricant.name" in given:
+        for name in stated:
+            yield both_given(given, "lubricant.name", f"lubricant.{name}")
+    elif any(name in SHEET for name in stated):
+        yield from _data_sheet(given, stated)
+    else:
+        for name in PROPERTIES:
+            if name not in stated:
+                why = "Without a name from the library all three properties are needed"
+                remedy = f'Add {name}, name an oil, for example name = "80W", or give {_SHEET_SAYS}'
+                yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
+
+
+def _data_sheet(given: Given, stated: list[str]) -> Iterator[tuple[str, Problem]]:
+    """An oil of a data sheet has two figures of its viscosity, a density and a temperature."""
+    for name in ("dynamic_viscosity", "density", "temperature_viscosity_coefficient"):
+        if name in stated:
+            first = next(each for each in stated if each in SHEET)
+            what = f"{given.show(f'lubricant.{name}')} and {given.show(f'lubricant.{first}')}"
+            why = "It follows from the figures of the data sheet"
+            yield f"lubricant.{name}", Problem(what, "", why, "Remove it")
+    figures = [name for name in SHEET[:3] if name in stated]
+    if len(figures) < 2:
+        missing = next(name for name in SHEET[:3] if name not in stated)
+        why = f"Two of three figures are needed: {', '.join(SHEET[:3])}"
+        remedy = "Add one of the data sheet"
+        yield f"lubricant.{missing}", Problem(f"{missing} is missing", "", why, remedy)
+    for name, example in (("density_at_15", "892 kg/m^3"), ("temperature", "60 degC")):
+        if f"lubricant.{name}" not in given:
+            remedy = f'Add {name} = "{example}", with the value of your oil'
+            why = "An oil of a data sheet needs it"
+            yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
+    if "base_oil" in stated and "pressure_viscosity_coefficient" in stated:
+        yield both_given(given, "lubricant.base_oil", "lubricant.pressure_viscosity_coefficient")
