@@ -87,7 +87,7 @@ def viscosity_index(viscosity_at_40: float, viscosity_at_100: float) -> float:
     low, high = _references(y)
     if u >= high:
         return 100.0 * (low - u) / (low - high)
-    return 100.0 + (10.0 ** (math.log(high / u) / math.log(y)) - 1.0) / _SLOPE
+    return 100.0 + (math.pow(10.0, math.log(high / u) / math.log(y)) - 1.0) / _SLOPE
 
 
 def viscosity_at_40_degc(viscosity_at_100: float, index: float) -> float:
