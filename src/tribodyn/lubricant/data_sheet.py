@@ -72,27 +72,7 @@ def points_through(
 
 
 def conductivity_of_petroleum(density_at_15_degc: float, temperature: float) -> float:
-    """Thermal conductivity of a petroleum oil: ``0.117/d (1 - 0.00054 t)``.
-
-    Parameters
-    ----------
-    density_at_15_degc : float [kg/m^3]
-        Density at 15 degC, d in t/m^3.
-    temperature : float [K]
-        Temperature, t in degC.
-
-    Returns
-    -------
-    float [W/m/K]
-
-    Valid for petroleum oils from 0 to 200 degC within 10 %. Source: Cragoe (1929), NBS
-    Miscellaneous Publication 97.
-
-    Examples
-    --------
-    >>> round(conductivity_of_petroleum(892.2, 313.15), 3)
-    0.128
-    """
+    """Conductivity of a petroleum oil: ``0.117/d (1 - 0.00054 t)``, d in t/m^3, Cragoe (1929)."""
     return 117.0 / density_at_15_degc * (1.0 - 0.00054 * (temperature - ZERO_CELSIUS))
 
 
