@@ -58,7 +58,7 @@ class HeatBalance(Record):
 def balanced(
     case: Case, mesh_at: Callable[[Case], tuple[Case, MeshTable, Answer]]
 ) -> tuple[Case, MeshTable, Answer, HeatBalance]:
-    """Case at the temperature of the balance ``loss(T) = hA (T - T_amb)``, its mesh, and the way."""
+    """Case where the losses are given off, ``loss(T) = hA (T - T_amb)``, its mesh, and the way."""
     # Secants within a bracket: the loss is positive at the temperature of the surroundings, and has
     # to be smaller than the heat given off at the highest one at which the oil is known.
     oil = case.lubricant
