@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from known_figures import caption, curve
 from tribodyn.drawing import Sketch
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
+from tribodyn.study.pipeline import series
 
 NAMES = (
     "gear_pair",
@@ -240,7 +240,15 @@ def test_no_friction_is_told_instead_of_drawn(drawable: Any) -> None:
     assert "friction" not in caption("transmission_error", smooth)
     assert "friction" not in caption("mesh_force", smooth)
     assert "without friction" in caption("transmission_error", drawable())
-    assert "Friction carries" in caption("mesh_force", drawable())
+    rubbing = drawable()
+    fine, static = rubbing.response.fine, rubbing.mesh.total_normal_force
+    for factor, words in ((1.02, "2 % above the static force"), (0.97, "3 % below the static")):
+        mean = float(fine.weight @ series.mesh_force(fine))
+        fine.contact_force[:] *= factor * static / mean
+        assert words in caption("mesh_force", rubbing)
+        assert "friction carries a part" in caption("mesh_force", rubbing)
+    fine.contact_force[:] /= 0.97
+    assert "friction" not in caption("mesh_force", rubbing)  # which moves the mean by nothing
 
 
 def test_a_transient_is_drawn_over_time(drawable: Any) -> None:
@@ -302,15 +310,11 @@ def test_negative_force_is_explained(drawable: Any) -> None:
     assert FIGURES["mesh_force"](result).layout.yaxis.rangemode == "tozero"
 
 
-class MeshTable(SimpleNamespace):
-    """Stand-in of that name."""
-
-
-def test_captions_follow_the_contact_ratio(drawable: Any) -> None:
-    shared = MeshTable(transverse_contact_ratio=2.2)
-    for name in ("friction", "path_of_contact"):
-        assert "one carries it alone" in caption(name, drawable())
-        assert "Two or three pairs" in caption(name, shared)
+def test_captions_follow_the_pairs_under_load(drawable: Any) -> None:
+    result = drawable()
+    two = f"{100.0 * (result.mesh.contact_ratio_under_load - 1.0):.3g} %"
+    for name in ("friction", "path_of_contact", "load_sharing", "mesh_stiffness"):
+        assert f"two pairs carry during {two} of the mesh cycle" in caption(name, result)
 
 
 def test_spectra_end_where_the_lines_vanish(drawn: dict[str, go.Figure]) -> None:

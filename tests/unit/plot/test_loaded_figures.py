@@ -184,6 +184,9 @@ def test_a_run_has_no_such_figure_and_says_which_call_has(drawable: Any, name: s
 class HarrisMap(SimpleNamespace):
     """Stand-in of that name."""
 
+    def curves(self):
+        return self.phase, self.transmission_error
+
 
 class TipReliefOptimum(SimpleNamespace):
     """Stand-in of that name."""

@@ -98,3 +98,11 @@ def test_a_sketch_is_written_as_plotly_writes_it(values: object) -> None:
     written, plotly = json.loads(sketch.to_json()), json.loads(sketch.figure().to_json())
     assert written["data"] == plotly["data"]
     assert written["frames"] == plotly["frames"]
+
+
+def test_every_point_of_a_curve_is_drawn() -> None:
+    """By default plotly leaves points out, so that smooth curves look like polygons."""
+    x = np.linspace(0.0, 1.0, 2000)
+    assert line(x, x**2, "smooth", "black")["line"]["simplify"] is False
+    many = np.linspace(0.0, 1.0, 200_000)
+    assert "simplify" not in line(many, many, "long record", "black")["line"]

@@ -92,6 +92,10 @@ def button_row(choices: Sequence[tuple[str, dict[str, Any]]]) -> dict[str, Any]:
     }
 
 
+#: Points of a curve up to which each of them is drawn.
+_MOST_POINTS = 20_000
+
+
 def line(
     x: Any,
     y: Any,
@@ -103,13 +107,15 @@ def line(
     width: float = 2.0,
 ) -> dict[str, Any]:
     """Describe one curve whose hover text carries its unit."""
+    # plotly leaves points out by default, which draws smooth curves as polygons.
+    every = {"simplify": False} if len(x) <= _MOST_POINTS else {}
     return {
         "type": "scatter",
         "mode": "lines",
         "x": x,
         "y": y,
         "name": name,
-        "line": {"color": color, "dash": dash, "width": width},
+        "line": {"color": color, "dash": dash, "width": width, **every},
         "hovertemplate": f"%{{y:.4g}} {unit}".rstrip() + f"<extra>{name}</extra>",
     }
 
