@@ -140,7 +140,9 @@ def _friction_caption(mesh: MeshTable) -> str:
 
 def gaps_in_words(mesh: MeshTable) -> str:
     """Say why curves have gaps; empty where a pair carries load all the way."""
-    words = " Where curves are interrupted, the pair carries no load: there is nothing to rub."
+    words = (
+        " Where curves are interrupted, the pair carries no load and has neither friction nor film."
+    )
     return "" if np.all(Path(mesh).loaded) else words
 
 
