@@ -1,13 +1,13 @@
 """Exchange with other programs: gearbox models in the REXS format, tables as CSV and JSON.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| ``rexs_file`` | what a REXS file holds, as XML, JSON or zip |
-| ``gearbox`` | which stages and loads there are, and what is odd about them |
-| ``flank_forms`` | which reliefs and crownings the flanks have |
-| ``to_case`` | the case of a spur stage, with what had to be assumed |
+| ``rexs_file`` | content of a REXS file in XML, JSON or zip |
+| ``gearbox`` | stages and load cases of a REXS model, with remarks |
+| ``flank_forms`` | reliefs and crownings of the flanks |
+| ``to_case`` | case of a spur stage, with the assumed values |
 | ``tables`` | tables and figures of a result as CSV and JSON |
-| ``write`` | a case as a REXS model, which reads back without loss |
+| ``write`` | export of a case as a REXS model, without loss |
 """
 
 from tribodyn.arguments import guard

@@ -1,7 +1,7 @@
-"""Flank modifications of a REXS model in the terms of a case, as far as a case has them.
+"""Convert flank modifications of a REXS model to those of a case, as far as a case has them.
 
-REXS hangs components such as ``tip_relief`` on the flanks of a gear (1.2 and later). Amounts are
-material that is taken away. A form that a case cannot express is left out whole, and told.
+REXS attaches components such as ``tip_relief`` to the flanks of a gear (1.2 and later). Amounts are
+removed material. A form that a case cannot express is left out completely, with a remark.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from collections.abc import Iterator
 
 from tribodyn.exchange.rexs_file import Component, RexsFile
 
-#: Kind -> attributes that are understood; any other value but zero leaves the form out.
+#: Kind -> supported attributes; a form with any other value except zero is left out.
 _READ = {
     "tip_relief": ("tip_relief_depth", "tip_relief_datum_length", "tip_relief_datum_diameter"),
     "root_relief": ("root_relief_depth", "root_relief_datum_length"),
     "profile_crowning": ("profile_crowning_at_root", "profile_crowning_at_tip"),
     "helix_crowning": ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
 }
-#: Forms that a case has not, or whose sign other programs do not agree upon.
+#: Forms that a case does not have, or whose sign differs between programs.
 _NOT_READ = (
     "profile_slope",
     "helix_slope",
@@ -38,25 +38,25 @@ def forms_of(
     file: RexsFile, gear: Component, flanks: list[int], radii: tuple[float, float] | None
 ) -> tuple[dict[str, float], list[str]]:
     """Keys of a gear's modification table in SI, and remarks; radii of base and tip circle [m]."""
-    found, remarks = {}, []
+    modification, remarks = {}, []
     for kind in _KINDS:
         sides = [_on(file, number, kind) for number in flanks or [gear.id]]
         parts = {part.id: part for part in (*_on(file, gear.id, kind), *(sides[0] or sides[-1]))}
         if len(parts) > 1:
-            remarks.append(f"{gear}: there are {len(parts)} {kind} on one flank; none is read")
+            remarks.append(f"{gear}: there are {len(parts)} {kind} on one flank; all are ignored")
             continue
         for part in parts.values():
             keys, why = _read(part, radii)
             if why:
-                remarks.append(f"{gear}: {part} is not read: {why}")
+                remarks.append(f"{gear}: {part} is ignored: {why}")
             elif any(_values(side) != _values(sides[0]) for side in sides):
-                remarks.append(f"{gear}: {kind} of its flanks differs; the left one is read")
-            found.update(keys)
-    return found, remarks
+                remarks.append(f"{gear}: {kind} of its flanks differs; the left one is used")
+            modification.update(keys)
+    return modification, remarks
 
 
 def _on(file: RexsFile, number: int, kind: str) -> list[Component]:
-    """Components of a kind that hang on a flank or a gear."""
+    """Components of a kind that are attached to a flank or a gear."""
     linked = {
         other: file.components[other]
         for relation in file.relations
@@ -72,18 +72,18 @@ def _values(parts: list[Component]) -> list[dict[str, object]]:
 
 
 def _read(part: Component, radii: tuple[float, float] | None) -> tuple[dict[str, float], str]:
-    """Keys of one form, or why there are none."""
+    """Keys of one form, or the reason why it is ignored."""
     if part.kind not in _READ:
-        return {}, "a case has no such form, or no agreed sign for it"
+        return {}, "a case does not have this form, or its sign differs between programs"
     odd = [name for name in _odd(part) if name not in _READ[part.kind]]
     if odd:
-        return {}, f"{odd[0]} has no place in a case"
+        return {}, f"a case has no key for {odd[0]}"
     amounts = [part.number(name, "m") for name in _READ[part.kind]]
     if part.kind.endswith("crowning"):
-        given = [amount for amount in amounts if amount is not None]
-        if len(set(given)) != 1:
-            return {}, "its amounts at both ends differ" if given else "it has no amount"
-        return {"crowning" if part.kind == "helix_crowning" else part.kind: given[0]}, ""
+        crownings = [amount for amount in amounts if amount is not None]
+        if len(set(crownings)) != 1:
+            return {}, "its amounts at both ends differ" if crownings else "it has no amount"
+        return {"crowning" if part.kind == "helix_crowning" else part.kind: crownings[0]}, ""
     amount, length, *diameter = amounts
     if amount is None:
         return {}, "it has no depth"
@@ -95,7 +95,7 @@ def _read(part: Component, radii: tuple[float, float] | None) -> tuple[dict[str,
 
 
 def _odd(part: Component) -> Iterator[str]:
-    """Attributes that say something, whether understood or not."""
+    """Attributes with a value, supported or not."""
     return (name for name, v in part.values.items() if v.content not in (None, "", 0.0, False))
 
 

@@ -1,4 +1,4 @@
-"""The gear stages of a REXS model: their geometry, what drives them, and what is odd about them."""
+"""Gear stages and load cases of a REXS model, with remarks on what was ignored or is doubtful."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from tribodyn.gear.curves import involute
 from tribodyn.record import html_table
 
 _GEARS = ("cylindrical_gear", "ring_gear")
-#: Stages that are no pair of cylindrical gears.
+#: Stages that are not pairs of cylindrical gears.
 _OTHER_STAGES = ("bevel_stage", "worm_stage")
-#: A tip circle is off the standard one by less than so many modules.
+#: Largest plausible deviation of a tip circle from the standard one, in modules.
 _TIP_MODULES = 2.0
 
 
 @dataclass(frozen=True)
 class StageGear:
-    """One gear of a stage, in SI and radians; None is what the file does not say.
+    """One gear of a stage, in SI and radians; None for values that the file does not contain.
 
     Parameters
     ----------
@@ -85,8 +85,8 @@ class Stage:
 
     @property
     def _transverse_angle(self) -> float:
-        one = self.gear_1
-        return math.atan(math.tan(one.normal_pressure_angle) / math.cos(one.helix_angle))
+        gear = self.gear_1
+        return math.atan(math.tan(gear.normal_pressure_angle) / math.cos(gear.helix_angle))
 
     @property
     def ratio(self) -> float:
@@ -96,8 +96,8 @@ class Stage:
     @property
     def reference_center_distance(self) -> float:
         """Distance at which the reference circles touch [m] (ISO 21771, transverse module)."""
-        one = self.gear_1
-        return 0.5 * abs(self._teeth) * one.normal_module / math.cos(one.helix_angle)
+        gear = self.gear_1
+        return 0.5 * abs(self._teeth) * gear.normal_module / math.cos(gear.helix_angle)
 
     @property
     def operating_pressure_angle(self) -> float:
@@ -114,12 +114,12 @@ class Stage:
 
 @dataclass(frozen=True)
 class Load:
-    """One load case: speeds and torques of the shafts that follow from what is given.
+    """One load case: speeds and torques of the shafts, propagated through the stages.
 
     Parameters
     ----------
     id : int
-        Number of the load case; 0 for values that stand outside of all load cases.
+        Number of the load case; 0 for values outside of all load cases.
     share : float, optional
         Share of the life.
     speeds : dict of int to float [rad/s]
@@ -127,9 +127,9 @@ class Load:
     torques : dict of int to float [N m]
         Torque through each shaft without losses, without its sign.
     source : int, optional
-        Shaft at which the torque is given.
+        Shaft on which the file specifies the torque.
     driven : bool
-        Whether the given torque brakes its shaft.
+        Whether this torque brakes its shaft.
     oil_temperature : float, optional [K]
         Temperature of the oil.
     """
@@ -144,16 +144,16 @@ class Load:
 
 
 class GearboxModel:
-    """A gearbox of another program: its stages and its loads.
+    """Gearbox model of another program: its stages and load cases.
 
-    Made by :func:`read_rexs`; :func:`case_from_rexs` makes a case of a spur stage.
+    Created by :func:`read_rexs`; :func:`case_from_rexs` converts a spur stage to a case.
 
     Parameters
     ----------
     file : RexsFile
-        What stands in the file.
+        Content of the file.
     path : str
-        Its place, for messages.
+        Path of the file, for messages.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class GearboxModel:
     loads : list of Load
         Load cases.
     remarks : list of str
-        What was left out or looks wrong, in words.
+        Notes on what was ignored or looks wrong.
     """
 
     def __init__(self, file: RexsFile, path: str = "") -> None:
@@ -174,7 +174,7 @@ class GearboxModel:
         self.version, self.application = file.version, file.application
         self.components = kinds(file.components.values())
         self.remarks: list[str] = []
-        self.stages = [self._stage(found) for found in file.of_kind("cylindrical_stage")]
+        self.stages = [self._stage(component) for component in file.of_kind("cylindrical_stage")]
         self.loads = [self._load(number) for number in sorted(file.load_cases)] or [self._load(0)]
         self._remark_on_rest()
 
@@ -212,20 +212,20 @@ class GearboxModel:
         Raises
         ------
         InputError
-            If there is no such stage, or more than one and none is named.
+            If there is no such stage, or there is more than one and no number.
         """
-        known = [stage.id for stage in self.stages]
-        if not known:
-            found = ", ".join(k for k in self.components if k.endswith("_stage")) or "none"
-            why = f"Stages in the file: {found}; cylindrical pairs are computed"
+        numbers = [stage.id for stage in self.stages]
+        if not numbers:
+            stage_kinds = ", ".join(k for k in self.components if k.endswith("_stage")) or "none"
+            why = f"Stages in the file: {stage_kinds}; only cylindrical pairs are supported"
             raise InputError("there is no cylindrical stage", self.path, why)
-        if number is None and len(known) == 1:
-            number = known[0]
-        if number not in known:
+        if number is None and len(numbers) == 1:
+            number = numbers[0]
+        if number not in numbers:
             what = "there are several stages" if number is None else f"there is no stage {number}"
-            names = ", ".join(str(n) for n in known)
-            raise InputError(what, self.path, f"Stages: {names}", "Name one of them")
-        return self.stages[known.index(number)]
+            names = ", ".join(str(n) for n in numbers)
+            raise InputError(what, self.path, f"Stages: {names}", "Choose one of them")
+        return self.stages[numbers.index(number)]
 
     def load(self, number: int | None = None) -> Load:
         """The load case with a number, or the first one.
@@ -245,7 +245,7 @@ class GearboxModel:
                 return load
         names = ", ".join(str(load.id) for load in self.loads)
         what = f"there is no load case {number}"
-        raise InputError(what, self.path, f"Load cases: {names}", "Name one of them")
+        raise InputError(what, self.path, f"Load cases: {names}", "Choose one of them")
 
     def shaft_of(self, gear: int) -> int | None:
         """Number of the shaft that carries a gear.
@@ -278,81 +278,91 @@ class GearboxModel:
         for relation in self.file.related("stage", stage=stage.id):
             numbers = [relation.of("gear_1"), relation.of("gear_2")]
             if None not in numbers:
-                one, two = (self._gear(self.file.components[n]) for n in numbers if n is not None)
+                first, second = (
+                    self._gear(self.file.components[n]) for n in numbers if n is not None
+                )
                 # Some programs give internal stages a negative distance.
                 distance = abs(_needed(stage, "center_distance", "m"))
-                found = Stage(stage.id, one, two, distance, stage.id in self._planetary)
-                self._remark_on_stage(found)
-                return found
-        raise InputError("no relation names both gears of the stage", str(stage))
+                pair = Stage(stage.id, first, second, distance, stage.id in self._planetary)
+                self._remark_on_stage(pair)
+                return pair
+        raise InputError("no relation refers to both gears of the stage", str(stage))
 
-    def _gear(self, gear: Component) -> StageGear:
-        if gear.kind not in _GEARS:
-            raise InputError(f"a cylindrical stage has a {gear.kind}", str(gear))
-        sides = self._flanks(gear)
-        flank = sides[0] if sides else gear
-        teeth = _needed(gear, "number_of_teeth", "")
+    def _gear(self, component: Component) -> StageGear:
+        if component.kind not in _GEARS:
+            raise InputError(f"a cylindrical stage has a {component.kind}", str(component))
+        sides = self._flanks(component)
+        flank = sides[0] if sides else component
+        teeth = _needed(component, "number_of_teeth", "")
         if teeth != int(teeth) or not 1 <= abs(teeth) <= 10_000:
-            raise InputError(f"number_of_teeth = {teeth:g}", str(gear), "It is no number of teeth")
-        sign = -1.0 if gear.kind == "ring_gear" or teeth < 0.0 else 1.0
-        found = StageGear(
-            gear.id,
-            gear.name,
+            why = "The number of teeth is a whole number from 1 to 10000"
+            raise InputError(f"number_of_teeth = {teeth:g}", str(component), why)
+        sign = -1.0 if component.kind == "ring_gear" or teeth < 0.0 else 1.0
+        gear = StageGear(
+            component.id,
+            component.name,
             int(math.copysign(teeth, sign)),
-            _needed(gear, "normal_module", "m"),
+            _needed(component, "normal_module", "m"),
             _needed(flank, "normal_pressure_angle", "rad"),
-            gear.number("helix_angle_reference_diameter", "rad") or 0.0,
+            component.number("helix_angle_reference_diameter", "rad") or 0.0,
             flank.number("addendum_modification_coefficient", "") or 0.0,
-            gear.number("face_width", "m"),
-            gear.number("tip_diameter", "m"),
-            gear.number("arithmetic_average_roughness_flank", "m"),
+            component.number("face_width", "m"),
+            component.number("tip_diameter", "m"),
+            component.number("arithmetic_average_roughness_flank", "m"),
         )
-        _require_gear(found, gear)
-        return self._with_forms(self._without_nonsense(found, gear), gear, [s.id for s in sides])
+        _require_gear(gear, component)
+        return self._with_forms(
+            self._without_implausible_tip(gear, component), component, [s.id for s in sides]
+        )
 
-    def _with_forms(self, found: StageGear, gear: Component, flanks: list[int]) -> StageGear:
-        """The gear with the forms of its flanks, which only external spur gears take."""
+    def _with_forms(self, gear: StageGear, component: Component, flanks: list[int]) -> StageGear:
+        """Add the flank modifications, which only external spur gears support."""
         radii = None
-        if found.tip_diameter is not None and found.teeth > 0 and not found.helix_angle:
-            cosine = math.cos(found.normal_pressure_angle)
-            radii = (0.5 * found.teeth * found.normal_module * cosine, 0.5 * found.tip_diameter)
-        forms, remarks = forms_of(self.file, gear, flanks, radii)
+        if gear.tip_diameter is not None and gear.teeth > 0 and not gear.helix_angle:
+            cosine = math.cos(gear.normal_pressure_angle)
+            radii = (
+                0.5 * gear.teeth * gear.normal_module * cosine,
+                0.5 * gear.tip_diameter,
+            )
+        forms, remarks = forms_of(self.file, component, flanks, radii)
         for remark in remarks:
             self._remark(remark)
-        return replace(found, modification=forms)
+        return replace(gear, modification=forms)
 
     def _flanks(self, gear: Component) -> list[Component]:
-        """Left and right flank; none where the values stand with the gear itself."""
+        """Left and right flank; empty if the gear itself has the values."""
         for relation in self.file.related("flank", gear=gear.id):
             sides = [self.file.components[n] for r, n in relation.refs if r in ("left", "right")]
             if len(sides) == 2:
                 for name in ("normal_pressure_angle", "addendum_modification_coefficient"):
                     unit = "rad" if name.endswith("angle") else ""
                     if sides[0].number(name, unit) != sides[1].number(name, unit):
-                        self._remark(f"{gear}: {name} of its flanks differs; the left one is read")
+                        self._remark(f"{gear}: {name} of its flanks differs; the left one is used")
             if sides:
                 return sides
         return []
 
-    def _without_nonsense(self, found: StageGear, gear: Component) -> StageGear:
-        if found.tip_diameter is None:
-            self._remark(f"{gear}: no tip diameter; that of the standard addendum is taken")
-            return found
-        reference = found.teeth * found.normal_module / math.cos(found.helix_angle)
-        standard = reference + 2.0 * found.normal_module * (1.0 + found.profile_shift_coefficient)
-        if abs(found.tip_diameter - abs(standard)) <= _TIP_MODULES * found.normal_module:
-            return found
+    def _without_implausible_tip(self, gear: StageGear, component: Component) -> StageGear:
+        if gear.tip_diameter is None:
+            self._remark(f"{component}: no tip diameter; that of the standard addendum is used")
+            return gear
+        reference = gear.teeth * gear.normal_module / math.cos(gear.helix_angle)
+        standard = reference + 2.0 * gear.normal_module * (1.0 + gear.profile_shift_coefficient)
+        if abs(gear.tip_diameter - abs(standard)) <= _TIP_MODULES * gear.normal_module:
+            return gear
         self._remark(
-            f"{gear}: tip_diameter = {found.tip_diameter * 1e3:g} mm cannot be that of the gear "
-            f"(standard addendum: {abs(standard) * 1e3:.2f} mm); it is ignored"
+            f"{component}: tip_diameter = {gear.tip_diameter * 1e3:g} mm is ignored: the standard "
+            f"addendum gives {abs(standard) * 1e3:.2f} mm"
         )
-        return replace(found, tip_diameter=None)
+        return replace(gear, tip_diameter=None)
 
     def _load(self, number: int) -> Load:
         case = {**self.file.components}
         for key, part in self.file.load_cases.get(number, {}).items():
-            whole = self.file.components[key]
-            case[key] = Component(key, whole.kind, whole.name, {**whole.values, **part.values})
+            component = self.file.components[key]
+            case[key] = Component(
+                key, component.kind, component.name, {**component.values, **part.values}
+            )
         shafts = [c for c in case.values() if c.kind == "shaft"]
         speeds = {c.id: v for c in shafts if (v := c.number("rotational_speed", "rad/s"))}
         torques: dict[int, float] = {}
@@ -369,41 +379,41 @@ class GearboxModel:
         oil = [t for c in casing if (t := c.number("temperature_lubricant", "K")) is not None]
         shares = [s for c in units if (s := c.number("load_duration_fraction", "")) is not None]
         serial = not self._planetary
-        given = {} if source is None else {source: abs(torques[source])}
+        source_torque = {} if source is None else {source: abs(torques[source])}
         return Load(
             number,
             shares[0] if shares else None,
             self._along({k: abs(v) for k, v in speeds.items()}, -1.0) if serial else speeds,
-            self._along(given, 1.0) if serial else given,
+            self._along(source_torque, 1.0) if serial else source_torque,
             source,
             driven,
             oil[0] if oil else None,
         )
 
-    def _along(self, known: dict[int, float], power: float) -> dict[int, float]:
-        """Carry speeds (power -1) or torques (1) from shaft to shaft through the stages."""
-        known = dict(known)
+    def _along(self, values: dict[int, float], power: float) -> dict[int, float]:
+        """Propagate speeds (power -1) or torques (1) from shaft to shaft through the stages."""
+        values = dict(values)
         meshes = [
             (self.shaft_of(s.gear_1.id), self.shaft_of(s.gear_2.id), abs(s.ratio))
             for s in self.stages
         ]
         for _ in meshes:
-            for one, two, ratio in meshes:
-                if one in known and two is not None:
-                    known.setdefault(two, known[one] * ratio**power)
-                elif two in known and one is not None:
-                    known.setdefault(one, known[two] / ratio**power)
-        return known
+            for first, second, ratio in meshes:
+                if first in values and second is not None:
+                    values.setdefault(second, values[first] * ratio**power)
+                elif second in values and first is not None:
+                    values.setdefault(first, values[second] / ratio**power)
+        return values
 
     def _remark_on_stage(self, stage: Stage) -> None:
-        one, two = stage.gear_1, stage.gear_2
-        given = one.profile_shift_coefficient + two.profile_shift_coefficient
-        if abs(one.normal_module - two.normal_module) > 1e-9:
+        first, second = stage.gear_1, stage.gear_2
+        shift_sum = first.profile_shift_coefficient + second.profile_shift_coefficient
+        if abs(first.normal_module - second.normal_module) > 1e-9:
             self._remark(f"stage {stage.id}: the modules of its gears differ")
-        elif abs(given - stage.shift_sum) > 5e-3:
+        elif abs(shift_sum - stage.shift_sum) > 5e-3:
             self._remark(
-                f"stage {stage.id}: the profile shifts sum up to {given:.4f}, the centre distance "
-                f"has no backlash at {stage.shift_sum:.4f}"
+                f"stage {stage.id}: the profile shifts sum up to {shift_sum:.4f}, the centre "
+                f"distance has no backlash at {stage.shift_sum:.4f}"
             )
 
     def _remark_on_rest(self) -> None:
@@ -414,10 +424,10 @@ class GearboxModel:
             self._remark(f"{planetary} is not computed; its gears are listed{self._epicyclic()}")
         torques = {load.source for load in self.loads}
         if torques == {None}:
-            self._remark("no single torque is given that all others follow from")
+            self._remark("there is not exactly one torque from which all others follow")
 
     def _epicyclic(self) -> str:
-        """Sun, planets and ring of the one planetary stage, in words."""
+        """Text on sun, planets and ring of a single planetary stage."""
         inner = {abs(s.gear_1.teeth) for s in self.stages if s.planetary and s.ratio > 0.0}
         outer = [s for s in self.stages if s.planetary and s.ratio < 0.0]
         if len(self.file.of_kind("planetary_stage")) != 1 or len(inner) != 1 or not outer:
@@ -426,7 +436,7 @@ class GearboxModel:
         fits = "" if (sun + ring) % planets == 0 else "do not "
         return (
             f": sun {sun}, {planets} planets {outer[0].gear_1.teeth}, ring {ring} teeth; ratio "
-            f"{1.0 + ring / sun:.4g} with the ring held; equally spaced planets {fits}assemble"
+            f"{1.0 + ring / sun:.4g} with a fixed ring; equally spaced planets {fits}assemble"
         )
 
     def _remark(self, text: str) -> None:
@@ -441,18 +451,18 @@ def _needed(component: Component, name: str, unit: str) -> float:
     return value
 
 
-def _require_gear(found: StageGear, gear: Component) -> None:
-    """Refuse figures that no gear has, before anything is computed with them."""
+def _require_gear(gear: StageGear, component: Component) -> None:
+    """Refuse values outside the range of real gears before anything is computed with them."""
     limits = {
-        "normal_module": (found.normal_module, 1e-6, 1.0),
-        "normal_pressure_angle": (found.normal_pressure_angle, 0.01, 1.2),
-        "helix_angle": (abs(found.helix_angle), 0.0, 1.4),
-        "profile_shift_coefficient": (abs(found.profile_shift_coefficient), 0.0, 10.0),
+        "normal_module": (gear.normal_module, 1e-6, 1.0),
+        "normal_pressure_angle": (gear.normal_pressure_angle, 0.01, 1.2),
+        "helix_angle": (abs(gear.helix_angle), 0.0, 1.4),
+        "profile_shift_coefficient": (abs(gear.profile_shift_coefficient), 0.0, 10.0),
     }
     for name, (value, low, high) in limits.items():
         if not low <= value <= high:
-            why = f"Gears have {low:g} to {high:g} (SI, radians)"
-            raise InputError(f"{name} = {value:g}", str(gear), why)
+            why = f"The range is {low:g} to {high:g} (SI, radians)"
+            raise InputError(f"{name} = {value:g}", str(component), why)
 
 
 def read_rexs(path: str | PathLike[str]) -> GearboxModel:
@@ -471,8 +481,8 @@ def read_rexs(path: str | PathLike[str]) -> GearboxModel:
     Raises
     ------
     InputError
-        If the file is no REXS model, is damaged, or a stage lacks what makes a gear.
+        If the file is not a REXS model, is damaged, or a stage lacks data of its gears.
 
-    Read are REXS 1.0 to 1.6. Source: rexs.info, model of REXS 1.4.
+    Supports REXS 1.0 to 1.6. Source: rexs.info, model of REXS 1.4.
     """
     return GearboxModel(read_file(path), str(path))

@@ -1,8 +1,8 @@
-"""What a REXS file holds: components with their values, relations and load cases.
+"""Content of a REXS file: components with their values, relations and load cases.
 
-REXS is the open exchange format of gearbox models (rexs.info). One model is written as XML
-(``.rexs``), as JSON (``.rexsj``), or as one of both in a zip (``.rexsz``). Both are brought into
-the form that JSON has, and read from there.
+REXS is the open exchange format of gearbox models (rexs.info). A model is written as XML
+(``.rexs``), as JSON (``.rexsj``), or as one of both in a zip (``.rexsz``). XML is converted to the
+structure of the JSON form first.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ _UNITS = {
     "N/(mmmum)": "N/mm/um",
     "kgm^2": "kg*m^2",
 }
-_REMEDY = "Write it again with the program that it comes from"
-#: Components of one model at most: real gearboxes have some hundred.
+_REMEDY = "Export it again from the program that wrote it"
+#: Largest number of components of one model: real gearboxes have some hundred.
 _MOST = 100_000
 
 
@@ -66,7 +66,7 @@ class Component:
             return None
         content = value.content
         if isinstance(content, bool | str) or not math.isfinite(content):
-            raise InputError(f"{name} = {content}", str(self), "It is no number", _REMEDY)
+            raise InputError(f"{name} = {content}", str(self), "It is not a number", _REMEDY)
         written = "".join(value.unit.split())
         written = _UNITS.get(written, written)
         try:
@@ -78,19 +78,19 @@ class Component:
 
 @dataclass(frozen=True)
 class Relation:
-    """How components belong together: their numbers by the part that they play."""
+    """Relation between components: their numbers by role."""
 
     kind: str
     refs: tuple[tuple[str, int], ...]
 
     def of(self, role: str) -> int | None:
-        """Number of the component that plays a part."""
+        """Number of the component in a role."""
         return next((number for name, number in self.refs if name == role), None)
 
 
 @dataclass
 class RexsFile:
-    """A REXS model as it stands in its file."""
+    """A REXS model as stored in its file."""
 
     version: str
     application: str
@@ -99,7 +99,7 @@ class RexsFile:
     load_cases: dict[int, dict[int, Component]]
 
     def related(self, kind: str, **roles: int) -> Iterator[Relation]:
-        """Relations of one kind in which these components play these parts."""
+        """Relations of one kind in which the components have the roles."""
         for relation in self.relations:
             if relation.kind == kind and all(relation.of(r) == n for r, n in roles.items()):
                 yield relation
@@ -110,29 +110,27 @@ class RexsFile:
 
 
 def read_file(path: str | PathLike[str]) -> RexsFile:
-    """Read a REXS file; what it holds decides, not its name."""
+    """Read a REXS file; the content determines the format, not the name."""
     place = str(path)
     try:
         content = read_bytes(Path(path), "rexs")
     except TypeError:
-        why = "Wanted: the place of a file"
+        why = "It is the path of a file"
         raise InputError(
             f"path = {path!r}", Argument("path"), why, "Give a text or a Path"
         ) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        why = "The file system says so"
-        raise InputError(
-            f"cannot be read: {reason}", place, why, "Check place and rights"
-        ) from None
+        what, why = f"cannot be read: {reason}", "The file system reports this error"
+        raise InputError(what, place, why, "Check the path and its permissions") from None
     try:
         return model_of(_tree(content, place), place)
     except RecursionError:
-        raise InputError("its parts are nested too deeply", place, "", _REMEDY) from None
+        raise InputError("its elements are nested too deeply", place, "", _REMEDY) from None
 
 
 def _tree(content: bytes, place: str) -> dict[str, Any]:
-    """The model in the form that JSON has."""
+    """The model in the structure of the JSON form."""
     if content[:4] == b"PK\x03\x04":
         content = _unzipped(content, place)
     try:
@@ -146,14 +144,14 @@ def _tree(content: bytes, place: str) -> dict[str, Any]:
     except (ElementTree.ParseError, ValueError, LookupError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError("it is no REXS file", place, str(error), _REMEDY) from None
+        raise InputError("it is not a REXS file", place, str(error), _REMEDY) from None
     if not isinstance(tree, dict):
-        raise InputError("it holds no REXS model", place, "", _REMEDY)
+        raise InputError("it does not contain a REXS model", place, "", _REMEDY)
     return tree
 
 
 def _unzipped(content: bytes, place: str) -> bytes:
-    """The one model in a zip."""
+    """The single model in a zip."""
     try:
         with zipfile.ZipFile(BytesIO(content)) as archive:
             # Macintosh computers add a folder with a second file for each.
@@ -161,34 +159,35 @@ def _unzipped(content: bytes, place: str) -> bytes:
             models = [n for n in inside if n.lower().endswith((".rexs", ".rexsj"))]
             names = models or [n for n in inside if n.lower().endswith((".xml", ".json"))]
             if len(names) != 1:
-                what = f"the zip holds {len(names) or 'no'} REXS models"
-                why = "Wanted: one file that ends in .rexs or .rexsj"
-                raise InputError(what, place, why, "Take the model that you mean out of it")
+                what = f"the zip contains {len(names) or 'no'} REXS models"
+                why = "It has to contain one file that ends in .rexs or .rexsj"
+                raise InputError(what, place, why, "Extract the model that you want to read")
             with archive.open(names[0]) as member:
-                found = member.read(LARGEST["rexs"] + 1)
+                model = member.read(LARGEST["rexs"] + 1)
     except InputError:
         raise
-    # A damaged zip makes the library stumble in many ways.
+    # The library raises many kinds of errors for a damaged zip.
     except Exception as error:
         raise InputError("it is a damaged zip", place, str(error), _REMEDY) from None
-    if len(found) > LARGEST["rexs"]:
+    if len(model) > LARGEST["rexs"]:
         what = f"its model is larger than {LARGEST['rexs'] / 1e6:g} MB"
-        raise InputError(what, place, "It is no gearbox", _REMEDY)
-    return found
+        raise InputError(what, place, "Models of gearboxes are smaller", _REMEDY)
+    return model
 
 
 class _NoDoctype(ElementTree.TreeBuilder):
-    """Builds a tree, but of no document that declares entities of its own."""
+    """Tree builder that refuses documents with a document type, which may declare entities."""
 
     def doctype(self, *_: Any) -> None:
-        raise ValueError("It declares a document type, which no REXS file has")
+        raise ValueError("It declares a document type, which REXS files do not have")
 
 
 def _from_xml(root: ElementTree.Element, place: str) -> dict[str, Any]:
     for element in root.iter():
         element.tag = str(element.tag).rpartition("}")[2]  # some programs write a namespace
     if root.tag != "model":
-        raise InputError(f"it is XML of a <{root.tag}>, not of a REXS model", place, "", _REMEDY)
+        what = f"its XML root is <{root.tag}>, not the <model> of REXS"
+        raise InputError(what, place, "", _REMEDY)
     spectrum = root.find("load_spectrum")
     cases = [] if spectrum is None else spectrum.findall("load_case")
     return {
@@ -205,7 +204,7 @@ def _from_xml(root: ElementTree.Element, place: str) -> dict[str, Any]:
 
 
 def _xml_components(parent: ElementTree.Element | None) -> list[dict[str, Any]]:
-    found = [] if parent is None else parent.findall("component")
+    elements = [] if parent is None else parent.findall("component")
     return [
         {
             **component.attrib,
@@ -214,12 +213,12 @@ def _xml_components(parent: ElementTree.Element | None) -> list[dict[str, Any]]:
                 for a in component.findall("attribute")
             ],
         }
-        for component in found
+        for component in elements
     ]
 
 
 def model_of(tree: dict[str, Any], place: str) -> RexsFile:
-    """The model of a tree in the form that JSON has."""
+    """Build the model from a tree in the structure of the JSON form."""
     components = _components(tree.get("components"), place)
     if not components:
         raise InputError("the model has no components", place, "", _REMEDY)
@@ -248,30 +247,30 @@ def _require_known(
     cases: dict[int, dict[int, Component]],
     place: str,
 ) -> None:
-    """Refuse a model that names components which it does not have."""
+    """Refuse a model that refers to missing components."""
     named = {number for relation in relations for _, number in relation.refs}
     named |= {number for case in cases.values() for number in case}
     missing = sorted(named - components.keys())
     if missing:
         some = ", ".join(str(number) for number in missing[:5])
-        what = f"relations or load cases name components that are not there: {some}"
+        what = f"relations or load cases refer to missing components: {some}"
         raise InputError(what, place, "", _REMEDY)
 
 
 def _components(items: Any, place: str) -> dict[int, Component]:
-    found: dict[int, Component] = {}
+    components: dict[int, Component] = {}
     for item in _dicts({"components": items}, "components", place):
         number = _id(item, place)
-        if number in found:
+        if number in components:
             raise InputError(f"two components have the number {number}", place, "", _REMEDY)
         values = {
             str(a.get("id", "")): Value(_content(a), str(a.get("unit", "")))
             for a in _dicts(item, "attributes", place)
         }
-        found[number] = Component(
+        components[number] = Component(
             number, str(item.get("type", "")), str(item.get("name", "")), values
         )
-    return found
+    return components
 
 
 def _dicts(parent: Any, name: str, place: str) -> list[dict[str, Any]]:
@@ -279,11 +278,10 @@ def _dicts(parent: Any, name: str, place: str) -> list[dict[str, Any]]:
     if items is None:
         return []
     if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
-        raise InputError(f"{name} is no list of objects", place, "", _REMEDY)
+        raise InputError(f"{name} is not a list of objects", place, "", _REMEDY)
     if len(items) > _MOST:
-        raise InputError(
-            f"there are {len(items)} {name}", place, f"At most {_MOST} are read", "Export less"
-        )
+        what, remedy = f"there are {len(items)} {name}", "Export a smaller model"
+        raise InputError(what, place, f"The limit is {_MOST}", remedy)
     return items
 
 
@@ -291,8 +289,8 @@ def _id(item: dict[str, Any], place: str) -> int:
     try:
         return int(item["id"])
     except (KeyError, TypeError, ValueError, OverflowError):
-        problem = Problem(f"an id is no whole number: {item.get('id')!r}", place, "", _REMEDY)
-        raise InputError(problem) from None
+        what = f"an id is not a whole number: {item.get('id')!r}"
+        raise InputError(Problem(what, place, "", _REMEDY)) from None
 
 
 def _content(attribute: dict[str, Any]) -> float | bool | str | None:
@@ -310,7 +308,7 @@ def _content(attribute: dict[str, Any]) -> float | bool | str | None:
 
 
 def kinds(components: Iterable[Component]) -> dict[str, int]:
-    """How many components of each kind there are."""
+    """Number of components of each kind."""
     counts: dict[str, int] = {}
     for component in components:
         counts[component.kind] = counts.get(component.kind, 0) + 1

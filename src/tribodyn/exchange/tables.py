@@ -20,7 +20,7 @@ from tribodyn.validated_files import csv_text
 
 #: Arrays of a curve of a figure that become columns.
 _COLUMNS = ("x", "y", "z")
-_nothing = "".format  # what a figure without conditions lacks
+_nothing = "".format  # for a figure without conditions
 Table = tuple[list[str], list[Sequence[Any]]]  # heads with units, columns
 
 
@@ -30,22 +30,22 @@ def write_tables(result: Result | Record, folder: str | PathLike[str]) -> Path:
     Parameters
     ----------
     result : Result or Record
-        What was computed, or read back; sweeps, bifurcations, maps and every other result that has
-        ``to_xarray`` too.
+        A computed or loaded result; also sweeps, bifurcations, maps and all other results with
+        ``to_xarray``.
     folder : path
-        Folder to make: ``summary``, ``mesh over ...``, ``motion over ...`` and ``figure ...``,
-        each as ``.csv`` with units in the head and as ``.json``; figures as JSON are those of
-        plotly. Of other results than those of a run: ``table over ...`` and ``figure ...``.
-        Figures that the gears or the case have nothing for are left out.
+        New folder: ``summary``, ``mesh over ...``, ``motion over ...`` and ``figure ...``, each as
+        ``.csv`` with units in the head and as ``.json``; figures in JSON are those of plotly. For
+        results other than those of a run: ``table over ...`` and ``figure ...``. Figures for which
+        the gears or the case have no data are left out.
 
     Raises
     ------
     OutputExistsError
-        If there is something of that name.
+        If the folder exists.
     InputError
-        If the place cannot be written to.
+        If the folder cannot be written.
 
-    Values are in SI in tables, and as drawn in figures.
+    Values are in SI in tables, and as displayed in figures.
     """
     target = Path(folder)
     if target.exists():
@@ -62,7 +62,7 @@ def write_tables(result: Result | Record, folder: str | PathLike[str]) -> Path:
                 continue
             try:
                 figure = draw(result, name)
-            except InputError:  # It needs gears of another kind, or a choice that has no default.
+            except InputError:  # needs gears of another kind, or a choice without a default
                 continue
             (place / f"figure_{name}.json").write_text(figure.to_json(), encoding="utf-8")
             (place / f"figure_{name}.csv").write_text(_curves(figure), encoding="utf-8")
@@ -91,7 +91,7 @@ def _tables(result: Result | Record) -> Iterator[tuple[str, Table]]:
 
 
 def _of_data(kind: str, data: Any) -> Iterator[tuple[str, Table]]:
-    """One table for all that stands over the same dimensions."""
+    """One table for all variables over the same dimensions."""
     data = data if hasattr(data, "data_vars") else data.to_dataset(name=data.name or "value")
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, variable in data.data_vars.items():
@@ -123,18 +123,18 @@ def _as_json(table: Table) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """A value of JSON: nothing for what is no number, texts for complex and other values."""
+    """Value for JSON: None for NaN and infinity, text for complex and other values."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return value if value is None or isinstance(value, str | int) else str(value)
 
 
 def _curves(figure: Any) -> str:
-    """The curves of a figure below each other, one row for each point."""
+    """All curves of a figure as CSV, one row for each point."""
     rows: list[Sequence[Any]] = [["curve", *_COLUMNS]]
     for trace in figure.data:
-        given = [getattr(trace, name, None) for name in _COLUMNS]
-        x, y, z = (None if each is None else np.asarray(each, dtype=object) for each in given)
+        arrays = [getattr(trace, name, None) for name in _COLUMNS]
+        x, y, z = (None if each is None else np.asarray(each, dtype=object) for each in arrays)
         if z is not None and z.ndim == 2 and x is not None and y is not None:
             x, y = (np.resize(x, z.shape), np.repeat(y, z.shape[1])) if y.ndim == 1 else (x, y)
         columns = [each.ravel() for each in (x, y, z) if each is not None]

@@ -1,4 +1,4 @@
-"""The case of a spur stage of a REXS model, and the keys that REXS has a place for."""
+"""Convert a spur stage of a REXS model to a case."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribodyn.lubricant import Lubricant
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.read import read_case
 
-#: Values closer than this are the same: files carry decimal fractions of millimetres.
+#: Values closer than this are the same: files hold decimal fractions of millimetres.
 _SAME = 1e-9
 _MODELS = {
     "film.model": "moes",
@@ -27,8 +27,8 @@ _MODELS = {
 _OIL_TEMPERATURE = 333.15
 _ASSUMED = {
     "dynamics.bearing_stiffness": (500e6, "a usual stiffness of shaft and bearings together"),
-    "dynamics.backlash": (0.1e-3, "a usual play"),
-    "gears.driver": ("pinion", "the file says of no torque where it comes from"),
+    "dynamics.backlash": (0.1e-3, "a usual backlash"),
+    "gears.driver": ("pinion", "the file does not specify where a torque comes from"),
     "lubricant.name": ("ISO VG 220", "a usual gear oil"),
     "lubricant.temperature": (_OIL_TEMPERATURE, "a usual temperature of gear oil"),
 }
@@ -49,17 +49,18 @@ def case_from_rexs(
     Parameters
     ----------
     model : GearboxModel
-        What :func:`read_rexs` has read.
+        Result of :func:`read_rexs`.
     stage, load_case : int, optional
-        Numbers; not needed where there is one stage, and the first load case is taken.
+        Numbers; not needed for a single stage; by default the first load case is used.
     changes : dict, optional
         Values by dotted key that replace those of the file, as in :meth:`Case.replace`.
 
     Returns
     -------
     Case
-        What the file does not say is marked as assumed. A file that we wrote gives back the whole
-        case, with what another program has changed in it; ``model.remarks`` tells of that.
+        Values that the file does not contain are marked as assumed. From a file written by
+        tribodyn the complete case is restored, with the changes by other programs, which
+        ``model.remarks`` lists.
 
     Raises
     ------
@@ -72,22 +73,24 @@ def case_from_rexs(
 
 def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]) -> Case:
     _require_spur(model, stage)
-    if "lubricant.temperature" in changes:  # the viscosity of the file is that at a temperature
+    if "lubricant.temperature" in changes:  # the viscosity of the file depends on it
         load = replace(load, oil_temperature=_kelvin(changes["lubricant.temperature"]))
-    found, notes = _values(model, stage, load)
+    file_values, notes = _values(model, stage, load)
     if "lubricant.name" in changes:  # another oil than that of the file
-        found = {key: v for key, v in found.items() if not key.startswith("lubricant.")}
+        file_values = {key: v for key, v in file_values.items() if not key.startswith("lubricant.")}
         notes = {key: note for key, note in notes.items() if not key.startswith("lubricant.")}
     for unit in model.file.of_kind("gear_unit"):
         if WHOLE_CASE in unit.values:
-            known = read_case(str(unit.values[WHOLE_CASE].content), f"{model.path}: {WHOLE_CASE}")
-            return _updated(model, known, found).replace(changes)
-    data: dict[str, Any] = {**found, **_MODELS, **changes}
+            stored_case = read_case(
+                str(unit.values[WHOLE_CASE].content), f"{model.path}: {WHOLE_CASE}"
+            )
+            return _updated(model, stored_case, file_values).replace(changes)
+    data: dict[str, Any] = {**file_values, **_MODELS, **changes}
     for key in ("operation.speed", "operation.torque"):
         if key not in data:
             what = f"the speed and torque of stage {stage.id} are not known"
             remedy = 'Give both: --set "operation.speed=1500 rpm" --set "operation.torque=100 N*m"'
-            raise InputError(what, model.path, "No load case gives them", remedy)
+            raise InputError(what, model.path, "No load case specifies them", remedy)
     oil = any(key.startswith("lubricant.") for key in data)
     rough = any("roughness" in key for key in data)
     for key, (value, reason) in _ASSUMED.items():
@@ -100,12 +103,12 @@ def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]
             notes[f"gears.{gear}.roughness_ra"] = _NOT_THERE + "ground flanks"
     title = f"Stage {stage.id}: {stage.gear_1.name or 'gear 1'}, {stage.gear_2.name or 'gear 2'}"
     origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
-    kept = {key: note for key, note in notes.items() if key not in changes}
-    return Case(title=title, origin=origin, **_nested(data), assumed=kept)
+    assumed = {key: note for key, note in notes.items() if key not in changes}
+    return Case(title=title, origin=origin, **_nested(data), assumed=assumed)
 
 
 def _kelvin(value: Any) -> float:
-    """Temperature as the user gives it."""
+    """Temperature in kelvin from the input of the user."""
     if not isinstance(value, str):
         return float(value)
     try:
@@ -124,18 +127,19 @@ def _require_spur(model: GearboxModel, stage: Stage) -> None:
         angle = math.degrees(abs(stage.gear_1.helix_angle))
         what = f"stage {stage.id} is helical, with a helix angle of {angle:g} deg"
     if what:
-        why = "Computed are external spur pairs on fixed axes"
-        raise InputError(what, model.path, why, "Its figures are listed without --out")
+        why = "Only external spur pairs on fixed axes are supported"
+        remedy = "List the data of all stages by the same command without --out"
+        raise InputError(what, model.path, why, remedy)
 
 
 def in_order(stage: Stage) -> tuple[StageGear, StageGear]:
     """Pinion and wheel: the pinion has fewer teeth."""
-    one, two = stage.gear_1, stage.gear_2
-    return (one, two) if one.teeth <= two.teeth else (two, one)
+    first, second = stage.gear_1, stage.gear_2
+    return (first, second) if first.teeth <= second.teeth else (second, first)
 
 
 def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, Any], dict[str, str]]:
-    """Values of the case that the file gives, in SI, and notes on those that it gives by half."""
+    """Values of the case from the file, in SI, and notes on those that are partly assumed."""
     pinion, wheel = in_order(stage)
     data: dict[str, Any] = {
         "gears.normal_module": pinion.normal_module,
@@ -168,7 +172,7 @@ def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, An
 
 
 def _rack(model: GearboxModel, pinion: StageGear, wheel: StageGear) -> dict[str, float]:
-    """Basic rack of both gears where the same rack-shaped tool cuts them."""
+    """Basic rack of both gears if the same rack-shaped tool cuts them."""
     tools = []
     for gear in (pinion, wheel):
         for relation in model.file.related("ordered_reference", origin=gear.id):
@@ -191,30 +195,30 @@ def _material(model: GearboxModel, gear: StageGear) -> dict[str, float]:
         for relation in model.file.related("reference", origin=origin) if origin else ():
             part = model.file.components[relation.of("referenced") or gear.id]
             if part.kind == "material":
-                found = {
+                properties = {
                     "material.youngs_modulus": part.number("elastic_modulus", "Pa"),
                     "material.poissons_ratio": part.number("poisson_ratio", ""),
                     "material.density": part.number("density", "kg/m^3"),
                 }
-                return {key: value for key, value in found.items() if value is not None}
+                return {key: value for key, value in properties.items() if value is not None}
     return {}
 
 
 def _driver(model: GearboxModel, stage: Stage, load: Load) -> str:
-    """The gear nearer to the shaft with the given torque; the other one if that brakes."""
+    """The gear nearer to the shaft with the specified torque; the other one if it brakes."""
     pinion, _ = in_order(stage)
     gears = {model.shaft_of(g.id): g.id for g in (stage.gear_1, stage.gear_2)}
-    steps, seen = {load.source}, {load.source}
+    steps, visited = {load.source}, {load.source}
     while steps and not steps & gears.keys():
         steps = {
             other
             for s in model.stages
             for a, b in ((s.gear_1, s.gear_2), (s.gear_2, s.gear_1))
-            if model.shaft_of(a.id) in steps and (other := model.shaft_of(b.id)) not in seen
+            if model.shaft_of(a.id) in steps and (other := model.shaft_of(b.id)) not in visited
         }
-        seen |= steps
-    near = next(gears[shaft] for shaft in steps & gears.keys())
-    return "pinion" if (near == pinion.id) != load.driven else "wheel"
+        visited |= steps
+    nearest = next(gears[shaft] for shaft in steps & gears.keys())
+    return "pinion" if (nearest == pinion.id) != load.driven else "wheel"
 
 
 def _oil(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str]]:
@@ -248,25 +252,25 @@ def _oil(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str
     return {}, {}
 
 
-def _updated(model: GearboxModel, case: Case, found: dict[str, Any]) -> Case:
-    """The case we wrote, with what another program has changed since."""
+def _updated(model: GearboxModel, case: Case, file_values: dict[str, Any]) -> Case:
+    """Case stored in the file, with the changes that another program has made since."""
     written = GearboxModel(model_of(tree_of(case), "the case in the file"))
     before, _ = _values(written, written.stage(), written.load())
     changes = {
         key: value
-        for key, value in found.items()
+        for key, value in file_values.items()
         if not _same(before.get(key), value) and not key.startswith("lubricant.")
     }
     for key, value in changes.items():
-        told = f"{value:.9g} (SI)" if isinstance(value, float) else value
-        model.remarks.append(f"{key} was changed to {told} by another program")
+        shown_value = f"{value:.9g} (SI)" if isinstance(value, float) else value
+        model.remarks.append(f"{key} was changed to {shown_value} by another program")
     return case.replace(changes) if changes else case
 
 
-def _same(one: Any, other: Any) -> bool:
-    if isinstance(one, float) and isinstance(other, float):
-        return math.isclose(one, other, rel_tol=_SAME, abs_tol=1e-15)
-    return bool(one == other)
+def _same(first: Any, second: Any) -> bool:
+    if isinstance(first, float) and isinstance(second, float):
+        return math.isclose(first, second, rel_tol=_SAME, abs_tol=1e-15)
+    return bool(first == second)
 
 
 def _nested(data: dict[str, Any]) -> dict[str, Any]:

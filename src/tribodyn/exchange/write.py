@@ -1,4 +1,4 @@
-"""A case as a REXS 1.4 model: what REXS has a place for, and the whole case beside it."""
+"""Write a case as a REXS 1.4 model, together with the complete case as an attribute."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from tribodyn.units import ZERO_CELSIUS
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
-#: Attribute of the gear unit that holds the whole case.
+#: Attribute of the gear unit that holds the complete case.
 WHOLE_CASE = "custom_tribodyn_case"
 #: Numbers of the components.
 _UNIT, _CASING, _STAGE, _OIL, _MATERIAL, _LOAD = 1, 2, 3, 4, 5, 6
 _SHAFTS, _GEARS, _TOOL = (7, 8), (9, 10), 11
 _FLANKS = ((12, 13), (14, 15))
-#: Key of a modification -> kind of component and attributes that carry its amount, and its length.
+#: Key of a modification -> kind of component, attributes of its amount, attribute of its length.
 _FORMS: dict[str, tuple[str, tuple[str, ...], str]] = {
     "tip_relief": ("tip_relief", ("tip_relief_depth",), "tip_relief_datum_length"),
     "root_relief": ("root_relief", ("root_relief_depth",), "root_relief_datum_length"),
@@ -59,20 +59,20 @@ def write_rexs(case: Case, path: str | PathLike[str], *, force: bool = False) ->
     Raises
     ------
     InputError
-        If the case has no gears (kind "table"), the name ends otherwise, or the file is there.
+        If the case has no gears (kind "table"), the suffix is unknown, or the file exists.
 
-    What REXS has no place for (models, structure, flank forms) stands in an attribute of the gear
-    unit, ``custom_tribodyn_case``, from which the case reads back without loss.
+    Data without a counterpart in REXS (models, structure, flank forms) are stored in an attribute
+    of the gear unit, ``custom_tribodyn_case``, from which the case is restored without loss.
     Source: rexs.info, model of REXS 1.4.
     """
     target = Path(path)
     writer = _WRITERS.get(target.suffix.lower())
     if writer is None:
-        why = "The ending says how the model is written"
-        remedy = f"Let it end in {', '.join(_WRITERS)}"
+        why = "The suffix determines the format of the model"
+        remedy = f"Use a suffix of {', '.join(_WRITERS)}"
         raise InputError(f'the name ends in "{target.suffix}"', str(path), why, remedy)
     if case.gears.kind != "spur":
-        what = f'gears of the kind "{case.gears.kind}" are no cylindrical stage'
+        what = f'gears of the kind "{case.gears.kind}" are not a cylindrical stage'
         raise InputError(what, "gears.kind", "", "Write a case of spur gears")
     if target.exists() and (target.is_dir() or not force):
         raise OutputExistsError("this exists already", str(path), "", "Choose another name")
@@ -135,7 +135,7 @@ def _parts(case: Case) -> dict[str, Any]:
     }
 
 
-def _gear(gear: Any, given: Any, which: int) -> list[dict[str, Any]]:
+def _gear(gear: Any, options: Any, which: int) -> list[dict[str, Any]]:
     attributes: list[Attribute] = [
         ("number_of_teeth", "none", gear.teeth),
         ("normal_module", "mm", gear.normal_module * _TO_MM),
@@ -143,8 +143,8 @@ def _gear(gear: Any, given: Any, which: int) -> list[dict[str, Any]]:
         ("face_width", "mm", gear.face_width * _TO_MM),
         ("tip_diameter", "mm", gear.tip_diameter * _TO_MM),
     ]
-    if given.roughness_ra is not None:
-        attributes.append(("arithmetic_average_roughness_flank", "mum", given.roughness_ra * 1e6))
+    if options.roughness_ra is not None:
+        attributes.append(("arithmetic_average_roughness_flank", "mum", options.roughness_ra * 1e6))
     flank: list[Attribute] = [
         ("normal_pressure_angle", "deg", gear.normal_pressure_angle * _TO_DEG),
         ("addendum_modification_coefficient", "none", gear.profile_shift_coefficient),
@@ -165,8 +165,8 @@ def _oil(case: Case) -> dict[str, Any]:
 
 
 def _forms(case: Case) -> list[tuple[tuple[int, int], dict[str, Any]]]:
-    """Reliefs and crownings, each with the flanks that it hangs on."""
-    found: list[tuple[tuple[int, int], dict[str, Any]]] = []
+    """Reliefs and crownings, each with the flanks to which it is attached."""
+    forms: list[tuple[tuple[int, int], dict[str, Any]]] = []
     for flanks, gear in zip(_FLANKS, (case.gears.pinion, case.gears.wheel), strict=True):
         for key, (kind, amounts, length) in _FORMS.items():
             amount = getattr(gear.modification, key, 0.0)
@@ -174,9 +174,9 @@ def _forms(case: Case) -> list[tuple[tuple[int, int], dict[str, Any]]]:
                 values = [(name, "mm", amount * _TO_MM) for name in amounts]
                 along = getattr(gear.modification, f"{key}_length", None)
                 values += [(length, "mm", along * _TO_MM)] if along else []
-                number = _FLANKS[-1][-1] + 1 + len(found)
-                found.append((flanks, _part(number, kind, "", values)))
-    return found
+                number = _FLANKS[-1][-1] + 1 + len(forms)
+                forms.append((flanks, _part(number, kind, "", values)))
+    return forms
 
 
 def _relations(case: Case, loaded: int) -> list[dict[str, Any]]:
@@ -215,7 +215,7 @@ def _part(number: int, kind: str, name: str, attributes: list[Attribute]) -> dic
 
 
 def tree_of(case: Case) -> dict[str, Any]:
-    """The model of a case in the form that JSON has."""
+    """The model of a case in the structure of the JSON form."""
     kinds = {bool: "boolean", int: "integer", float: "floating_point", str: "string"}
 
     def plain(parts: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -272,10 +272,10 @@ def _as_xml(case: Case) -> bytes:
 def _as_zip(case: Case) -> bytes:
     from io import BytesIO
 
-    held = BytesIO()
-    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+    buffer = BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("rexs-model.rexs", _as_xml(case))
-    return held.getvalue()
+    return buffer.getvalue()
 
 
 _WRITERS: dict[str, Callable[[Case], bytes]] = {

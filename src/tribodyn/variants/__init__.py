@@ -1,12 +1,12 @@
-"""Studies of many members: in a file, computed chunk by chunk into a store, here or on a cluster.
+"""Studies of many runs (members), computed in chunks into a store, on one machine or a cluster.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| ``study_file`` | what a study file says |
-| ``members`` | which members a study has, and how it grows |
-| ``compute`` | what is computed of the members of a chunk |
-| ``store`` | what is stored, and whether it is whole |
-| ``run`` | who computes: this machine or the workers of a Dask cluster |
+| ``study_file`` | reading of study files |
+| ``members`` | the members of a study, and how a study grows |
+| ``compute`` | computation of the members of a chunk |
+| ``store`` | stored chunks, and checks that they are complete |
+| ``run`` | execution on this machine or on the workers of a Dask cluster |
 | ``dataset`` | the store as one lazy data set |
 """
 

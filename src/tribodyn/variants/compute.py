@@ -1,4 +1,4 @@
-"""What is computed of the members of a chunk, and what of it is kept."""
+"""Compute the members of a chunk and encode their figures."""
 
 from __future__ import annotations
 
@@ -22,38 +22,38 @@ if TYPE_CHECKING:
 
 Columns = Mapping[str, list[Any]]
 
-#: Words for verdicts by their number.
+#: Labels of verdicts by their number.
 VERDICTS = ("none", "physical", "step-limited", "undecided")
-#: What the machine lacks is no fault of a member.
+#: Errors of the machine, not of a member.
 _MACHINE = (ImportError, MemoryError, OSError)
 
 
 class Part(NamedTuple):
-    """What came of some members, in their order."""
+    """Results of some members, in their order."""
 
-    figures: dict[str, Array]  #: in SI; NaN where there is none
-    failed: list[str]  #: why a member has none; empty where it has
-    warned: list[str]  #: codes of warnings of the models, with blanks between
+    figures: dict[str, Array]  #: in SI; NaN without a value
+    failed: list[str]  #: reason why a member failed; empty if it did not
+    warned: list[str]  #: codes of warnings of the models, separated by blanks
 
 
 class Stored(NamedTuple):
-    """What came of a chunk, as it is written into the store."""
+    """Results of a chunk in the form of the store."""
 
     content: bytes  #: of its file
-    failed: list[str]  #: why a member has nothing; empty where it has
+    failed: list[str]  #: reason why a member failed; empty if it did not
     figures: list[str]
 
 
 class Job(NamedTuple):
-    """What is sent to whoever computes a chunk."""
+    """Input for the computation of a chunk, which is sent to a worker."""
 
     kind: str
     case: Case
-    keep: tuple[str, ...]  #: figures to keep; all that occur where it is empty
+    keep: tuple[str, ...]  #: figures to store; all if it is empty
     columns: Columns
 
     def compute(self, progress: Progress = SILENT) -> Part:
-        """Compute the members; it depends on nothing but them."""
+        """Compute the members."""
         with quiet(), shared_films(lasting=True):
             part = _each(partial(KINDS[self.kind].compute, self.case), self.columns, progress)
         names = self.keep or tuple(
@@ -63,16 +63,16 @@ class Job(NamedTuple):
         return part._replace(figures={name: part.figures.get(name, absent) for name in names})
 
     def stored(self, progress: Progress = SILENT) -> Stored:
-        """Compute the members and encode what came of them, which a worker so does as well."""
+        """Compute the members and encode their results, both on the worker."""
         part = self.compute(progress)
         return Stored(self._encoded(part), part.failed, [*part.figures])
 
     @deferred()
     def _encoded(self, part: Part) -> bytes:
-        """Result as netCDF; made in memory, since HDF5 takes a full disk badly."""
+        """Result as netCDF; built in memory, as HDF5 does not handle a full disk well."""
         import h5py
 
-        known, count = KINDS[self.kind].figures, len(part.failed)
+        figures, count = KINDS[self.kind].figures, len(part.failed)
         buffer = io.BytesIO()
         with h5py.File(buffer, "w") as file:
             # A dimension without values, as netCDF marks it.
@@ -85,13 +85,13 @@ class Job(NamedTuple):
             if part.figures:
                 figure = _put(file, "figure", [*part.figures])
                 _scale(figure, 1, "figure")
-                _put(file, "units", [known[name][0] for name in part.figures], figure)
+                _put(file, "units", [figures[name][0] for name in part.figures], figure)
                 _put(file, "value", np.stack([*part.figures.values()], 1), member, figure)
         return buffer.getvalue()
 
 
 def _scale(dimension: Any, number: int, name: str) -> None:
-    """Let a data set be a dimension."""
+    """Turn a data set into a dimension."""
     dimension.attrs["_Netcdf4Dimid"] = np.int32(number)
     dimension.make_scale(name)
 
@@ -105,17 +105,17 @@ def _put(file: Any, name: str, values: Any, *dimensions: Any) -> Any:
     """
     import h5py
 
-    words = isinstance(values[0], str)
-    data = np.array(values, dtype=object if words else None)
+    is_text = isinstance(values[0], str)
+    data = np.array(values, dtype=object if is_text else None)
     data = data.astype(np.int8) if data.dtype.kind == "b" else data
-    made = file.create_dataset(name, data=data, dtype=h5py.string_dtype() if words else None)
+    variable = file.create_dataset(name, data=data, dtype=h5py.string_dtype() if is_text else None)
     for axis, dimension in enumerate(dimensions):
-        made.dims[axis].attach_scale(dimension)
-    return made
+        variable.dims[axis].attach_scale(dimension)
+    return variable
 
 
 def _each(compute: Callable[..., Part], columns: Columns, progress: Progress) -> Part:
-    """Compute members together; where that fails, in halves, down to those that are to blame."""
+    """Compute members together; after a failure in halves, down to the members that fail."""
     count = len(next(iter(columns.values())))
     try:
         return compute(columns, progress)
@@ -137,15 +137,15 @@ def _each(compute: Callable[..., Part], columns: Columns, progress: Progress) ->
         )
         for name in names
     }
-    (one, other) = halves
-    return Part(figures, one.failed + other.failed, one.warned + other.warned)
+    (first, second) = halves
+    return Part(figures, first.failed + second.failed, first.warned + second.warned)
 
 
 def _reason(error: Exception) -> str:
     if isinstance(error, TribodynError):
         return str(error.problems[0])
-    told = f"unexpected {type(error).__name__}: {error}"
-    return str(Problem(told, why="This is a fault of tribodyn, not of the input"))
+    what = f"unexpected {type(error).__name__}: {error}"
+    return str(Problem(what, why="This is an error in tribodyn, not in the input"))
 
 
 def _summaries(case: Case, columns: Columns, progress: Progress) -> Part:
@@ -164,8 +164,8 @@ def _summaries(case: Case, columns: Columns, progress: Progress) -> Part:
 
 
 def _motions(case: Case, columns: Columns, progress: Progress) -> Part:
-    """Period, size and verdict of the steady motion of each member, marched side by side."""
-    # Lanes differ in real numbers; what has another number of teeth or another law is a new case.
+    """Period, size and verdict of the steady motion of each member, integrated in batches."""
+    # Lanes differ in real numbers; another number of teeth or another law makes a new case.
     fixed = [key for key, values in columns.items() if not isinstance(values[0], float)]
     rows = list(zip(*(columns[key] for key in fixed), strict=True))
     rows = rows or [()] * len(next(iter(columns.values())))
@@ -197,7 +197,7 @@ def _marched(
     systems = [member.system for member in lanes.members]
     points, number = stepped(systems, lanes.mesh_frequency, lanes.factors)
     with marching_on(engine_arguments(case).get("backend")):
-        outcomes, words = surveyed(points, number, map_survey())
+        outcomes, verdicts = surveyed(points, number, map_survey())
     progress.advance(count)
     return {
         "period": np.where(np.isfinite(outcomes.rms), outcomes.period, np.nan),
@@ -205,7 +205,9 @@ def _marched(
         "contact_loss_share": outcomes.contact_loss_share,
         "steps_per_mesh_cycle": points.steps.astype(float),
         "omega_max_dt": number,
-        "verdict": np.array([VERDICTS.index(word or "none") for word in words], dtype=float),
+        "verdict": np.array(
+            [VERDICTS.index(verdict or "none") for verdict in verdicts], dtype=float
+        ),
     }
 
 
@@ -221,12 +223,12 @@ _MOTION = {
 
 @dataclass(frozen=True)
 class Kind:
-    """What can be computed of a member."""
+    """Kind of computation for the members of a study."""
 
     meaning: str
     compute: Callable[[Any, Columns, Progress], Part]
     figures: Mapping[str, tuple[str, str]]  #: unit and meaning by name
-    chunk: int  #: members of a chunk, where none are given
+    chunk: int  #: default number of members of a chunk
 
 
 KINDS = {

@@ -1,4 +1,4 @@
-"""A store as one lazy data set: what is asked for is read, and proved to be as it was written."""
+"""A store as one lazy data set: values are read on demand, with a check of their checksum."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ def open_study(path: str | os.PathLike[str]) -> xarray.Dataset:
     Returns
     -------
     xarray.Dataset
-        Figures in SI over the keys of a grid, or over ``member`` with the keys beside them, and
-        ``failed``, which tells why a member has none. Nothing is read before it is asked for.
+        Figures in SI over the keys of a grid, or over ``member`` with the keys as coordinates, and
+        ``failed``, the reason why a member has none. Values are read on demand.
 
     Raises
     ------
     InputError
-        If it is no store; later, if a chunk that is asked for was damaged.
+        If the directory is not a store; later, if a requested chunk is damaged.
     """
     import xarray
 
@@ -73,7 +73,7 @@ def open_study(path: str | os.PathLike[str]) -> xarray.Dataset:
 
 
 def _lazy(manifest: Manifest, name: str, shape: tuple[int, ...], kind: Any) -> Any:
-    """One variable, as xarray reads it when it is asked for."""
+    """One variable that xarray reads on demand."""
     from xarray.backends import BackendArray
     from xarray.core import indexing
 
@@ -87,22 +87,22 @@ def _lazy(manifest: Manifest, name: str, shape: tuple[int, ...], kind: Any) -> A
 
         def read(self, key: tuple[Any, ...]) -> Any:
             places = [np.arange(size)[each] for size, each in zip(shape, key, strict=True)]
-            kept = tuple(place.size for place in places if place.ndim)
+            result_shape = tuple(place.size for place in places if place.ndim)
             grid = np.ix_(*(np.atleast_1d(place) for place in places))
             members = np.ravel_multi_index(grid, shape).ravel()
-            found = np.full(prod(kept), _absent(name, self.dtype), dtype=self.dtype)
-            for chunk, where, rows in manifest.plan.found(members):
+            values = np.full(prod(result_shape), _absent(name, self.dtype), dtype=self.dtype)
+            for chunk, where, rows in manifest.plan.locate(members):
                 if chunk.name in manifest.chunks:
-                    values = _column(manifest, chunk.name, name)
-                    if values is not None:
-                        found[where] = values[rows]
-            return found.reshape(kept)
+                    column = _column(manifest, chunk.name, name)
+                    if column is not None:
+                        values[where] = column[rows]
+            return values.reshape(result_shape)
 
     return indexing.LazilyIndexedArray(Stored())
 
 
 def _absent(name: str, dtype: np.dtype[Any]) -> Any:
-    """What stands where nothing is stored."""
+    """Value of members that are not stored."""
     if dtype.kind == "f":
         return np.nan
     return {"failed": _NOT_YET}.get(name, "" if dtype.kind == "O" else 0)
@@ -110,13 +110,14 @@ def _absent(name: str, dtype: np.dtype[Any]) -> Any:
 
 @deferred()
 def _column(manifest: Manifest, chunk: str, name: str) -> Any:
-    """One variable of a chunk; None where it has none of that name."""
+    """One variable of a chunk; None if there is none of that name."""
     import h5py
 
     content = read_chunk(manifest.folder, chunk, manifest.chunks[chunk])
     if content is None:
-        what = f"{chunk_path(manifest.folder, chunk)} is not as it was written"
-        why, remedy = "It was damaged, changed or removed", "Run the study again: it is mended"
+        what = f"{chunk_path(manifest.folder, chunk)} does not match its checksum"
+        why = "It was damaged, changed or removed"
+        remedy = "Run the study again, which computes it anew"
         raise InputError(what, Argument("path"), why, remedy)
     with h5py.File(io.BytesIO(content)) as file:
         if name in file:

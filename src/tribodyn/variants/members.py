@@ -1,4 +1,4 @@
-"""Which members a study has: a grid of values or a list of them, and how both grow."""
+"""Members of a study: a grid of values or a list, and how both grow."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.study.studies.axes import Axis
 from tribodyn.types import Index
 
-#: What a store keeps of a list.
+#: Fields of a list that a store records.
 _LIST = ("units", "kinds", "count")
-#: Members of a study.
+#: Largest number of members of a study.
 MOST = 10**8
-#: Equal to this, a value of a finer grid is that of the coarser one before.
+#: Relative difference below which a value of a finer grid equals that of the coarser one.
 _SAME = 1e-12
 
 
@@ -52,21 +52,21 @@ class Grid:
         return {"axes": [vars(axis) for axis in self.axes]}
 
     def after(self, before: Mapping[str, Any], where: str) -> Grid:
-        """The same grid with the very values of one that it contains."""
+        """The same grid with exactly the values of an earlier one that it contains."""
         axes = []
         for axis, old in zip(self.axes, before["axes"], strict=True):
             values = list(axis.values)
             for value in old["values"]:
-                near = [n for n, each in enumerate(values) if _same(each, value)]
-                if not near:
+                matches = [n for n, each in enumerate(values) if _same(each, value)]
+                if not matches:
                     what = f"{axis.key} no longer has the value {axis.show(value)}"
                     raise InputError(Problem(what, where, *_ONLY_GROWS))
-                values[near[0]] = value
+                values[matches[0]] = value
             axes.append(replace(axis, values=tuple(values)))
         return Grid(tuple(axes))
 
     def places(self, before: Mapping[str, Any]) -> Index:
-        """Where the members of a grid that it contains stand in it."""
+        """Positions of the members of an earlier grid in this one."""
         rows = [
             [{value: n for n, value in enumerate(axis.values)}[each] for each in old["values"]]
             for axis, old in zip(self.axes, before["axes"], strict=True)
@@ -104,7 +104,7 @@ class Listed:
         return self
 
     def places(self, before: Mapping[str, Any]) -> Index:
-        """Where the members of an earlier list stand in it."""
+        """Positions of the members of an earlier list in this one."""
         return np.arange(before["count"])
 
 
@@ -117,24 +117,24 @@ def listed(values: Mapping[str, Sequence[Any]], units: Mapping[str, str]) -> Lis
 
 
 _ONLY_GROWS = (
-    "A study in a store may get more members and keeps those that it has; a Latin hypercube of "
-    "another size has other members",
-    "Keep the earlier ones, choose another place, or start anew with --force",
+    "A stored study can be extended but not changed; a Latin hypercube of another size has other "
+    "members",
+    "Retain the earlier members, choose another directory, or start again with --force",
 )
 
 Layout = Grid | Listed
 
 
 def layout_of(facts: Mapping[str, Any]) -> Layout:
-    """Members as a store tells them; values of a list stand in the chunks alone."""
+    """Members as recorded in a store; only the chunks hold the values of a list."""
     if "axes" in facts:
         return Grid(tuple(Axis(**{**a, "values": tuple(a["values"])}) for a in facts["axes"]))
     return Listed({}, *(facts[name] for name in _LIST))
 
 
-def _same(one: Any, other: Any) -> bool:
-    numbers = isinstance(one, float) and isinstance(other, float)
-    return math.isclose(one, other, rel_tol=_SAME) if numbers else bool(one == other)
+def _same(first: Any, second: Any) -> bool:
+    numbers = isinstance(first, float) and isinstance(second, float)
+    return math.isclose(first, second, rel_tol=_SAME) if numbers else bool(first == second)
 
 
 class Chunk(NamedTuple):
@@ -146,19 +146,19 @@ class Chunk(NamedTuple):
 
 
 class Plan:
-    """Members in the order in which they are stored: those that a study began with come first."""
+    """Members in the order of the store: those of earlier stages of the study come first."""
 
     def __init__(self, layout: Layout, stages: Sequence[Mapping[str, Any]]) -> None:
         self.layout, self.chunks = layout, list[Chunk]()
         orders: list[Index] = []
-        seen = np.zeros(layout.count if len(stages) > 1 else 0, dtype=bool)
+        placed_members = np.zeros(layout.count if len(stages) > 1 else 0, dtype=bool)
         begin = 0
         for number, facts in enumerate(stages):
             size = layout.count
             if len(stages) > 1:
                 places = layout.places(facts)
-                orders.append(places[~seen[places]])
-                seen[places] = True
+                orders.append(places[~placed_members[places]])
+                placed_members[places] = True
                 size = orders[-1].size
             for n, first in enumerate(range(0, size, facts["chunk"])):
                 last = min(first + facts["chunk"], size)
@@ -177,8 +177,8 @@ class Plan:
         stored = np.arange(chunk.begin, chunk.end)
         return stored if self._order is None else self._order[stored]
 
-    def found(self, members: Index) -> Iterator[tuple[Chunk, Index, Index]]:
-        """Chunks of some members, which of these they hold, and in which of their rows."""
+    def locate(self, members: Index) -> Iterator[tuple[Chunk, Index, Index]]:
+        """Yield the chunks of some members, with the members in each and their rows."""
         stored = members if self._stored is None else self._stored[members]
         numbers = np.searchsorted(self.begins, stored, side="right") - 1
         order = np.argsort(numbers, kind="stable")

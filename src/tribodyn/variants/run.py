@@ -1,4 +1,4 @@
-"""Run a study: chunk by chunk into its store, here or on the workers of a Dask cluster."""
+"""Run a study chunk by chunk into its store, on this machine or on a Dask cluster."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from tribodyn.variants.study_file import Study, load_study
 Jobs = Iterable[tuple[Chunk, Job]]
 Results = Iterator[tuple[Chunk, Stored | Exception]]
 
-#: Chunks that fail as a whole before any is finished, after which nothing else is tried.
+#: Number of failed chunks, before any has succeeded, after which the study is given up.
 _HOPELESS = 3
-#: Time for a scheduler to answer, and for a worker to come before it is missed [s].
+#: Time limit for an answer of the scheduler, and for a worker before a warning [s].
 _PATIENCE = 10.0
 
 
@@ -37,67 +37,67 @@ def run_study(
     force: bool = False,
     progress: Progress = SILENT,
 ) -> StudyState:
-    """Compute what a store lacks of a study.
+    """Compute the members of a study that its store does not have yet.
 
     Parameters
     ----------
     study : Study, str or path
         From :func:`load_study`, or the path of a study file.
     store : str or path
-        Directory; it is made, or the study goes on where it was left, with the members that it
-        got since.
+        Directory. It is created, or a study in it is continued, including members that were added
+        to the study since.
     scheduler : str
         Address of a Dask scheduler whose workers compute; by default the processors of this
-        machine do.
+        machine are used.
     force : bool
-        Replace another study in that place.
+        Replace another study in this directory.
     progress : Progress
-        Told how many members are done; silent by default.
+        Receives the number of finished members; silent by default.
 
     Returns
     -------
     StudyState
-        How many members are done and failed, and why. A member that fails is stored with its
-        reason, and the study goes on.
+        Number of finished and failed members, and the reasons. A member that fails is stored with
+        its reason, and the study continues.
 
     Raises
     ------
     InputError
-        If the study file has faults, another study or process has the place, or no scheduler
+        If the study file has errors, another study or process uses the directory, or no scheduler
         answers.
     ComputationError
-        If the place cannot be written to any more, or nothing can be computed at all. What is
-        finished is stored.
+        If the directory cannot be written any more, or nothing can be computed at all. Finished
+        members are stored.
     """
     ready = study if isinstance(study, Study) else load_study(study)
     missing: dict[str, str] = {}
-    engine = _cluster(scheduler) if scheduler else nullcontext(_here)
+    engine = _cluster(scheduler) if scheduler else nullcontext(_on_this_machine)
     with engine as compute, Store(ready, Path(store), force) as place:
         left = place.left()
         total = ready.layout.count
         progress.start("Members", total)
         progress.advance(total - sum(chunk.end - chunk.begin for chunk in left))
         jobs = ((chunk, place.job(chunk)) for chunk in left)
-        for chunk, found in compute(jobs, progress):
-            if isinstance(found, Stored):
-                place.put(chunk, found)
+        for chunk, outcome in compute(jobs, progress):
+            if isinstance(outcome, Stored):
+                place.put(chunk, outcome)
             else:
-                missing[chunk.name] = f"{type(found).__name__}: {found}"
+                missing[chunk.name] = f"{type(outcome).__name__}: {outcome}"
                 _give_up(missing, len(place.left()) == len(left))
         progress.finish()
         return place.state(missing)
 
 
 def _give_up(missing: dict[str, str], none_done: bool) -> None:
-    """End what cannot succeed."""
+    """Raise if the first chunks fail and none has succeeded."""
     if none_done and len(missing) >= _HOPELESS:
         what = f"none of the first {len(missing)} chunks can be computed"
         why = next(iter(missing.values()))
-        remedy = "Mend it on the machines that compute; the same command goes on"
+        remedy = "Fix this on the computing machines; the same command continues the study"
         raise ComputationError(what, "", why, remedy)
 
 
-def _here(jobs: Jobs, progress: Progress) -> Results:
+def _on_this_machine(jobs: Jobs, progress: Progress) -> Results:
     """Compute one chunk after the other, each with all processors."""
     with helpers():
         for chunk, job in jobs:
@@ -108,16 +108,16 @@ def _here(jobs: Jobs, progress: Progress) -> Results:
 
 
 class _Within:
-    """Progress of a chunk within that of the study."""
+    """Progress of a chunk as part of the progress of the study."""
 
-    def __init__(self, whole: Progress) -> None:
-        self.advance = whole.advance
+    def __init__(self, study_progress: Progress) -> None:
+        self.advance = study_progress.advance
 
     def start(self, task: str, total: int | None = None) -> None:
-        """Begin nothing: the study has begun."""
+        """Do nothing: the study has already started its progress."""
 
     def finish(self) -> None:
-        """End nothing."""
+        """Do nothing: the study finishes its progress."""
 
 
 def compute_alone(version: str, job: Job) -> Stored:
@@ -131,7 +131,7 @@ def compute_alone(version: str, job: Job) -> Stored:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
-    """Workers of a cluster, which are there before anything is written."""
+    """Connect to the workers of a cluster before anything is written."""
     try:
         from distributed import Client
         from distributed.comm.addressing import parse_host_port
@@ -139,12 +139,12 @@ def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
         remedy = 'Install it: pip install "tribodyn[cluster]"'
         raise InputError("Dask is not installed", "--scheduler", "", remedy) from None
     try:
-        # A client that finds nobody takes long to tell it.
+        # A client without a scheduler takes long to report it.
         socket.create_connection(parse_host_port(address.split("://")[-1]), _PATIENCE).close()
         client = Client(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError, OverflowError) as error:
         what, why = f"no Dask scheduler answers at {address}", str(error).strip()
-        remedy = "Start one with: dask scheduler; it tells its address"
+        remedy = "Start one with: dask scheduler; it prints its address"
         raise InputError(what, "--scheduler", why, remedy) from None
 
     def compute(jobs: Jobs, progress: Progress) -> Results:
@@ -153,8 +153,9 @@ def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
         except Exception:
             if client.status == "running":
                 raise
-            what, why = f"the Dask scheduler at {address} is gone", "What is finished is stored"
-            remedy = "Start a scheduler; the same command goes on with it"
+            what = f"the connection to the Dask scheduler at {address} is lost"
+            why = "Finished members are stored"
+            remedy = "Start a scheduler; the same command continues the study"
             raise ComputationError(what, "--scheduler", why, remedy) from None
 
     with client:
@@ -162,7 +163,7 @@ def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
 
 
 def _on_workers(client: Any, jobs: Jobs, progress: Progress) -> Results:
-    """Let the workers compute, a few chunks ahead of what they can do at once."""
+    """Compute on the workers, with a few more chunks submitted than they process at a time."""
     from distributed import as_completed
 
     waiting, token = iter(jobs), os.urandom(4).hex()
@@ -184,27 +185,27 @@ def _on_workers(client: Any, jobs: Jobs, progress: Progress) -> Results:
         future = next(ended)
         chunk = running.pop(future)
         try:
-            found: Stored | Exception = future.result()
+            outcome: Stored | Exception = future.result()
             progress.advance(chunk.end - chunk.begin)
         except Exception as error:
             if client.status != "running":
                 raise
-            found = error
-        yield chunk, found
+            outcome = error
+        yield chunk, outcome
         fill()
 
 
 def _await_any(client: Any, ended: Any) -> None:
-    """Wait for a chunk that has ended, and say so once when there is nobody to compute it."""
-    told, looked = False, time.monotonic()
+    """Wait for a finished chunk, and warn once if there are no workers."""
+    warned, last_check = False, time.monotonic()
     while not ended.has_ready():
         with ended.thread_condition:
             ended.thread_condition.wait(timeout=0.1)
-        if time.monotonic() - looked < _PATIENCE:
+        if time.monotonic() - last_check < _PATIENCE:
             continue
         alone = not client.nthreads()
-        if alone and not told:
+        if alone and not warned:
             address = client.scheduler.address
             text = f"the Dask scheduler at {address} has no workers; the study waits for them"
             warn("no-workers", f"{text}. Start one with: dask worker {address} --nthreads 1.")
-        told, looked = alone, time.monotonic()
+        warned, last_check = alone, time.monotonic()

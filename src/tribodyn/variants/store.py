@@ -1,9 +1,9 @@
 """The store of a study: a manifest, and one netCDF file for each chunk of its members.
 
-The manifest ``members.jsonl`` has one line for each fact, with a checksum before it: which study it
-is, the members it has (again when it grows), and every chunk that is whole on the disk. A chunk is
-written beside its place and moved there; its line follows. A process that is killed at any moment
-leaves what is told by these lines, and whoever goes on computes the rest.
+The manifest ``members.jsonl`` has one line for each record, preceded by a checksum: the identity of
+the study, its members (again when it grows), and every complete chunk on the disk. A chunk is
+written to a temporary file and moved; its line follows. After a process was killed at any moment,
+the next one computes the chunks without a line.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from tribodyn.variants.members import Chunk, Plan, layout_of
 if TYPE_CHECKING:
     from tribodyn.variants.study_file import Study
 
-#: Chunks of one folder, reasons that are told, and chunks from which the time left is judged.
+#: Chunks of one folder, reported reasons, and chunks from which the remaining time is estimated.
 _FOLDER, _REASONS, _RECENT = 1000, 20, 50
 
 
 @dataclass(frozen=True)
 class StudyState:
-    """How far a study has come.
+    """Progress of a study.
 
     Parameters
     ----------
@@ -45,15 +45,15 @@ class StudyState:
     members, done, failed : int
         Number of members, of those that are stored, and of those among them that failed.
     reasons : dict of str to int
-        Why members failed, and how many, the most frequent first.
+        Reasons of failures with the number of members, the most frequent first.
     running : bool
         Whether a process of this machine computes it.
     seconds_left : float or None
-        Estimate from the chunks that came last [s]; None where nothing tells.
+        Estimate from the latest chunks [s]; None without an estimate.
     damaged : tuple of str
-        Chunks that were found damaged, and were to be computed anew.
+        Chunks that were damaged and have been computed again.
     missing : dict of str to str
-        Chunks that could not be computed this time, and why.
+        Chunks that could not be computed this time, and the reasons.
     """
 
     title: str
@@ -79,7 +79,7 @@ def chunk_path(folder: Path, name: str) -> Path:
 
 
 def read_chunk(folder: Path, name: str, facts: Mapping[str, Any]) -> bytes | None:
-    """Content of a chunk as it was written; None where it is gone or changed."""
+    """Content of a chunk; None if it is missing or does not match its checksum."""
     with suppress(OSError):
         content = read_bytes(chunk_path(folder, name), "netcdf")
         if zlib.crc32(content) == facts["crc"]:
@@ -91,7 +91,7 @@ _GIVE = "Give the directory that tribodyn study wrote"
 
 
 class Manifest:
-    """What a store tells, for those who read it."""
+    """Read-only view of a store."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.folder = Path(path)
@@ -105,22 +105,22 @@ class Manifest:
         if not str(lines[0].get("study", "") if lines else "").startswith("study ") or (
             "stage 0" not in values
         ):
-            what, why = f"{path} is no store of a study", f"It has no {NAME} of one"
-            near = Path(str(path).removesuffix(".toml") + "-study")  # that of a study file
-            remedy = f'Did you mean "{near}"?' if near.is_dir() else _GIVE
+            what, why = f"{path} is not the store of a study", f"It has no {NAME} of a study"
+            study_folder = Path(str(path).removesuffix(".toml") + "-study")  # that of a study file
+            remedy = f'Did you mean "{study_folder}"?' if study_folder.is_dir() else _GIVE
             raise InputError(what, Argument("path"), why, remedy)
         self.kind = str(lines[0]["study"]).removeprefix("study ")
         self.facts: Mapping[str, Any] = values["facts"]
         self.stages = stages_in(values)
         self.plan = Plan(layout_of(self.stages[-1]), self.stages)
-        known = {chunk.name for chunk in self.plan.chunks}
-        self.chunks = {name: value for name, value in values.items() if name in known}
+        planned = {chunk.name for chunk in self.plan.chunks}
+        self.chunks = {name: value for name, value in values.items() if name in planned}
 
     def state(self) -> StudyState:
-        """How far the study has come."""
-        held = lock(self.folder)
-        if held is not None and held >= 0:
-            os.close(held)
+        """Progress of the study."""
+        lock_handle = lock(self.folder)
+        if lock_handle is not None and lock_handle >= 0:
+            os.close(lock_handle)
         done = sum(facts["members"] for facts in self.chunks.values())
         left = self.plan.layout.count - done
         return StudyState(
@@ -128,19 +128,19 @@ class Manifest:
             self.plan.layout.count,
             done,
             *reasons(self.chunks.values()),
-            running=held is None,
-            seconds_left=self._seconds(left) if left and held is None else None,
+            running=lock_handle is None,
+            seconds_left=self._seconds(left) if left and lock_handle is None else None,
         )
 
     def _seconds(self, left: int) -> float | None:
-        begun = max(n for n, line in enumerate(self.lines) if line["name"] == "begun")
-        recent = [line["value"] for line in self.lines[begun:]][-_RECENT:]
+        last_start = max(n for n, line in enumerate(self.lines) if line["name"] == "begun")
+        recent = [line["value"] for line in self.lines[last_start:]][-_RECENT:]
         count = sum(facts["members"] for facts in recent[1:])
         return left * float(recent[-1]["time"] - recent[0]["time"]) / count if count else None
 
 
 def study_state(path: str | os.PathLike[str]) -> StudyState:
-    """Tell how far the study of a store has come, while it is computed or not.
+    """Report the progress of the study in a store, running or not.
 
     Parameters
     ----------
@@ -150,29 +150,29 @@ def study_state(path: str | os.PathLike[str]) -> StudyState:
     Raises
     ------
     InputError
-        If it is no store.
+        If the directory is not a store.
     """
     return Manifest(path).state()
 
 
 def stages_in(values: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Members of a study each time that they were told."""
+    """Members of a study at each of its stages."""
     count = sum(name.startswith("stage ") for name in values)
     return [values[f"stage {number}"] for number in range(count)]
 
 
 def reasons(chunks: Iterable[Mapping[str, Any]]) -> tuple[int, dict[str, int]]:
-    """How many members failed, and why."""
-    failed, told = 0, dict[str, int]()
+    """Number of failed members, and number by reason."""
+    failed, counts = 0, dict[str, int]()
     for facts in chunks:
         failed += facts["failed"]
         for reason, count in facts["reasons"].items():
-            told[reason] = told.get(reason, 0) + count
-    return failed, dict(sorted(told.items(), key=lambda item: -item[1])[:_REASONS])
+            counts[reason] = counts.get(reason, 0) + count
+    return failed, dict(sorted(counts.items(), key=lambda item: -item[1])[:_REASONS])
 
 
 class Store:
-    """A store that this process writes, alone."""
+    """A store that this process writes exclusively."""
 
     def __init__(self, study: Study, folder: Path, force: bool = False) -> None:
         self.study, self.folder = study, folder
@@ -180,7 +180,7 @@ class Store:
         self.members = Members(folder, force, inside=True)
 
     def __enter__(self) -> Store:
-        """Take the place, and find out what is there."""
+        """Lock the directory and read what is stored."""
         members, study = self.members.begin(self._identity()), self.study
         try:
             values = members.all()
@@ -208,55 +208,55 @@ class Store:
         return self
 
     def _identity(self) -> dict[str, Any]:
-        """What tells the study from others; the number of its members does not."""
+        """Identity of the study, independent of the number of its members."""
         study = self.study
         return identity(f"study {study.compute}", study.case, study.told, keep=list(study.keep))
 
     def job(self, chunk: Chunk) -> Job:
-        """What is sent to whoever computes a chunk."""
+        """Input for the computation of a chunk."""
         study = self.study
         columns = study.layout.columns(self.plan.members(chunk))
         return Job(study.compute, study.case, study.keep, columns)
 
-    def __exit__(self, *told: object) -> None:
-        """Let another process go on."""
-        self.members.__exit__(*told)
+    def __exit__(self, *exception: object) -> None:
+        """Release the directory for other processes."""
+        self.members.__exit__(*exception)
 
     def _damaged(self) -> Iterator[str]:
-        """Forget chunks that are not as they were written."""
+        """Remove chunks that do not match their checksum, and yield their names."""
         for name, facts in list(self.chunks.items()):
             if read_chunk(self.folder, name, facts) is None:
                 del self.chunks[name]
                 yield name
 
     def left(self) -> list[Chunk]:
-        """Chunks that are to be computed."""
+        """Chunks that still have to be computed."""
         return [chunk for chunk in self.plan.chunks if chunk.name not in self.chunks]
 
-    def put(self, chunk: Chunk, found: Stored) -> None:
-        """Write a chunk, then tell that it is there."""
+    def put(self, chunk: Chunk, result: Stored) -> None:
+        """Write a chunk, then record it in the manifest."""
         path = chunk_path(self.folder, chunk.name)
         with quiet("leftover"):
-            with suppress(OSError):  # atomic_write() reports what is wrong
+            with suppress(OSError):  # atomic_write() reports the reason
                 path.parent.mkdir(exist_ok=True)
             with atomic_write(path) as partial:
-                partial.write_bytes(found.content)
-        told: dict[str, int] = {}
-        for reason in filter(None, found.failed):
-            told[reason] = told.get(reason, 0) + 1
+                partial.write_bytes(result.content)
+        counts: dict[str, int] = {}
+        for reason in filter(None, result.failed):
+            counts[reason] = counts.get(reason, 0) + 1
         facts = {
-            "members": len(found.failed),
-            "failed": sum(told.values()),
-            "reasons": dict(sorted(told.items(), key=lambda item: -item[1])[:_REASONS]),
-            "figures": found.figures,
-            "crc": zlib.crc32(found.content),
+            "members": len(result.failed),
+            "failed": sum(counts.values()),
+            "reasons": dict(sorted(counts.items(), key=lambda item: -item[1])[:_REASONS]),
+            "figures": result.figures,
+            "crc": zlib.crc32(result.content),
             "time": time.time(),
         }
         self.members.keep(chunk.name, facts)
         self.chunks[chunk.name] = facts
 
     def state(self, missing: Mapping[str, str]) -> StudyState:
-        """How far the study has come."""
+        """Progress of the study."""
         done = sum(facts["members"] for facts in self.chunks.values())
         failed = reasons(self.chunks.values())
         title, count = self.study.title, self.study.layout.count
@@ -265,17 +265,17 @@ class Store:
 
 
 def _plain(facts: Mapping[str, Any]) -> Any:
-    """Facts as they come back from the manifest."""
+    """Facts as read back from the manifest."""
     return json.loads(json.dumps(facts))
 
 
 def _check_place(folder: Path) -> None:
-    """Refuse a place that is taken by something else, which nothing here may touch."""
-    known = re.compile(rf"{re.escape(NAME)}|\d+-\d{{3,}}")
+    """Refuse a directory with other content, which must not be touched."""
+    own_names = re.compile(rf"{re.escape(NAME)}|\d+-\d{{3,}}")
     if folder.is_dir():
-        strange = next((e.name for e in folder.iterdir() if not known.fullmatch(e.name)), "")
-        there = f"It is no store of a study: it holds {strange}" if strange else ""
+        strange = next((e.name for e in folder.iterdir() if not own_names.fullmatch(e.name)), "")
+        reason = f"It is not the store of a study: it contains {strange}" if strange else ""
     else:
-        there = "It is no directory" if folder.exists() or folder.is_symlink() else ""
-    if there:
-        raise OutputExistsError("this exists already", str(folder), there, "Choose another")
+        reason = "It is not a directory" if folder.exists() or folder.is_symlink() else ""
+    if reason:
+        raise OutputExistsError("this exists already", str(folder), reason, "Choose another")

@@ -1,4 +1,4 @@
-"""A study file: the case, what varies, and what is computed and kept of every member."""
+"""Read study files: the case, what varies, and what is computed and stored for every member."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ TOP: Mapping[str, Option] = {
         None,
         1,
         10**6,
-        "the members that are computed, stored and perhaps lost together",
+        "members that are computed and stored together; an interruption loses an unfinished chunk",
         meaning="members of a chunk",
         example="200",
     ),
@@ -52,12 +52,19 @@ TOP: Mapping[str, Option] = {
 }
 #: Keys of ``[samples]``.
 SAMPLES: Mapping[str, Option] = {
-    "size": integer(REQUIRED, 1, MOST, "beyond it nothing ends", meaning="members", example="1024"),
+    "size": integer(
+        REQUIRED, 1, MOST, "more takes too long", meaning="number of members", example="1024"
+    ),
     "seed": integer(
-        REQUIRED, 0, 10**9, "any will do", meaning="the same gives the same members", example="1"
+        REQUIRED,
+        0,
+        10**9,
+        "any value is suitable",
+        meaning="seed of the sampling; the same seed gives the same members",
+        example="1",
     ),
     "method": choice(
-        "sobol", ("sobol", "monte-carlo", "latin-hypercube"), meaning="how values are drawn"
+        "sobol", ("sobol", "monte-carlo", "latin-hypercube"), meaning="sampling method"
     ),
 }
 _FACTOR: Option = number(
@@ -66,7 +73,7 @@ _FACTOR: Option = number(
 _VARIES = ("axes", "samples", "cases", "table")
 _EXAMPLE = 'Write for example [axes] with operation.speed = "400..3500 rpm:60"'
 _SPREAD = 'Write for example operation.speed = "400 rpm .. 3500 rpm"'
-#: Names that a message lists at most.
+#: Largest number of names that a message lists.
 _LISTED = 12
 #: Tables that hold keys of the case.
 _KEYED = ("set", "axes", "samples.over")
@@ -74,7 +81,7 @@ _KEYED = ("set", "axes", "samples.over")
 
 @dataclass(frozen=True)
 class Study:
-    """Many members of one case; made by :func:`load_study`.
+    """Many members of one case; created by :func:`load_study`.
 
     Parameters
     ----------
@@ -83,17 +90,17 @@ class Study:
     case : Case
         With the values that all members share.
     compute : str
-        What is computed: ``"summary"`` or ``"motions"``.
+        Kind of computation: ``"summary"`` or ``"motions"``.
     keep : tuple of str
-        Figures that are kept; all where it is empty.
+        Figures that are stored; all if it is empty.
     chunk : int
         Members that are computed and stored together.
     layout : Grid or Listed
         The members; ``layout.count`` is their number.
     told : dict
-        How they were asked for.
+        Specification of the members.
     place : str
-        The file, for messages.
+        Path of the file, for messages.
     """
 
     title: str
@@ -112,12 +119,12 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     Parameters
     ----------
     path : str or path
-        TOML file; what it may hold is told on the page on scale of the documentation.
+        TOML file; its keys are described on the page on scale of the documentation.
 
     Raises
     ------
     InputError
-        If it cannot be read, listing every fault of the file.
+        If it cannot be read, listing every error of the file.
     """
     return read_study(read_text(Path(path)), os.fspath(path))
 
@@ -130,12 +137,12 @@ def read_study(content: str, name: str = "study.toml") -> Study:
     content : str
         TOML text.
     name : str
-        Path of the file, for messages; files that it names are looked for beside it.
+        Path of the file, for messages; paths in it are relative to its directory.
 
     Raises
     ------
     InputError
-        Listing every fault of the file.
+        Listing every error of the file.
 
     Examples
     --------
@@ -149,51 +156,51 @@ def read_study(content: str, name: str = "study.toml") -> Study:
         raise InputError(source.place(faults))
     reader = _Reader(data, Path(name).parent)
     study = reader.study(name)
-    if reader.found or study is None:
-        raise InputError(source.place(reader.found))
+    if reader.faults or study is None:
+        raise InputError(source.place(reader.faults))
     return study
 
 
 class _Reader:
-    """Reads the parts of a study file; every fault is put with its key."""
+    """Reader of the parts of a study file that collects every error with its key."""
 
     def __init__(self, data: dict[str, Any], folder: Path) -> None:
         self.data, self.folder = data, folder
-        self.found: list[tuple[str, Problem]] = []
+        self.faults: list[tuple[str, Problem]] = []
 
     def put(self, key: str, problem: Problem) -> None:
-        """Keep a fault of a key."""
-        self.found.append((key, problem))
+        """Record an error of a key."""
+        self.faults.append((key, problem))
 
     def study(self, name: str) -> Study | None:
-        """The whole, or None where a fault was put."""
+        """The study, or None after an error."""
         top = self._values(self.data, TOP, "", (*TOP, "keep", "set", *_VARIES[:3]))
         kind = top.get("compute", "summary")
         keep = self._keep(kind)
         varies = [key for key in _VARIES if key in self.data]
         if len(varies) != 1:
-            what = f"{' and '.join(varies)} are given" if varies else "nothing varies"
-            why = f"One of {', '.join(_VARIES)} tells what varies"
+            what = f"{' and '.join(varies)} are set" if varies else "nothing varies"
+            why = f"Exactly one of {', '.join(_VARIES)} defines what varies"
             self.put("".join(varies[-1:]), Problem(what, "", why, _EXAMPLE))
         case = self._case(top.get("case"))
-        if self.found or case is None:
+        if self.faults or case is None:
             return None
-        layout, told = self._layout(case, kind, varies[0], top)
+        layout, request = self._layout(case, kind, varies[0], top)
         if layout is None:
             return None
         chunk = top["chunk"] or KINDS[kind].chunk
         title = top["title"] or case.title
-        return Study(title, case, kind, keep, chunk, layout, told, name)
+        return Study(title, case, kind, keep, chunk, layout, request, name)
 
     def _values(
-        self, data: Mapping[str, Any], options: Mapping[str, Option], path: str, known: Any
+        self, data: Mapping[str, Any], options: Mapping[str, Option], path: str, allowed: Any
     ) -> dict[str, Any]:
-        """Values of a table, and what is wrong with it."""
+        """Values of a table; records its errors."""
         values: dict[str, Any] = {}
-        for key in (key for key in data if key not in known):
-            remedy = did_you_mean(key, known, "Remove it")
+        for key in (key for key in data if key not in allowed):
+            remedy = did_you_mean(key, allowed, "Remove it")
             place = f"[{path[:-1]}]" if path else "the top of the file"
-            why = f"{place} has: {', '.join(known)}"
+            why = f"{place} has: {', '.join(allowed)}"
             self.put(path + key, Problem(f"{key}: unknown key", "", why, remedy))
         for key, option in options.items():
             if key not in data:
@@ -209,17 +216,17 @@ class _Reader:
         return values
 
     def _keep(self, kind: str) -> tuple[str, ...]:
-        names, known = self.data.get("keep", []), KINDS[kind].figures
+        names, figures = self.data.get("keep", []), KINDS[kind].figures
         if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-            remedy = f'Write for example keep = ["{next(iter(known))}"]'
+            remedy = f'Write for example keep = ["{next(iter(figures))}"]'
             self.put("keep", Problem(f"keep = {written(names)}", "", "It is a list", remedy))
             return ()
-        for name in (name for name in names if name not in known):
-            remedy = did_you_mean(name, known, "tribodyn run CASE --json tells them by name")
-            gives = ", ".join(known) if len(known) <= _LISTED else "the figures of a summary"
+        for name in (name for name in names if name not in figures):
+            remedy = did_you_mean(name, figures, "List the names by: tribodyn run CASE --json")
+            gives = ", ".join(figures) if len(figures) <= _LISTED else "the figures of a summary"
             why = f'compute = "{kind}" gives {gives}'
             self.put("keep", Problem(f'there is no figure "{name}"', "", why, remedy))
-        return tuple(name for name in known if name in names)
+        return tuple(name for name in figures if name in names)
 
     def _case(self, name: str | None) -> Case | None:
         """The case with the values that all members share."""
@@ -237,7 +244,7 @@ class _Reader:
         return None
 
     def _tell(self, key: str, problem: Problem) -> None:
-        """Put a fault of a value of the case where the study file has it, if it has."""
+        """Record an error of a value of the case at its key in the study file, if there is one."""
         table, _, inner = str(problem.where).partition(" ")
         if table in _KEYED and inner:
             self.put(f"{table}.{inner}", replace(problem, where=""))
@@ -260,64 +267,64 @@ class _Reader:
     def _layout(
         self, case: Case, kind: str, varies: str, top: Mapping[str, Any]
     ) -> tuple[Layout | None, Mapping[str, Any]]:
-        """The members, and how they were asked for."""
+        """The members and their specification."""
         free = SCALES if kind == "motions" else ()
         if varies == "axes":
             return self._grid(case, free)
         if varies == "samples":
-            return self._drawn(case)
+            return self._sampled(case)
         return self._listed(case, top["table"], free)
 
     def _grid(self, case: Case, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
         axes: list[Axis] = []
-        wrong = bool(self.found)
-        for key, given in self._keys("axes", self.data).items():
+        wrong = bool(self.faults)
+        for key, entry in self._keys("axes", self.data).items():
             try:
-                given = read_values(given) if isinstance(given, str) else given
-                if not isinstance(given, tuple | list):
+                entry = read_values(entry) if isinstance(entry, str) else entry
+                if not isinstance(entry, tuple | list):
                     raise UnreadError("It is text with a range, or a list of values")
-                axes.append(_factors(key, given) if key in free else _axis(case, key, given))
+                axes.append(_factors(key, entry) if key in free else _axis(case, key, entry))
             except UnreadError as fault:
-                what = f"cannot read {written(given)}"
+                what = f"cannot read {written(entry)}"
                 self.put(f"axes.{key}", Problem(what, "", str(fault), _EXAMPLE))
                 wrong = True
             except InputError as error:
                 for problem in error.problems:
                     self.put(f"axes.{key}", replace(problem, where=""))
                 wrong = True
-        wrong = wrong or bool(self.found)
+        wrong = wrong or bool(self.faults)
         if not axes and not wrong:
             self.put("axes", Problem("nothing varies", "", "", _EXAMPLE))
         elif (count := math.prod(len(axis.values) for axis in axes)) > MOST:
-            why = f"At most {MOST:g} are taken"
-            self.put("axes", Problem(f"{count:g} members", "", why, "Take fewer values"))
+            why = f"The limit is {MOST:g}"
+            self.put("axes", Problem(f"{count:g} members", "", why, "Use fewer values"))
             wrong = True
         grid = Grid(tuple(axes))
         return (grid if axes and not wrong else None), {"axes": [axis.key for axis in axes]}
 
-    def _drawn(self, case: Case) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _sampled(self, case: Case) -> tuple[Layout | None, Mapping[str, Any]]:
         table = self.data["samples"]
         if not isinstance(table, dict):
             self.put("samples", Problem(written(table), "", "It is a table", "Write [samples]"))
             return None, {}
         values = self._values(table, SAMPLES, "samples.", (*SAMPLES, "over"))
         over = self._keys("samples.over", table)
-        if not over and not self.found:
+        if not over and not self.faults:
             self.put("samples.over", Problem("nothing varies", "", "", _SPREAD))
-        if self.found:
+        if self.faults:
             return None, {}
         options = {"method": values["method"], "seed": values["seed"]}
         try:
-            drawn = draw(case, over, values["size"], **options)
+            samples = draw(case, over, values["size"], **options)
         except InputError as error:
             for problem in error.problems:
                 key = str(problem.where).removeprefix("distributions ")
                 self.put(f"samples.over.{key}", replace(problem, where=""))
             return None, {}
-        floats = {key: column.tolist() for key, column in drawn.items()}
-        units = {key: _unit(case, key) for key in drawn}
-        told = {"over": {key: str(each) for key, each in over.items()}, **options}
-        return listed(floats, units), told
+        floats = {key: column.tolist() for key, column in samples.items()}
+        units = {key: _unit(case, key) for key in samples}
+        request = {"over": {key: str(each) for key, each in over.items()}, **options}
+        return listed(floats, units), request
 
     def _listed(
         self, case: Case, path: str | None, free: Any
@@ -332,15 +339,15 @@ class _Reader:
         values: dict[str, list[Any]] = {name: [] for name in rows[0][1]}
         wrong = False
         for place, row in rows:
-            for name, given in row.items():
+            for name, entry in row.items():
                 try:
-                    value = _factor(name, given) if name in free else _value(case, name, given)
+                    value = _factor(name, entry) if name in free else _value(case, name, entry)
                     values[name].append(value)
                 except InputError as error:
                     wrong = True
                     for problem in error.problems:
-                        told = replace(problem, where="", what=f"{place}: {problem.what}")
-                        self.put(key, told)
+                        located = replace(problem, where="", what=f"{place}: {problem.what}")
+                        self.put(key, located)
         units = {name: _unit(case, name) for name in values}
         return (None if wrong else listed(values, units)), {"cases": sorted(values)}
 
@@ -353,17 +360,17 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
             _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
         )
         if twice := flat.keys() & inner.keys():
-            raise InputError(f"{min(twice)} is given twice", "", "", "Keep one of them")
+            raise InputError(f"{min(twice)} is set twice", "", "", "Keep one of them")
         flat |= inner
     return flat
 
 
-def _axis(case: Case, key: str, given: Any) -> Axis:
-    return read_axis(case, key, given, "axes")
+def _axis(case: Case, key: str, entry: Any) -> Axis:
+    return read_axis(case, key, entry, "axes")
 
 
-def _value(case: Case, key: str, given: Any) -> Any:
-    return member_value(case, key, given, "cases")
+def _value(case: Case, key: str, entry: Any) -> Any:
+    return member_value(case, key, entry, "cases")
 
 
 def _unit(case: Case, key: str) -> str:
@@ -371,36 +378,36 @@ def _unit(case: Case, key: str) -> str:
     return spec.unit if spec else ""
 
 
-def _factor(key: str, given: Any) -> float:
+def _factor(key: str, entry: Any) -> float:
     try:
-        return float(read_value(_FACTOR, key, given))
+        return float(read_value(_FACTOR, key, entry))
     except FaultError as fault:
         raise InputError(fault.problem) from None
 
 
-def _factors(key: str, given: Any) -> Axis:
+def _factors(key: str, entry: Any) -> Axis:
     """Values of a factor."""
-    values = [_factor(key, each) for each in (given[:2] if isinstance(given, tuple) else given)]
-    if isinstance(given, tuple) and not (values[0] < values[1] and 2 <= given[2] <= MOST):
-        what, why = f"{key} has {given[2]} points", "A range rises, and has at least two"
+    values = [_factor(key, each) for each in (entry[:2] if isinstance(entry, tuple) else entry)]
+    if isinstance(entry, tuple) and not (values[0] < values[1] and 2 <= entry[2] <= MOST):
+        what, why = f"{key} has {entry[2]} points", "A range rises, and has at least two"
         raise InputError(f"{what} from {values[0]} to {values[1]}", "", why, _EXAMPLE)
-    if isinstance(given, tuple):
-        values = np.linspace(values[0], values[1], given[2]).tolist()
+    if isinstance(entry, tuple):
+        values = np.linspace(values[0], values[1], entry[2]).tolist()
     return Axis(key, tuple(values))
 
 
-def _rows(given: Any) -> list[tuple[str, dict[str, Any]]]:
-    """Members that stand in the study file itself."""
-    if not isinstance(given, list) or not given or not all(isinstance(row, dict) for row in given):
-        what = f"cases = {written(given)}"
-        raise InputError(what, "", "It has one table for each member", "Write [[cases]]")
-    rows = [(f"member {number}", _flat(row)) for number, row in enumerate(given, 1)]
+def _rows(entry: Any) -> list[tuple[str, dict[str, Any]]]:
+    """Members listed in the study file itself."""
+    if not isinstance(entry, list) or not entry or not all(isinstance(row, dict) for row in entry):
+        what = f"cases = {written(entry)}"
+        raise InputError(what, "", "There is one table for each member", "Write [[cases]]")
+    rows = [(f"member {number}", _flat(row)) for number, row in enumerate(entry, 1)]
     _check_rows(rows)
     return rows
 
 
 def _read_csv(path: Path) -> list[tuple[str, dict[str, Any]]]:
-    """Members of a file with their line; its first line has keys with units in brackets."""
+    """Members of a CSV file with their line; its first line has keys with units in brackets."""
     remedy = "Its first line reads: operation.speed [rpm], operation.torque [N*m]"
     try:
         lines = read_bytes(path, "table").decode("utf-8-sig").splitlines()

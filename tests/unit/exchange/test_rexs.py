@@ -175,7 +175,7 @@ def test_shifts_that_do_not_fit_the_distance_are_told(tree, tmp_path) -> None:
 def test_a_case_reads_back_without_loss(name: str, tmp_path: Path) -> None:
     case = td.load_case(name)
     if case.gears.kind != "spur":
-        with pytest.raises(InputError, match="no cylindrical stage"):
+        with pytest.raises(InputError, match="not a cylindrical stage"):
             write_rexs(case, tmp_path / "case.rexs")
         return
     for ending in ("rexs", "rexsj", "rexsz"):
@@ -243,9 +243,9 @@ def test_a_relief_from_a_diameter_on_is_as_long_as_the_involute_rolls(tmp_path: 
 @pytest.mark.parametrize(
     ("kind", "values", "told"),
     [
-        ("profile_slope", {"profile_slope": 0.01}, "no agreed sign"),
+        ("profile_slope", {"profile_slope": 0.01}, "its sign differs between programs"),
         ("tip_relief", {"tip_relief_depth": 0.02,
-                        "tip_relief_length_of_tangential_transition_start": 1.0}, "has no place"),
+                        "tip_relief_length_of_tangential_transition_start": 1.0}, "no key for"),
         ("tip_relief", {}, "it has no depth"),
         ("profile_crowning", {"profile_crowning_at_tip": 0.01, "profile_crowning_at_root": 0.02},
          "at both ends differ"),
@@ -336,7 +336,7 @@ def test_nothing_is_replaced_unasked(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="exists already"):
         write_rexs(case, path)
     write_rexs(case, path, force=True)
-    with pytest.raises(InputError, match=r"Let it end in \.rexs, \.rexsj, \.rexsz"):
+    with pytest.raises(InputError, match=r"Use a suffix of \.rexs, \.rexsj, \.rexsz"):
         write_rexs(case, tmp_path / "case.xml")
 
 
@@ -350,17 +350,17 @@ def bomb() -> bytes:
 @pytest.mark.parametrize(
     ("content", "told"),
     [
-        (b"", "it is no REXS file"),
-        (b"\x00\xff", "it is no REXS file"),
+        (b"", "it is not a REXS file"),
+        (b"\x00\xff", "it is not a REXS file"),
         (b"<model/>", "the model has no components"),
-        (b"<html></html>", "it is XML of a <html>"),
+        (b"<html></html>", "its XML root is <html>"),
         (b'<!DOCTYPE m [<!ENTITY a "b">]><model>&a;</model>', "declares a document type"),
         (b"{}", "JSON without a REXS model"),
-        (b'{"model": []}', "holds no REXS model"),
-        (b'{"model": {"components": 3}}', "components is no list"),
-        (b'{"model": {"components": [{"id": "x"}]}}', "an id is no whole number"),
+        (b'{"model": []}', "does not contain a REXS model"),
+        (b'{"model": {"components": 3}}', "components is not a list"),
+        (b'{"model": {"components": [{"id": "x"}]}}', "an id is not a whole number"),
         (b'{"model": {"components": [{"id": 1}, {"id": 1}]}}', "two components"),
-        (b'{"model":' * 100_000, "it is no REXS file|nested too deeply"),
+        (b'{"model":' * 100_000, "it is not a REXS file|nested too deeply"),
         (bomb(), "larger than 50 MB"),
         (b"PK\x03\x04 cut off", "damaged zip"),
     ],

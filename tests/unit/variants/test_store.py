@@ -148,7 +148,7 @@ def test_a_damaged_chunk_is_refused_and_computed_anew(tmp_path: Path) -> None:
     (place / names[2]).unlink()
     data = open_study(place)
     same(data["power"][9], power([60.0, 70.0, 75.0])[9])
-    with pytest.raises(InputError, match="not as it was written"):
+    with pytest.raises(InputError, match="does not match its checksum"):
         data["power"].load()
     state = run_study(read_study(grid()), place)
     assert state.damaged == ("0/0", "0/1", "0/2")
@@ -215,9 +215,9 @@ def test_two_writers_and_other_studies_are_refused(tmp_path: Path) -> None:
     strange.mkdir()
     (strange / "letter.txt").write_text("dear")
     for force in (False, True):
-        with pytest.raises(OutputExistsError, match="it holds letter"):
+        with pytest.raises(OutputExistsError, match="it contains letter"):
             run_study(read_study(grid()), strange, force=force)
-    with pytest.raises(InputError, match="no store of a study"):
+    with pytest.raises(InputError, match="not the store of a study"):
         open_study(strange)
 
 

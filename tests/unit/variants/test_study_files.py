@@ -22,9 +22,9 @@ BROKEN = {
     _CASE + "chunk = 0\n" + _AXES: r"s.toml:2: chunk: chunk = 0\. Allowed: 1 to 1000000",
     _CASE + 'compute = "motion"\n' + _AXES: "Allowed: summary, motions",
     _CASE + 'keep = ["rms_mesh_forc"]\n' + _AXES: 'Did you mean "rms_mesh_force"',
-    _CASE + 'keep = ["loudness"]\n' + _AXES: "tribodyn run CASE --json tells them by name.",
+    _CASE + 'keep = ["loudness"]\n' + _AXES: "List the names by: tribodyn run CASE --json",
     _CASE + "keep = 5\n" + _AXES: "keep = 5. It is a list",
-    _CASE + _AXES + _DRAWN: "axes and samples are given",
+    _CASE + _AXES + _DRAWN: "axes and samples are set",
     _CASE + "axes = 5\n": "axes: 5. It is a table",
     _CASE + '[axes]\noperation.sped = "1..2 rpm:3"': 's.toml:3.*Did you mean "speed"',
     _CASE + '[axes]\noperation.speed = "1..2 rpm"': "number of points after a colon is missing",
@@ -33,9 +33,9 @@ BROKEN = {
     _CASE + "[axes]\noperation.speed = 3": "a range, or a list of values",
     _CASE + '[axes]\noperation = "1..2 rpm:3"': "operation is a table",
     _CASE + '[axes]\nfriction.law = ["no", "xu-2007"]': 'Did you mean "none"',
-    _CASE + _AXES + '"operation.speed" = "4..9 rpm:3"': "operation.speed is given twice",
+    _CASE + _AXES + '"operation.speed" = "4..9 rpm:3"': "operation.speed is set twice",
     _CASE + '[axes]\noperation.speed = "1..2 rpm:100000"\noperation.torque = "1..2 N*m:100000"': (
-        r"1e\+10 members. At most 1e\+08"
+        r"1e\+10 members. The limit is 1e\+08"
     ),
     _CASE + '[axes]\nforce_scale = "1..2:3"': "force_scale.*unknown key",
     _CASE + 'compute = "motions"\n[axes]\nforce_scale = "2..1:3"': "A range rises",

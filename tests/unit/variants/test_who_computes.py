@@ -78,7 +78,7 @@ def test_a_scheduler_that_is_lost_is_told_in_one_line(tmp_path: Path) -> None:
     _, told = study.communicate(timeout=120)
     assert study.returncode == 1
     assert len(told.splitlines()) == 1, told
-    assert re.search("the Dask scheduler at .* is gone.*the same command goes on", told)
+    assert re.search("the Dask scheduler at .* is lost.*the same command continues", told)
 
 
 def test_a_worker_of_another_version_refuses() -> None:
