@@ -39,10 +39,12 @@ class PlainOil(NamedTuple):
             return 0.0 * P, 0.0 * P
         if self.law == 1.0:
             return self.scale * P, self.scale + 0.0 * P
-        held = np.maximum(P / self.reference, -0.3)
-        slope = self.scale * self.exponent / self.reference * (1.0 + held) ** (self.exponent - 1.0)
+        limited = np.maximum(P / self.reference, -0.3)
+        slope = (
+            self.scale * self.exponent / self.reference * (1.0 + limited) ** (self.exponent - 1.0)
+        )
         moving = P / self.reference > -0.3
-        return self.scale * ((1.0 + held) ** self.exponent - 1.0), slope * moving
+        return self.scale * ((1.0 + limited) ** self.exponent - 1.0), slope * moving
 
     def density(self, P: Array) -> tuple[Array, Array]:
         """Density, and its slope over pressure."""
@@ -114,10 +116,12 @@ class PlainContact:
         """Make the nodes and the matrix that turns pressure into film."""
         X, width = np.linspace(*self.domain, self.intervals + 1, retstep=True)
         node = np.arange(self.intervals + 1)
-        near = (np.maximum(node, 1) - 0.5) * width  # nearer edge of a cell m widths away
-        far = width * (np.log(near) - 1.0) + (near + width) * np.log1p(width / near)
-        own = width * (math.log(0.5 * width) - 1.0)
-        row = np.where(node == 0, own, far) / -math.pi
+        nearer_edge = (np.maximum(node, 1) - 0.5) * width  # nearer edge of a cell m widths away
+        far = width * (np.log(nearer_edge) - 1.0) + (nearer_edge + width) * np.log1p(
+            width / nearer_edge
+        )
+        self_influence = width * (math.log(0.5 * width) - 1.0)
+        row = np.where(node == 0, self_influence, far) / -math.pi
         object.__setattr__(self, "X", X)
         object.__setattr__(self, "width", float(width))
         object.__setattr__(self, "influence", row[np.abs(node[:, None] - node)])
@@ -158,12 +162,12 @@ class PlainContact:
         by_oil = mobility * (rho_slope / rho - self.oil.log_viscosity(P)[1])
         conductance = 0.5 * (mobility[1:] + mobility[:-1]) / self.width
         film = self._by_node(P, rho, by_gap, 0.0)
-        own = self._by_node(P, rho_slope * H, by_oil, conductance)
+        diagonal = self._by_node(P, rho_slope * H, by_oil, conductance)
         above = np.vstack((np.zeros_like(P), self.influence))  # nodes -1 to n
         rows = len(P) - 2
         full = sum(film[s][:, None] * above[s : s + rows] for s in range(4))
         for s in range(4):
-            full[np.arange(rows), np.arange(rows) + s - 1] += own[s]
+            full[np.arange(rows), np.arange(rows) + s - 1] += diagonal[s]
         return full, film.sum(axis=0)
 
     def _by_node(self, P: Array, mass: Array, mobility: Array, conductance: float | Array) -> Array:

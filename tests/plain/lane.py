@@ -78,11 +78,11 @@ class PlainLane(ABC):
         begin = 0.0
         for _ in range(17 + 4 * len(side)):
             new = self.advance(step, begin, 1.0, old, side)
-            found = [
+            crossings = [
                 (self.crossing(step, begin, old, side, int(j), new), int(j))
                 for j in np.flatnonzero(self.dead)
             ]
-            end, j = min(found, default=(2.0, -1))
+            end, j = min(crossings, default=(2.0, -1))
             if end > 1.0:
                 return new
             row = self.row(step, end)

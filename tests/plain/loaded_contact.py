@@ -32,13 +32,13 @@ def plain_loads(
                 inner = structure[np.ix_(place, place)] @ f
                 return np.asarray((gaps[place] + inner + compressed) / approach - 1.0)
 
-            found = root(excess, np.full(count, 0.3), method="hybr", options={"xtol": 1e-14})
+            solution = root(excess, np.full(count, 0.3), method="hybr", options={"xtol": 1e-14})
             f = np.zeros(gaps.size)
-            f[place] = np.abs(found.x) * scale
-            solved = np.max(np.abs(excess(found.x))) < 1e-10
-            apart = gaps + structure @ f - approach
-            rest = np.setdiff1d(np.arange(gaps.size), place)
-            if solved and np.all(apart[rest] >= -1e-12 * approach):
+            f[place] = np.abs(solution.x) * scale
+            solved = np.max(np.abs(excess(solution.x))) < 1e-10
+            clearance = gaps + structure @ f - approach
+            others = np.setdiff1d(np.arange(gaps.size), place)
+            if solved and np.all(clearance[others] >= -1e-12 * approach):
                 return f
     return np.zeros(gaps.size)
 

@@ -25,7 +25,7 @@ class _Lane(PlainLane):
     def tangent(self, row: Nodes, contact: Array, side: Array) -> tuple[Array, Array]:
         """Derivatives of the generalized force by position and velocity."""
         system = self.system
-        free = np.array([one.damping_in_gap for one in system.contacts], dtype=bool)
+        free = np.array([part.damping_in_gap for part in system.contacts], dtype=bool)
         damping = np.where((side != 0.0) | free, row.damping, 0.0)[:, None]
         by_q = (np.abs(side) * row.stiffness)[:, None] * row.direction
         by_q = by_q + self.beat * damping * row.direction_slope

@@ -52,33 +52,40 @@ def _motions(backend: str) -> dict[str, np.ndarray]:
         stiffness_scale=np.array([1.0, 1.1]), damping_scale=0.9, friction_scale=1.2,
         error_scale=np.array([1.0, 1.5]), gap_scale=np.array([1.0, 0.8]), force_scale=0.3,
     )  # fmt: skip
-    many = simulate_ensemble(
+    ensemble = simulate_ensemble(
         pair, [2500.0, 2300.0], 2, (start, 0.0 * start), steps=32,
         parameters=factors, harmonics=1, outputs=np.eye(12)[:2], backend=backend,
     )  # fmt: skip
-    own = simulate_ensemble(
+    separate_systems = simulate_ensemble(
         [_rubbing(40.0), _rubbing(60.0, 4.0)], 0.3, 1, ([0.3, 0.0], [1.0, 0.0]), steps=48,
         averaged=0, backend=backend,
     )  # fmt: skip
     alone = simulate(
         _rubbing(50.0), 0.3, 2, ([0.3, 0.0], [1.0, 0.0]), steps=48, kept=1, backend=backend
     )
-    found = {"position": many.position, "velocity": many.velocity, "loss": many.contact_loss_share}
-    found |= {"own": np.hstack([own.position, own.velocity]), "alone": alone.position}
+    motions = {
+        "position": ensemble.position,
+        "velocity": ensemble.velocity,
+        "loss": ensemble.contact_loss_share,
+    }
+    motions |= {
+        "own": np.hstack([separate_systems.position, separate_systems.velocity]),
+        "alone": alone.position,
+    }
     for name in _SIGNALS:
-        each = getattr(many, name)
-        found |= {f"{name} {key}": getattr(each, key) for key in vars(each)}
+        each = getattr(ensemble, name)
+        motions |= {f"{name} {key}": getattr(each, key) for key in vars(each)}
     push = lambda phase: 0.3 + np.sin(2 * np.pi * phase)[:, None]  # noqa: E731
     swinging = System([[1.0]], [[0.9]], [[2.0]], push, [Contact([1.0], 3.0, gap=0.1)])
     over = (("mesh_frequency", [0.2]), ("gap_scale", [1.0, 2.0]))
     chart = parameter_map(
         swinging, over=over, transient=16, cycles=2, steps=32, verdict=False, backend=backend
     )
-    found |= {"rms": chart.rms, "share": chart.contact_loss_share, "period": chart.period}
+    motions |= {"rms": chart.rms, "share": chart.contact_loss_share, "period": chart.period}
     growing = System([[1.0]], [[-170.0]], [[40.0]], [1.0])
     with pytest.raises(ComputationError, match="beyond all bounds") as lost:
         simulate_ensemble(growing, [1.0, 1.0], 5, ([1.0], [0.0]), steps=64, backend=backend)
-    return found | {"lost": np.array(str(lost.value))}
+    return motions | {"lost": np.array(str(lost.value))}
 
 
 @pytest.fixture(scope="module", params=["simulator", "processor"])
@@ -98,7 +105,7 @@ def marched(request, tmp_path_factory) -> dict[str, np.ndarray]:
     return dict(np.load(path))
 
 
-def test_lanes_of_a_graphics_processor_march_like_those_of_the_cpu(marched) -> None:
+def test_gpu_lanes_equal_cpu_lanes(marched) -> None:
     expected = _motions("cpu")
     assert expected["loss"].max() > 0.05  # contacts opened and closed
     assert str(marched.pop("lost")) == str(expected.pop("lost"))
@@ -107,9 +114,9 @@ def test_lanes_of_a_graphics_processor_march_like_those_of_the_cpu(marched) -> N
         assert np.abs(marched[name] - values).max(initial=0.0) <= 1e-12 * size, name
 
 
-def test_a_missing_package_or_processor_is_told_with_the_remedy(monkeypatch) -> None:
+def test_missing_package_or_gpu_is_reported_with_its_remedy(monkeypatch) -> None:
     free = System([[1.0]], [[0.0]], [[4.0]], [0.0])
-    there = importlib.util.find_spec
+    find_spec = importlib.util.find_spec
 
     def ask(**options: str) -> str:
         with pytest.raises(InputError) as refused:
@@ -119,7 +126,7 @@ def test_a_missing_package_or_processor_is_told_with_the_remedy(monkeypatch) -> 
         return str(refused.value)
 
     monkeypatch.setattr(
-        importlib.util, "find_spec", lambda name: None if name == "numba_cuda" else there(name)
+        importlib.util, "find_spec", lambda name: None if name == "numba_cuda" else find_spec(name)
     )
     assert "argument backend: numba-cuda is not installed" in (text := ask())
     assert 'pip install "tribodyn[cuda]"' in text
@@ -136,7 +143,7 @@ def test_a_missing_package_or_processor_is_told_with_the_remedy(monkeypatch) -> 
         simulate(free, 1.0, 1, ([1.0], [0.0]), backend="gpu")
 
 
-def test_packages_that_do_not_go_together_are_told_as_such(monkeypatch) -> None:
+def test_incompatible_package_versions_are_reported(monkeypatch) -> None:
     from numba import cuda
 
     # What numba-cuda 0.30 meets with NumPy 2.5, before it compiles anything.
@@ -147,9 +154,9 @@ def test_packages_that_do_not_go_together_are_told_as_such(monkeypatch) -> None:
     monkeypatch.setattr(gpu, "version", lambda name: "0.1")
     monkeypatch.setattr(gpu, "_kernel", lambda *sizes: None)
     free = System([[1.0]], [[0.0]], [[4.0]], [0.0])
-    with pytest.raises(ComputationError) as told:
+    with pytest.raises(ComputationError) as caught:
         simulate_ensemble(free, [1.0, 2.0], 1, ([1.0], [0.0]), backend="cuda")
-    assert "no row_stack. These versions are incompatible: numba-cuda 0.1" in str(told.value)
+    assert "no row_stack. These versions are incompatible: numba-cuda 0.1" in str(caught.value)
 
 
 if __name__ == "__main__":

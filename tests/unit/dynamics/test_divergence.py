@@ -77,7 +77,7 @@ def test_parametric_resonance_and_a_step_at_the_limit():
     assert "twice as many steps" in remedy
 
 
-def test_the_lane_that_ran_away_is_named():
+def test_the_diverged_lane_is_named():
     damping = np.ones(20)
     damping[13] = -400.0
     system = _pair(contacts=[Contact([1.0, 0.0], 10.0, damping=1.0)])
@@ -90,13 +90,13 @@ def test_the_lane_that_ran_away_is_named():
     assert "coordinate pinion_x" in text
 
 
-def test_a_coordinate_connected_to_nothing():
+def test_an_unconnected_coordinate_is_refused():
     stiffness = np.diag([100.0, 0.0])
     system = System(np.eye(2), np.diag([1.0, 0.0]), stiffness, [1.0, 1.0], names=NAMES)
     with pytest.raises(InputError, match="wheel_x is not connected to anything"):
         steady_state(system, 1.0)
-    held = System(np.eye(2), np.diag([1.0, 0.1]), stiffness, [1.0, 0.0], names=NAMES)
-    assert steady_state(held, 1.0).converged
+    connected = System(np.eye(2), np.diag([1.0, 0.1]), stiffness, [1.0, 0.0], names=NAMES)
+    assert steady_state(connected, 1.0).converged
 
 
 @pytest.mark.parametrize(
@@ -128,7 +128,7 @@ def test_a_table_with_nan_is_named_with_its_phase(name):
     assert f"contacts[0].{name} is NaN or infinite at the mesh phase 0.25" in text
 
 
-def test_strong_friction_is_told_before_any_other_cause():
+def test_strong_friction_is_reported_as_first_cause():
     """With a coefficient of 3 neither a parametric resonance nor a sign is the first suspect."""
     rub = 3.0 * np.array([0.0, 1.0])
     contact = Contact([1.0, 0.0], lambda phase: 4e4 * (1 + 0.6 * np.cos(2 * np.pi * phase)),

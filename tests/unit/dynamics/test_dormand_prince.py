@@ -72,14 +72,14 @@ def _shared(compiled, steps):
 @pytest.fixture(scope="module")
 def fine():
     """Runge-Kutta with very short steps, at the same mesh phases."""
-    found = {}
+    records = {}
     for name, (system, frequency, cycles, start, steps) in CASES.items():
         compiled = compile_for(system, frequency, steps)
         record = np.empty((cycles * steps + 1, 2 * system.size, 1))
         march(compiled, np.array([1.0 / frequency]), start[None], cycles, record=record)
         index = (_shared(compiled, GRID) + steps * np.arange(cycles)[:, None]).ravel()
-        found[name] = record[np.append(index, cycles * steps), :, 0]
-    return found
+        records[name] = record[np.append(index, cycles * steps), :, 0]
+    return records
 
 
 def test_coefficients_satisfy_the_order_conditions():
@@ -155,9 +155,9 @@ def test_a_table_with_knots_keeps_the_tolerance():
         System([[1.0]], [[0.1]], [[0.0]], [0.5], [Contact([1.0], stiffness=polygon, events=events)])
         for events in ((0.0,), declared)
     ]
-    one, other = (solve_adaptive(s, 0.2, 4, ([0.5], [0.0]), rtol=1e-8) for s in systems)
+    smooth, tabulated = (solve_adaptive(s, 0.2, 4, ([0.5], [0.0]), rtol=1e-8) for s in systems)
     time = np.linspace(0.0, 20.0, 50)
-    assert np.abs(one(time) - other(time)).max() < 2e-8
+    assert np.abs(smooth(time) - tabulated(time)).max() < 2e-8
 
 
 def test_order_of_the_dense_output():
@@ -215,8 +215,8 @@ def test_response_equals_runge_kutta_and_balances_energy():
     classical = simulate(system, **options)
     motion = simulate(system, **options, method="dormand-prince", rtol=1e-10)
     for name in ("position", "velocity", "contact_force"):
-        one, other = getattr(classical, name), getattr(motion, name)
-        assert np.abs(one - other).max() < 2e-6 * np.abs(one).max()
+        expected, value = getattr(classical, name), getattr(motion, name)
+        assert np.abs(expected - value).max() < 2e-6 * np.abs(expected).max()
     assert 0.0 < motion.step_number < 20.0
     smooth = System([[1.0]], [[0.1]], [[4.0]], [1.0], [Contact([1.0], 2.0, 0.05)])
     swing = simulate(smooth, 1.0, 5, ([1.0], [0.0]), steps=256, method="dormand-prince", rtol=1e-9)
@@ -225,8 +225,8 @@ def test_response_equals_runge_kutta_and_balances_energy():
     assert audit.dissipated > 0.1
 
 
-def test_every_engine_marches_the_same_motion():
-    found = {
+def test_every_engine_gives_the_same_motion():
+    motions = {
         method: simulate(OSCILLATOR, 1.0, 3, ([1.0], [0.0]), steps=512, method=method, **options)
         for method, options in (
             ("rk4", {}),
@@ -234,8 +234,8 @@ def test_every_engine_marches_the_same_motion():
             ("newmark", {"gamma": 0.5, "beta": 0.25}),
         )
     }
-    exact = swinging(found["rk4"].time)[:, 0]
-    errors = {name: np.abs(m.position[:, 0] - exact).max() for name, m in found.items()}
+    exact = swinging(motions["rk4"].time)[:, 0]
+    errors = {name: np.abs(m.position[:, 0] - exact).max() for name, m in motions.items()}
     assert errors["rk4"] < 1e-10
     assert errors["dormand-prince"] < 1e-9
     assert 1e-7 < errors["newmark"] < 1e-5
@@ -262,8 +262,8 @@ def test_lanes_equal_single_runs():
         )  # fmt: skip
         assert motion.crossings > 2
         time = (compiled.grid.left[::16] + np.arange(cycles)[:, None]).ravel() * period[lane]
-        found = record[:-1:16, :, lane]
-        assert (np.abs(found - motion(time)) / scale).max() < 3e-8
+        lane_states = record[:-1:16, :, lane]
+        assert (np.abs(lane_states - motion(time)) / scale).max() < 3e-8
 
 
 def test_grazing_and_impacts_between_events():
@@ -281,11 +281,11 @@ def test_grazing_and_impacts_between_events():
     assert flight[:, 0] == pytest.approx([0.0, 0.0], abs=1e-8)
     assert flight[:, 1] == pytest.approx([speed, speed], rel=1e-8)
     # Thrown up to just below, at and just above the flank: the excursion is tiny.
-    for rest in (-1e-9, 0.0, 1e-9, 1e-6):
-        throw = math.sqrt(2.0 * (1.0 + rest))
+    for free_flight in (-1e-9, 0.0, 1e-9, 1e-6):
+        throw = math.sqrt(2.0 * (1.0 + free_flight))
         tossed = System([[1.0]], [[0.0]], [[0.0]], [-1.0], [contact])
         motion = solve_adaptive(tossed, 0.5, 1, ([0.0], [throw]), rtol=1e-10)
-        above = max(rest, 0.0)
+        above = max(free_flight, 0.0)
         impulse = 100.0 * above * math.sqrt(2.0 * above) * 4.0 / 3.0
         end = 2.0 * throw - 2.0 - impulse * (2.0 - throw)
         assert motion(2.0)[0] == pytest.approx(end, abs=3e-10)

@@ -47,8 +47,8 @@ def test_impacts_that_spread_differences_stay_within_the_tolerance(frequency, cy
     record = np.empty((cycles * 2048 + 1, 4, 1))
     for rtol in (1e-4, 1e-6, 1e-8):
         march_adaptive(compiled, period, START[None], cycles, rtol=rtol, record=record)
-        found = (np.abs(record[::part, :, 0] - exact) / size).max()
-        assert found < 2.0 * rtol
+        error = (np.abs(record[::part, :, 0] - exact) / size).max()
+        assert error < 2.0 * rtol
 
 
 def _rattling(stiffness, gap):
@@ -63,10 +63,10 @@ def test_hundreds_of_impacts_in_one_step_of_free_flight():
     flights = np.floor((1.0 + gap / speed) / half)
     assert flights > 400
     assert abs(motion.crossings - 2.0 * flights) <= 2.0
-    rest = 1.0 + gap / speed - half * flights
-    assert gap < rest * speed < 2.0 * gap
+    landing = 1.0 + gap / speed - half * flights
+    assert gap < landing * speed < 2.0 * gap
     side = 1.0 if flights % 2 == 0 else -1.0
-    assert motion.state[-1, 0] == pytest.approx(side * (speed * rest - gap), abs=1e-8)
+    assert motion.state[-1, 0] == pytest.approx(side * (speed * landing - gap), abs=1e-8)
 
 
 def test_a_contact_that_chatters_is_reported():

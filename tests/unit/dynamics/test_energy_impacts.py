@@ -24,42 +24,42 @@ MOVING = {
 
 def audits(system, frequency, cycles, start, counts):
     """Audits of one motion with several numbers of steps, in each of which the contact parts."""
-    found = []
+    results = []
     for steps in counts:
         motion = simulate(system, frequency, cycles, start, steps=steps)
         gap = system.contacts[0].gap
         touching = motion.deflection[:, 0] > (gap(motion.phase) if callable(gap) else gap)
         assert np.count_nonzero(np.diff(touching)) > 2
-        found.append(energy_audit(system, motion))
-    return found
+        results.append(energy_audit(system, motion))
+    return results
 
 
 @pytest.mark.parametrize("contact", [{}, {"damping_in_gap": True}, MOVING])
 def test_a_bouncing_mass(contact):
-    found = audits(bouncing(**contact), 0.1, 2, ([3.0], [-2.0]), (512, 1024, 2048))
-    errors = [audit.imbalance for audit in found]
+    results = audits(bouncing(**contact), 0.1, 2, ([3.0], [-2.0]), (512, 1024, 2048))
+    errors = [audit.imbalance for audit in results]
     assert errors[1] < 1e-6
     assert errors[2] < errors[0] / 4**3.3
-    assert found[1].dissipated == pytest.approx(found[2].dissipated, rel=1e-6)
+    assert results[1].dissipated == pytest.approx(results[2].dissipated, rel=1e-6)
     if contact is MOVING:
-        assert abs(found[2].parametric) > 0.02 * found[2].dissipated
+        assert abs(results[2].parametric) > 0.02 * results[2].dissipated
 
 
 def test_a_pair_of_gears_that_separates():
     start = (np.zeros(6), np.array([0.0, 0.05, 1.5, 0.0, 0.0, 0.0]))
     system = reference_system(0.1, gap=1e-5)
-    found = audits(system, 900.0, 4, start, (1024, 2048, 4096))
-    errors = [audit.imbalance for audit in found]
+    results = audits(system, 900.0, 4, start, (1024, 2048, 4096))
+    errors = [audit.imbalance for audit in results]
     assert errors[0] < 1e-6
     assert errors[2] < errors[0] / 4**3.3
-    assert min(abs(found[0].friction), found[0].dissipated, found[0].parametric) > 0.01
+    assert min(abs(results[0].friction), results[0].dissipated, results[0].parametric) > 0.01
 
 
 def test_two_flanks_that_open_at_one_place_lose_what_one_does():
     half = Contact([1.0], stiffness=20.0, damping=0.75, gap=1.0)
     twins = System([[1.0]], [[0.0]], [[0.0]], [-1.0], [half, half])
-    whole, both = (
+    single, double = (
         audits(system, 0.1, 2, ([3.0], [-2.0]), (1024,))[0] for system in (bouncing(), twins)
     )
-    assert both.imbalance < 1e-6
-    assert both.dissipated == pytest.approx(whole.dissipated, rel=1e-8)
+    assert double.imbalance < 1e-6
+    assert double.dissipated == pytest.approx(single.dissipated, rel=1e-8)

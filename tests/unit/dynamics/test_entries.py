@@ -26,13 +26,13 @@ SMOOTH = {
 
 
 @pytest.mark.parametrize("name", SMOOTH)
-def test_continuous_functions_are_taken(name):
+def test_continuous_functions_are_accepted(name):
     assert _orbit(stiffness=SMOOTH[name]).converged
 
 
 @pytest.mark.parametrize("height", [1.0, -1e-2, 1e-3, -1e-4])
 @pytest.mark.parametrize("place", [0.377, 0.25, 0.9996])
-def test_a_jump_where_no_event_is(height, place):
+def test_a_jump_without_an_event_is_refused(height, place):
     """Refused with its place, whatever it stands on; as an event it is taken."""
     for name, smooth in SMOOTH.items():
 
@@ -43,8 +43,8 @@ def test_a_jump_where_no_event_is(height, place):
             continue
         with pytest.raises(InputError, match=r"contacts\[0\].stiffness jumps by") as caught:
             _orbit(stiffness=jumping)
-        told = float(str(caught.value).split("mesh phase ")[1].split(",")[0])
-        assert told == pytest.approx(place, abs=1e-6)
+        reported = float(str(caught.value).split("mesh phase ")[1].split(",")[0])
+        assert reported == pytest.approx(place, abs=1e-6)
         assert _orbit(stiffness=jumping, events=(0.0, place)).converged
 
 
@@ -55,12 +55,12 @@ def test_a_jump_at_the_phase_zero_costs_no_order(name, place):
 
     def state(place, steps):
         base = {"stiffness": 1.0, "error": 0.0}
-        given = {**base, name: lambda phase: base[name] + 0.3 * ((phase - place) % 1.0)}
-        contact = Contact([1.0], damping=0.05, events=(place,) if place else (), **given)
+        entries = {**base, name: lambda phase: base[name] + 0.3 * ((phase - place) % 1.0)}
+        contact = Contact([1.0], damping=0.05, events=(place,) if place else (), **entries)
         system = System([[1.0]], [[0.05]], [[0.0]], [0.3], [contact])
-        found = steady_state(system, 0.11, steps=steps)
-        row = int(np.argmin(np.abs(found.phase - place)))
-        return np.append(found.position[row], found.velocity[row])
+        orbit = steady_state(system, 0.11, steps=steps)
+        row = int(np.argmin(np.abs(orbit.phase - place)))
+        return np.append(orbit.position[row], orbit.velocity[row])
 
     errors = [np.abs(state(place, steps) - state(0.0, 2048)).max() for steps in (32, 64, 128)]
     assert errors[0] < 1e-4
@@ -77,7 +77,7 @@ def test_a_jump_too_small_to_be_refused_does_nothing():
 
 
 @pytest.mark.parametrize("name", ["stiffness", "damping", "error", "gap", "direction", "friction"])
-def test_every_entry_is_looked_at(name):
+def test_every_entry_is_checked_for_jumps(name):
     def jumping(phase):
         return np.where(phase < 0.3, 0.5, 0.6)
 
@@ -89,7 +89,7 @@ def test_every_entry_is_looked_at(name):
         _orbit(frictions=[LoadFriction([1.0], jumping, 1.0)])
 
 
-def test_a_finer_step_is_looked_at_again():
+def test_a_finer_grid_repeats_the_check():
     """A pulse between the nodes of the first grid is found by one that is fine enough."""
     pulse = Contact([1.0], lambda phase: 9.0 + ((phase > 0.5019) & (phase < 0.5023)))
     system = System([[1.0]], [[1.0]], [[0.0]], [1.0], [pulse])
@@ -98,7 +98,7 @@ def test_a_finer_step_is_looked_at_again():
         steady_state(system, 1.0, steps=4096)
 
 
-def test_functions_that_are_none_of_the_phase():
+def test_functions_that_depend_on_more_than_the_phase_are_refused():
     generator, calls = np.random.default_rng(1), []
 
     def counted(phase):
@@ -112,7 +112,7 @@ def test_functions_that_are_none_of_the_phase():
 
 
 @pytest.mark.parametrize("bad", ["9", 9.0 + 1j, None, {}, [[1.0], [1.0, 2.0]], b"9", object()])
-def test_what_is_no_real_number(bad):
+def test_entries_that_are_not_real_numbers_are_refused(bad):
     for entry in (bad, lambda phase: bad, lambda phase: np.full(phase.shape, bad)):
         with pytest.raises(InputError, match=r"(Contact|contacts\[0\])\.stiffness"):
             _orbit(stiffness=entry)

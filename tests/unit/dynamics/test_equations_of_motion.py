@@ -24,8 +24,8 @@ def _forces(system, coordinates: str) -> list[float]:
     """Forces of the mesh under N newtons on named coordinates."""
     (contact,) = system.contacts
     at = [system.names.index(name) for name in coordinates.split()]
-    given = contact.direction(PHASE)[0] if callable(contact.direction) else contact.direction
-    return list(-(np.asarray(given) + contact.friction(PHASE)[0])[at] * N)
+    direction = contact.direction(PHASE)[0] if callable(contact.direction) else contact.direction
+    return list(-(np.asarray(direction) + contact.friction(PHASE)[0])[at] * N)
 
 
 def test_six_coordinates() -> None:

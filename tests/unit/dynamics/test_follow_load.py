@@ -75,7 +75,7 @@ def test_a_constant_coefficient_gives_the_motion_of_the_table(driver, model):
     np.testing.assert_allclose(loop.extra_force, table.extra_force, atol=1e-6)
 
 
-def test_a_motion_at_the_nominal_load_rubs_like_the_table():
+def test_friction_at_the_nominal_load_equals_the_table():
     # Of a constant stiffness the load stays at the nominal one, but for what friction adds.
     mesh, friction = _meshes("xu-2007")
     system = _spur6(mesh)
@@ -88,7 +88,7 @@ def test_a_motion_at_the_nominal_load_rubs_like_the_table():
     assert np.array(even.balance) @ loop.extra_force == pytest.approx(rub, rel=0.01)
 
 
-def test_the_dynamic_load_changes_friction_by_what_the_law_says():
+def test_the_dynamic_load_changes_friction_as_in_the_law():
     mesh, friction = _meshes("xu-2007")
     system = _spur6(mesh)
     loop = steady_state(follow_load(system, friction), 240.0)

@@ -31,7 +31,7 @@ def _body(contacts, force=2000.0, mass=0.2):
     return System([[mass]], [[50.0]], [[0.0]], [force], contacts)
 
 
-def _one(**change):
+def _plain_contact(**change):
     options = {"stiffness": 0.0, "damping": 300.0, "gap": 2e-5, "events": (0.0, 0.25)}
     return Contact([1.0], **(options | change))
 
@@ -45,20 +45,24 @@ def _wavy_ramps(*shares):
 @pytest.mark.parametrize("shares", [(1.0,), (0.2, 0.5, 0.3), (0.4, 0.0, 0.6)])
 @pytest.mark.parametrize("gap", [0.0, 2e-5])
 def test_a_linear_law_is_one_contact(shares, gap):
-    bundle = _body(law_contacts(_one(gap=gap), _wavy_ramps(*shares)))
+    bundle = _body(law_contacts(_plain_contact(gap=gap), _wavy_ramps(*shares)))
     assert len(bundle.contacts) == np.count_nonzero(shares)
-    plain = _body([_one(gap=gap, stiffness=lambda p: _wavy_ramps(1.0).ramps(p)[1][:, 0])])
+    plain = _body([_plain_contact(gap=gap, stiffness=lambda p: _wavy_ramps(1.0).ramps(p)[1][:, 0])])
     start = ([3e-5], [0.6])
-    many, one = (simulate(system, FREQUENCY, 4, start, steps=256) for system in (bundle, plain))
+    bundled, single = (
+        simulate(system, FREQUENCY, 4, start, steps=256) for system in (bundle, plain)
+    )
     if gap:
-        assert many.deflection.min() < gap < many.deflection.max()
+        assert bundled.deflection.min() < gap < bundled.deflection.max()
     tight = 1e-12 if len(shares) == 1 else 1e-7  # monotone curves over the phase
-    size = np.abs(one.position).max()
-    np.testing.assert_allclose(many.position, one.position, atol=tight * size)
-    force = one.fine.contact_force[:, 0]
-    np.testing.assert_allclose(total_force(many), force, atol=tight * 1e2 * np.abs(force).max())
-    rest, expected = (static_start(compile_for(each, FREQUENCY, 256)) for each in (bundle, plain))
-    np.testing.assert_allclose(rest, expected, rtol=1e-9)
+    size = np.abs(single.position).max()
+    np.testing.assert_allclose(bundled.position, single.position, atol=tight * size)
+    force = single.fine.contact_force[:, 0]
+    np.testing.assert_allclose(total_force(bundled), force, atol=tight * 1e2 * np.abs(force).max())
+    bundle_state, expected = (
+        static_start(compile_for(each, FREQUENCY, 256)) for each in (bundle, plain)
+    )
+    np.testing.assert_allclose(bundle_state, expected, rtol=1e-9)
 
 
 def test_one_ramp_of_a_gear_pair_is_its_plain_stiffness():
@@ -83,8 +87,8 @@ def test_kernel_equals_plain_with_ramps_that_open_and_close():
     plain = march_plain(system, compiled.grid, compiled.nodes, FREQUENCY, 2, start)
     motion = simulate(system, FREQUENCY, 2, (start[:6], start[6:]), steps=176)
     scale = np.abs(plain).max(axis=0)
-    found = np.hstack([motion.position, motion.velocity])
-    assert np.abs((found - plain[:-1]) / scale).max() < 1e-11
+    states = np.hstack([motion.position, motion.velocity])
+    assert np.abs((states - plain[:-1]) / scale).max() < 1e-11
     carrying = (motion.contact_force != 0.0).sum(axis=1)
     assert carrying.min() == 0
     assert carrying.max() >= 4
@@ -95,20 +99,20 @@ def test_lanes_of_an_ensemble_equal_single_runs():
     generator = np.random.default_rng(2)
     frequency = generator.uniform(600.0, 3000.0, 20)
     start = 2e-5 * generator.standard_normal((20, 6)), np.zeros((20, 6))
-    many = simulate_ensemble(system, frequency, 3, start, steps=2048, averaged=3)
+    ensemble = simulate_ensemble(system, frequency, 3, start, steps=2048, averaged=3)
     for lane in (0, 19):
         begin = (start[0][lane], start[1][lane])
-        one = simulate(system, frequency[lane], 3, begin, steps=2048)
-        end = one.fine.position[-1]
-        np.testing.assert_allclose(many.position[lane], end, atol=1e-12 * np.abs(end).max())
-        mean = many.contact_force.mean[lane].sum()
-        fine = one.fine
+        single = simulate(system, frequency[lane], 3, begin, steps=2048)
+        end = single.fine.position[-1]
+        np.testing.assert_allclose(ensemble.position[lane], end, atol=1e-12 * np.abs(end).max())
+        mean = ensemble.contact_force.mean[lane].sum()
+        fine = single.fine
         assert mean == pytest.approx(fine.mean(fine.contact_force.sum(axis=1)), rel=1e-9)
 
 
 def test_all_damping_acts_while_the_lowest_ramp_is_closed():
     moved = constant_law([5e-6, 1e-6, 9e-6], [1e8, 1e8, 1e8])
-    contacts = law_contacts(_one(), moved)
+    contacts = law_contacts(_plain_contact(), moved)
     assert [each.damping for each in contacts] == [300.0, 0.0, 0.0]
     # Just above the lowest knot: its own spring and the whole damper, nothing else.
     start = ([2e-5 + 3e-6], [0.5])
@@ -121,7 +125,7 @@ def test_damping_without_a_lowest_ramp():
     wave = 2e-6 * np.cos(2 * np.pi * GRID.phase)
     law = MeshForceLaw(GRID, np.stack((wave, -wave), axis=1), np.full((GRID.phase.size, 2), 1e8))
     assert law.lowest is None
-    contacts = law_contacts(_one(), law)
+    contacts = law_contacts(_plain_contact(), law)
     assert [each.damping for each in contacts] == [300.0, 0.0, 0.0]
     motion = simulate(_body(contacts), FREQUENCY, 1, ([2e-5 - 1e-6], [0.5]), steps=256)
     # At phase 0 the second pair touches at -2 um, the first one not before +2 um.
@@ -149,8 +153,8 @@ def test_static_start_of_the_pair_on_its_supports_is_at_rest():
 
 def test_contacts_of_different_places_keep_their_start():
     """Only ramps of one law open in the search of the start, other contacts stay closed."""
-    both = [Contact([1.0, 0.0], 2.0, gap=1.0), Contact([0.0, 1.0], 4.0, gap=0.5)]
-    system = System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), [-1.0, 0.5], both)
+    contacts = [Contact([1.0, 0.0], 2.0, gap=1.0), Contact([0.0, 1.0], 4.0, gap=0.5)]
+    system = System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), [-1.0, 0.5], contacts)
     start = static_start(compile_for(system, 1.0, 16))
     np.testing.assert_allclose(start[:2], [0.5, 0.625], rtol=1e-12)
 
@@ -163,17 +167,17 @@ def test_back_flanks_carry_the_same_law():
     )  # fmt: skip
     # Nothing but the mesh drives: a motion and its mirror image.
     start = np.array([2e-3, -1e-3]), np.array([0.3, -0.2])
-    there = simulate(system, FREQUENCY, 3, start, steps=256)
+    forward = simulate(system, FREQUENCY, 3, start, steps=256)
     back = simulate(system, FREQUENCY, 3, (-start[0], -start[1]), steps=256)
-    assert total_force(there).max() > 1000.0
-    np.testing.assert_allclose(back.position, -there.position, rtol=1e-12)
-    np.testing.assert_allclose(total_force(back), -total_force(there), rtol=1e-9, atol=1e-6)
-    deflection = there.fine.deflection[:, 0]
+    assert total_force(forward).max() > 1000.0
+    np.testing.assert_allclose(back.position, -forward.position, rtol=1e-12)
+    np.testing.assert_allclose(total_force(back), -total_force(forward), rtol=1e-9, atol=1e-6)
+    deflection = forward.fine.deflection[:, 0]
     inner = np.abs(deflection) < 15e-6
-    assert not total_force(there)[inner].any()
+    assert not total_force(forward)[inner].any()
 
 
-def test_an_error_is_taken_off_the_compression_in_every_way():
+def test_an_error_is_subtracted_for_every_mesh_force():
     law, error = constant_law([0.0, 5e-6], [2e8, 1e8]), 7e-6
     for way in ("stiffness", "tangent", "force-law"):
         with_error, without = (
@@ -221,6 +225,6 @@ def test_a_mesh_without_a_law_is_named(way):
         torsional(bare, mesh_force=way, **options)
 
 
-def test_a_gap_that_varies_belongs_into_the_law():
+def test_a_varying_gap_is_refused():
     with pytest.raises(InputError, match="gap is not a constant"):
-        law_contacts(_one(gap=lambda phase: 1e-5 + 0 * phase), constant_law([0.0], [1e8]))
+        law_contacts(_plain_contact(gap=lambda phase: 1e-5 + 0 * phase), constant_law([0.0], [1e8]))

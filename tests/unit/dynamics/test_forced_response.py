@@ -34,26 +34,26 @@ def pair():
 
 def test_torsional_pair_in_closed_form():
     hertz = np.array([10.0, 3000.0, 5000.0, 8000.0, 20000.0])
-    found = forced_response(pair(), hertz)
+    response = forced_response(pair(), hertz)
     omega = 2.0 * np.pi * hertz
     spring = STIFFNESS + 1j * omega * DAMPING
     approach = ERROR * spring / (spring - omega**2 * MASS)
-    np.testing.assert_allclose(found.transmission_error[:, 0], approach, rtol=1e-11)
-    np.testing.assert_allclose(found.mesh_force, spring * (approach - ERROR), rtol=1e-7)
+    np.testing.assert_allclose(response.transmission_error[:, 0], approach, rtol=1e-11)
+    np.testing.assert_allclose(response.mesh_force, spring * (approach - ERROR), rtol=1e-7)
 
 
 def test_limits_of_slow_and_fast_errors():
     slow, fast = 1.0, 1e7
-    found = forced_response(pair(), [slow, fast])
+    response = forced_response(pair(), [slow, fast])
     # slow: the gears follow and the teeth push the effective mass; fast: the teeth yield
     mass_line = MASS * (2.0 * math.pi * slow) ** 2 * ERROR
-    assert found.mesh_force[0].real == pytest.approx(mass_line, rel=1e-5)
-    assert found.transmission_error[0, 0] == pytest.approx(ERROR, rel=1e-6)
+    assert response.mesh_force[0].real == pytest.approx(mass_line, rel=1e-5)
+    assert response.transmission_error[0, 0] == pytest.approx(ERROR, rel=1e-6)
     rigid = STIFFNESS + 2j * math.pi * fast * DAMPING
-    assert found.mesh_force[1] == pytest.approx(-rigid * ERROR, rel=1e-3)
+    assert response.mesh_force[1] == pytest.approx(-rigid * ERROR, rel=1e-3)
     # a slow error on a wheel that cannot turn presses the teeth: nothing can follow
-    held = System(np.eye(1), [[0.0]], [[2e8]], [1.0], [Contact([1.0], 2e8)])
-    assert forced_response(held, 1e-3).mesh_force[0].real == pytest.approx(-100.0, rel=1e-9)
+    grounded = System(np.eye(1), [[0.0]], [[2e8]], [1.0], [Contact([1.0], 2e8)])
+    assert forced_response(grounded, 1e-3).mesh_force[0].real == pytest.approx(-100.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("mesh_frequency", [5000.0, 5276.0, 9000.0])
@@ -66,22 +66,22 @@ def test_marched_steady_state_has_the_same_amplitudes(mesh_frequency):
         events=(0.0,),
     )
     orbit = steady_state(system, mesh_frequency, steps=512)
-    found = forced_response(system, mesh_frequency, error=2e-6)
+    response = forced_response(system, mesh_frequency, error=2e-6)
     for signal, exact in (
-        (orbit.fine.contact_force[:, 0], found.contact_force[0, 0]),
-        (orbit.fine.deflection[:, 0], found.deflection[0, 0]),
-        (orbit.fine.position[:, 0], found.position[0, 0]),
-        (orbit.fine.position[:, 1], found.position[0, 1]),
+        (orbit.fine.contact_force[:, 0], response.contact_force[0, 0]),
+        (orbit.fine.deflection[:, 0], response.deflection[0, 0]),
+        (orbit.fine.position[:, 0], response.position[0, 0]),
+        (orbit.fine.position[:, 1], response.position[0, 1]),
     ):
         # The rotation of the whole drive does not enter any of these.
         assert mesh_harmonics(orbit, signal, 1)[0] == pytest.approx(exact, rel=1e-6)
     support = 3.5e9 * orbit.fine.position[:, 1] + 4e3 * orbit.fine.velocity[:, 1]
     assert mesh_harmonics(orbit, support, 1)[0] == pytest.approx(
-        found.structure_force[0, 1], rel=1e-6
+        response.structure_force[0, 1], rel=1e-6
     )
 
 
-def test_peak_stands_at_the_mode_of_the_mesh():
+def test_peak_is_at_the_mesh_mode():
     system = reference_system()
     hertz = np.linspace(4000.0, 7000.0, 601)
     (peak,) = forced_response(system, hertz).peaks()
@@ -96,10 +96,10 @@ def test_error_of_one_mesh_acts_on_the_other_as_much_as_the_reverse():
     ]
     train = assemble(gears, meshes, {"a": 90.0, "c": -150.0})
     hertz = np.array([300.0, 3000.0, 7000.0])
-    there = forced_response(train, hertz, contact=0).contact_force[:, 1]
-    back = forced_response(train, hertz, contact=1).contact_force[:, 0]
-    np.testing.assert_allclose(there, back, rtol=1e-9)
-    assert np.abs(there).min() > 0.0
+    forward = forced_response(train, hertz, contact=0).contact_force[:, 1]
+    backward = forced_response(train, hertz, contact=1).contact_force[:, 0]
+    np.testing.assert_allclose(forward, backward, rtol=1e-9)
+    assert np.abs(forward).min() > 0.0
 
 
 def test_ramps_of_one_law_share_the_error():
@@ -108,9 +108,9 @@ def test_ramps_of_one_law_share_the_error():
     contacts = law_contacts(Contact([1.0], 0.0, gap=5e-5, damping=900.0), law)
     bundle = System([[2.0]], [[0.0]], [[1e6]], [5000.0], contacts)
     single = System([[2.0]], [[0.0]], [[1e6]], [5000.0], [Contact([1.0], 3e8, 900.0)])
-    one, other = forced_response(bundle, 900.0), forced_response(single, 900.0)
-    assert one.contact == (0, 1)
-    assert one.mesh_force[0] == pytest.approx(other.mesh_force[0], rel=1e-9)
+    bundled, plain = forced_response(bundle, 900.0), forced_response(single, 900.0)
+    assert bundled.contact == (0, 1)
+    assert bundled.mesh_force[0] == pytest.approx(plain.mesh_force[0], rel=1e-9)
 
 
 def test_campbell_diagram_finds_every_crossing():

@@ -56,44 +56,47 @@ def _different(lanes, seed=1):
     return values, LaneParameters(**dict(zip(SCALES, values.T, strict=True)))
 
 
-def _differs(one, many, lane):
+def _differs(single, ensemble, lane):
     """Names of what the first lane of an ensemble does not share with a lane of another."""
-    found = []
+    names = []
     for name in ("position", "velocity"):
-        apart = np.abs(getattr(many, name)[lane] - getattr(one, name)[0]).max()
-        if not apart <= 1e-12 * np.abs(getattr(one, name)[0]).max():
-            found.append(name)
+        difference = np.abs(getattr(ensemble, name)[lane] - getattr(single, name)[0]).max()
+        if not difference <= 1e-12 * np.abs(getattr(single, name)[0]).max():
+            names.append(name)
     for name in ("deflection", "contact_force", "acceleration"):
         for part in ("mean", "rms", "minimum", "maximum", "harmonics"):
-            values, expected = (getattr(getattr(item, name), part) for item in (many, one))
+            values, expected = (getattr(getattr(item, name), part) for item in (ensemble, single))
             if not np.allclose(values[lane], expected[0], rtol=1e-9, atol=1e-10):
-                found.append(f"{name}.{part}")
-    if not np.allclose(many.contact_loss_share[lane], one.contact_loss_share[0], atol=1e-9):
-        found.append("contact_loss_share")
-    return found
+                names.append(f"{name}.{part}")
+    if not np.allclose(ensemble.contact_loss_share[lane], single.contact_loss_share[0], atol=1e-9):
+        names.append("contact_loss_share")
+    return names
 
 
 @pytest.mark.parametrize("lanes", [3, 9, 40])
 def test_each_lane_is_a_system_of_its_own(lanes):
     values, parameters = _different(lanes)
-    many = simulate_ensemble(_build(), FREQUENCY, 3, START, steps=176, parameters=parameters,
+    ensemble = simulate_ensemble(_build(), FREQUENCY, 3, START, steps=176, parameters=parameters,
                              averaged=2)  # fmt: skip
     for lane in (0, 1, lanes - 1):
         system = _build(**dict(zip(NAMES, values[lane], strict=True)))
-        one = simulate_ensemble(system, FREQUENCY, 3, START, steps=176, averaged=2)
-        assert 0.0 < one.contact_loss_share[0, 0] < 1.0
-        assert _differs(one, many, lane) == []
+        single = simulate_ensemble(system, FREQUENCY, 3, START, steps=176, averaged=2)
+        assert 0.0 < single.contact_loss_share[0, 0] < 1.0
+        assert _differs(single, ensemble, lane) == []
 
 
 @pytest.mark.parametrize("number", range(6))
 def test_one_factor_at_a_time(number):
     factors = np.array([0.6, 1.0, 1.5])
-    many = simulate_ensemble(_build(), FREQUENCY, 2, START, steps=176,
+    ensemble = simulate_ensemble(_build(), FREQUENCY, 2, START, steps=176,
                              parameters=LaneParameters(**{SCALES[number]: factors}))  # fmt: skip
-    assert not np.allclose(many.velocity[0], many.velocity[1], rtol=1e-6)
+    assert not np.allclose(ensemble.velocity[0], ensemble.velocity[1], rtol=1e-6)
     for lane, factor in enumerate(factors):
         system = _build(**{NAMES[number]: factor})
-        assert _differs(simulate_ensemble(system, FREQUENCY, 2, START, steps=176), many, lane) == []
+        assert (
+            _differs(simulate_ensemble(system, FREQUENCY, 2, START, steps=176), ensemble, lane)
+            == []
+        )
 
 
 def test_factors_of_a_gear_pair_without_a_dead_zone():
@@ -101,7 +104,7 @@ def test_factors_of_a_gear_pair_without_a_dead_zone():
     system = reference_system(0.1, error=lambda phase: 2e-6 * np.sin(2 * np.pi * phase))
     contact = system.contacts[0]
     at_rest = (np.zeros(6), np.zeros(6))
-    many = simulate_ensemble(system, 700.0, 2, at_rest, parameters=parameters)
+    ensemble = simulate_ensemble(system, 700.0, 2, at_rest, parameters=parameters)
     for lane in (0, 7):
         k, c, f, e, _, t = values[lane]
         scaled = Contact(
@@ -113,19 +116,19 @@ def test_factors_of_a_gear_pair_without_a_dead_zone():
             events=contact.events,
         )
         force = t * np.asarray(system.force)
-        own = System(system.mass, system.damping, system.stiffness, force, [scaled])
-        assert _differs(simulate_ensemble(own, 700.0, 2, at_rest), many, lane) == []
+        scaled_system = System(system.mass, system.damping, system.stiffness, force, [scaled])
+        assert _differs(simulate_ensemble(scaled_system, 700.0, 2, at_rest), ensemble, lane) == []
 
 
 def test_a_gap_that_shrinks_to_nothing_is_a_contact_without_one():
     first = Contact([1.0], stiffness=4.0, damping=0.2, gap=0.3)
     system = System([[1.0]], [[0.1]], [[0.0]], [0.2], [first])
     plain = System([[1.0]], [[0.1]], [[0.0]], [0.2], [Contact([1.0], 4.0, damping=0.2)])
-    many = simulate_ensemble(system, 0.3, 3, ([0.5], [0.0]), steps=400,
+    ensemble = simulate_ensemble(system, 0.3, 3, ([0.5], [0.0]), steps=400,
                              parameters=LaneParameters(gap_scale=[0.0, 1.0]))  # fmt: skip
-    one = simulate_ensemble(plain, 0.3, 3, ([0.5], [0.0]), steps=400)
-    np.testing.assert_allclose(many.velocity[0], one.velocity[0], rtol=1e-8)
-    assert abs(many.velocity[1, 0] / one.velocity[0, 0] - 1.0) > 0.1
+    single = simulate_ensemble(plain, 0.3, 3, ([0.5], [0.0]), steps=400)
+    np.testing.assert_allclose(ensemble.velocity[0], single.velocity[0], rtol=1e-8)
+    assert abs(ensemble.velocity[1, 0] / single.velocity[0, 0] - 1.0) > 0.1
 
 
 def test_factors_of_one_change_nothing():
@@ -169,7 +172,7 @@ def test_wrong_factors(change, part):
 
 
 @pytest.mark.parametrize("lanes", [3, pytest.param(20, marks=pytest.mark.slow)])
-def test_lanes_march_systems_of_their_own(lanes):
+def test_each_lane_integrates_its_system(lanes):
     values, _ = _different(lanes, seed=7)
     systems = [_build(**dict(zip(NAMES, row, strict=True)), extra=True) for row in values]
     # The structure differs too: a friction less, a load that does not vary.
@@ -178,27 +181,32 @@ def test_lanes_march_systems_of_their_own(lanes):
                         [Contact([1.0, 0.1, 0.2], 30.0, gap=0.02), *base.contacts[1:]],
                         frictions=base.frictions)  # fmt: skip
     frequency = np.linspace(0.3, 0.5, lanes)
-    many = simulate_ensemble(systems, frequency, 3, START, steps=176, averaged=2)
+    ensemble = simulate_ensemble(systems, frequency, 3, START, steps=176, averaged=2)
     events = (0.4, 0.55, 0.7)
     systems[1] = System(base.mass * 0 + systems[1].mass, base.damping, np.eye(3), [0.3, 0.0, 0.4],
                         [Contact([1.0, 0.1, 0.2], 30.0, gap=0.02, events=events),
                          *base.contacts[1:]], frictions=base.frictions)  # fmt: skip
     for lane in (0, 1, lanes - 1):
-        one = simulate_ensemble(systems[lane], frequency[lane], 3, START, steps=176, averaged=2)
-        assert _differs(one, many, lane) == []
+        single = simulate_ensemble(systems[lane], frequency[lane], 3, START, steps=176, averaged=2)
+        assert _differs(single, ensemble, lane) == []
 
 
 def test_systems_and_factors_together():
     values, parameters = _different(6, seed=9)
     two = [_build(), _build(stiffness=0.7, error=2.0)]
     systems = [two[number % 2] for number in range(6)]
-    many = simulate_ensemble(systems, FREQUENCY, 2, START, steps=176, parameters=parameters)
+    ensemble = simulate_ensemble(systems, FREQUENCY, 2, START, steps=176, parameters=parameters)
     for lane in (2, 3):
         row = values[lane].copy()
         if lane % 2:
             row[0], row[3] = 0.7 * row[0], 2.0 * row[3]
-        own = _build(**dict(zip(NAMES, row, strict=True)))
-        assert _differs(simulate_ensemble(own, FREQUENCY, 2, START, steps=176), many, lane) == []
+        scaled_system = _build(**dict(zip(NAMES, row, strict=True)))
+        assert (
+            _differs(
+                simulate_ensemble(scaled_system, FREQUENCY, 2, START, steps=176), ensemble, lane
+            )
+            == []
+        )
 
 
 def test_grid_holds_the_events_of_all_lanes():
@@ -213,8 +221,8 @@ def test_grid_holds_the_events_of_all_lanes():
             for steps in (64, 128, 2048)]  # fmt: skip
     ratio = np.abs(ends[0] - ends[2]) / np.abs(ends[1] - ends[2])
     assert np.all(ratio > 12.0)
-    one = simulate(systems[0], 0.4, 3, ([0.1], [0.0]), steps=2048).fine.velocity[-1, 0]
-    assert ends[2][0] == pytest.approx(one, rel=1e-9)
+    velocity = simulate(systems[0], 0.4, 3, ([0.1], [0.0]), steps=2048).fine.velocity[-1, 0]
+    assert ends[2][0] == pytest.approx(velocity, rel=1e-9)
 
 
 def _other(**change):
@@ -236,7 +244,7 @@ def _other(**change):
         (lambda: "system", "argument systems"),
     ],
 )  # fmt: skip
-def test_systems_that_do_not_go_together(other, part):
+def test_systems_of_different_structure_are_refused(other, part):
     with pytest.raises(InputError) as caught:
         simulate_ensemble([_build(), other()], FREQUENCY, 1, START, steps=176)
     assert part in str(caught.value)

@@ -53,30 +53,34 @@ def test_a_constant_coefficient_is_the_friction_of_a_contact(gap):
     start = static_start(compile_for(table, MESH_FREQUENCY, 512))
     np.testing.assert_allclose(static_start(compile_for(loop, MESH_FREQUENCY, 512)), start,
                                rtol=1e-9, atol=1e-20)  # fmt: skip
-    one, two = (simulate(item, 900.0, 4, (start[:6], start[6:]), steps=512)
+    with_contact, with_load = (simulate(item, 900.0, 4, (start[:6], start[6:]), steps=512)
                 for item in (table, loop))  # fmt: skip
     for name in ("position", "velocity", "acceleration", "contact_force", "deflection"):
-        expected = getattr(one.fine, name)
+        expected = getattr(with_contact.fine, name)
         size = np.abs(expected).max(axis=0) + 1e-30
-        assert np.abs((getattr(two.fine, name) - expected) / size).max() < 1e-11, name
-    audits = [energy_audit(item, motion) for item, motion in ((table, one), (loop, two))]
+        assert np.abs((getattr(with_load.fine, name) - expected) / size).max() < 1e-11, name
+    audits = [
+        energy_audit(item, motion) for item, motion in ((table, with_contact), (loop, with_load))
+    ]
     assert audits[1].friction == pytest.approx(audits[0].friction, rel=1e-10)
     assert audits[1].imbalance < 1.001 * audits[0].imbalance < 1e-6
-    many = [
+    ensembles = [
         simulate_ensemble(item, np.linspace(300, 2900, 20), 3, AT_REST, averaged=2)
         for item in (table, loop)
     ]
     for name in ("acceleration", "contact_force"):
-        expected = getattr(many[0], name).rms
-        np.testing.assert_allclose(getattr(many[1], name).rms, expected, rtol=1e-9)
+        expected = getattr(ensembles[0], name).rms
+        np.testing.assert_allclose(getattr(ensembles[1], name).rms, expected, rtol=1e-9)
 
 
 def test_orbit_and_multipliers_of_a_constant_coefficient():
-    one, two = (steady_state(item, MESH_FREQUENCY) for item in (reference_system(0.1),
+    with_contact, with_load = (steady_state(item, MESH_FREQUENCY) for item in (reference_system(0.1),
                                                                 _with_load(0.1)))  # fmt: skip
-    np.testing.assert_allclose(two.contact_force, one.contact_force, rtol=1e-9)
-    leading = np.sort(np.abs(one.floquet_multipliers))[-2:]
-    np.testing.assert_allclose(np.sort(np.abs(two.floquet_multipliers))[-2:], leading, rtol=1e-6)
+    np.testing.assert_allclose(with_load.contact_force, with_contact.contact_force, rtol=1e-9)
+    leading = np.sort(np.abs(with_contact.floquet_multipliers))[-2:]
+    np.testing.assert_allclose(
+        np.sort(np.abs(with_load.floquet_multipliers))[-2:], leading, rtol=1e-6
+    )
     modes = [natural_modes(item, friction=True).eigenvalues
              for item in (reference_system(0.1), _with_load(0.1))]  # fmt: skip
     np.testing.assert_allclose(modes[1], modes[0], rtol=1e-9)
@@ -89,8 +93,8 @@ def test_kernel_equals_plain(gap):
     compiled = compile_for(system, MESH_FREQUENCY, 176)
     plain = march_plain(system, compiled.grid, compiled.nodes, MESH_FREQUENCY, 3, start)
     motion = simulate(system, MESH_FREQUENCY, 3, (start[:6], start[6:]), steps=176)
-    found = np.hstack([motion.position, motion.velocity])
-    assert np.abs((found - plain[:-1]) / np.abs(plain).max(axis=0)).max() < 1e-12
+    states = np.hstack([motion.position, motion.velocity])
+    assert np.abs((states - plain[:-1]) / np.abs(plain).max(axis=0)).max() < 1e-12
     # The limit is reached, and the load changes its sign.
     assert motion.contact_force.max() > 1.3 * 2600.0
     assert motion.contact_force.min() < 0.0
@@ -100,11 +104,11 @@ def test_kernel_equals_plain(gap):
 def test_lanes_equal_single_runs(lanes):
     system = _with_load(BENT, 1e-5)
     frequency = np.linspace(300.0, 2900.0, lanes)
-    many = simulate_ensemble(system, frequency, 4, AT_REST, steps=256)
+    ensemble = simulate_ensemble(system, frequency, 4, AT_REST, steps=256)
     for lane in (0, lanes - 1):
-        one = simulate(system, frequency[lane], 4, AT_REST, steps=256).fine
-        np.testing.assert_allclose(many.velocity[lane], one.velocity[-1], rtol=1e-11,
-                                   atol=1e-12 * np.abs(one.velocity[-1]).max())  # fmt: skip
+        single = simulate(system, frequency[lane], 4, AT_REST, steps=256).fine
+        np.testing.assert_allclose(ensemble.velocity[lane], single.velocity[-1], rtol=1e-11,
+                                   atol=1e-12 * np.abs(single.velocity[-1]).max())  # fmt: skip
 
 
 def test_against_an_independent_solver():
@@ -193,8 +197,8 @@ def test_floquet_multipliers_and_small_motions_follow_the_tangent():
     assert orbit.converged
     expected = np.sort(np.abs(np.exp(modes.eigenvalues / 20.0)))
     np.testing.assert_allclose(np.sort(np.abs(orbit.floquet_multipliers)), expected, rtol=1e-5)
-    rest = static_start(compile_for(system, 20.0, 64))[:2]
-    np.testing.assert_allclose(orbit.position[0], rest, rtol=1e-9)
+    static_position = static_start(compile_for(system, 20.0, 64))[:2]
+    np.testing.assert_allclose(orbit.position[0], static_position, rtol=1e-9)
 
 
 def test_exponents_with_a_constant_coefficient_and_a_refusal_beyond():
@@ -203,9 +207,9 @@ def test_exponents_with_a_constant_coefficient_and_a_refusal_beyond():
     table = System(base.mass, base.damping, base.stiffness, base.force, [contact])
     loop = _system(base, [LoadFriction([1.0], 0.1, 1.0)])
     start = ([1.7], [0.0])
-    one, two = (lyapunov_exponents(item, 0.14, start=start, cycles=100, steps=128)
+    with_contact, with_load = (lyapunov_exponents(item, 0.14, start=start, cycles=100, steps=128)
                 for item in (table, loop))  # fmt: skip
-    np.testing.assert_allclose(two.exponents, one.exponents, rtol=1e-8)
+    np.testing.assert_allclose(with_load.exponents, with_contact.exponents, rtol=1e-8)
     with pytest.raises(InputError, match=r"frictions\[0\] has 2 coefficients"):
         lyapunov_exponents(_system(base, [LoadFriction([1.0], [0.1, 0.1], 1.0)]), 0.14)
 
@@ -246,7 +250,7 @@ def test_shares_of_the_pairs_may_differ():
     """Two frictions of one contact add up to that with their sum."""
     half = [LoadFriction(lambda phase: friction_vector(phase, 1.0), np.multiply(BENT, part), 2600.0,
                          events=EVENTS) for part in (0.3, 0.7)]  # fmt: skip
-    one = simulate(_with_load(BENT), 700.0, 2, AT_REST)
+    motion = simulate(_with_load(BENT), 700.0, 2, AT_REST)
     two = simulate(_system(reference_system(), half), 700.0, 2, AT_REST)
-    np.testing.assert_allclose(two.velocity, one.velocity, rtol=1e-9, atol=1e-14)
+    np.testing.assert_allclose(two.velocity, motion.velocity, rtol=1e-9, atol=1e-14)
     assert DOUBLE > 0.0

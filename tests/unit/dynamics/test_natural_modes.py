@@ -107,8 +107,8 @@ def test_rayleigh_quotient_has_its_stationary_value_at_a_mode():
         return (x @ stiffness @ x) / (x @ mass @ x)
 
     exact = quotient(modes.shape[1])
-    near = [quotient(modes.shape[1] + size * around) - exact for size in (1e-3, 1e-4)]
-    assert near[0] / near[1] == pytest.approx(100.0, rel=0.1)
+    changes = [quotient(modes.shape[1] + size * around) - exact for size in (1e-3, 1e-4)]
+    assert changes[0] / changes[1] == pytest.approx(100.0, rel=0.1)
 
 
 def test_sturm_count_of_modes_below_a_frequency():
@@ -175,7 +175,7 @@ def test_friction_couples_two_modes_into_flutter():
 
 
 @pytest.mark.parametrize(("force", "stiffness"), [(1000.0, 2e8), (5000.0, 3e8)])
-def test_force_law_counts_the_ramps_that_carry_at_rest(force, stiffness):
+def test_ramps_of_a_force_law_that_are_closed_at_rest_count(force, stiffness):
     places, ramps = np.tile([0.0, 1e-5], (17, 1)), np.tile([2e8, 1e8], (17, 1))
     law = MeshForceLaw(phase_grid((0.0,), 16), places, ramps)
     contacts = law_contacts(Contact([1.0], 0.0, gap=5e-5, damping=900.0), law)
@@ -186,7 +186,7 @@ def test_force_law_counts_the_ramps_that_carry_at_rest(force, stiffness):
     assert linear.bundle.tolist() == [0] * len(contacts)
 
 
-def test_force_law_is_counted_at_every_phase_by_itself():
+def test_ramps_of_a_force_law_are_counted_at_each_phase():
     # The second ramp begins at 15 um in the first half and at 5 um in the second: at 2000 N the
     # first ramp alone is pressed by 10 um.
     second = Contact(
@@ -199,13 +199,13 @@ def test_force_law_is_counted_at_every_phase_by_itself():
     assert linear_system(system, 0.5).stiffness[0, 0] == pytest.approx(3e8, rel=1e-12)
 
 
-def test_elements_may_be_given():
+def test_elements_can_be_prescribed():
     system = chain([2e5, 3e5], [1.0, 2.0])
     parts = {"ground": np.diag([2e5, 0.0]), "shaft": 3e5 * np.array([[1.0, -1.0], [-1.0, 1.0]])}
-    given, found = natural_modes(system, elements=parts), natural_modes(system)
-    assert given.elements == ("ground", "shaft")
-    assert found.elements == ("q0", "q0 - q1")
-    np.testing.assert_allclose(given.strain_share, found.strain_share, atol=1e-14)
+    prescribed, derived = natural_modes(system, elements=parts), natural_modes(system)
+    assert prescribed.elements == ("ground", "shaft")
+    assert derived.elements == ("q0", "q0 - q1")
+    np.testing.assert_allclose(prescribed.strain_share, derived.strain_share, atol=1e-14)
 
 
 def test_refusals():

@@ -81,8 +81,8 @@ def test_compiled_equals_plain(system, frequency, size, options):
     march_newmark(
         compiled, np.array([1.0 / frequency]), start[None], cycles, record=record, **options
     )
-    apart = (record[:, :, 0] - plain) / (np.abs(plain).max(axis=0) + 1e-30)
-    assert np.abs(apart).max() < 1e-11
+    difference = (record[:, :, 0] - plain) / (np.abs(plain).max(axis=0) + 1e-30)
+    assert np.abs(difference).max() < 1e-11
 
 
 @pytest.mark.slow
@@ -94,15 +94,17 @@ def test_lanes_equal_single_runs_and_threads_change_nothing():
     extra = generator.standard_normal((lanes, 6))
     compiled = compile_newmark(system, 1.0 / period, steps)
     record = np.empty((2 * steps + 1, 12, lanes))
-    many = march_newmark(compiled, period, state, 2, extra_force=extra, record=record, threads=3)
+    batch = march_newmark(compiled, period, state, 2, extra_force=extra, record=record, threads=3)
     again = np.empty((12, lanes, 2 * steps + 1)).transpose(2, 0, 1)
     march_newmark(compiled, period, state, 2, extra_force=extra, record=again, threads=1)
     np.testing.assert_array_equal(record, again)
-    np.testing.assert_array_equal(record[-1].T, many)
+    np.testing.assert_array_equal(record[-1].T, batch)
     for lane in (0, 20, lanes - 1):
-        own = slice(lane, lane + 1)
-        one = march_newmark(compiled, period[own], state[own], 2, extra_force=extra[own])
-        np.testing.assert_allclose(one[0], many[lane], rtol=1e-12, atol=1e-15)
+        selection = slice(lane, lane + 1)
+        single = march_newmark(
+            compiled, period[selection], state[selection], 2, extra_force=extra[selection]
+        )
+        np.testing.assert_allclose(single[0], batch[lane], rtol=1e-12, atol=1e-15)
 
 
 def test_stiff_support_needs_no_short_step():
@@ -152,7 +154,7 @@ def test_growth_is_reported_with_time_and_coordinate():
     assert time == pytest.approx(np.log(np.finfo(float).max) / 5.0, rel=0.02)
 
 
-def test_contact_forces_that_are_not_found_are_reported():
+def test_unconverged_contact_forces_are_reported():
     # a negative stiffness that takes the whole effective mass: 1 + beta h^2 k / m = 0
     h = 1.0 / STEPS
     contact = Contact([1.0], stiffness=-1.0 / (0.25 * h * h))

@@ -56,10 +56,10 @@ def test_layout_stays():
 
 def test_two_flanks_that_open_at_one_place():
     """A spring halved into two contacts gives the samples of the whole."""
-    _, whole = bouncing(256)
+    _, single = bouncing(256)
     half = Contact([1.0], stiffness=20.0, damping=0.75, gap=1.0)
     system = System([[1.0]], [[0.0]], [[0.0]], [-1.0], [half, half])
-    both = simulate(system, 0.1, 2, START, steps=256).fine
-    np.testing.assert_allclose(both.phase, whole.fine.phase, rtol=1e-12)
-    force = whole.fine.contact_force[:, 0]
-    np.testing.assert_allclose(both.contact_force.sum(axis=1), force, atol=1e-7)
+    double = simulate(system, 0.1, 2, START, steps=256).fine
+    np.testing.assert_allclose(double.phase, single.fine.phase, rtol=1e-12)
+    force = single.fine.contact_force[:, 0]
+    np.testing.assert_allclose(double.contact_force.sum(axis=1), force, atol=1e-7)

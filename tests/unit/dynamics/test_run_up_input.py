@@ -26,21 +26,21 @@ def oscillator(**changes: object) -> System:
         (lambda t: 1.0 + t, "duration"),
     ],
 )
-def test_bad_profiles_are_refused_with_a_remedy(profile: object, words: str) -> None:
-    with pytest.raises(InputError, match=words):
+def test_bad_profiles_are_refused_with_a_remedy(profile: object, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         run_up(oscillator(), profile)  # type: ignore[arg-type]
 
 
 def test_a_function_of_time_is_a_profile() -> None:
-    made = read_profile(lambda t: 10.0 + t**2, 3.0)
-    assert made.cycles == pytest.approx(39.0, rel=1e-7)
-    assert made.phase_at(1.5) == pytest.approx(15.0 + 1.125, rel=1e-7)
+    profile = read_profile(lambda t: 10.0 + t**2, 3.0)
+    assert profile.cycles == pytest.approx(39.0, rel=1e-7)
+    assert profile.phase_at(1.5) == pytest.approx(15.0 + 1.125, rel=1e-7)
 
 
 def test_ramps_hold_and_fall() -> None:
-    made = speed_ramp(10.0, 20.0, 2.0, hold=1.0, down=True)
-    assert made.frequency_at([0.0, 1.0, 2.5, 4.0, 5.0]).tolist() == [10.0, 15.0, 20.0, 15.0, 10.0]
-    assert isinstance(made, SpeedProfile)
+    ramp = speed_ramp(10.0, 20.0, 2.0, hold=1.0, down=True)
+    assert ramp.frequency_at([0.0, 1.0, 2.5, 4.0, 5.0]).tolist() == [10.0, 15.0, 20.0, 15.0, 10.0]
+    assert isinstance(ramp, SpeedProfile)
     with pytest.raises(InputError, match="hold"):
         speed_ramp(10.0, 20.0, 2.0, hold=-1.0)
 
@@ -69,7 +69,7 @@ def test_low_speeds_get_more_steps_and_too_few_are_refused() -> None:
         run_up(stiff, ([0.0, 1.0], [1e-3, 2.0]))
 
 
-def test_grids_change_without_a_trace() -> None:
+def test_a_change_of_grid_leaves_no_trace_in_the_motion() -> None:
     system, profile = oscillator(), speed_ramp(0.02, 0.2, 100.0)
     free = run_up(system, profile, start=([0.1], [0.0]), samples=8)
     assert free.cycles.steps[0] > free.cycles.steps[-1]
@@ -81,15 +81,15 @@ def test_grids_change_without_a_trace() -> None:
     assert np.abs(changing.position - fixed.position).max() < 2e-3 * 0.1
 
 
-def test_results_tell_their_units() -> None:
+def test_results_have_units() -> None:
     rows = {"support": [2.0, 3.0]}
     run = run_up(oscillator(), speed_ramp(0.5, 0.6, 20.0), samples=8, teeth=4, outputs=rows)
     data = run.to_xarray()
     assert data.contact_force.attrs["units"] == "N"
     assert data.contact_force_rms.shape == (11, 1)
     assert data.speed.values == pytest.approx(2 * np.pi * run.mesh_frequency / 4)
-    own = 2.0 * run.position[:, 0] + 3.0 * run.velocity[:, 0]
-    assert run.signal("support")[0] == pytest.approx(own)
+    expected = 2.0 * run.position[:, 0] + 3.0 * run.velocity[:, 0]
+    assert run.signal("support")[0] == pytest.approx(expected)
     assert run.signal("gear_y")[1] == "m/s^2"
     mean = run.output.reshape(-1, 8).mean(axis=1)
     assert run.cycles.output.mean[:, 0] == pytest.approx(mean, abs=1e-2)
@@ -107,7 +107,7 @@ def test_systems_of_different_structures_are_refused() -> None:
         run_up({1.0: oscillator(), 2.0: oscillator(gap=0.1)}, speed_ramp(1.0, 2.0, 5.0))
 
 
-def test_a_motion_that_grows_is_told_with_time_and_coordinate() -> None:
+def test_a_growing_motion_is_reported_with_time_and_coordinate() -> None:
     growing = System([[1.0]], [[-50.0]], [[0.0]], [0.0], [Contact([1.0], 100.0)], names=["gear_y"])
     with pytest.raises(
         ComputationError, match=r"after 1\d.* s, at .* Hz, first in coordinate gear_y"

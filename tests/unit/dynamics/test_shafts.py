@@ -71,12 +71,12 @@ def test_gears_reflect_inertia_with_the_square_of_the_ratio():
         shaft_chain(["wheel", "load"], [2e-3, 9e-3], spring[1]),
     ]
     stiff = assemble(shafts, [GearMesh("pinion", "wheel", RADIUS[:2], 1e13)], {})
-    one = shaft_chain(
+    shaft = shaft_chain(
         ["motor", "gears", "load"],
         [5e-3, 6e-4 + 2e-3 / ratio**2, 9e-3 / ratio**2],
         [spring[0], spring[1] / ratio**2],
     )
-    reflected = natural_modes(assemble([one], [], {})).frequency
+    reflected = natural_modes(assemble([shaft], [], {})).frequency
     np.testing.assert_allclose(natural_modes(stiff).frequency[:3], reflected, rtol=1e-5, atol=1e-3)
 
 
@@ -112,7 +112,7 @@ def test_mesh_with_three_cycles_in_the_common_one_shakes_at_three_times_its_freq
     )
 
 
-def test_idler_carries_the_force_on_and_feels_both():
+def test_idler_transmits_the_force_between_both_meshes():
     gears = [
         shaft_chain([name], inertia, mass=1.0, bearing_stiffness=1e9, bearing_damping=3e3)
         for name, inertia in (("a", 6e-4), ("idler", 2e-3), ("b", 3e-3))
@@ -133,7 +133,7 @@ def test_idler_carries_the_force_on_and_feels_both():
 
 
 @pytest.mark.parametrize("driver", ["pinion", "wheel"])
-def test_one_pair_is_the_known_model(driver):
+def test_one_pair_equals_the_reference_model(driver):
     mesh = SimpleNamespace(
         stiffness=lambda p: 3e8 + 0.0 * p,
         friction_sum=lambda p: 0.05 + 0.01 * p,
@@ -141,7 +141,7 @@ def test_one_pair_is_the_known_model(driver):
         friction_moment_wheel=lambda p: 0.002 - 0.001 * p,
         event_phases=(0.0, 0.3),
     )
-    known = spur6(
+    reference = spur6(
         mesh, mass=(0.7, 1.1), moment_of_inertia=(4e-4, 1e-3), base_radius=(0.03, 0.05),
         torque=(90.0, 150.0), bearing_stiffness=1e9, mesh_damping=900.0, driver=driver,
     )  # fmt: skip
@@ -155,13 +155,13 @@ def test_one_pair_is_the_known_model(driver):
     )  # fmt: skip
     built = assemble([pinion, wheel], [teeth], {})
     phase = np.linspace(0.0, 0.9, 4)
-    (one,), (other,) = known.contacts, built.contacts
-    assert isinstance(one, Contact)
-    np.testing.assert_allclose(other.direction, one.direction, atol=1e-17)
-    np.testing.assert_allclose(other.friction(phase), one.friction(phase), atol=1e-17)
-    np.testing.assert_array_equal(built.mass, known.mass)
-    np.testing.assert_array_equal(built.stiffness, known.stiffness)
-    assert built.names == known.names
+    (pinion_pair,), (other,) = reference.contacts, built.contacts
+    assert isinstance(pinion_pair, Contact)
+    np.testing.assert_allclose(other.direction, pinion_pair.direction, atol=1e-17)
+    np.testing.assert_allclose(other.friction(phase), pinion_pair.friction(phase), atol=1e-17)
+    np.testing.assert_array_equal(built.mass, reference.mass)
+    np.testing.assert_array_equal(built.stiffness, reference.stiffness)
+    assert built.names == reference.names
 
 
 def test_refusals():

@@ -16,18 +16,18 @@ FAMILIES = {
 
 
 @pytest.mark.parametrize("name", FAMILIES)
-def test_it_is_that_of_all_eigenvalues(name: str) -> None:
+def test_spectral_radius_is_that_of_all_eigenvalues(name: str) -> None:
     matrices = FAMILIES[name]
     every = np.abs(np.linalg.eigvals(matrices)).max(axis=-1)
     assert np.array_equal(step_limit._spectral_radius(matrices), every.max(axis=-1))
 
 
-def test_few_matrices_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = []
+def test_few_matrices_need_their_eigenvalues(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes = []
     eigenvalues = np.linalg.eigvals
 
     def counted(matrices):
-        asked.append(matrices[..., 0, 0].size)
+        sizes.append(matrices[..., 0, 0].size)
         return eigenvalues(matrices)
 
     monkeypatch.setattr(np.linalg, "eigvals", counted)
@@ -35,16 +35,16 @@ def test_few_matrices_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     assert step_limit._spectral_radius(growing)[0] == pytest.approx(
         2.0 * np.abs(eigenvalues(RANDOM[0, 0])).max(), rel=1e-12
     )
-    assert sum(asked) == 1
+    assert sum(sizes) == 1
 
 
 @pytest.mark.parametrize("stronger", [0, 1])
-def test_blocks_that_are_coupled_one_way_are_looked_at_by_themselves(stronger: int) -> None:
+def test_blocks_coupled_one_way_are_treated_separately(stronger: int) -> None:
     matrices = RANDOM.copy()
     matrices[..., :4, 4:] = 0.0
     matrices[..., :4, :4] *= 10.0 if stronger == 0 else 0.1
     order = np.array([5, 0, 3, 1, 4, 2])  # the blocks are found wherever they lie
     matrices = matrices[..., order[:, None], order]
     every = np.abs(np.linalg.eigvals(matrices)).max(axis=-1)
-    found = step_limit._spectral_radius(matrices)
-    assert found == pytest.approx(every.max(axis=-1), rel=1e-12)
+    radii = step_limit._spectral_radius(matrices)
+    assert radii == pytest.approx(every.max(axis=-1), rel=1e-12)

@@ -39,19 +39,19 @@ def test_the_step_error_is_the_distance_to_the_equations(system, frequency, step
 
     def states(motion):
         parts = [beat * motion.position @ lower] * (system.size == 1) + [motion.velocity @ lower]
-        whole = np.hstack(parts)
-        return np.stack([np.interp(orbit.time, motion.time, column) for column in whole.T], axis=1)
+        rows = np.hstack(parts)
+        return np.stack([np.interp(orbit.time, motion.time, column) for column in rows.T], axis=1)
 
     truth = states(fine)
-    apart = np.linalg.norm(states(orbit) - truth, axis=1).max()
-    true = apart / np.linalg.norm(truth, axis=1).max()
+    distance = np.linalg.norm(states(orbit) - truth, axis=1).max()
+    true = distance / np.linalg.norm(truth, axis=1).max()
     assert 0.5 * true < orbit.step_error < 2.0 * true
     assert orbit.error < 1e-8
     assert "step error" in repr(orbit)
     assert orbit.to_xarray().attrs["step_error"] == orbit.step_error
 
 
-def test_a_coarse_step_is_told():
+def test_a_coarse_step_is_reported():
     """Near the limit of the integrator an orbit is certified that is not that of the equations."""
     with pytest.warns(ModelWarning, match=r"\[step-size\].*Use 256 steps"):
         orbit = steady_state(reference_system(0.1), MESH_FREQUENCY, steps=128)
@@ -84,7 +84,7 @@ def _three_gears(torque):
 
 
 @pytest.mark.parametrize("last", [-50.0, 66.67, -66.0])
-def test_a_drive_that_speeds_up_as_a_whole(last):
+def test_an_unbalanced_drive_is_reported(last):
     """Rigid gears: the sum of the torques over their ratios is the inertia times acceleration."""
     ratio = np.array([1.0, 0.03 / 0.05, 0.03 / 0.04])
     turned = (50.0 + last * ratio[2]) / (np.array([1e-3, 2e-3, 3e-3]) @ ratio**2) * ratio
@@ -95,7 +95,7 @@ def test_a_drive_that_speeds_up_as_a_whole(last):
     assert float(value) == pytest.approx(turned[int(name[1])], rel=1e-3)
 
 
-def test_balanced_drives_are_not_told():
+def test_balanced_drives_are_not_reported():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert steady_state(_three_gears([50.0, 0.0, -66.67]), 500.0, steps=64).converged
@@ -108,5 +108,7 @@ def test_rows_at_half_the_step_are_those_of_the_halved_grid():
     fine, rows = halved_nodes(system, grid, nodes)
     assert fine.steps == 2 * grid.steps
     assert fine.left[::2] == pytest.approx(grid.left, abs=1e-15)
-    for one, other in zip(rows, evaluate_nodes(system, fine), strict=True):
-        assert one == pytest.approx(other, rel=1e-12, abs=1e-9 * np.abs(other).max(initial=0.0))
+    for halved, expected in zip(rows, evaluate_nodes(system, fine), strict=True):
+        assert halved == pytest.approx(
+            expected, rel=1e-12, abs=1e-9 * np.abs(expected).max(initial=0.0)
+        )

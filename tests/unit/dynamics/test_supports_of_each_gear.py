@@ -49,10 +49,10 @@ def test_each_support_has_its_own_frequency_and_damping(name, coordinates, gear)
 
 
 def test_a_pair_of_equal_values_is_the_single_value() -> None:
-    one = STRUCTURES["spur-6dof"](GEARS, bearing_stiffness=2e8, bearing_damping=4e3)
+    single = STRUCTURES["spur-6dof"](GEARS, bearing_stiffness=2e8, bearing_damping=4e3)
     two = STRUCTURES["spur-6dof"](GEARS, bearing_stiffness=(2e8, 2e8), bearing_damping=(4e3, 4e3))
-    np.testing.assert_array_equal(one.stiffness, two.stiffness)
-    np.testing.assert_array_equal(one.damping, two.damping)
+    np.testing.assert_array_equal(single.stiffness, two.stiffness)
+    np.testing.assert_array_equal(single.damping, two.damping)
 
 
 def test_a_case_gives_pinion_and_wheel_in_one_list() -> None:

@@ -121,7 +121,7 @@ def test_a_free_body_has_no_orbit():
         steady_state(System([[1.0]], [[0.0]], [[0.0]], [1.0]), 1.0)
 
 
-def test_an_unstable_orbit_is_said():
+def test_an_unstable_orbit_is_reported():
     """Mathieu's equation in its first tongue: the orbit of the forced motion is unstable."""
     contact = Contact([1.0], stiffness=lambda phase: 1.0 + 0.5 * np.cos(2 * np.pi * phase))
     system = System([[1.0]], [[0.02]], [[0.0]], [1.0], [contact])
@@ -132,7 +132,7 @@ def test_an_unstable_orbit_is_said():
     assert abs(motion.floquet_multipliers[0]) > 1.2
 
 
-def test_a_missed_tolerance_is_said():
+def test_a_missed_tolerance_is_reported():
     with pytest.warns(ModelWarning, match="steady-state"):
         motion = steady_state(hysteresis_system(), 0.14, tolerance=1e-18)
     assert not motion.converged
@@ -140,11 +140,11 @@ def test_a_missed_tolerance_is_said():
 
 
 def test_orbit_of_two_periods_holds_the_orbit_of_one_twice():
-    one = steady_state(reference_system(0.1), MESH_FREQUENCY)
+    single = steady_state(reference_system(0.1), MESH_FREQUENCY)
     two = steady_state(reference_system(0.1), MESH_FREQUENCY, periods=2)
     assert two.position.shape == (1024, 6)
     np.testing.assert_allclose(two.deflection[:512], two.deflection[512:], rtol=1e-9)
-    np.testing.assert_allclose(two.deflection[:512], one.deflection, rtol=1e-9)
+    np.testing.assert_allclose(two.deflection[:512], single.deflection, rtol=1e-9)
     assert two.time[-1] < two.duration == pytest.approx(2 / MESH_FREQUENCY)
 
 
@@ -189,7 +189,7 @@ def test_system_without_contacts_and_free_mass():
 
 
 @pytest.mark.parametrize("steps", [8, 37, 512])
-def test_grid_has_every_event_and_the_asked_steps(steps):
+def test_grid_has_every_event_and_the_requested_steps(steps):
     events = (0.0, 0.1234, 0.1235, 0.9)
     grid = build_grid(events, steps)
     assert grid.steps == steps
@@ -200,9 +200,9 @@ def test_grid_has_every_event_and_the_asked_steps(steps):
 
 def test_reprs_are_one_line():
     system = reference_system(0.1)
-    for thing in (system, system.contacts[0], steady_state(system, MESH_FREQUENCY)):
-        assert "\n" not in repr(thing)
-        assert len(repr(thing)) < 160
+    for item in (system, system.contacts[0], steady_state(system, MESH_FREQUENCY)):
+        assert "\n" not in repr(item)
+        assert len(repr(item)) < 160
 
 
 def test_series_as_xarray_have_units():

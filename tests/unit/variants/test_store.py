@@ -169,7 +169,7 @@ def test_a_full_disk_is_told_and_nothing_finished_is_lost(
 
     with monkeypatch.context() as patch:
         patch.setattr(Path, "write_bytes", full)
-        with pytest.raises(ComputationError, match=r"no space left on device.*[Mm]ake room"):
+        with pytest.raises(ComputationError, match=r"no space left on device.*[Ff]ree some space"):
             run_study(read_study(grid()), place)
     assert study_state(place).done == 12
     assert run_study(read_study(grid()), place).complete

@@ -20,19 +20,19 @@ from tribodyn.dynamics import simulate, simulate_ensemble, steady_state
 from tribodyn.ehl import solve_line_contact_moes
 
 
-def found() -> str:
+def digest_of_motions() -> str:
     """Bits of motions by every engine, of statistics, of an orbit and of a film."""
     system, start = reference_system(0.1, gap=1e-5), (np.full(6, 1e-5), np.zeros(6))
     parts = []
     for engine in ("rk4", "newmark", "dormand-prince"):
         parts.append(simulate(system, 1800.0, 2, start, steps=256, method=engine).fine.position)
         for lanes in (1, 5, 17):
-            many = simulate_ensemble(
+            ensemble = simulate_ensemble(
                 system, [1800.0] * lanes, 2, start, steps=256, averaged=1, harmonics=3,
                 method=engine,
             )  # fmt: skip
-            parts += [many.position, many.velocity, many.contact_force.rms]
-            parts += [many.contact_force.harmonics, many.acceleration.maximum]
+            parts += [ensemble.position, ensemble.velocity, ensemble.contact_force.rms]
+            parts += [ensemble.contact_force.harmonics, ensemble.acceleration.maximum]
     parts.append(steady_state(system, 1800.0, steps=256).position)
     for method in ("newton", "multigrid"):
         parts.append(solve_line_contact_moes(5.0, 8.0, nodes=513, method=method).pressure)
@@ -41,10 +41,16 @@ def found() -> str:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("fill", [90, 165])
-def test_what_memory_held_before_and_holds_after_does_not_matter(fill: int) -> None:
-    here = Path(__file__)
-    paths = os.pathsep.join([str(here.parent), str(here.parents[2]), *sys.path])
+def test_kernels_do_not_depend_on_uninitialised_memory(fill: int) -> None:
+    this_file = Path(__file__)
+    paths = os.pathsep.join([str(this_file.parent), str(this_file.parents[2]), *sys.path])
     environment = os.environ | {"MALLOC_PERTURB_": str(fill), "PYTHONPATH": paths}
-    call = [sys.executable, "-W", "ignore", "-c", f"from {here.stem} import found; print(found())"]
+    call = [
+        sys.executable,
+        "-W",
+        "ignore",
+        "-c",
+        f"from {this_file.stem} import found; print(found())",
+    ]
     done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True)
-    assert done.stdout.split() == [found()]
+    assert done.stdout.split() == [digest_of_motions()]

@@ -37,8 +37,8 @@ def runs_away(stiffness=-900.0, damping=0.2):
 
 def _growth(stiffness=-900.0, damping=0.2):
     """Exponent of the motion far beyond the backlash [1/s], and its size at the start."""
-    held = 400.0 + stiffness
-    return -0.5 * (damping + 0.5) + np.sqrt(0.25 * (damping + 0.5) ** 2 - held)
+    total = 400.0 + stiffness
+    return -0.5 * (damping + 0.5) + np.sqrt(0.25 * (damping + 0.5) ** 2 - total)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -46,9 +46,9 @@ def test_time_body_and_cause_of_every_engine(method):
     with pytest.raises(ComputationError) as caught:
         simulate(runs_away(), FREQUENCY, 2000, START, steps=256, method=method)
     text = str(caught.value)
-    found = float(re.search(TIME, text).group(1))
+    reported_time = float(re.search(TIME, text).group(1))
     # From about one to the largest number: the reports count from the start of the motion.
-    assert found == pytest.approx(709.0 / _growth(), rel=0.03)
+    assert reported_time == pytest.approx(709.0 / _growth(), rel=0.03)
     assert "wheel_x" in text
     assert "stiffness matrix has a negative eigenvalue" in text
     with pytest.raises(ComputationError) as caught:
@@ -84,7 +84,7 @@ def _exponents(system):
     ],
     ids=["solve_adaptive", "steady_state", "continuation", "poincare", "lyapunov_exponents"],
 )
-def test_answers_about_one_motion_end_with_a_message(answer):
+def test_analyses_of_a_diverging_motion_end_with_a_message(answer):
     for system in (runs_away(), runs_away(stiffness=100.0, damping=-9.0)):
         with pytest.raises(ComputationError, match="grew beyond all bounds") as caught:
             answer(system)
@@ -95,8 +95,8 @@ def test_times_of_sections_and_exponents_count_from_the_start():
     for answer in (_section, _exponents):
         with pytest.raises(ComputationError) as caught:
             answer(runs_away())
-        found = float(re.search(TIME, str(caught.value)).group(1))
-        assert found == pytest.approx(709.0 / _growth(), rel=0.03)
+        reported_time = float(re.search(TIME, str(caught.value)).group(1))
+        assert reported_time == pytest.approx(709.0 / _growth(), rel=0.03)
 
 
 def test_a_run_up_ends_with_a_message():
@@ -104,7 +104,7 @@ def test_a_run_up_ends_with_a_message():
         run_up(runs_away(), ([0.0, 60.0], [1.0, 3.0]), start=START, steps=256)
 
 
-def test_diagrams_keep_what_does_not_run_away():
+def test_diagrams_keep_the_motions_that_do_not_diverge():
     values = np.array([-900.0, 100.0, 200.0])
     systems = [runs_away(stiffness=value) for value in values]
     diagram = bifurcation(

@@ -25,7 +25,7 @@ class Ramps:
     differ by rounding.
     """
 
-    def __init__(self, seed: int, apart: float = 0.0) -> None:
+    def __init__(self, seed: int, offset: float = 0.0) -> None:
         random = np.random.default_rng(seed)
         self.far = 10.0 ** random.uniform(-4.0, -1.0)
         self.wave = random.uniform(0.0, 0.3)
@@ -39,7 +39,7 @@ class Ramps:
                 [1.0],
                 0.0 if j == copy == 0 else STIFFNESS,
                 damping=DAMPING if j == copy == 0 else 0.0,
-                gap=lambda p, j=j, copy=copy: self.gap(j, p) * (1.0 + apart * copy),
+                gap=lambda p, j=j, copy=copy: self.gap(j, p) * (1.0 + offset * copy),
                 error=self.far,
             )
             for j in range(4)
@@ -61,14 +61,14 @@ class Ramps:
         time, state, end = 0.0, self.start, CYCLES / FREQUENCY
         while time < end:
             events, changes = self._events(sides)
-            found = solve_ivp(
+            solution = solve_ivp(
                 lambda t, y: self._rate(t, y, sides), (time, end), state, "DOP853", events=events,
                 rtol=1e-11, atol=[1e-15, 1e-11], max_step=end / 200,
             )  # fmt: skip
-            time, state = float(found.t[-1]), found.y[:, -1]
-            if found.status != 1:
+            time, state = float(solution.t[-1]), solution.y[:, -1]
+            if solution.status != 1:
                 break
-            for (k, side), when in zip(changes, found.t_events, strict=True):
+            for (k, side), when in zip(changes, solution.t_events, strict=True):
                 if len(when):
                     sides[k] = side
         return state
@@ -110,10 +110,10 @@ def test_coincident_ramps_follow_an_independent_code(seed):
 
 
 @pytest.mark.parametrize("apart", [1e-15, 1e-13, 1e-11, 1e-9])
-def test_nearly_coincident_ramps_move_like_coincident_ones(apart):
+def test_nearly_coincident_ramps_move_like_coincident_ones(offset):
     for seed in range(4):
-        both = [Ramps(seed, each).march(256) for each in (0.0, apart)]
-        np.testing.assert_allclose(both[1], both[0], rtol=0.0, atol=1e-10 + 100.0 * apart)
+        records = [Ramps(seed, each).march(256) for each in (0.0, offset)]
+        np.testing.assert_allclose(records[1], records[0], rtol=0.0, atol=1e-10 + 100.0 * offset)
 
 
 def test_newmark_ends_its_search_and_converges_to_the_same_motion():
@@ -129,22 +129,22 @@ def test_newmark_ends_its_search_and_converges_to_the_same_motion():
     assert errors[1] < errors[0] / 2.5
 
 
-def test_a_step_that_comes_to_no_end_is_told():
+def test_endless_chatter_within_a_step_is_reported():
     compiled = compile_for(Ramps(0).system, FREQUENCY, 64)
     period, state = np.full(40, 1.0 / FREQUENCY), np.zeros((40, 2))
     lanes, block = Run(compiled, RungeKutta4(), None, period, state, None), np.arange(16, 32)
     step, contact, lane = 5 * 64 + 16, 7, 3
     code = CHATTERING + (step * 12 + contact) * 16 + lane
-    with pytest.raises(ComputationError, match="more than 64 times within one step") as told:
+    with pytest.raises(ComputationError, match="more than 64 times within one step") as caught:
         lanes.report(LaneBlock(block, 16), code, 2)
-    problem = told.value.problems[0]
+    problem = caught.value.problems[0]
     assert problem.where == (
         f"contacts[7], mesh phase 0.25 of mesh cycle 8, time {7.25 / FREQUENCY:.6g} s, in lane 19"
     )
     assert "steps" in problem.remedy
 
 
-def test_a_damper_that_holds_a_mass_on_its_boundary_comes_to_an_end():
+def test_a_mass_held_on_its_boundary_by_a_damper_ends_the_search():
     # Without a spring, in a gap that opens: free, the mass follows it; touching, it is thrown back.
     contact = Contact(
         [1.0], 0.0, damping=20000.0,

@@ -23,13 +23,13 @@ def test_what_no_step_takes_away_counts():
     assert distance == pytest.approx(np.hypot(0.6, 0.2))
 
 
-def test_gears_under_hardly_any_torque_carry_it_or_have_no_orbit():
-    whole = reference_system(gap=2.5e-5)
-    system = replace(whole, force=np.array(whole.force) * 1e-8)
-    with warnings.catch_warnings(record=True) as told:
+def test_lightly_loaded_gears_carry_the_torque_or_have_no_orbit():
+    pair = reference_system(gap=2.5e-5)
+    system = replace(pair, force=np.array(pair.force) * 1e-8)
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         motion = steady_state(system, MESH_FREQUENCY, start=(np.zeros(6), np.zeros(6)))
     force = motion.fine.mean(motion.fine.contact_force[:, 0])
     carried = force == pytest.approx(90e-8 / BASE_RADIUS[0], rel=1e-3)
     assert carried or not motion.converged
-    assert carried or any("no periodic orbit" in str(one.message) for one in told)
+    assert carried or any("no periodic orbit" in str(warning.message) for warning in caught)

@@ -14,9 +14,11 @@ def add_record(statistics, member, grid, period, extra_force, scales, record):
         member.system, member.nodes, beat, q, v, scales=Scales.of_lanes(scales), extra=extra
     )
     weight, rows = member.nodes.weight, statistics.of_contacts
-    both = np.concatenate((law.deflection, law.contact), axis=-1)
-    _add(both, weight, rows)
-    parts = np.einsum("rs,rshp,brsj->jhpb", weight, statistics.waves, both, optimize=True)
+    signals_of_contacts = np.concatenate((law.deflection, law.contact), axis=-1)
+    _add(signals_of_contacts, weight, rows)
+    parts = np.einsum(
+        "rs,rshp,brsj->jhpb", weight, statistics.waves, signals_of_contacts, optimize=True
+    )
     rows[:, PLAIN_MOMENTS:] += parts.reshape(rows[:, PLAIN_MOMENTS:].shape)
     off = 1.0 - np.maximum(law.side, 0.0)
     rows[statistics.contacts :, 4] += np.einsum("rs,brsj->jb", weight, off)
