@@ -80,8 +80,8 @@ def test_statistics_of_a_record_are_those_of_the_kernel():
         single = LaneParameters(**{name: getattr(parameters, name)[lane] for name in SCALES})
         record = np.empty((steps + 1, 6, 1))
         state, period = np.concatenate(START)[None], np.array([1.0 / FREQUENCY])
-        march(compiled_member, period, state, 1, extra_force=extra[lane : lane + 1], parameters=single,
-              record=record)  # fmt: skip
+        arguments = {"extra_force": extra[lane : lane + 1], "parameters": single, "record": record}
+        march(compiled_member, period, state, 1, **arguments)
         gathered, plain = (Statistics.of(compiled_member, outputs, 1, 3) for _ in range(2))
         run = Run(compiled_member, RungeKutta4(), single, period, state, extra[lane : lane + 1])
         run.gather(LaneBlock(np.arange(1), 1), record, gathered, 1)
@@ -120,13 +120,12 @@ def test_engines_agree_on_lanes_with_factors_and_systems(method, options, steps,
     shared = {"parameters": _parameters(lanes), "averaged": 2, "outputs": OUTPUTS}
     frequency = np.linspace(0.3, 0.5, lanes)
     reference = simulate_ensemble(systems, frequency, 3, START, steps=1024, **shared)
-    ensemble = simulate_ensemble(systems, frequency, 3, START, steps=steps, method=method, **options,
-                              **shared)  # fmt: skip
+    shared |= {"steps": steps, "method": method, **options}
+    ensemble = simulate_ensemble(systems, frequency, 3, START, **shared)
     assert _differs(ensemble, reference, tolerance) == {}
-    runge_kutta = simulate_ensemble(systems, frequency, 3, START, steps=steps, method=method, **options,
-                            threads=1, **shared)  # fmt: skip
-    np.testing.assert_array_equal(runge_kutta.velocity, ensemble.velocity)
-    np.testing.assert_array_equal(runge_kutta.contact_force.rms, ensemble.contact_force.rms)
+    serial = simulate_ensemble(systems, frequency, 3, START, threads=1, **shared)
+    np.testing.assert_array_equal(serial.velocity, ensemble.velocity)
+    np.testing.assert_array_equal(serial.contact_force.rms, ensemble.contact_force.rms)
 
 
 @pytest.mark.parametrize(("method", "options", "steps", "tolerance"), ENGINES)

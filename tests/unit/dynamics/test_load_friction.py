@@ -74,8 +74,8 @@ def test_a_constant_coefficient_is_the_friction_of_a_contact(gap):
 
 
 def test_orbit_and_multipliers_of_a_constant_coefficient():
-    with_contact, with_load = (steady_state(item, MESH_FREQUENCY) for item in (reference_system(0.1),
-                                                                _with_load(0.1)))  # fmt: skip
+    systems = reference_system(0.1), _with_load(0.1)
+    with_contact, with_load = (steady_state(item, MESH_FREQUENCY) for item in systems)
     np.testing.assert_allclose(with_load.contact_force, with_contact.contact_force, rtol=1e-9)
     leading = np.sort(np.abs(with_contact.floquet_multipliers))[-2:]
     np.testing.assert_allclose(

@@ -17,7 +17,7 @@ def oscillator(**changes: object) -> System:
 
 
 @pytest.mark.parametrize(
-    ("profile", "words"),
+    ("profile", "message"),
     [
         (([0.0, 1.0], [0.0, 10.0]), "standing gear"),
         (([0.0, 0.0], [1.0, 10.0]), "do not rise"),

@@ -109,7 +109,7 @@ def test_coincident_ramps_follow_an_independent_code(seed):
     assert fine < coarse / 8.0
 
 
-@pytest.mark.parametrize("apart", [1e-15, 1e-13, 1e-11, 1e-9])
+@pytest.mark.parametrize("offset", [1e-15, 1e-13, 1e-11, 1e-9])
 def test_nearly_coincident_ramps_move_like_coincident_ones(offset):
     for seed in range(4):
         records = [Ramps(seed, each).march(256) for each in (0.0, offset)]
