@@ -73,9 +73,48 @@ def test_a_run_up_tells_its_levels(tmp_path: Path, capsys: pytest.CaptureFixture
     assert min(found["rms_mesh_force"]) > 0.0
 
 
+_QUIET = (*_SOON, "--set", "friction.law=none", "--set", "film.model=none")
+
+
+@pytest.mark.parametrize(
+    ("command", "words", "key"),
+    [
+        ("lyapunov", ["--cycles", "10", "--transient", "20"], "largest"),
+        ("basins", ["--points", "2", "--transmission-error", "-5..30 um"], "attractors"),
+        ("continuation", ["operation.speed=1430..1440 rpm", "--longest-step", "1"],
+         "special_points"),
+        ("sobol", ["tangential_force", "--size", "2", "--set", "operation.torque=90 N*m +- 2 %",
+                   "--set", "operation.speed=1430 rpm +- 2 %"], "figures"),
+    ],
+)  # fmt: skip
+def test_nonlinear_motions_and_tolerances_of_a_case(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str, words: list[str], key: str
+) -> None:
+    place = tmp_path / command
+    answer = _told(capsys, command, "fzg-roughness", *words, "--out", str(place), *_QUIET)
+    assert key in answer
+    assert {file.name for file in place.iterdir()} == {"case.toml", "study.nc", "report.html"}
+    if command == "lyapunov":
+        vibration = [
+            value
+            for value, free in zip(answer["exponents"], answer["free_rotation"], strict=True)
+            if not free
+        ]
+        assert answer["largest"] == vibration[0]
+        assert sum(answer["free_rotation"]) == 2
+    if command == "basins":
+        assert answer["transmission_error"] == pytest.approx([-5e-6, 30e-6])
+        assert answer["units"] == ["m", "m/s"]
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
+        (["continuation", "fzg-roughness", "operation.speed=1..2 rpm:9"], "chooses its points"),
+        (["continuation", "fzg-roughness", "fast"], "KEY=LOW..HIGH"),
+        (["basins", "fzg-roughness", "--rate", "fast"], 'cannot read "fast"'),
+        (["lyapunov", "fzg-roughness", "--cycles", "1"], "--cycles"),
+        (["sobol", "fzg-roughness"], "no value of the case has a tolerance"),
         (["modes", "fzg-roughness", "fast"], 'cannot read "fast"'),
         (["run-up", "fzg-roughness"], "tribodyn run-up fzg-roughness"),
         (["harris", "fzg-roughness", "60 mm"], "torque"),

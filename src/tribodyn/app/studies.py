@@ -172,6 +172,52 @@ def _run_up(case: Case, values: Values, progress: Progress, target: Path) -> Sho
     return _of(run_up_answer(case, ends, duration, progress=progress), "run-up", case, target)
 
 
+def _continuation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.nonlinear_answers import continuation_answer
+
+    ends, periods = _ends("ends", values["ends"]), int(values.get("periods") or 1)
+    step = float(values.get("longest_step") or 0.02)
+    answer = continuation_answer(case, values["key"], ends, periods, step, "study", progress)
+    return _of(answer, "continuation", case, target)
+
+
+def _basins(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.nonlinear_answers import basins_answer
+
+    error, rate = (
+        _ends(name, values[name]) if values.get(name) else None
+        for name in ("transmission_error", "rate")
+    )
+    points = int(values.get("points") or 21)
+    answer = basins_answer(case, error, rate, points, progress=progress)
+    return _of(answer, "basins", case, target)
+
+
+def _lyapunov(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.nonlinear_answers import lyapunov_answer
+
+    cycles, transient = int(values.get("cycles") or 1000), int(values.get("transient") or 300)
+    return _of(lyapunov_answer(case, cycles, transient, progress), "lyapunov", case, target)
+
+
+def _sobol(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.nonlinear_answers import sobol_answer
+
+    pairs = (("key", "tolerance"), ("second_key", "second_tolerance"))
+    spread = {values[key]: values.get(tolerance, "") for key, tolerance in pairs if values.get(key)}
+    for key, tolerance in spread.items():
+        if not any(sign in tolerance for sign in ("+-", "±", "..")):
+            what, why = (
+                f'"{tolerance}" is no tolerance of {key}',
+                "It is a value with its tolerance",
+            )
+            raise InputError(what, "tolerance", why, 'Write "90 N*m +- 5 %" or "80 .. 100 N*m"')
+    figures = values.get("figures", "").replace(",", " ").split()
+    size = int(values.get("size") or 32)
+    answer = sobol_answer(case.replace(spread, by="study"), figures, size, 0, progress)
+    return _of(answer, "sobol", case, target)
+
+
 _TORQUES = _text(None, "torques; 8 up to twice that of the case where it is empty", "50..300 N*m:6")
 _SPEEDS = _text(None, "speeds; 8 up to twice that of the case where it is empty", "400, 1400 rpm")
 _LIST = _text(None, "torques", "60 N*m, 120 N*m")
@@ -216,6 +262,53 @@ STUDIES: dict[str, Study] = {
         },
         _bifurcation,
     ),
+    "continuation": Study(
+        "Branch of motions",
+        "The periodic motion over one value, stable or not: where it turns back and jumps.",
+        {
+            "key": choice(REQUIRED, list, meaning="what varies"),
+            "ends": _text(REQUIRED, "its first and last value", "3000..9000 rpm"),
+            "periods": integer(1, 1, 16, _GUARD, meaning="mesh cycles until the motion repeats"),
+            "longest_step": number(
+                0.02, 1e-4, 1.0, _GUARD, meaning="longest step, relative to the range"
+            ),
+        },
+        _continuation,
+    ),
+    "basins": Study(
+        "Basins",
+        "Which of several motions a disturbed start comes to.",
+        {
+            "transmission_error": _text(
+                None, "its range; about the static one where it is empty", "-20..40 um"
+            ),
+            "rate": _text(None, "range of its rate", "-400000..400000 um/s"),
+            "points": integer(21, 2, 201, _GUARD, meaning="values of each"),
+        },
+        _basins,
+    ),
+    "lyapunov": Study(
+        "Lyapunov exponents",
+        "Whether the motion is chaos.",
+        {
+            "cycles": integer(1000, 2, 100000, _GUARD, meaning="mesh cycles of the mean"),
+            "transient": integer(300, 0, 100000, _GUARD, meaning="mesh cycles before"),
+        },
+        _lyapunov,
+    ),
+    "sobol": Study(
+        "Tolerances",
+        "Which tolerance the spread of the figures comes from; those in the case count too.",
+        {
+            "key": choice(REQUIRED, list, meaning="what has a tolerance"),
+            "tolerance": _text(REQUIRED, "its value with the tolerance", "90 N*m +- 5 %"),
+            "second_key": choice(None, list, meaning="what has one besides"),
+            "second_tolerance": _text(None, "its value with the tolerance", "1500 rpm +- 2 %"),
+            "figures": _text(None, "figures of the summary", "peak_mesh_force, efficiency"),
+            "size": integer(32, 2, 4096, _GUARD, meaning="size of the sample, a power of two"),
+        },
+        _sobol,
+    ),
     "relief": Study(
         "Tip relief",
         "The tip relief that leaves least transmission error, and the case with it.",
@@ -257,7 +350,13 @@ def first_values(kind: str, case: Case) -> dict[str, str]:
 
     rpm = convert(case.operation.speed, "rad/s", "rpm")
     about = f"{0.5 * rpm:.4g}..{2.0 * rpm:.4g} rpm"
-    first = {"key": _KEY, "values": f"{about}:{8 if kind == 'sweep' else 60}", "speeds": about}
+    first = {
+        "key": _KEY,
+        "values": f"{about}:{8 if kind == 'sweep' else 60}",
+        "speeds": about,
+        "ends": about,
+        "tolerance": f"{rpm:.4g} rpm +- 2 %",
+    }
     required = [n for n, o in STUDIES[kind].options.items() if o.required]
     return {name: value for name, value in first.items() if name in required}
 

@@ -21,6 +21,15 @@ _FEW = {
     "bifurcation": {"values": "800..900 rpm:2", "cycles": "4", "transient": "2"},
     "relief": {"torque": "90 N*m"},
     "harris": {"torque": "60 N*m, 90 N*m"},
+    "continuation": {"ends": "1430..1440 rpm", "longest_step": "1"},
+    "basins": {"points": "2"},
+    "lyapunov": {"cycles": "4", "transient": "10"},
+    "sobol": {
+        "second_key": "operation.torque",
+        "second_tolerance": "90 N*m +- 5 %",
+        "figures": "tangential_force, pitch_line_velocity",
+        "size": "2",
+    },
     "run-up": {"duration": "0.2"},
 }
 
@@ -28,6 +37,8 @@ _FEW = {
 @pytest.mark.parametrize("kind", STUDIES)
 def test_every_study_shows_and_saves_what_it_finds(kind: str, tmp_path: Path) -> None:
     case = load_case("fzg-roughness")
+    if kind in ("continuation", "basins", "lyapunov"):  # exponents take a single coefficient
+        case = case.replace({"stiffness.model": "analytic", "friction.law": "none"})
     values = first_values(kind, case) | _FEW.get(kind, {})
     shown = STUDIES[kind].compute(case, values, SILENT, tmp_path / "result")
     assert shown["told"]
@@ -57,3 +68,9 @@ def test_the_relief_that_a_study_offers_is_that_of_its_better_case(
     relieved = {key.split(".")[1] for key in shown["relief"]}
     assert relieved == ({"pinion", "wheel"} if gears == "both" else {"wheel"})
     assert all(key.partition(".")[0] == "gears" for key in shown["relief"])
+
+
+def test_a_tolerance_that_is_none_is_refused() -> None:
+    values = {"key": "operation.torque", "tolerance": "5 %"}
+    with pytest.raises(InputError, match=r'"5 %" is no tolerance of operation.torque'):
+        STUDIES["sobol"].compute(load_case("fzg-roughness"), values, SILENT, Path())
