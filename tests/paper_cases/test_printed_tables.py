@@ -31,7 +31,7 @@ def test_tables_are_whole(paper: str) -> None:
         assert not row.along or row.is_word
     # every case with its changes can be made, and equal ones are computed once
     jobs = Jobs(rows)
-    assert len(set(jobs.names.values())) < len(jobs.asked)
+    assert len(set(jobs.names.values())) < len(jobs.requests)
 
 
 @pytest.mark.slow

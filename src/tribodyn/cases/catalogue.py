@@ -1,4 +1,4 @@
-"""The built-in cases by name, and those that other packages bring along.
+"""The built-in cases by name, and those that other packages add.
 
 Another package adds a case through the entry-point group ``tribodyn.cases``: the entry point's
 name is the case's name, and it loads to the path of a case file.
@@ -34,16 +34,16 @@ def case_files() -> dict[str, Path]:
     'fzg-roughness.toml'
     """
     folder = Path(str(files("tribodyn.cases")))
-    found = {path.stem: path for path in sorted(folder.glob("*.toml"), key=_name)}
-    for entry in _brought():
-        if entry.name not in found:
-            found[entry.name] = Path(str(entry.load()))
-    return found
+    paths = {path.stem: path for path in sorted(folder.glob("*.toml"), key=_name)}
+    for entry in _external_cases():
+        if entry.name not in paths:
+            paths[entry.name] = Path(str(entry.load()))
+    return paths
 
 
 @lru_cache(maxsize=1)
-def _brought() -> EntryPoints:
-    """Cases of other packages: what is installed takes a while to look through, so once."""
+def _external_cases() -> EntryPoints:
+    """Cases of other packages; cached, since searching the installed packages takes a while."""
     return entry_points(group="tribodyn.cases")
 
 
@@ -86,10 +86,10 @@ def with_known_reasons(case: Case) -> Case:
     models = _models(case.origin, plain)
     stale = {key for key in plain if _of_another_value(case, key, models)}
     data = {**case.given.data, "assumed": _without(case.given.data["assumed"], stale)}
-    began = [model for model in models if case.origin and model.origin == case.origin]
-    if not (stale or began):
+    copied = [model for model in models if case.origin and model.origin == case.origin]
+    if not (stale or copied):
         return case
-    bases = [{key: Plain(v) for key, v in model.stated.base.items()} for model in began]
+    bases = [{key: Plain(v) for key, v in model.stated.base.items()} for model in copied]
     copies = [Case(case.source, **{**data, "based_on": base}) for base in bases]
     return min(copies or [Case(case.source, **data)], key=lambda copy: len(changed_keys(copy)))
 
@@ -118,9 +118,9 @@ def _model(path: Path) -> Case | None:
 
 def _of_another_value(case: Case, key: str, models: list[Case]) -> bool:
     """Whether built-in cases have the reason of a key, and none of them its value."""
-    told = [model for model in models if model.assumed.get(key) == case.assumed[key]]
+    sources = [model for model in models if model.assumed.get(key) == case.assumed[key]]
     value = case.stated.marks[key]
-    return bool(told) and not any(same(model.stated.marks[key], value) for model in told)
+    return bool(sources) and not any(same(model.stated.marks[key], value) for model in sources)
 
 
 def _without(marks: Mapping[str, object], keys: set[str]) -> dict[str, object]:

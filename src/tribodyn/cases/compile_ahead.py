@@ -1,4 +1,4 @@
-"""Kernels compiled into the disk cache ahead of the first run, in processes side by side."""
+"""Compile kernels into the disk cache ahead of the first run, in parallel processes."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from tribodyn.checks import require_whole
 from tribodyn.errors import ComputationError
 from tribodyn.progress import SILENT, Progress
 
-#: The job that needs no case: the marches of all studies. A process beside it begins with teeth
-#: and films.
+#: The job that needs no case: the time integration of all studies. Other processes start with
+#: teeth and films.
 _ENGINE = ""
 _CALL = "import sys; from {0} import compile_for; compile_for(sys.argv[1])"
 
@@ -28,29 +28,29 @@ _CALL = "import sys; from {0} import compile_for; compile_for(sys.argv[1])"
 def warm_up(
     case: str | None = None, jobs: int | None = None, progress: Progress = SILENT
 ) -> dict[str, Any]:
-    """Compile what a case needs into the disk cache, by a run that nothing is kept of.
+    """Compile what a case needs into the disk cache, by a run whose result is discarded.
 
     Parameters
     ----------
     case : str, optional
         Built-in case or path of a case file; all built-in cases by default.
     jobs : int, optional
-        Processes side by side; as many as there are processors by default, at most four.
+        Parallel processes; by default one per processor, at most four.
     progress : Progress
-        Told how far it has come; silent by default.
+        Reports how many jobs are done; silent by default.
 
     Returns
     -------
     dict of str to object
         ``"compiled"``: time by kernel [s], ``"there_already"``: kernels that were loaded,
-        ``"seconds"``: time of the whole [s].
+        ``"seconds"``: total time [s].
 
     Raises
     ------
     InputError
         If there is no such case.
     ComputationError
-        If a process fails, or no folder takes compiled kernels.
+        If a process fails, or compiled kernels cannot be cached.
 
     Examples
     --------
@@ -63,11 +63,11 @@ def warm_up(
     if case is not None:
         load_case(case)
     if not has_disk_cache(march_block) and hasattr(march_block, "_cache"):
-        what, why = "compiled kernels cannot be kept", "No folder takes them"
+        what, why = "compiled kernels cannot be cached", "No cache folder is writable"
         raise ComputationError(what, "", why, "Set NUMBA_CACHE_DIR to one that can be written")
     # A solved film takes longest.
-    known = sorted(cases(), key=lambda name: "film" not in name) if case is None else [case]
-    todo, begun = [known[0], _ENGINE, *known[1:]], time.monotonic()
+    names = sorted(cases(), key=lambda name: "film" not in name) if case is None else [case]
+    todo, start = [names[0], _ENGINE, *names[1:]], time.monotonic()
     compiled: dict[str, float] = {}
     ready: set[str] = set()
     with _children(todo, most) as results:
@@ -78,13 +78,14 @@ def warm_up(
             ready |= set(result["loaded"])
             progress.advance()
         progress.finish()
-    there, passed = sorted(ready - set(compiled)), time.monotonic() - begun
-    return {"compiled": compiled, "there_already": there, "seconds": passed}
+    seconds = time.monotonic() - start
+    cached = sorted(ready - set(compiled))
+    return {"compiled": compiled, "there_already": cached, "seconds": seconds}
 
 
 @contextmanager
 def _children(todo: list[str], most: int) -> Iterator[Iterator[dict[str, Any]]]:
-    """What processes compiled for every job, as each ends; none is left behind."""
+    """Yield what the processes compiled for each job as it ends; stop all of them on exit."""
     running: set[subprocess.Popen[str]] = set()
     stopped: list[bool] = []
 
@@ -95,12 +96,15 @@ def _children(todo: list[str], most: int) -> Iterator[Iterator[dict[str, Any]]]:
         pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         child = subprocess.Popen(call, text=True, start_new_session=True, **pipes)
         running.add(child)
-        told, wrong = child.communicate()
+        output, errors = child.communicate()
         running.discard(child)
         if child.returncode == 0:
-            return dict(text.loads(told.splitlines()[-1]))
-        why = (wrong.strip().splitlines() or [f"exit code {child.returncode}"])[-1]
-        what, remedy = f"The kernels of {job or 'a march'} were not compiled", "Run the case"
+            return dict(text.loads(output.splitlines()[-1]))
+        why = (errors.strip().splitlines() or [f"exit code {child.returncode}"])[-1]
+        what, remedy = (
+            f"The kernels of {job or 'the time integration'} were not compiled",
+            "Run the case",
+        )
         raise ComputationError(what, "", why, remedy)
 
     pool = ThreadPoolExecutor(most)
@@ -115,7 +119,7 @@ def _children(todo: list[str], most: int) -> Iterator[Iterator[dict[str, Any]]]:
 
 
 def compile_for(job: str) -> None:
-    """Do one job in this process and print what was compiled and what was loaded."""
+    """Run a job in this process and print which kernels were compiled and which were loaded."""
     import warnings
 
     from numba.core import event
@@ -124,15 +128,15 @@ def compile_for(job: str) -> None:
     from tribodyn.compiled import kernels
 
     compiled: dict[str, float] = {}
-    begun: dict[Any, float] = {}
+    starts: dict[Any, float] = {}
 
     class Compiling(event.Listener):  # type: ignore[misc]
         def on_start(self, event: Any) -> None:
-            begun.setdefault(event.data["dispatcher"], time.monotonic())
+            starts.setdefault(event.data["dispatcher"], time.monotonic())
 
         def on_end(self, event: Any) -> None:
             kernel = event.data["dispatcher"]
-            seconds = time.monotonic() - begun.pop(kernel, time.monotonic())
+            seconds = time.monotonic() - starts.pop(kernel, time.monotonic())
             if isinstance(kernel._cache, FunctionCache):
                 name = _name(kernel)
                 compiled[name] = compiled.get(name, 0.0) + seconds
@@ -146,7 +150,7 @@ def compile_for(job: str) -> None:
     else:
         from tribodyn.study.pipeline.run import run
 
-        first_use.allowed = False  # Another process is beside this one already.
+        first_use.allowed = False  # Other processes are running already.
         with TemporaryDirectory() as place:  # Some figures of the report compute too.
             run(load_case(job)).save(f"{place}/result")
     loaded = sorted({_name(kernel) for kernel in kernels if kernel.stats.cache_hits})

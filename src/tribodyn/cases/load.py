@@ -38,33 +38,33 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     from tribodyn.study.case.read import read_case, read_text
     from tribodyn.validated_files import file_kind
 
-    named = case_files()
-    asked = os.fspath(name_or_path)
-    path = named.get(asked, Path(asked))
+    paths = case_files()
+    name = os.fspath(name_or_path)
+    path = paths.get(name, Path(name))
     kind = file_kind(path)
-    if not asked:
+    if not name:
         why, remedy = "A case has a name, or is a file", "See: tribodyn cases"
         raise InputError("the name of the case is empty", "argument name_or_path", why, remedy)
     if kind == "directory":
         inner = path / "case.toml"
         remedy = f"Use {inner}" if inner.is_file() else "Give the path of a TOML file"
-        raise InputError("this is a directory, not a case file", asked, "", remedy)
+        raise InputError("this is a directory, not a case file", name, "", remedy)
     if not kind:
-        raise InputError(_not_found(asked, path, list(named)))
-    if asked in named:
+        raise InputError(_not_found(name, path, list(paths)))
+    if name in paths:
         return read_case(read_text(path), path.name)
-    return with_known_reasons(read_case(read_text(path), asked))
+    return with_known_reasons(read_case(read_text(path), name))
 
 
-def _not_found(asked: str, path: Path, names: list[str]) -> Problem:
-    """Name what is near: built-in cases, and TOML files in the same directory."""
+def _not_found(name: str, path: Path, names: list[str]) -> Problem:
+    """Name similar built-in cases, and TOML files in the same directory."""
     folder = path.parent
-    beside = sorted(p.name for p in folder.glob("*.toml")) if folder.is_dir() else []
-    near = difflib.get_close_matches(asked, names, n=1)
-    near += [str(folder / n) for n in difflib.get_close_matches(path.name, beside, n=1)]
+    files = sorted(p.name for p in folder.glob("*.toml")) if folder.is_dir() else []
+    similar = difflib.get_close_matches(name, names, n=1)
+    similar += [str(folder / n) for n in difflib.get_close_matches(path.name, files, n=1)]
     why = f"Built-in cases: {', '.join(names)}"
-    remedy = f'Did you mean "{near[0]}"?' if near else "See: tribodyn cases"
-    return Problem("no built-in case and no file is called so", asked, why, remedy)
+    remedy = f'Did you mean "{similar[0]}"?' if similar else "See: tribodyn cases"
+    return Problem("no built-in case and no file has this name", name, why, remedy)
 
 
 def run(case: Case | str | os.PathLike[str], progress: Progress = SILENT) -> Result:
@@ -75,19 +75,19 @@ def run(case: Case | str | os.PathLike[str], progress: Progress = SILENT) -> Res
     case : Case, str or path
         From :func:`tribodyn.load_case`, or what that function takes.
     progress : Progress
-        Told how far the run has come; silent by default.
+        Reports the steps of the run; silent by default.
 
     Raises
     ------
     InputError
-        If there is no such case, or it cannot be computed as it stands.
+        If there is no such case, or it cannot be computed.
     ComputationError
         If no steady motion is found.
 
     Warns
     -----
     ModelWarning
-        Everything that the models said, once each; also kept in ``Result.warnings``.
+        Everything that the models report, once each; also stored in ``Result.warnings``.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A saved result back from its directory."""
+"""Read a saved result from its directory."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _FACTS = ("mesh_frequency", "periods", "steady_state_error", "warnings", "cycles
 
 
 def load_result(directory: str | os.PathLike[str]) -> Result:
-    """Read a result that was saved; nothing is computed anew but the forces along its motion.
+    """Read a saved result; only the forces along its motion are computed again.
 
     Parameters
     ----------
@@ -83,29 +83,31 @@ Give the directory that tribodyn run or Result.save wrote.
             damping = damping_of(case, mesh)
             system = system_of(case, mesh, damping, friction)
         response = _response(folder, system, data)
-        told = tuple(ModelWarning(code, text) for code, text in json.loads(data.attrs["warnings"]))
+        warnings = tuple(
+            ModelWarning(code, text) for code, text in json.loads(data.attrs["warnings"])
+        )
     except TribodynError:
         raise
     # What a damaged file holds makes its readers stumble in many ways.
     except Exception as error:
         why = f"response.nc is damaged: {error or type(error).__name__}"
         raise InputError("this result cannot be read back", str(folder), why, _REMEDY) from None
-    result = Result(case, mesh, system, response, damping, told, friction, coupling=coupling)
+    result = Result(case, mesh, system, response, damping, warnings, friction, coupling=coupling)
     vars(result)["_summary"] = summary
     return result
 
 
 def _compare(folder: Path, summary: Mapping[str, float], data: xarray.Dataset) -> None:
-    """Refuse text files that were changed: response.nc, which has a checksum, tells what they held.
+    """Refuse text files that differ from the record of them in response.nc, which has a checksum.
 
-    Results of an earlier version do not tell of their case.
+    Results of an earlier version have no record of their case.
     """
     from tribodyn.validated_files import read_bytes
 
     case = hashlib.sha256(read_bytes(folder / "case.toml", "case")).hexdigest()
     changed = ["case.toml"] if data.attrs.get("case", case) != case else []
-    told = {name: data.attrs.get(name, value) for name, value in summary.items()}
-    if told != summary or data.attrs.get("figures", len(summary)) != len(summary):
+    stored = {name: data.attrs.get(name, value) for name, value in summary.items()}
+    if stored != summary or data.attrs.get("figures", len(summary)) != len(summary):
         changed.append("summary.json")
     if changed:
         why = f"{changed[0]} is of another, or was damaged or changed after it was written"
@@ -122,14 +124,14 @@ def read_summary(folder: Path) -> dict[str, float]:
 
     place = folder / "summary.json"
     try:
-        found = json.loads(read_bytes(place, "case"))
-        if not isinstance(found, dict) or not found:
+        entries = json.loads(read_bytes(place, "case"))
+        if not isinstance(entries, dict) or not entries:
             raise ValueError("It is no table of figures")
-        figures = {name: float(value) for name, value in found.items()}
+        figures = {name: float(value) for name, value in entries.items()}
         if wrong := [n for n, v in figures.items() if not np.isfinite(v)]:
             raise ValueError(f"It has {wrong[0]} = {figures[wrong[0]]}")
         if unknown := [name for name in figures if name not in SUMMARY]:
-            raise ValueError(f"No figure that is known here is called {unknown[0]}")
+            raise ValueError(f"It has a figure that this version does not know, {unknown[0]}")
     except (OSError, TypeError, ValueError, RecursionError) as error:
         remedy = "Compute the case again"
         raise InputError("cannot be read", str(place), str(error), remedy) from None
@@ -146,7 +148,7 @@ def _friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:
 
 
 def _coupling(mesh: MeshTable, data: xarray.Dataset) -> Coupling | None:
-    """How a coupled result came to agree; earlier versions kept nothing of it."""
+    """Return how the iteration of a coupled result converged; earlier versions did not store it."""
     from tribodyn.study.pipeline.computed import Coupling
 
     if "coupling_loading" not in data:
@@ -166,12 +168,12 @@ def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:
     from tribodyn.dynamics.equations.compiled import compile_for
     from tribodyn.dynamics.time.response import build_response, later
 
-    names, told, facts = tuple(data["coordinate"].values), data.attrs, dict[str, Any]()
-    rows, periods = data.sizes["time"], int(told["periods"])
+    names, attributes, facts = tuple(data["coordinate"].values), data.attrs, dict[str, Any]()
+    rows, periods = data.sizes["time"], int(attributes["periods"])
     if names != tuple(system.names) or rows % periods:
         why = f"Its motion has {', '.join(names)}, its case {', '.join(system.names)}"
         raise InputError("these files are of different results", str(folder), why, _REMEDY)
-    frequency = float(told["mesh_frequency"])
+    frequency = float(attributes["mesh_frequency"])
     ends = [
         np.hstack([data[f"{end}{name}"].values for name in ("position", "velocity")])
         for end in ("", "end_")
@@ -185,10 +187,10 @@ def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:
         frequency,
         np.vstack(ends),
         extra,
-        error=float(told["steady_state_error"]),
-        step_error=float(told.get("step_error", "nan")),
-        converged=bool(told["converged"]),
-        **{name: int(told[name]) for name in ("cycles_used", "search_cycles", "period")},
+        error=float(attributes["steady_state_error"]),
+        step_error=float(attributes.get("step_error", "nan")),
+        converged=bool(attributes["converged"]),
+        **{name: int(attributes[name]) for name in ("cycles_used", "search_cycles", "period")},
         **facts,
     )
     return later(response, float(data["time"].values[0]))

@@ -1,4 +1,4 @@
-"""Printed tables of one source or of all, each row beside what is computed."""
+"""Printed tables of one source or of all, each row compared with the computed figure."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class PaperComparison(Record):
 
     @property
     def complete(self) -> bool:
-        """Whether every computation was reached."""
+        """Whether every computation was done."""
         return len(self.points) == self.asked
 
     @property
@@ -71,9 +71,9 @@ class PaperComparison(Record):
     def lead(self) -> str:
         """Verdicts counted, in a line."""
         counts = Counter(row["verdict"] for row in self.rows)
-        told = ", ".join(f"{count} {name}" for name, count in counts.most_common())
+        totals = ", ".join(f"{count} {name}" for name, count in counts.most_common())
         odd = f"; {len(self.surprises)} not as expected" if self.surprises else ""
-        return f"{len(self.rows)} printed figures: {told}{odd}"
+        return f"{len(self.rows)} printed figures: {totals}{odd}"
 
     def table(self) -> Iterator[list[str]]:
         """Rows as text under ``HEAD``.
@@ -83,8 +83,8 @@ class PaperComparison(Record):
         list of str
         """
         for row in self.rows:
-            apart = "" if row["deviation"] is None else f"{100.0 * row['deviation']:+.3g}"
-            apart = "0" if row["deviation"] == 0.0 else apart
+            percent = "" if row["deviation"] is None else f"{100.0 * row['deviation']:+.3g}"
+            percent = "0" if row["deviation"] == 0.0 else percent
             unit = "" if row["unit"] == "1" else row["unit"]
             odd = "" if row["verdict"] == row["expected"] else f" (expected {row['expected']})"
             yield [
@@ -93,7 +93,7 @@ class PaperComparison(Record):
                 unit,
                 _text(row["printed"]),
                 _text(row["computed"]),
-                apart,
+                percent,
                 row["verdict"] + odd,
             ]
 
@@ -110,7 +110,7 @@ class PaperComparison(Record):
         Raises
         ------
         InputError
-            If the place is taken or cannot be written to.
+            If the directory exists or cannot be written.
         """
         with new_directory(Path(directory), force=force) as place:
             text = io.StringIO()
@@ -137,7 +137,7 @@ def _text(value: Any) -> str:
 def compare_with_paper(
     *names: str, partial: bool = False, progress: Progress = SILENT, members: Members | None = None
 ) -> PaperComparison:
-    """Compute what the sources of built-in cases print, and lay it beside.
+    """Compute the figures that the sources of built-in cases print, and compare them.
 
     Parameters
     ----------
@@ -146,9 +146,9 @@ def compare_with_paper(
     partial : bool
         Return the rows that are done when the computation is interrupted with Ctrl-C.
     progress : Progress
-        Told how many computations are done; silent by default.
+        Reports how many computations are done; silent by default.
     members : tribodyn.checkpoints.Members, optional
-        Keeps every computation as it is finished, and has those that a killed process finished.
+        Stores every computation when it is finished, and supplies those of a killed process.
 
     Returns
     -------
@@ -160,7 +160,7 @@ def compare_with_paper(
     Raises
     ------
     InputError
-        If no printed tables are known for a name.
+        If there are no printed tables for a name.
 
     Notes
     -----
@@ -169,31 +169,35 @@ def compare_with_paper(
 
     Examples
     --------
-    >>> found = compare_with_paper("fzg-12dof")
-    >>> sorted(found.rows[0])[:4]
+    >>> comparison = compare_with_paper("fzg-12dof")
+    >>> sorted(comparison.rows[0])[:4]
     ['case', 'computed', 'deviation', 'expected']
     """
     import tribodyn
-    from tribodyn.cases.papers.jobs import Jobs, asked_by, value_of
+    from tribodyn.cases.papers.jobs import Jobs, requests_of, value_of
 
     chosen = tuple(dict.fromkeys(names)) or tuple(papers())
     rows = [row for name in chosen for row in printed_rows(name)]
     jobs = Jobs(rows)
-    told = {
+    identity = {
         "study": "paper",
         "version": tribodyn.__version__,
         "options": list(chosen),
         "case": "",
         "over": sorted(jobs.names.values()),
     }
-    kept = (Members() if members is None else members).begin(told)
-    found = jobs.done(kept, partial, progress)
-    lacking = [row for row in rows if any(jobs.names[each] not in found for each in asked_by(row))]
+    checkpoints = (Members() if members is None else members).begin(identity)
+    results = jobs.done(checkpoints, partial, progress)
+    lacking = [
+        row
+        for row in rows
+        if any(jobs.names[request] not in results for request in requests_of(row))
+    ]
     broken = {series_of(row) for row in lacking if row.series}
     done = [row for row in rows if row not in lacking and series_of(row) not in broken]
-    values = [value_of(row, jobs, found) for row in done]
+    values = [value_of(row, jobs, results) for row in done]
     return PaperComparison(
-        chosen, tuple(_rows(done, values)), tuple(found), len(set(jobs.names.values()))
+        chosen, tuple(_rows(done, values)), tuple(results), len(set(jobs.names.values()))
     )
 
 

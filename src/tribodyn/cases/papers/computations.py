@@ -1,4 +1,4 @@
-"""Computations by name: each gives figures of a case in SI, which printed ones are laid beside."""
+"""Computations by name: each returns figures of a case in SI, to compare with printed ones."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ Figures = Mapping[str, float]
 Computation = Callable[..., Figures]
 COMPUTATIONS: Registry[Computation] = Registry("computation")
 
-#: Keys without which loads and films of a mesh are what they are.
+#: Keys that do not affect loads and films of a mesh.
 _AFTER = ("friction.", "solver.", "losses.", "operation.torque_balance", "title", "origin")
 _GEARS = ("pinion", "wheel")
-#: A hair inside the path of contact [base pitches].
+#: Margin inside the path of contact [base pitches].
 _INSIDE = 1e-9
 _HARMONICS = 22
 #: Neurons that the source found best for each of its networks.
@@ -38,9 +38,9 @@ _NEURONS = {"acceleration": 11, "mesh_force": 10}
 
 
 def loads_of(case: Case) -> str:
-    """What loads and films of a mesh depend on, as text."""
-    known = [(key, str(value)) for key, value in case.values() if not key.startswith(_AFTER)]
-    return str([(k, v) for k, v in known if k[:9] != "dynamics." or k == "dynamics.mesh_law"])
+    """Return the values that determine loads and films of a mesh, as text."""
+    values = [(key, str(value)) for key, value in case.values() if not key.startswith(_AFTER)]
+    return str([(k, v) for k, v in values if k[:9] != "dynamics." or k == "dynamics.mesh_law"])
 
 
 class Meshes:
@@ -68,11 +68,11 @@ class Meshes:
 
 @COMPUTATIONS.register("check")
 def _check(case: Case, meshes: Meshes) -> Figures:
-    """Numbers of the case itself, its geometry, operating point and oil; bodies of spur gears."""
-    known = dict(case.values())
+    """Return numbers of the case, its geometry, operating point and oil; bodies of spur gears."""
+    values = dict(case.values())
     numbers = {
         key: float(v)
-        for key, v in known.items()
+        for key, v in values.items()
         if isinstance(v, int | float) and not isinstance(v, bool)
     }
     oil = operating_figures(case)
@@ -140,8 +140,8 @@ def _friction_places(case: Case, mesh: MeshTable) -> dict[str, float]:
 @COMPUTATIONS.register("run")
 def _run(case: Case, meshes: Meshes) -> Figures:
     """The summary of a run, and of both gears the acceleration in both directions together."""
-    known = None if case.gears.kind != "spur" else lambda: meshes.table(case)
-    result = computed(case, known=known)
+    mesh_source = None if case.gears.kind != "spur" else lambda: meshes.table(case)
+    result = computed(case, known=mesh_source)
     multipliers = np.abs(result.response.floquet_multipliers)
     figures = result.summary()
     mode = figures.get("mesh_natural_frequency", math.nan)
@@ -178,21 +178,32 @@ def _accelerations(result: Result) -> dict[str, float]:
 def _line_contact(
     case: Case, meshes: Meshes, *, torque: float, speed: float, source_domain: bool = False
 ) -> Figures:
-    """Film of one pair that carries all at the pitch point, at a torque [N*m] and speed [rpm]."""
+    """Film of a pair with the full load at the pitch point, at a torque [N*m] and speed [rpm]."""
     from tribodyn.contact import effective_modulus
     from tribodyn.ehl import solve_line_contact
 
-    here = case.replace({"operation.torque": torque, "operation.speed": speed * math.pi / 30.0})
-    given = _check(here, meshes)
-    load = here.pinion_torque / here.gear_pair.pinion.base_radius / given["common_face_width"]
-    path = here.gear_pair.pinion.base_radius * math.tan(given["operating_pressure_angle"])
-    steel, oil = here.material_properties, here.lubricant_properties or unused_lubricant()
+    operating_case = case.replace(
+        {"operation.torque": torque, "operation.speed": speed * math.pi / 30.0}
+    )
+    geometry_figures = _check(operating_case, meshes)
+    load = (
+        operating_case.pinion_torque
+        / operating_case.gear_pair.pinion.base_radius
+        / geometry_figures["common_face_width"]
+    )
+    path = operating_case.gear_pair.pinion.base_radius * math.tan(
+        geometry_figures["operating_pressure_angle"]
+    )
+    steel, oil = (
+        operating_case.material_properties,
+        operating_case.lubricant_properties or unused_lubricant(),
+    )
     options: dict[str, Any] = {"domain": (-2.5, 1.5), "inlet": "zero"} if source_domain else {}
     with collected():
         film = solve_line_contact(
             load,
-            given["equivalent_radius_pitch_point"],
-            here.pinion_speed * path,
+            geometry_figures["equivalent_radius_pitch_point"],
+            operating_case.pinion_speed * path,
             oil,
             effective_modulus(steel, steel),
             nodes=1025,
@@ -216,26 +227,26 @@ def _line_contact(
 def _stability(
     case: Case, meshes: Meshes, *, over: str, between: list[str], points: int, steps: int
 ) -> Figures:
-    """Where along a key the motion stops to have one period, and the step of that integration."""
+    """Return where along a key the motion loses period 1, and the step of that integration."""
     from tribodyn.study.studies.bifurcation import bifurcation
 
     first, last = between
     with collected():
-        found = bifurcation(case, over, (first, last), points, steps=steps, cycles=32, keep=16)
-    other = np.flatnonzero(found.period[0] != 1)
-    at = int(other[0]) if other.size else -1
+        diagram = bifurcation(case, over, (first, last), points, steps=steps, cycles=32, keep=16)
+    irregular = np.flatnonzero(diagram.period[0] != 1)
+    onset = int(irregular[0]) if irregular.size else -1
     return {
-        "last_regular": float(found.parameter[at - 1]) if at > 0 else math.nan,
-        "first_irregular": float(found.parameter[at]) if at >= 0 else math.nan,
-        "irregular": float(other.size),
-        "step_number": float(found.step_number[at]) if at >= 0 else math.nan,
-        "irregular_with_half_the_step": float(np.count_nonzero(found.refined_period != 1)),
+        "last_regular": float(diagram.parameter[onset - 1]) if onset > 0 else math.nan,
+        "first_irregular": float(diagram.parameter[onset]) if onset >= 0 else math.nan,
+        "irregular": float(irregular.size),
+        "step_number": float(diagram.step_number[onset]) if onset >= 0 else math.nan,
+        "irregular_with_half_the_step": float(np.count_nonzero(diagram.refined_period != 1)),
     }
 
 
 @COMPUTATIONS.register("rig")
 def _rig(case: Case, meshes: Meshes, *, slave: str = "QJ 308") -> Figures:
-    """Torque that the motor of a back-to-back rig has to bring up."""
+    """Return the motor torque of a back-to-back rig."""
     from tribodyn.study.studies.losses import rig_power_flow
 
     bearings = {f"losses.{gear}.bearing": slave for gear in _GEARS}
@@ -246,20 +257,20 @@ def _rig(case: Case, meshes: Meshes, *, slave: str = "QJ 308") -> Figures:
 
 @COMPUTATIONS.register("modes")
 def _modes(case: Case, meshes: Meshes) -> Figures:
-    """Natural frequencies, and what the gears have of the mode next to the fifth mesh harmonic."""
+    """Return natural frequencies, and energy shares of the mode nearest the fifth mesh harmonic."""
     from tribodyn.dynamics import natural_modes
     from tribodyn.study.pipeline.assembly import whole_system
 
     with placed(case), collected():
         mesh = meshes.table(case)
-        found = natural_modes(whole_system(case, mesh))
-    near = int(np.argmin(np.abs(found.frequency - 5.0 * mesh.mesh_frequency)))
-    gears = [name.startswith(_GEARS) for name in found.names]
+        modes = natural_modes(whole_system(case, mesh))
+    nearest = int(np.argmin(np.abs(modes.frequency - 5.0 * mesh.mesh_frequency)))
+    gears = [name.startswith(_GEARS) for name in modes.names]
     return {
-        "first_elastic": float(found.frequency[found.rigid]),
-        "next_to_fifth_harmonic": float(found.frequency[near]),
-        "kinetic_share_of_gears": float(found.kinetic_share[near, gears].sum()),
-        "strain_share_of_mesh": float(found.strain_share[near, -found.contacts :].sum()),
+        "first_elastic": float(modes.frequency[modes.rigid]),
+        "next_to_fifth_harmonic": float(modes.frequency[nearest]),
+        "kinetic_share_of_gears": float(modes.kinetic_share[nearest, gears].sum()),
+        "strain_share_of_mesh": float(modes.strain_share[nearest, -modes.contacts :].sum()),
     }
 
 
@@ -290,8 +301,8 @@ def _networks(
             hidden = (_NEURONS[target],) * 2
             options: Any = {"moving_average": moving_average, "starts": starts}
             training = replace(BPNN_PL, hidden=hidden, **options)
-            asked: Any = {"features": features, "targets": [target], "groups": groups}
-            model = train(data, **asked, seed=1, training=training)
+            columns: Any = {"features": features, "targets": [target], "groups": groups}
+            model = train(data, **columns, seed=1, training=training)
             figures |= {f"{target}_{key}": v for key, v in vars(model.errors[target]).items()}
             figures[f"predicted_{target}"] = float(np.std(model.predict(data.columns)[target]))
     return figures
@@ -301,7 +312,7 @@ def _networks(
 def _arithmetic(
     case: Case, meshes: Meshes, *, first: float, second: float, level: float = 0.95
 ) -> Figures:
-    """What follows from two printed numbers alone."""
+    """Return what follows from two printed numbers alone."""
     from scipy.stats import norm
 
     return {
@@ -332,7 +343,7 @@ def _xu(case: Case, meshes: Meshes) -> Figures:
     return {f"b{number}": value for number, value in enumerate(CONSTANTS, 1)}
 
 
-def figures_of(name: str, case: Case, meshes: Meshes, given: Mapping[str, Any]) -> Figures:
+def figures_of(name: str, case: Case, meshes: Meshes, arguments: Mapping[str, Any]) -> Figures:
     """Figures of a computation, those that are numbers."""
-    found = COMPUTATIONS[name](case, meshes, **given)
-    return {key: float(value) for key, value in found.items() if math.isfinite(value)}
+    figures = COMPUTATIONS[name](case, meshes, **arguments)
+    return {key: float(value) for key, value in figures.items() if math.isfinite(value)}

@@ -1,4 +1,4 @@
-"""Computations of a page, each done once however many rows ask for it."""
+"""Computations behind the rows of a page; equal ones are done once."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from tribodyn.units import shown_in
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
-#: What is asked of a case: computation, case, changes, and arguments, the last two as text.
-Asked = tuple[str, str, str, str]
+#: A computation: its name, the case, and as text the changes of the case and its arguments.
+Request = tuple[str, str, str, str]
 #: Why a computation has no figures.
 FAILED = "failed"
 
 
-def asked_by(row: PrintedRow) -> list[Asked]:
+def requests_of(row: PrintedRow) -> list[Request]:
     """Computations of a row: one, one for each value along a key, or two that are compared."""
     if not row.compute:
         return []
@@ -34,81 +34,86 @@ def asked_by(row: PrintedRow) -> list[Asked]:
         ((key, values),) = row.along.items()
         changes = [{key: value} for value in values]
         if "." in key:
-            return [_asked(row, {**row.set, **change}, row.given) for change in changes]
-        return [_asked(row, row.set, {**row.given, **change}) for change in changes]
-    both = [row.set] if row.against is None else [row.set, {**row.set, **row.against}]
-    return [_asked(row, each, row.given) for each in both]
+            return [_request(row, {**row.set, **change}, row.given) for change in changes]
+        return [_request(row, row.set, {**row.given, **change}) for change in changes]
+    changes = [row.set] if row.against is None else [row.set, {**row.set, **row.against}]
+    return [_request(row, change, row.given) for change in changes]
 
 
-def _asked(row: PrintedRow, changes: Mapping[str, Any], given: Mapping[str, Any]) -> Asked:
-    changed, arguments = (json.dumps(each, sort_keys=True) for each in (changes, given))
-    return row.compute, row.case, changed, arguments
+def _request(row: PrintedRow, changes: Mapping[str, Any], arguments: Mapping[str, Any]) -> Request:
+    changes_text, arguments_text = (
+        json.dumps(values, sort_keys=True) for values in (changes, arguments)
+    )
+    return row.compute, row.case, changes_text, arguments_text
 
 
 class Jobs:
-    """What rows ask for, with equal computations as one, grouped by the loads that they share."""
+    """Computations of rows without repetition, grouped by the tooth loads that they share."""
 
     def __init__(self, rows: Sequence[PrintedRow]) -> None:
-        self.asked = [each for row in rows for each in asked_by(row)]
-        self.names = {each: self._name(each) for each in dict.fromkeys(self.asked)}
-        self.groups: dict[str, dict[str, Asked]] = {}
-        for each, name in self.names.items():
-            key = loads_of(self.case(each)) if each[0] in ("run", "mesh", "modes") else name
-            self.groups.setdefault(key, {}).setdefault(name, each)
+        self.requests = [request for row in rows for request in requests_of(row)]
+        self.names = {request: self._name(request) for request in dict.fromkeys(self.requests)}
+        self.groups: dict[str, dict[str, Request]] = {}
+        for request, name in self.names.items():
+            shares = request[0] in ("run", "mesh", "modes")
+            key = loads_of(self.case(request)) if shares else name
+            self.groups.setdefault(key, {}).setdefault(name, request)
 
     @staticmethod
     @cache
     def _changed(name: str, changes: str) -> Case:
-        # TOML has no word for no value: an empty text takes one out, as --set KEY= does.
+        # TOML has no null: an empty text removes a value, as --set KEY= does.
         items = json.loads(changes).items()
         return load_case(name).replace({key: None if v == "" else v for key, v in items})
 
-    def case(self, asked: Asked) -> Case:
+    def case(self, request: Request) -> Case:
         """Case of a computation."""
-        return self._changed(asked[1], asked[2])
+        return self._changed(request[1], request[2])
 
-    def _name(self, asked: Asked) -> str:
-        text = f"{asked[0]} {asked[3]} {self.case(asked).to_toml()}"
+    def _name(self, request: Request) -> str:
+        text = f"{request[0]} {request[3]} {self.case(request).to_toml()}"
         return hashlib.sha256(text.encode()).hexdigest()
 
-    def done(self, kept: Members, partial: bool, progress: Progress = SILENT) -> dict[str, Figures]:
-        """Figures of every computation by name; of those that are done, where it is interrupted."""
+    def done(
+        self, checkpoints: Members, partial: bool, progress: Progress = SILENT
+    ) -> dict[str, Figures]:
+        """Figures of every computation by name; of the finished ones if interrupted."""
         groups, done = list(self.groups.values()), dict[int, Any]()
-        found = {name: kept.get(name) for group in groups for name in group}
-        found = {name: figures for name, figures in found.items() if figures is not None}
+        stored = {name: checkpoints.get(name) for group in groups for name in group}
+        results = {name: figures for name, figures in stored.items() if figures is not None}
 
-        def compute(group: Mapping[str, Asked]) -> None:
+        def compute(group: Mapping[str, Request]) -> None:
             meshes = Meshes()
-            for name, asked in group.items():
-                if name not in found:
-                    figures = self._figures(asked, meshes)
-                    kept.keep(name, figures)
-                    found[name] = figures
+            for name, request in group.items():
+                if name not in results:
+                    figures = self._figures(request, meshes)
+                    checkpoints.keep(name, figures)
+                    results[name] = figures
 
         progress.start("Computations", len(groups))
         try:
             over_cases(compute, groups, done, progress)
         except KeyboardInterrupt:
-            if not (partial and found):
+            if not (partial and results):
                 raise
         progress.finish()
-        return found
+        return results
 
-    def _figures(self, asked: Asked, meshes: Meshes) -> Any:
+    def _figures(self, request: Request, meshes: Meshes) -> Any:
         try:
             with quiet():
-                return figures_of(asked[0], self.case(asked), meshes, json.loads(asked[3]))
+                return figures_of(request[0], self.case(request), meshes, json.loads(request[3]))
         except (InputError, ComputationError) as error:
             return {FAILED: str(error.problems[0])}
 
 
 def value_of(
-    row: PrintedRow, jobs: Jobs, found: Mapping[str, Figures]
+    row: PrintedRow, jobs: Jobs, results: Mapping[str, Figures]
 ) -> tuple[float | str | None, str]:
-    """What is computed for a row in its unit, or a word with its values; and why nothing is."""
+    """Computed value of a row in its unit, or a trend with its values; and why there is none."""
     values = []
-    for asked in asked_by(row):
-        figures: Mapping[str, Any] = found[jobs.names[asked]]
+    for request in requests_of(row):
+        figures: Mapping[str, Any] = results[jobs.names[request]]
         if row.of not in figures:
             return None, str(figures.get(FAILED, f"There is no {row.of.replace('_', ' ')} here"))
         values.append(figures[row.of])

@@ -1,4 +1,4 @@
-"""What a source prints, row by row, and how near computed figures are to it."""
+"""Printed figures of a source, row by row, and how close computed ones are."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import numpy as np
 
 from tribodyn.errors import InputError
 
-#: What is expected of a row, and what its figures can say: the printed value, its trend, neither.
+#: Verdicts of a row: its value is met, only its trend, or neither.
 VERDICTS = VALUE, TREND, NEITHER = "value", "trend", "cannot-reproduce"
 
 
@@ -27,7 +27,7 @@ class PrintedRow:
     paper: str  #: case of the source
     table: str
     row: str
-    #: A number, two ends of a range, or the word for how figures run along some values of a key.
+    #: A number, two ends of a range, or the trend of the figures along some values of a key.
     printed: float | str | list[float]
     expected: str
     reason: str
@@ -62,13 +62,13 @@ def printed_rows(paper: str) -> tuple[PrintedRow, ...]:
     >>> printed_rows("fzg-12dof")[0].table
     'Table 1'
     """
-    known = papers()
-    if paper not in known:
-        why = f"There are tables for {', '.join(known)}"
+    files_by_paper = papers()
+    if paper not in files_by_paper:
+        why = f"There are tables for {', '.join(files_by_paper)}"
         raise InputError(
-            f'no printed tables are known for "{paper}"', "", why, "Take one of them, or --all"
+            f'there are no printed tables for "{paper}"', "", why, "Take one of them, or --all"
         )
-    tables = tomllib.loads(known[paper].read_text(encoding="utf-8"))["tables"]
+    tables = tomllib.loads(files_by_paper[paper].read_text(encoding="utf-8"))["tables"]
     return tuple(_row(paper, table, row) for table in tables for row in table["rows"])
 
 
@@ -76,14 +76,14 @@ _MERGED = ("set", "given")
 
 
 def _row(paper: str, table: Mapping[str, Any], row: Mapping[str, Any]) -> PrintedRow:
-    """A row with what its table says of all rows."""
-    both = {**table, **row, "paper": paper}
-    both |= {key: {**table.get(key, {}), **row.get(key, {})} for key in _MERGED}
-    both.setdefault("case", paper)
-    del both["rows"]
-    if unknown := sorted(both.keys() - {each.name for each in fields(PrintedRow)}):
-        raise InputError(f'unknown key "{unknown[0]}"', f"{paper}, {both['table']}", "", "")
-    return PrintedRow(**both)
+    """Return a row with the values that its table sets for all rows."""
+    values = {**table, **row, "paper": paper}
+    values |= {key: {**table.get(key, {}), **row.get(key, {})} for key in _MERGED}
+    values.setdefault("case", paper)
+    del values["rows"]
+    if unknown := sorted(values.keys() - {each.name for each in fields(PrintedRow)}):
+        raise InputError(f'unknown key "{unknown[0]}"', f"{paper}, {values['table']}", "", "")
+    return PrintedRow(**values)
 
 
 _WORDS = {1: "rises", -1: "falls"}
@@ -104,7 +104,7 @@ def signs(values: Sequence[float], level: float) -> list[int]:
 
 
 def course(values: Sequence[float], level: float) -> str:
-    """Word for how values run: rises, falls, stays, or one then another.
+    """Return the trend of values: rises, falls, stays, or one then another.
 
     >>> course([3.0, 1.0, 2.0], 0.0)
     'falls, then rises'
@@ -129,7 +129,7 @@ def deviation(row: PrintedRow, computed: float | str | None) -> float | None:
 
 def verdicts(rows: Sequence[PrintedRow], computed: Sequence[float | str | None]) -> list[str]:
     """Verdict of every row: its value, or the course of its series, or neither."""
-    runs = {name: _runs_alike(rows, computed, name) for name in {series_of(row) for row in rows}}
+    runs = {name: _same_trend(rows, computed, name) for name in {series_of(row) for row in rows}}
     return [
         _verdict(row, value, runs[series_of(row)])
         for row, value in zip(rows, computed, strict=True)
@@ -137,11 +137,11 @@ def verdicts(rows: Sequence[PrintedRow], computed: Sequence[float | str | None])
 
 
 def series_of(row: PrintedRow) -> tuple[str, str, str]:
-    """Which rows have to run alike; without a name none."""
+    """Return the key of the series whose rows must show the same trend."""
     return row.paper, row.table, row.series
 
 
-def _runs_alike(
+def _same_trend(
     rows: Sequence[PrintedRow], computed: Sequence[float | str | None], name: tuple[str, str, str]
 ) -> bool:
     if not name[2]:
@@ -149,22 +149,22 @@ def _runs_alike(
     pairs = [
         (row, value) for row, value in zip(rows, computed, strict=True) if series_of(row) == name
     ]
-    found = [value for _, value in pairs if isinstance(value, float)]
+    numbers = [value for _, value in pairs if isinstance(value, float)]
     printed = [row.printed for row, _ in pairs if isinstance(row.printed, int | float)]
     level = pairs[0][0].level
-    whole = len(found) == len(printed) == len(pairs) > 1
-    return whole and signs(found, level) == signs(printed, level)
+    complete = len(numbers) == len(printed) == len(pairs) > 1
+    return complete and signs(numbers, level) == signs(printed, level)
 
 
-def _verdict(row: PrintedRow, computed: float | str | None, alike: bool) -> str:
+def _verdict(row: PrintedRow, computed: float | str | None, same_trend: bool) -> str:
     if isinstance(computed, str):
         return TREND if computed.partition(":")[0] == row.printed else NEITHER
     if row.printed == 0 and computed is not None:
         return VALUE if abs(computed) <= row.level else NEITHER
-    apart = deviation(row, computed)
-    if apart is not None and _SIDES[row.limit](apart) <= row.tolerance:
+    relative = deviation(row, computed)
+    if relative is not None and _SIDES[row.limit](relative) <= row.tolerance:
         return VALUE
     single = row.against is not None and not row.series and isinstance(computed, float)
-    if single and apart is not None:
-        alike = apart > -1.0 and abs(computed or 0.0) >= _MARGINAL
-    return TREND if alike else NEITHER
+    if single and relative is not None:
+        same_trend = relative > -1.0 and abs(computed or 0.0) >= _MARGINAL
+    return TREND if same_trend else NEITHER
