@@ -109,6 +109,10 @@ _USUAL: dict[str, dict[str, tuple[float, float]]] = {
     "1/m^2": {"1/mm^2": (1e6, 1)},
     "1/Pa": {"1/MPa": (1, 1e6), "1/GPa": (1, 1e9), "GPa^-1": (1, 1e9), "Pa^-1": (1, 1)},
 }
+#: Multiples of the standard acceleration of gravity, where an acceleration is meant: the same ``g``
+#: is a gram where a mass is meant.
+STANDARD_GRAVITY = 9.80665
+_GRAVITY = {"g": 1.0, "gn": 1.0, "g^0": 1.0, "g_n": 1.0, "g_0": 1.0, "mg": 1e-3}
 #: Zero degrees Celsius [K], and one revolution per minute [rad/s].
 ZERO_CELSIUS, RPM = 273.15, math.pi / 30.0
 
@@ -156,6 +160,8 @@ def _usual(value: float, unit: str, si: str) -> float | None:
         return value
     if si == "K" and unit == "degC":
         return value + ZERO_CELSIUS
+    if si == "m/s^2" and unit in _GRAVITY:
+        return value * _GRAVITY[unit] * STANDARD_GRAVITY
     scale = _USUAL.get(si, {}).get(unit)
     return None if scale is None else value * scale[0] / scale[1]
 
@@ -164,6 +170,8 @@ def _from_si(value: float, si: str, unit: str) -> float | None:
     """Return an SI ``value`` in ``unit``, or None when the table does not hold the unit."""
     if si == "K" and unit == "degC":
         return value - ZERO_CELSIUS
+    if si == "m/s^2" and unit in _GRAVITY:
+        return value / (_GRAVITY[unit] * STANDARD_GRAVITY)
     scale = _USUAL.get(si, {}).get(unit)
     return None if scale is None else value * scale[1] / scale[0]
 

@@ -191,3 +191,46 @@ def test_a_result_beside_a_recording(tmp_path: Path, capsys: pytest.CaptureFixtu
     ):
         assert call([*words, *wrong]) == 2
         assert told in capsys.readouterr().err
+
+
+def test_a_result_beside_a_recording_off_speed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """3 % slow and wandering by 1 %, in g, with and without a tachometer on the wheel."""
+    result = td.run(td.load_case("fzg-roughness").replace({"stiffness.model": "analytic"}))
+    result.save(tmp_path / "result")
+    data = result.to_xarray()
+    mesh = data.attrs["mesh_frequency"]
+    time = np.arange(40_000) / 20_000.0
+    angle = 2.0 * np.pi * 0.97 * mesh * (time + 0.01 * np.sin(np.pi * time) / np.pi)
+    size = data["acceleration_loa_pinion_spectrum"].values[1:4]
+    wave = sum(a * np.cos(k * angle + k) for k, a in enumerate(size, 1)) / 9.80665
+    wave += 0.1 * np.std(wave) * np.random.default_rng(0).standard_normal(time.size)
+    pulses = np.sin(30.0 * angle / result.case.gears.wheel.teeth) > 0.0
+    file = tmp_path / "rig.csv"
+    table = np.c_[time, wave, pulses]
+    np.savetxt(file, table, "%.9g", ",", header="time [s],acc [g],tacho [V]", comments="")
+    words = ("compare", str(tmp_path / "result"), str(file), "--harmonics", "3",
+             "--channel", "acc=acceleration_loa_pinion")  # fmt: skip
+    tacho = ("--tacho", "tacho", "--pulses", "30", "--tacho-gear", "wheel")
+    for options, how in (((), "phase demodulation"), (tacho, "tachometer")):
+        comparison = _told(capsys, *words, *options)
+        uncertainty = comparison["speed_uncertainty"]
+        assert abs(comparison["speed_ratio"] - 0.97) < 4.0 * uncertainty < 4e-4
+        assert comparison["speed_range"] == pytest.approx([0.9603, 0.9797], abs=1e-3)
+        assert how in comparison["speed_method"]
+        assert comparison["harmonic_shares"]["acc"] == pytest.approx(0.99, abs=0.01)
+        amplitudes = [row["measured"] for row in comparison["rows"][2:]]
+        assert amplitudes == pytest.approx(size, rel=0.05)
+    assert call([*words, *tacho]) == 0
+    assert "computed one: 0.9" in capsys.readouterr().out
+    for wrong in (("--tacho", "tacho"), ("--pulses", "30")):
+        assert call([*words, *wrong]) == 2
+        assert "Write --tacho CHANNEL --pulses N" in capsys.readouterr().err
+    np.savetxt(file, np.c_[time, np.random.default_rng(1).standard_normal(time.size)], "%.9g", ",",
+               header="time [s],acc [g]", comments="")  # fmt: skip
+    nothing = _told(capsys, *words)
+    assert nothing["speed_ratio"] is None
+    assert nothing["rows"][2]["measured"] is None
+    assert call([*words, "--gain", "fit"]) == 2
+    assert "no mesh harmonic of channel acc" in capsys.readouterr().err

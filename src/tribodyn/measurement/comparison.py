@@ -1,4 +1,4 @@
-"""A computed motion beside a measured one: levels, mesh harmonics, spectra, errors."""
+"""A computed motion compared with a measured one: speed, levels, mesh harmonics, errors."""
 
 from __future__ import annotations
 
@@ -17,14 +17,23 @@ from tribodyn.errors import (
     require_positive,
     shortened,
 )
-from tribodyn.measurement.orders import order_spectrum
+from tribodyn.measurement.mesh_harmonics import (
+    MeshHarmonics,
+    harmonics_of,
+    speed_by_angle,
+    speed_by_lines,
+    speed_by_tacho,
+    warn_of_harmonics,
+    warn_of_speed,
+)
+from tribodyn.measurement.mesh_speed import MeshSpeed
 from tribodyn.measurement.recording import Recording
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.signals.spectrum import spectrum
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, convert
 
 Base = Literal["measured", "computed", "mean"]
+_Row = tuple[str, str, str, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -50,7 +59,7 @@ class Comparison(Record):
     computed : (n,) array
         Computed value times the gain of its channel.
     measured : (n,) array
-        Measured value.
+        Measured value; NaN for harmonics of a recording whose speed was not found.
     error : (n,) array
         Computed less measured value over the base [-].
     base : str
@@ -63,6 +72,19 @@ class Comparison(Record):
         Whether the gains were fitted to the harmonics, which makes one of the errors small.
     lines : mapping of str to Lines
         Spectra by channel, for the figure.
+    noise : (n,) array
+        Amplitude that noise alone has at a mesh harmonic; 0 in the rows of rms.
+    speed_ratio : float
+        Mean mesh frequency of the recording over that of the computed motion [-]; NaN if it was
+        not found.
+    speed_uncertainty : float
+        Its standard uncertainty [-], without that of the sampling clock.
+    speed_range : tuple of float
+        Least and largest ratio during the recording [-].
+    speed_method : str
+        How the speed was found.
+    shares : mapping of str to float
+        Part of the alternating mean square of each channel that is in its mesh harmonics [-].
     """
 
     channel: Any = quantity("row", axis=True, unit="")
@@ -76,14 +98,38 @@ class Comparison(Record):
     gains: Mapping[str, float] = field(default_factory=dict)
     fitted: bool = fact(default=False)
     lines: Mapping[str, Lines] = field(default_factory=dict)
+    noise: Any = quantity("row", unit="", default=None)
+    speed_ratio: float = fact(default=1.0)
+    speed_uncertainty: float = fact(default=0.0)
+    speed_range: tuple[float, float] = (1.0, 1.0)
+    speed_method: str = fact(default="")
+    shares: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def speed_text(self) -> str:
+        """Speed of the recording with its uncertainty, and how it was found, as a sentence."""
+        if not np.isfinite(self.speed_ratio):
+            return f"The speed of the recording was not found: {self.speed_method}."
+        decimals = 6
+        if self.speed_uncertainty > 0.0:
+            decimals = int(np.clip(1 - np.floor(np.log10(self.speed_uncertainty)), 4, 9))
+        low, high = self.speed_range
+        wander = f", from {low:.4f} to {high:.4f} during it" if high - low > 2e-4 else ""
+        return (
+            "Mesh frequency of the recording over the computed one: "
+            f"{self.speed_ratio:.{decimals}f} (standard uncertainty {self.speed_uncertainty:.2g})"
+            f"{wander}; by {self.speed_method}."
+        )
 
     def __repr__(self) -> str:
         """One line."""
-        worst = int(np.argmax(np.abs(self.error)))
+        worst = int(np.argmax(np.where(np.isnan(self.error), -1.0, np.abs(self.error))))
+        ratio = f"speed ratio {self.speed_ratio:.5g}"
+        speed = ratio if np.isfinite(self.speed_ratio) else "speed not found"
         return (
             f"Comparison({len(self.gains)} channels, {self.channel.size} values, largest error "
             f"{100.0 * self.error[worst]:+.3g} % of the {self.base} {self.measure[worst]} of "
-            f"{self.channel[worst]})"
+            f"{self.channel[worst]}; {speed})"
         )
 
 
@@ -96,18 +142,20 @@ def compare(
     base: Base = "measured",
     gain: Mapping[str, float] | float | Literal["fit"] = 1.0,
     mesh_frequency: float | None = None,
-    frequency_tolerance: float = 0.005,
+    frequency_tolerance: float = 0.05,
     angle: str | None = None,
     teeth: int | None = None,
+    tacho: str | None = None,
+    pulses: int = 1,
 ) -> Comparison:
-    """Lay a computed steady motion beside a measured one.
+    """Compare a computed steady motion with a measured one.
 
     Parameters
     ----------
     computed : Result or xarray.Dataset
         What :func:`tribodyn.run` or :func:`tribodyn.load_result` returns, of a steady state.
     measured : Recording
-        At the same speed and torque.
+        At about the same speed, and the same torque.
     channels : mapping of str to str
         Measured channel to computed signal, such as ``{"acc": "acceleration_loa_pinion"}``.
     harmonics : int
@@ -119,25 +167,41 @@ def compare(
         channels or by measured channel; ``"fit"`` takes the one of least squares over the mesh
         harmonics of each channel, and the result says so.
     mesh_frequency : float, optional
-        Mesh frequency on the rig [Hz]; that of the computed motion by default.
+        Mesh frequency on the rig, about which its mesh lines are searched [Hz]; that of the
+        computed motion by default.
     frequency_tolerance : float
-        Part of the frequency by which a measured harmonic may lie beside it [-].
+        How far the mesh frequency of the recording may be from that, over the latter [-].
     angle : str, optional
-        Channel with the angle of the shaft [rad], where the speed of the rig was not steady.
+        Channel with the angle of a shaft [rad].
     teeth : int, optional
-        Teeth of the gear on that shaft.
+        Teeth of the gear on the shaft with angle or tachometer; of the pinion by default.
+    tacho : str, optional
+        Channel with the pulses of a tachometer.
+    pulses : int
+        Pulses of the tachometer in a revolution.
 
     Raises
     ------
     InputError
         If a channel or signal is not there, units do not match, the record is too short to part
-        the harmonics, or an argument is out of its range.
+        the harmonics, no harmonic stands above the noise where a gain is to be fitted, or an
+        argument is out of its range.
+
+    Warns
+    -----
+    ModelWarning
+        ``speed-not-found``, ``speed-ambiguous`` or ``speed-off`` where the speed of the recording
+        is not that of the computed motion for sure; ``harmonics-in-noise`` and
+        ``harmonics-smeared`` where amplitudes are off by more than 5 %;
+        ``signal-outside-harmonics`` where less than half of the alternating mean square of a
+        channel is in the mesh harmonics.
 
     Notes
     -----
-    Measured amplitudes are read with a flat-top window, within 0.12 %, as the largest line within
-    the tolerance. Noise and other sources count in the rms of the whole signal, and not in that of
-    the mesh harmonics.
+    Measured amplitudes are those over the angle of the mesh (:func:`order_spectrum`), which comes
+    from the tachometer, from the channel with the angle, or from the mesh lines of all compared
+    channels (:func:`mesh_speed`). Noise and other sources count in the rms of the whole signal, and
+    not in that of the mesh harmonics.
 
     Examples
     --------
@@ -148,8 +212,12 @@ def compare(
     ... )
     >>> time = np.arange(20000) / 10000.0
     >>> wave = 2.0 * np.cos(2 * np.pi * 100 * time) + np.cos(2 * np.pi * 200 * time)
-    >>> compare(made, Recording({"cell": wave}, 1e4, {"cell": "N"}), {"cell": "force"}, harmonics=2)
-    Comparison(1 channels, 4 values, largest error +50 % of the measured mesh harmonic 1 of cell)
+    >>> recording = Recording({"cell": wave}, 1e4, {"cell": "N"})
+    >>> comparison = compare(made, recording, {"cell": "force"}, harmonics=2)
+    >>> comparison.measured.round(3).tolist()
+    [1.581, 1.581, 2.0, 1.0]
+    >>> round(comparison.speed_ratio, 6)
+    1.0
     """
     data = computed.to_xarray() if hasattr(computed, "to_xarray") else computed
     count = require_whole("harmonics", harmonics)
@@ -159,31 +227,110 @@ def compare(
     own = _frequency(data)
     frequency = own if mesh_frequency is None else require_number("mesh_frequency", mesh_frequency)
     require_positive("mesh_frequency", frequency, "Hz")
-    rows: list[tuple[str, str, str, float, float]] = []
-    gains, lines = {}, {}
-    for name, signal in channels.items():
-        order, size, unit = _computed(data, signal, count)
-        factor = _same_unit(measured.units.get(name, ""), unit, name)
-        found, told = _measured(
-            measured, name, frequency, count, frequency_tolerance, (angle, teeth)
-        )
-        own_lines = size[(order >= 1.0) & (np.abs(order - np.rint(order)) < 1e-9)][:count]
-        gains[name] = _gain(gain, name, own_lines, factor * found)
-        size, own_lines = gains[name] * size, gains[name] * own_lines
-        whole = factor * float(np.std(measured[name]))
-        rows.append((name, "rms", unit, _rms(size[order > 0.0]), whole))
-        rows.append((name, "rms of mesh harmonics", unit, _rms(own_lines), factor * _rms(found)))
-        for number, pair in enumerate(zip(own_lines, factor * found, strict=True), start=1):
-            rows.append((name, f"mesh harmonic {number}", unit, float(pair[0]), float(pair[1])))
-        lines[name] = Lines((order * own, size), (told[0], factor * told[1]))
-    values, test = (np.array([row[column] for row in rows]) for column in (3, 4))
+    signals = {name: _computed(data, signal, count) for name, signal in channels.items()}
+    factors = {
+        name: _same_unit(measured.units.get(name, ""), unit, name)
+        for name, (_, _, unit) in signals.items()
+    }
+    gears = _gears(computed)
+    shaft = (angle, tacho, pulses, teeth if teeth is not None else next(iter(gears), None))
+    speed = _speed(measured, channels, (frequency, count, frequency_tolerance), gears, shaft)
+    rows: list[_Row] = []
+    gains, lines, shares = {}, {}, {}
+    for name, (order, size, unit) in signals.items():
+        harmonic = harmonics_of(measured[name], speed, count, gears)
+        if speed.located:
+            warn_of_harmonics(name, harmonic)
+            shares[name] = harmonic.share
+        at_harmonics = size[(order >= 1.0) & (np.abs(order - np.rint(order)) < 1e-9)][:count]
+        gains[name] = _gain(gain, name, at_harmonics, (harmonic, factors[name]), speed)
+        size, at_harmonics = gains[name] * size, gains[name] * at_harmonics
+        level = _rms(size[order > 0.0]), factors[name] * float(np.std(measured[name]))
+        rows.append((name, "rms", unit, *level, 0.0))
+        rows += _harmonic_rows(name, unit, at_harmonics, (harmonic, factors[name]), speed.located)
+        place, amplitude = harmonic.spectrum
+        scale = speed.mesh_frequency if speed.located else frequency
+        lines[name] = Lines((order * own, size), (place * scale, factors[name] * amplitude))
+    channel, measure, units = (np.array([row[column] for row in rows]) for column in range(3))
+    values, test, noise = (np.array([row[column] for row in rows]) for column in (3, 4, 5))
+    per = frequency / own
+    return Comparison(
+        channel,
+        measure,
+        units,
+        values,
+        test,
+        _errors(values, test, base),
+        base,
+        own,
+        gains,
+        gain == "fit",
+        lines,
+        noise,
+        per * speed.ratio,
+        per * speed.uncertainty,
+        (per * speed.lowest, per * speed.highest),
+        speed.method,
+        shares,
+    )
+
+
+def _harmonic_rows(
+    name: str, unit: str, computed: Array, measured: tuple[MeshHarmonics, float], located: bool
+) -> list[_Row]:
+    """Rows of the mesh harmonics of a channel, the measured ones times a factor."""
+    harmonic, factor = measured
+    amplitude = factor * harmonic.amplitude if located else np.full(computed.size, np.nan)
+    level = _rms(computed), _rms(amplitude)
+    values = zip(computed.tolist(), amplitude.tolist(), strict=True)
+    noise = (factor * harmonic.noise).tolist()
+    return [
+        (name, "rms of mesh harmonics", unit, *level, 0.0),
+        *(
+            (name, f"mesh harmonic {k}", unit, *pair, noise[k - 1])
+            for k, pair in enumerate(values, start=1)
+        ),
+    ]
+
+
+def _errors(values: Array, test: Array, base: Base) -> Array:
+    """Computed less measured values over the base."""
     below = {"measured": test, "computed": values, "mean": 0.5 * (values + test)}[base]
     with np.errstate(divide="ignore", invalid="ignore"):
-        error = np.where(values == test, 0.0, (values - test) / below)
-    channel, measure, units = (np.array([row[column] for row in rows]) for column in range(3))
-    return Comparison(
-        channel, measure, units, values, test, error, base, own, gains, gain == "fit", lines
-    )
+        return np.where(values == test, 0.0, (values - test) / below)
+
+
+def _gears(computed: Any) -> tuple[int, ...]:
+    """Teeth of pinion and wheel of a result; empty where it is only a data set."""
+    gears = getattr(getattr(computed, "case", None), "gears", None)
+    teeth = (getattr(getattr(gears, name, None), "teeth", None) for name in ("pinion", "wheel"))
+    return tuple(int(number) for number in teeth if number is not None)
+
+
+def _speed(
+    measured: Recording, channels: Mapping[str, str], mesh: Any, gears: tuple[int, ...], shaft: Any
+) -> MeshSpeed:
+    """Speed of the recording from the angle of a shaft, or else from its mesh lines."""
+    frequency, count, tolerance = mesh
+    angle, tacho, pulses, teeth = shaft
+    if angle is not None and tacho is not None:
+        what, why = f'angle = "{angle}" and tacho = "{tacho}"', "Both give the angle of a shaft"
+        raise InputError(what, Argument("tacho"), why, "Leave one of them out")
+    if angle is None and tacho is None:
+        if count * frequency >= 0.5 * measured.sample_rate:
+            what = f"mesh harmonic {count} is beyond the record"
+            reach = 0.5 * measured.sample_rate / frequency
+            why = f"Sampled with {measured.sample_rate:g} Hz it reaches harmonic {reach:.3g}"
+            raise InputError(what, Argument("harmonics"), why, "Ask for fewer, or sample faster")
+        return speed_by_lines(measured, channels, frequency, count, tolerance, gears)
+    per = require_whole("teeth", teeth, why="the teeth of the gear on that shaft,")
+    if tacho is not None:
+        per_turn = require_whole("pulses", pulses)
+        speed = speed_by_tacho(measured, tacho, per_turn, per, frequency)
+    else:
+        speed = speed_by_angle(measured, str(angle), per, frequency)
+    warn_of_speed(speed, frequency, tolerance)
+    return speed
 
 
 def _refuse(measured: Any, channels: Any) -> None:
@@ -238,44 +385,29 @@ def _same_unit(given: str, wanted: str, name: str) -> float:
         raise InputError(what, Argument("channels"), str(error), remedy) from None
 
 
-def _measured(
-    recording: Recording, name: str, frequency: float, count: int, tolerance: float, shaft: Any
-) -> tuple[Array, tuple[Array, Array]]:
-    """Amplitudes of the mesh harmonics of a channel, and its whole spectrum."""
-    angle, teeth = shaft
-    if angle is not None:
-        per = require_whole("teeth", teeth, why="the teeth of the gear on that shaft,")
-        made = order_spectrum(recording[name], recording[angle], per * (count + 0.5))
-        places, size = made.orders / per, made.amplitudes
-    else:
-        plain = spectrum(recording[name], recording.sample_rate)
-        places, size = plain.frequency / frequency, plain.amplitude
-    numbers = np.arange(1, count + 1)
-    if places[-1] < count * (1.0 + tolerance):
-        what = f"mesh harmonic {count} is beyond the record"
-        why = f"Sampled with {recording.sample_rate:g} Hz it reaches harmonic {places[-1]:.3g}"
-        raise InputError(what, Argument("harmonics"), why, "Ask for fewer, or sample faster")
-    if places[1] > 0.05:
-        what = f"the record lasts {recording.duration:g} s"
-        why = "Mesh harmonics are parted from what lies beside them over 20 mesh cycles or more"
-        raise InputError(what, Argument("measured"), why, "Record longer")
-    found = [
-        size[np.abs(places - number) <= max(tolerance * number, 0.51 * places[1])].max()
-        for number in numbers
-    ]
-    return np.array(found), (places * frequency, size)
-
-
-def _gain(given: Any, name: str, computed: Array, measured: Array) -> float:
-    """Transfer path of a channel."""
-    if isinstance(given, str):
-        require_one_of("gain", given, ("fit",))
-        square = float(computed @ computed)
-        if square == 0.0:
-            what = f"the computed harmonics for {name} are all zero"
-            why = "It scales one signal to the other"
-            raise InputError(what, Argument("gain"), why, "Give the gain as a number")
-        return float(computed @ measured) / square
-    value = given.get(name, 1.0) if isinstance(given, Mapping) else given
-    require_positive("gain", value)
-    return float(value)
+def _gain(
+    gain: Any,
+    name: str,
+    computed: Array,
+    measured: tuple[MeshHarmonics, float],
+    speed: MeshSpeed,
+) -> float:
+    """Transfer path of a channel; a fitted one is that of the harmonics above the noise."""
+    if not isinstance(gain, str):
+        value = gain.get(name, 1.0) if isinstance(gain, Mapping) else gain
+        require_positive("gain", value)
+        return float(value)
+    require_one_of("gain", gain, ("fit",))
+    harmonic, factor = measured
+    clear = harmonic.clear
+    if not (speed.located and clear.any()):
+        what = f"no mesh harmonic of channel {name} stands above its noise"
+        why = "A gain would be fitted to nothing" if speed.located else speed.method
+        remedy = "Give the gain as a number, or correct the channel, the speed or the tachometer"
+        raise InputError(what, Argument("gain"), why, remedy)
+    square = float(computed[clear] @ computed[clear])
+    if square == 0.0:
+        what = f"the computed harmonics for {name} are all zero"
+        why = "It scales one signal to the other"
+        raise InputError(what, Argument("gain"), why, "Give the gain as a number")
+    return factor * float(computed[clear] @ harmonic.amplitude[clear]) / square

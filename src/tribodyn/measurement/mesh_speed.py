@@ -47,9 +47,10 @@ _PASSES = 2
 _GAIN = 0.02
 #: Share of the power, and of the sum of levels, from which another comb is a rival.
 _RIVAL_POWER, _RIVAL_LEVEL = 0.25, 0.5
-#: Distances of rivals, over the mesh frequency; further below than the second one, which combs with
-#: lines of the same frequencies are, they must be stronger by the third.
-_RIVALS, _SEPARATE, _LARGER = (-0.55, 0.3), 0.3, 1.25
+#: Largest distance of rivals, over the mesh frequency, and the one beyond which combs of other
+#: ratios share single lines, so that a rival there must be stronger by the last factor. A rival so
+#: much stronger says that the path follows something else than the mesh.
+_RIVALS, _SEPARATE, _LARGER = 0.55, 0.15, 1.25
 
 
 @dataclass(frozen=True)
@@ -411,6 +412,13 @@ def _result(search: _Search, path: _Path | None, tolerance: float) -> MeshSpeed:
             f"beyond the tolerance of {100.0 * tolerance:.3g} %"
         )
         return _unknown(search, path.angle, method)
+    rivals, stronger = _rivals(search, path)
+    if stronger:
+        method = (
+            f"lines at {mean:.4g} times {search.frequency:.6g} Hz would fit, but clearly stronger "
+            f"ones lie at {rivals[0]:.4g} times"
+        )
+        return _unknown(search, path.angle, method)
     steady, turns = path.length == search.size, seconds * search.frequency
     noise = 0.5 / np.sqrt(path.level) if steady else 1.0 / (2.0 * np.pi * np.sqrt(path.level))
     step = max(path.length // _POINTS, 1)
@@ -426,7 +434,7 @@ def _result(search: _Search, path: _Path | None, tolerance: float) -> MeshSpeed:
         mean * search.frequency,
         search.at_samples(path.angle),
         tuple(used.tolist()),
-        _rivals(search, path),
+        rivals,
         f"phase demodulation of mesh {lines} {', '.join(map(str, used))} in {blocks}",
     )
 
@@ -436,16 +444,18 @@ def _unknown(search: _Search, angle: Array, method: str) -> MeshSpeed:
     return MeshSpeed(nan, nan, nan, nan, nan, search.at_samples(angle), method=method)
 
 
-def _rivals(search: _Search, path: _Path) -> tuple[float, ...]:
-    """Other combs in the spectrum over the angle that are about as strong as that of the path."""
+def _rivals(search: _Search, path: _Path) -> tuple[tuple[float, ...], bool]:
+    """Other ratios whose combs in the spectrum over the angle are about as strong, best first.
+
+    The second value says whether the first of them is clearly stronger than that of the path.
+    """
     spectra = [
         order_spectrum(row, path.angle, search.count + 0.5, window="hann") for row in search.rows
     ]
     power = np.sum([each.amplitudes**2 for each in spectra], axis=0)
     spacing = float(spectra[0].orders[1])
-    steps = np.ceil(np.array(_RIVALS) / spacing * search.count).astype(int)
-    away = np.arange(steps[0], steps[1] + 1) * spacing / search.count
-    zero = -steps[0]
+    zero = int(np.ceil(_RIVALS / spacing * search.count))
+    away = np.arange(-zero, zero + 1) * spacing / search.count
     places = np.rint(search.orders[:, None] * (1.0 + away) / spacing).astype(int)
     lines = np.where(places < power.size, power[np.minimum(places, power.size - 1)], 0.0)
     halfway = [int((k + 0.5) / spacing) for k in range(search.count + 1)]
@@ -454,12 +464,12 @@ def _rivals(search: _Search, path: _Path) -> tuple[float, ...]:
     level = np.log1p(clear).sum(axis=0)
     total = np.where(clear > _CLEAR, lines, 0.0).sum(axis=0)
     separate = np.abs(away) * path.angle[-1] / (2.0 * np.pi) > 8.0
-    # Half the speed has all lines of the full one, and must have more.
-    least = np.where(away < -_SEPARATE, _LARGER, _RIVAL_POWER)
+    least = np.where(np.abs(away) > _SEPARATE, _LARGER, _RIVAL_POWER)
     strong = (total >= least * total[zero]) & (level >= _RIVAL_LEVEL * level[zero]) & separate
     rivals: list[float] = []
     for shift in away[strong][np.argsort(-total[strong])]:
         if all(abs(shift - other) > 0.002 for other in rivals) and len(rivals) < 3:
             rivals.append(float(shift))
     mean = search.mean_ratio(path.angle)
-    return tuple(mean * (1.0 + shift) for shift in rivals)
+    stronger = bool(np.max(total[strong], initial=0.0) > _LARGER * total[zero])
+    return tuple(mean * (1.0 + shift) for shift in rivals), stronger

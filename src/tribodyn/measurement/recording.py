@@ -18,10 +18,6 @@ from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, convert
 
-#: Standard acceleration of fall, which ``g`` after a stroke is.
-_FALL = 9.80665
-#: How it is written as a unit.
-GRAVITY = ("g", "g_n", "g_0")
 _SENSITIVITY = re.compile(r"\s*([0-9.eE+-]+)\s*([^/]+)/\s*(.+?)\s*")
 
 
@@ -250,8 +246,6 @@ def _from_sensor(text: str, unit: str, name: str) -> tuple[float, str]:
         raise InputError(wrong) from None
     if not (np.isfinite(volts) and volts != 0.0):
         raise InputError(wrong)
-    if below in GRAVITY:
-        return _FALL / volts, "m/s^2"
     for si in MEASURED:
         try:
             return convert(1.0, below, si) / volts, si
@@ -262,8 +256,6 @@ def _from_sensor(text: str, unit: str, name: str) -> tuple[float, str]:
 
 def in_si(values: Array, unit: str) -> tuple[Array, str]:
     """A channel in the SI unit of what it measures; as it is where its unit is not known."""
-    if unit in GRAVITY:
-        return _FALL * values, "m/s^2"
     for si in MEASURED:
         try:
             zero = convert(0.0, unit, si)  # of temperatures in degC

@@ -98,6 +98,17 @@ def shaft_angle(
     >>> bool(np.abs(found - found[0] - angle)[100:-100].max() < 1e-4)
     True
     """
+    return angle_and_jitter(tacho, sample_rate, pulses_per_revolution, edge, threshold)[0]
+
+
+def angle_and_jitter(
+    tacho: Any,
+    sample_rate: float,
+    pulses_per_revolution: int,
+    edge: Literal["rising", "falling"] = "rising",
+    threshold: float | None = None,
+) -> tuple[Array, float]:
+    """Angle of the shaft at every sample, and the rms distance of the pulses from it [rad]."""
     values = checked_signal(tacho, 16, "tacho")
     require_positive("sample_rate", sample_rate, "Hz")
     each = 2.0 * np.pi / require_whole("pulses_per_revolution", pulses_per_revolution)
@@ -106,7 +117,8 @@ def shaft_angle(
     count, moments = counted(moments / sample_rate)
     time = np.arange(values.size) / sample_rate
     turned = _turned(moments, count, time, unsure / sample_rate)
-    return np.asarray(np.maximum.accumulate(each * turned))
+    jitter = each * float(np.std(np.interp(moments, time, turned) - count))
+    return np.asarray(np.maximum.accumulate(each * turned)), jitter
 
 
 def edges(values: Array, threshold: float | None, edge: str = "rising") -> tuple[Array, float]:
@@ -173,7 +185,7 @@ def counted(moments: Array) -> tuple[Array, Array]:
             "tacho-repaired",
             f"Of {moments.size + double} pulses {' and '.join(told)}: the angle counts them as "
             "they should be. Look at the tachometer if they are many, or sample it faster.",
-            stacklevel=3,
+            stacklevel=4,
         )
     return number, moments
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray
 
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, ModelWarning
 from tribodyn.measurement import Recording, compare, synthetic_run_up
 
 RATE, MESH = 25600.0, 400.0
@@ -28,6 +28,10 @@ def rig(sizes, frequency=MESH, unit="m/s^2", noise=0.0) -> Recording:
 def by_measure(found) -> dict[str, tuple[float, float, float]]:
     rows = zip(found.measure, found.computed, found.measured, found.error, strict=True)
     return {str(name): tuple(map(float, rest)) for name, *rest in rows}
+
+
+def codes(warned) -> list[str]:
+    return [each.message.code for each in warned]
 
 
 def test_equal_motions_have_no_error() -> None:
@@ -63,7 +67,9 @@ def test_a_gain_is_given_or_fitted_and_told() -> None:
 
 
 def test_noise_counts_in_the_whole_and_not_in_the_harmonics() -> None:
-    rows = by_measure(compare(COMPUTED, rig(SIZE, noise=4.0), {"acc": "acceleration"}))
+    with pytest.warns(ModelWarning) as warned:
+        rows = by_measure(compare(COMPUTED, rig(SIZE, noise=4.0), {"acc": "acceleration"}))
+    assert codes(warned) == ["harmonics-in-noise", "signal-outside-harmonics"]
     assert rows["rms"][1] == pytest.approx(np.sqrt(0.5 * np.sum(SIZE**2) + 16.0), rel=0.01)
     assert rows["rms of mesh harmonics"][1] == pytest.approx(rows["rms"][0], rel=0.01)
 
@@ -74,6 +80,123 @@ def test_a_speed_that_is_a_little_off_and_one_that_changes() -> None:
     run = synthetic_run_up({20 * k: a for k, a in enumerate(SIZE, 1)}, (100.0, 150.0), duration=4.0)
     swept = compare(COMPUTED, run, {"signal": "acceleration"}, angle="angle", teeth=20)
     assert np.abs(swept.error).max() < 5e-3
+
+
+def wandering(ratio, wander, sizes=SIZE, decibel=20.0, duration=4.0, seed=0) -> Recording:
+    """Harmonics in closed form of a mesh at ratio (1 + wander cos(pi t)), noise and a tachometer.
+
+    The tachometer of the pinion of 20 teeth gives twelve pulses in a revolution.
+    """
+    time = np.arange(round(duration * RATE)) / RATE
+    angle = 2.0 * np.pi * MESH * ratio * (time + wander * np.sin(np.pi * time) / np.pi)
+    wave = sum(a * np.cos(k * angle + k) for k, a in enumerate(sizes, 1)) + np.zeros(time.size)
+    noise = np.random.default_rng(seed).standard_normal(time.size)
+    wave = wave + np.std(wave) * 10.0 ** (-decibel / 20.0) * noise
+    pulses = 5.0 * (np.sin(12.0 * angle / 20.0) > 0.2)
+    return Recording({"acc": wave, "tacho": pulses}, RATE, {"acc": "m/s^2", "tacho": "V"})
+
+
+@pytest.mark.parametrize("tacho", [{}, {"tacho": "tacho", "pulses": 12, "teeth": 20}])
+@pytest.mark.parametrize(
+    ("ratio", "wander"), [(0.99, 0.0), (1.03, 0.0), (0.97, 0.01), (1.03, 0.01)]
+)
+def test_harmonics_of_a_recording_off_speed_that_wanders(ratio, wander, tacho) -> None:
+    found = compare(COMPUTED, wandering(ratio, wander), {"acc": "acceleration"}, **tacho)
+    assert np.abs(found.error[2:]).max() < 0.05
+    mean = ratio  # of a whole number of periods of the wander
+    assert abs(found.speed_ratio - mean) < max(4.0 * found.speed_uncertainty, 1e-6)
+    assert found.speed_uncertainty < 2e-5
+    assert ("tachometer" if tacho else "phase demodulation") in found.speed_method
+    assert found.speed_range == pytest.approx(
+        (ratio * (1.0 - wander), ratio * (1.0 + wander)), abs=1e-3
+    )
+    assert found.shares["acc"] == pytest.approx(1.0 / 1.01, abs=5e-3)
+    assert f"speed ratio {found.speed_ratio:.5g}" in repr(found)
+    stated = float(found.speed_text.partition("computed one: ")[2].partition(" ")[0])
+    assert stated == pytest.approx(found.speed_ratio, abs=2.0 * found.speed_uncertainty)
+
+
+def test_one_line_one_percent_slow_is_that_line() -> None:
+    """A line of 6 m/s^2 that is recorded 1 % slower than computed is 6 m/s^2, and a gain of it."""
+    found = compare(COMPUTED, wandering(0.99, 0.0, [6.0]), {"acc": "acceleration"}, harmonics=1)
+    assert by_measure(found)["mesh harmonic 1"][1] == pytest.approx(6.0, rel=0.01)
+    with pytest.warns(ModelWarning, match="harmonics-in-noise"):
+        fitted = compare(COMPUTED, wandering(0.99, 0.0, [6.0]), {"acc": "acceleration"}, gain="fit")
+    assert fitted.gains["acc"] == pytest.approx(6.0 / 5.0, rel=0.01)
+
+
+def test_a_recording_at_another_speed_is_not_compared() -> None:
+    for ratio in (1.1, 1.3, 0.5):
+        with pytest.warns(ModelWarning) as warned:
+            found = compare(COMPUTED, wandering(ratio, 0.0), {"acc": "acceleration"})
+        assert "speed-not-found" in codes(warned), ratio
+        assert np.isnan(found.measured[1:]).all()
+        assert np.isnan(found.speed_ratio)
+        assert "not found" in repr(found)
+        assert "not found" in found.speed_text
+        assert "not found" in found.plot().layout.title.text
+
+
+def test_lines_of_double_the_speed_leave_every_other_harmonic_in_noise() -> None:
+    with pytest.warns(ModelWarning, match="1, 3, 5 not above it") as warned:
+        compare(COMPUTED, wandering(2.0, 0.0), {"acc": "acceleration"})
+    assert codes(warned) == ["harmonics-in-noise"]
+
+
+def test_a_tachometer_with_other_pulses_or_on_the_other_gear_is_doubted() -> None:
+    recording = wandering(1.0, 0.0)
+    for wrong in ({"pulses": 6, "teeth": 20}, {"pulses": 12, "teeth": 47}):
+        with pytest.warns(ModelWarning) as warned:
+            compare(COMPUTED, recording, {"acc": "acceleration"}, tacho="tacho", **wrong)
+        assert codes(warned)[0] == "speed-off"
+        assert "harmonics-in-noise" in codes(warned)
+
+
+def test_a_gain_is_not_fitted_to_noise_alone() -> None:
+    nothing = Recording(
+        {"acc": np.random.default_rng(3).standard_normal(TIME.size)}, RATE, {"acc": "m/s^2"}
+    )
+    with (
+        pytest.warns(ModelWarning, match="speed-not-found"),
+        pytest.raises(InputError, match="no mesh harmonic of channel acc stands above its noise"),
+    ):
+        compare(COMPUTED, nothing, {"acc": "acceleration"}, gain="fit")
+    with_angle = Recording(
+        {**nothing.channels, "angle": 2.0 * np.pi * MESH / 20.0 * TIME}, RATE, nothing.units
+    )
+    with pytest.warns(ModelWarning), pytest.raises(InputError, match="fitted to nothing"):
+        compare(COMPUTED, with_angle, {"acc": "acceleration"}, gain="fit", angle="angle", teeth=20)
+
+
+def test_a_steady_tachometer_on_a_mesh_that_wanders_is_told_as_smeared() -> None:
+    recording = wandering(1.0, 0.003)
+    steady = Recording(
+        {"acc": recording["acc"], "angle": 2.0 * np.pi * MESH / 20.0 * TIME}, RATE,
+        {"acc": "m/s^2"},
+    )  # fmt: skip
+    with pytest.warns(ModelWarning) as warned:
+        compare(COMPUTED, steady, {"acc": "acceleration"}, angle="angle", teeth=20)
+    assert "harmonics-smeared" in codes(warned)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("g", 1.0), ("gn", 1.0), ("g0", 1.0), ("g_n", 1.0), ("mg", 1e-3)]
+)
+def test_g_of_an_acceleration_is_gravity(unit, factor) -> None:
+    found = compare(COMPUTED, rig(SIZE / 9.80665 / factor, unit=unit), {"acc": "acceleration"})
+    assert np.abs(found.error).max() < 2e-3
+
+
+def test_g_of_a_mass_is_a_gram() -> None:
+    from tribodyn.units import convert, parse
+
+    assert convert(5.0, "g", "kg") == 0.005
+    assert convert(9.80665, "m/s^2", "g") == pytest.approx(1.0)
+    assert parse("2 g", "m/s^2") == pytest.approx(19.6133)
+    force = COMPUTED.rename(acceleration_spectrum="force_spectrum")
+    force["force_spectrum"] = force["force_spectrum"].assign_attrs(units="N")
+    with pytest.raises(InputError, match='is in "g", the computed signal in "N"'):
+        compare(force, rig(SIZE, unit="g"), {"acc": "force"})
 
 
 def test_the_figure_and_the_table() -> None:
@@ -97,6 +220,9 @@ def test_the_figure_and_the_table() -> None:
         ({"gain": -1.0}, "gain"),
         ({"gain": "best"}, "gain"),
         ({"angle": "acc"}, "teeth"),
+        ({"tacho": "acc", "angle": "acc"}, "Leave one"),
+        ({"tacho": "pulses", "teeth": 20}, "no channel"),
+        ({"tacho": "acc", "teeth": 20, "pulses": 0}, "pulses"),
         ({"measured": 3}, "Wanted: a Recording"),
         ({"computed": 3}, "mesh frequency"),
     ],

@@ -76,13 +76,18 @@ def test_another_channel_helps_where_one_is_buried_in_noise() -> None:
     assert mesh_speed([buried, clear], RATE, MESH).ratio == pytest.approx(mean, abs=1e-5)
 
 
-def test_combs_that_are_as_strong_are_named() -> None:
-    slow, _ = phase_of(0.5)
-    speed = mesh_speed(recording(slow, SIZES, 20.0), RATE, MESH)  # its lines 2 and 4
-    assert speed.rivals == pytest.approx((0.5,), abs=1e-3)
+def test_two_combs_of_one_strength_are_both_named() -> None:
     first, second = phase_of(0.98)[0], phase_of(1.013)[0]
     pair = mesh_speed(recording(first, SIZES, 20.0) + recording(second, SIZES), RATE, MESH)
     assert {round(pair.ratio, 4), *np.round(pair.rivals, 4)} == {0.98, 1.013}
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.3])
+def test_lines_that_fit_by_chance_are_not_taken_where_stronger_ones_lie(ratio) -> None:
+    """Lines 2 and 4 of half the speed, and line 3 of 1.3 times it at 0.975 times harmonic 4."""
+    speed = mesh_speed(recording(phase_of(ratio)[0], SIZES, 20.0), RATE, MESH)
+    assert not speed.located
+    assert f"stronger ones lie at {ratio:.4g} times" in speed.method
 
 
 @pytest.mark.parametrize("seed", range(4))

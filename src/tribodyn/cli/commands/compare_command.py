@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -11,6 +12,9 @@ from tribodyn.cli.screen import say, say_json, table
 from tribodyn.cli.settings import Flag, check_place
 from tribodyn.errors import InputError
 from tribodyn.validated_files import plain_number
+
+if TYPE_CHECKING:
+    from tribodyn.measurement import Comparison
 
 Words = Annotated[list[str] | None, Parameter(negative="")]
 
@@ -23,6 +27,9 @@ def compare(
     channel: Words = None,
     gain: str = "1",
     harmonics: int = 5,
+    tacho: str | None = None,
+    pulses: int | None = None,
+    tacho_gear: Literal["pinion", "wheel"] = "pinion",
     out: Path | None = None,
     force: Flag = False,
     json: Flag = False,
@@ -42,6 +49,13 @@ def compare(
         Measured over computed signal of the transfer path, or "fit".
     harmonics : int
         Mesh harmonics that are compared with a recording.
+    tacho : str
+        Channel of the recording with the pulses of a tachometer. Without one, the speed is found
+        from the mesh lines of the compared channels, within 5 % of the computed speed.
+    pulses : int
+        Pulses of the tachometer in a revolution.
+    tacho_gear : {"pinion", "wheel"}
+        Gear on whose shaft the tachometer is.
     out : Path
         Directory for the report of the comparison with a recording.
     force : bool
@@ -50,7 +64,9 @@ def compare(
         Write values and figures in SI as one JSON object to stdout.
     """
     if not second.is_dir() and second.exists():
-        _with_recording(first, second, _pairs(channel), (gain, harmonics), (out, force, json))
+        shaft = _shaft(tacho, pulses, tacho_gear)
+        output = (out, force, json)
+        _with_recording(first, second, _pairs(channel), (gain, harmonics, shaft), output)
         return
     from tribodyn.cases.load import load_case
     from tribodyn.cases.stored_result import read_summary
@@ -83,6 +99,19 @@ def _pairs(words: list[str] | None) -> tuple[dict[str, str], dict[str, str]]:
     return signals, sensitivity
 
 
+def _shaft(tacho: str | None, pulses: int | None, gear: str) -> tuple[str, int, str] | None:
+    """Channel of the tachometer, its pulses in a revolution and its gear; None without one."""
+    if tacho is None and pulses is None:
+        return None
+    if tacho is None or pulses is None:
+        what = f"--tacho {tacho}" if pulses is None else f"--pulses {pulses}"
+        missing = "--pulses" if pulses is None else "--tacho"
+        why = "A tachometer needs its channel and its pulses in a revolution"
+        remedy = "Write --tacho CHANNEL --pulses N"
+        raise InputError(f"{what} without {missing}", missing, why, remedy)
+    return tacho, pulses, gear
+
+
 def _with_recording(
     first: Path, second: Path, pairs: tuple[dict[str, str], ...], options: Any, output: Any
 ) -> None:
@@ -93,7 +122,7 @@ def _with_recording(
     from tribodyn.report.answers import Answer
 
     channels, sensitivity = pairs
-    gain, harmonics = options
+    gain, harmonics, shaft = options
     out, force, json = output
     if not channels:
         remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g", one for each channel'
@@ -104,36 +133,78 @@ def _with_recording(
     if out is not None:
         check_place(out, force)
     result = load_result(first)
-    found = compared(
+    tacho: dict[str, Any] = {}
+    if shaft is not None:
+        teeth = getattr(result.case.gears, shaft[2]).teeth
+        tacho = {"tacho": shaft[0], "pulses": shaft[1], "teeth": teeth}
+    comparison = compared(
         result,
         read(second, sensitivity=sensitivity),
         channels,
         harmonics=harmonics,
         gain="fit" if number is None else number,
+        **tacho,
     )
-    names = ("channel", "measure", "unit", "computed", "measured", "error")
-    columns = tuple(getattr(found, name) for name in names)
-    rows = [
-        [str(c), str(m), f"{made:.6g} {u}", f"{told:.6g} {u}", f"{100.0 * error:+.3g} %"]
-        for c, m, u, made, told, error in zip(*columns, strict=True)
-    ]
-    head = ("channel", "figure", "computed", "measured", f"error, of the {found.base} value")
-    how = "fitted" if found.fitted else "given"
-    told = [f"Gain of {name}, {how}: {value:.6g}" for name, value in found.gains.items()]
-    facts = {
-        "gains": dict(found.gains),
-        "fitted": found.fitted,
-        "base": found.base,
-        "rows": [
-            dict(zip(names, (str(c), str(m), str(u), float(a), float(b), float(e)), strict=True))
-            for c, m, u, a, b, e in zip(*columns, strict=True)
-        ],
-    }
+    head = ("channel", "figure", "computed", "measured", f"error, of the {comparison.base} value")
+    rows = [_cells(*row) for row in _rows(comparison)]
+    how = "fitted" if comparison.fitted else "given"
+    told = [comparison.speed_text]
+    told += [f"Gain of {name}, {how}: {value:.6g}" for name, value in comparison.gains.items()]
+    facts = _facts(comparison)
     if out is None:
         say("\n".join([*told, table([head, *rows])])) if not json else say_json(facts)
         return
     caption = "Spectra of the measured channels with the computed mesh harmonics on them."
-    figures = [("Computed and measured", found.plot(), caption)]
-    finish(
-        "comparison", result.case, out, Answer(found, figures, told, head, rows, facts), force, json
-    )
+    figures = [("Computed and measured", comparison.plot(), caption)]
+    answer = Answer(comparison, figures, told, head, rows, facts)
+    finish("comparison", result.case, out, answer, force, json)
+
+
+#: Channel, figure, unit, computed and measured value, error and noise.
+_Row = tuple[str, str, str, float, float, float, float]
+
+
+def _rows(comparison: Comparison) -> list[_Row]:
+    """Rows of a comparison as plain texts and numbers."""
+    c = comparison
+    columns = (c.channel, c.measure, c.unit, c.computed, c.measured, c.error, c.noise)
+    return [
+        (str(channel), str(figure), str(unit), float(a), float(b), float(e), float(n))
+        for channel, figure, unit, a, b, e, n in zip(*columns, strict=True)
+    ]
+
+
+def _cells(
+    channel: str, figure: str, unit: str, computed: float, measured: float, error: float, _: float
+) -> list[str]:
+    if math.isnan(measured):
+        return [channel, figure, f"{computed:.6g} {unit}", "not found", ""]
+    values = f"{computed:.6g} {unit}", f"{measured:.6g} {unit}", f"{100.0 * error:+.3g} %"
+    return [channel, figure, *values]
+
+
+def _facts(comparison: Comparison) -> dict[str, Any]:
+    """Figures for ``--json``; what was not found is null."""
+    names = ("channel", "measure", "unit", "computed", "measured", "error", "noise")
+    low, high = comparison.speed_range
+    return {
+        "speed_ratio": _number(comparison.speed_ratio),
+        "speed_uncertainty": _number(comparison.speed_uncertainty),
+        "speed_range": [_number(low), _number(high)],
+        "speed_method": comparison.speed_method,
+        "gains": dict(comparison.gains),
+        "fitted": comparison.fitted,
+        "base": comparison.base,
+        "harmonic_shares": dict(comparison.shares),
+        "rows": [
+            {
+                name: _number(value) if isinstance(value, float) else value
+                for name, value in zip(names, row, strict=True)
+            }
+            for row in _rows(comparison)
+        ],
+    }
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -168,7 +168,7 @@ def _is_unit(text: str) -> bool:
     """Whether a text is the unit of something that is measured, and no name."""
     for si in (*MEASURED, "s", "Hz"):
         try:
-            return text == "g" or bool(convert(1.0, text, si))
+            return bool(convert(1.0, text, si))
         except UnitProblemError:
             continue
     return False

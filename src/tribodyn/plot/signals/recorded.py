@@ -123,30 +123,40 @@ def tracked_orders(tracked: TrackedOrders) -> Any:
 @drawing(
     "comparison",
     heading="Computed and measured",
-    caption="Spectra of the measured channels, and on them the computed mesh harmonics, each times "
-    "the gain of its channel. What stands between the harmonics has other sources than the mesh.",
+    caption="Spectra of the measured channels over the angle of the mesh, and on them the computed "
+    "mesh harmonics, each times the gain of its channel. What stands between the harmonics has "
+    "other sources than the mesh. Where the speed of the recording was not found, its spectrum is "
+    "that at the computed speed.",
     of="Comparison",
     made_by="Call tribodyn.measurement.compare(result, recording, channels) and its plot method.",
 )
 def comparison(comparison: Comparison) -> Any:
     """Draw the measured spectra with the computed mesh harmonics on them."""
     panels, ends = [], []
+    ratio = comparison.speed_ratio if np.isfinite(comparison.speed_ratio) else 1.0
     for name, lines in comparison.lines.items():
         unit = str(comparison.unit[comparison.channel == name][0])
         rows = (comparison.channel == name) & np.char.startswith(comparison.measure, "mesh harm")
-        top = (int(rows.sum()) + 0.5) * comparison.mesh_frequency
-        shown = (lines.measured[0] > 0.1 * comparison.mesh_frequency) & (lines.measured[0] < top)
-        frequency, size = outline(*(each[shown] for each in lines.measured))
-        inside = (lines.computed[0] > 0.0) & (lines.computed[0] < top)
+        top = int(rows.sum()) + 0.5
+        order = lines.measured[0] / (ratio * comparison.mesh_frequency)
+        shown = (order > 0.1) & (order < top)
+        curve = outline(order[shown], lines.measured[1][shown])
+        at, made = lines.computed[0] / comparison.mesh_frequency, lines.computed[1]
+        inside = (at > 0.0) & (at < top)
         told = f", gain {comparison.gains[name]:.4g}{' fitted' if comparison.fitted else ''}"
-        at, made = (each[inside] for each in lines.computed)
         panels.append(
             Panel(
                 f"{name} [{readable(unit)}]",
                 [
-                    line(frequency, size, "measured", MUTED, unit=unit, width=1.2),
+                    line(*curve, "measured", MUTED, unit=unit, width=1.2),
                     marked(
-                        at, made, f"computed{told}", PINION, size=9, symbol="circle-open", unit=unit
+                        at[inside],
+                        made[inside],
+                        f"computed{told}",
+                        PINION,
+                        size=9,
+                        symbol="circle-open",
+                        unit=unit,
                     ),
                 ],
                 {"rangemode": "tozero"},
@@ -154,12 +164,22 @@ def comparison(comparison: Comparison) -> Any:
             )
         )
         ends.append(top)
-    harmonics = np.char.startswith(comparison.measure, "mesh harm")
-    worst = int(np.argmax(np.where(harmonics, np.abs(comparison.error), -1.0)))
     return stack(
-        f"Largest error of a harmonic: {100.0 * comparison.error[worst]:+.3g} % of the "
-        f"{comparison.base} value, {comparison.measure[worst]} of {comparison.channel[worst]}",
-        "Frequency [Hz]",
+        _comparison_title(comparison),
+        "Mesh order",
         panels,
         {"xaxis": {"range": [0.0, max(ends)]}, "hovermode": "closest"},
+    )
+
+
+def _comparison_title(comparison: Comparison) -> str:
+    """Largest error of a harmonic, and the speed at which it was recorded."""
+    harmonics = np.char.startswith(comparison.measure, "mesh harm")
+    if not np.isfinite(comparison.speed_ratio):
+        return "The speed of the recording was not found: its harmonics are not compared"
+    worst = int(np.argmax(np.where(harmonics, np.abs(comparison.error), -1.0)))
+    return (
+        f"Largest error of a harmonic: {100.0 * comparison.error[worst]:+.3g} % of the "
+        f"{comparison.base} value, {comparison.measure[worst]} of {comparison.channel[worst]}; "
+        f"recorded at {significant(comparison.speed_ratio, 5)} of the computed mesh frequency"
     )
