@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Literal
 
@@ -155,24 +156,43 @@ class Peak:
         Peak amplitude, in the unit of the signal.
     phase : float or None
         Phase of the cosine at the first sample [rad]; None if the spectrum is an average.
+    shaft_order : int
+        Multiple of the rotation of a shaft that it belongs to [-]; 0 where none is known.
     """
 
     frequency: float
     amplitude: float
     phase: float | None = None
+    shaft_order: int = 0
 
     @property
     def mains(self) -> float:
         """50 or 60 where it lies within 0.5 % of the mains or twice them [Hz]; 0 elsewhere.
 
-        Such a peak of a recording may be electrical.
+        Such a peak of a recording may be electrical; one that belongs to a shaft is not doubted.
         """
-        return mains_of(self.frequency, 0.005)
+        return 0.0 if self.shaft_order else mains_of(self.frequency, 0.005)
 
     def __repr__(self) -> str:
         """One line."""
         mains = f", mains of {self.mains:g} Hz?" if self.mains else ""
         return f"Peak({self.frequency:.6g} Hz, {self.amplitude:.4g}{mains})"
+
+
+def _with_shaft_orders(peaks: Sequence[Peak], rotation: float, error: float) -> list[Peak]:
+    """Peaks with their orders of a shaft, whose rotation [Hz] is known within a relative error."""
+    orders = [round(peak.frequency / rotation) for peak in peaks]
+    return [
+        replace(peak, shaft_order=order)
+        if abs(peak.frequency / rotation - order) <= min(max(0.005, error * order), 0.05)
+        else peak
+        for peak, order in zip(peaks, orders, strict=True)
+    ]
+
+
+def _nearest_mains_line(frequency: float) -> float:
+    """Frequency of the mains that a peak on them, or on twice them, stands for [Hz]."""
+    return frequency if frequency < 1.5 * mains_of(frequency) else 0.5 * frequency
 
 
 @lru_cache(maxsize=32)
@@ -273,13 +293,15 @@ class SignalSpectrum(Record):
         density = f"{square}/Hz" if square else "1/Hz"
         return {"amplitude": self.unit, "power": square, "density": density}[self.scaling]
 
-    def peaks(self, count: int = 5) -> list[Peak]:
+    def peaks(self, count: int = 5, *, speed: float | None = None) -> list[Peak]:
         """Largest peaks, with the frequency and the amplitude between the lines.
 
         Parameters
         ----------
         count : int
             Most peaks to return.
+        speed : float, optional
+            Speed of a shaft [rad/s], to tell its orders from lines of the mains.
 
         Returns
         -------
@@ -294,17 +316,29 @@ class SignalSpectrum(Record):
         Notes
         -----
         The three lines of a peak are those that one sine makes through the window: exact for a
-        sine alone, and good while the next one is further away than the main lobe.
+        sine alone, and good while the next one is further away than the main lobe. Without the
+        speed, three peaks or more at other multiples of the frequency of the mains than the first
+        two, most of the peaks in all, are taken as orders of a shaft that turns as fast.
         """
         require_positive("count", count)
+        if speed is not None:
+            require_positive("speed", speed, "rad/s")
         if self.scaling != "amplitude" or not self.window_length:
             what = f"peaks of a spectrum with the scaling {self.scaling}"
             why = "They are interpolated on amplitudes over the lines of a whole block"
             remedy = 'Use scaling="amplitude" of tribodyn.analysis.spectrum'
             raise InputError(what, "SignalSpectrum.peaks", why, remedy)
-        return interpolated_peaks(
+        peaks = interpolated_peaks(
             self.frequency, self.amplitude, self.phase, self.window, self.window_length, count
         )
+        if speed is not None:
+            return _with_shaft_orders(peaks, speed / (2.0 * np.pi), 0.005)
+        for rotation in [_nearest_mains_line(peak.frequency) for peak in peaks if peak.mains]:
+            in_series = _with_shaft_orders(peaks, rotation, 3e-4)
+            orders = np.array([peak.shaft_order for peak in in_series])
+            if np.sum(orders > 2) >= 3 and 2 * np.sum(orders > 0) > orders.size:
+                return in_series
+        return peaks
 
     def _array_name(self) -> str:
         return self.scaling

@@ -148,3 +148,32 @@ def test_lines_of_the_mains_are_flagged_in_a_recording():
     found = {round(peak.frequency, 1): peak for peak in spectrum(signal, rate).peaks(4)}
     assert {f: found[f].mains for f in parts} == {50.1: 50.0, 119.8: 60.0, 53.7: 0.0, 240.0: 0.0}
     assert "mains of 50 Hz?" in repr(found[50.1])
+
+
+def shaft_at(rotation, mains=0.0):
+    """Peaks of a shaft with 29 teeth: once, twice and three times a turn, the mesh twice."""
+    rate = 8192.0
+    time = np.arange(32768) / rate
+    parts = {1: 0.3, 2: 0.2, 3: 0.15, 29: 2.0, 58: 1.0}
+    wave = sum(size * np.sin(2.0 * np.pi * k * rotation * time) for k, size in parts.items())
+    return spectrum(wave + mains * np.sin(2.0 * np.pi * 50.0 * time), rate, window="hann")
+
+
+@pytest.mark.parametrize("rotation", [50.0, 50.07, 60.0, 49.93])
+def test_orders_of_a_shaft_that_turns_as_fast_as_the_mains_are_not_doubted(rotation):
+    for speed in (None, 2.0 * np.pi * rotation):
+        peaks = shaft_at(rotation).peaks(5, speed=speed)
+        assert sorted(peak.shaft_order for peak in peaks) == [1, 2, 3, 29, 58]
+        assert not any(peak.mains for peak in peaks)
+        assert "mains" not in repr(peaks)
+
+
+def test_mains_beside_a_shaft_are_still_flagged():
+    """A two-pole motor with slip: the shaft turns at 49.2 Hz, the mains stand at 50 Hz."""
+    for speed in (None, 2.0 * np.pi * 49.2):
+        peaks = shaft_at(49.2, mains=0.4).peaks(6, speed=speed)
+        flagged = [round(peak.frequency, 1) for peak in peaks if peak.mains]
+        assert flagged == [50.0]
+    assert [peak.mains for peak in shaft_at(33.3, mains=3.0).peaks(1)] == [50.0]
+    with pytest.raises(InputError, match="speed"):
+        shaft_at(50.0).peaks(5, speed=-1.0)

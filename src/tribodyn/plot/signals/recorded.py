@@ -166,20 +166,29 @@ def comparison(comparison: Comparison) -> Any:
         ends.append(top)
     return stack(
         _comparison_title(comparison),
-        "Mesh order",
+        _mesh_axis(comparison),
         panels,
         {"xaxis": {"range": [0.0, max(ends)]}, "hovermode": "closest"},
     )
 
 
 def _comparison_title(comparison: Comparison) -> str:
-    """Largest error of a harmonic, and the speed at which it was recorded."""
+    """Largest error of a harmonic, where they are compared."""
     harmonics = np.char.startswith(comparison.measure, "mesh harm")
     if not np.isfinite(comparison.speed_ratio):
         return "The speed of the recording was not found: its harmonics are not compared"
     worst = int(np.argmax(np.where(harmonics, np.abs(comparison.error), -1.0)))
     return (
         f"Largest error of a harmonic: {100.0 * comparison.error[worst]:+.3g} % of the "
-        f"{comparison.base} value, {comparison.measure[worst]} of {comparison.channel[worst]}; "
-        f"recorded at {significant(comparison.speed_ratio, 5)} of the computed mesh frequency"
+        f"{comparison.base} value, {comparison.measure[worst]} of {comparison.channel[worst]}"
     )
+
+
+def _mesh_axis(comparison: Comparison) -> str:
+    """Title of the axis of orders, with the mesh frequencies of both."""
+    computed = f"computed at {comparison.mesh_frequency:.5g} Hz"
+    if not np.isfinite(comparison.speed_ratio):
+        return f"Mesh order ({computed})"
+    measured = comparison.speed_ratio * comparison.mesh_frequency
+    ratio = f"{comparison.speed_ratio:.4f} times that"
+    return f"Mesh order ({computed}, recorded at {measured:.5g} Hz, {ratio})"
