@@ -233,4 +233,4 @@ def test_a_result_beside_a_recording_off_speed(
     assert nothing["speed_ratio"] is None
     assert nothing["rows"][2]["measured"] is None
     assert call([*words, "--gain", "fit"]) == 2
-    assert "no mesh harmonic of channel acc" in capsys.readouterr().err
+    assert "no gain can be fitted for channel acc" in capsys.readouterr().err

@@ -401,8 +401,10 @@ def _gain(
     harmonic, factor = measured
     clear = harmonic.clear
     if not (speed.located and clear.any()):
-        what = f"no mesh harmonic of channel {name} stands above its noise"
-        why = "A gain would be fitted to nothing" if speed.located else speed.method
+        what = f"no gain can be fitted for channel {name}"
+        why = "None of its mesh harmonics stands above the noise"
+        if not speed.located:
+            why = f"The speed of the recording is unknown: {speed.method}"
         remedy = "Give the gain as a number, or correct the channel, the speed or the tachometer"
         raise InputError(what, Argument("gain"), why, remedy)
     square = float(computed[clear] @ computed[clear])
