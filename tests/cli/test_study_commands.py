@@ -212,7 +212,7 @@ def test_a_result_beside_a_recording_off_speed(
     np.savetxt(file, table, "%.9g", ",", header="time [s],acc [g],tacho [V]", comments="")
     words = ("compare", str(tmp_path / "result"), str(file), "--harmonics", "3",
              "--channel", "acc=acceleration_loa_pinion")  # fmt: skip
-    tacho = ("--tacho", "tacho", "--pulses", "30", "--tacho-gear", "wheel")
+    tacho = ("--tacho", "tacho", "--pulses", "30", "--gear", "wheel")
     for options, how in (((), "phase demodulation"), (tacho, "tachometer")):
         comparison = _told(capsys, *words, *options)
         uncertainty = comparison["speed_uncertainty"]

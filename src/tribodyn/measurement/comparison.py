@@ -251,28 +251,13 @@ def compare(
         place, amplitude = harmonic.spectrum
         scale = speed.mesh_frequency if speed.located else frequency
         lines[name] = Lines((order * own, size), (place * scale, factors[name] * amplitude))
-    channel, measure, units = (np.array([row[column] for row in rows]) for column in range(3))
-    values, test, noise = (np.array([row[column] for row in rows]) for column in (3, 4, 5))
-    per = frequency / own
-    return Comparison(
-        channel,
-        measure,
-        units,
-        values,
-        test,
-        _errors(values, test, base),
-        base,
-        own,
-        gains,
-        gain == "fit",
-        lines,
-        noise,
-        per * speed.ratio,
-        per * speed.uncertainty,
-        (per * speed.lowest, per * speed.highest),
-        speed.method,
-        shares,
-    )
+    channel, measure, units, values, test, noise = map(np.array, zip(*rows, strict=True))
+    errors, fitted, per = _errors(values, test, base), gain == "fit", frequency / own
+    ratio, uncertainty = per * speed.ratio, per * speed.uncertainty
+    limits = (per * speed.lowest, per * speed.highest)
+    columns = (channel, measure, units, values, test, errors)
+    recorded = (noise, ratio, uncertainty, limits, speed.method, shares)
+    return Comparison(*columns, base, own, gains, fitted, lines, *recorded)
 
 
 def _harmonic_rows(

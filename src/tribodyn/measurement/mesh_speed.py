@@ -268,10 +268,7 @@ class _Search:
         return shorter if gain > _GAIN * path.power + 3.0 * noise else path
 
     def fluctuation(self, path: _Path, length: int) -> float:
-        """Variance of the power of the steadiest clear harmonic in such blocks, over its square.
-
-        It is 0 for a line and 1 for noise in a narrow band; what noise adds to a line is taken off.
-        """
+        """Relative variance of the power of the steadiest clear harmonic, without that by noise."""
         _, envelope = self._envelopes(path.angle, length)
         clear = path.clear > 0.0
         power = np.abs(envelope[clear]) ** 2
@@ -445,10 +442,7 @@ def _unknown(search: _Search, angle: Array, method: str) -> MeshSpeed:
 
 
 def _rivals(search: _Search, path: _Path) -> tuple[tuple[float, ...], bool]:
-    """Other ratios whose combs in the spectrum over the angle are about as strong, best first.
-
-    The second value says whether the first of them is clearly stronger than that of the path.
-    """
+    """Other ratios whose combs are about as strong, best first, and whether that is stronger."""
     spectra = [
         order_spectrum(row, path.angle, search.count + 0.5, window="hann") for row in search.rows
     ]

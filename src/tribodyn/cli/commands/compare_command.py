@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -15,8 +16,54 @@ from tribodyn.validated_files import plain_number
 
 if TYPE_CHECKING:
     from tribodyn.measurement import Comparison
+    from tribodyn.study.case.case import Case
+
+
+def _help(text: str) -> Any:
+    return Parameter(help=text)
+
 
 Words = Annotated[list[str] | None, Parameter(negative="")]
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class RecordingOptions:
+    """How a recording is compared."""
+
+    gain: Annotated[str, _help('Measured over computed signal of the transfer path, or "fit".')] = (
+        "1"
+    )
+    harmonics: Annotated[int, _help("Mesh harmonics that are compared with a recording.")] = 5
+    tacho: Annotated[
+        str | None,
+        _help(
+            "Channel of the recording with the pulses of a tachometer. Without one, the speed is "
+            "found from the mesh lines of the compared channels, within 5 % of the computed speed."
+        ),
+    ] = None
+    pulses: Annotated[int | None, _help("Pulses of the tachometer in one revolution.")] = None
+    gear: Annotated[
+        Literal["pinion", "wheel"], _help("Gear on whose shaft the tachometer is: pinion or wheel.")
+    ] = "pinion"
+
+    def tachometer(self, case: Case) -> dict[str, Any]:
+        """Arguments of the comparison; none without a tachometer."""
+        if self.tacho is None and self.pulses is None:
+            return {}
+        teeth = getattr(case.gears, self.gear).teeth
+        return {"tacho": self.tacho, "pulses": self.pulses, "teeth": teeth}
+
+    def check(self) -> None:
+        """Refuse a channel without its pulses, and pulses without their channel."""
+        if (self.tacho is None) == (self.pulses is None):
+            return
+        alone, missing = f"--tacho {self.tacho}", "--pulses"
+        if self.tacho is None:
+            alone, missing = f"--pulses {self.pulses}", "--tacho"
+        why = "A tachometer needs its channel and its pulses in a revolution"
+        remedy = "Write --tacho CHANNEL --pulses N"
+        raise InputError(f"{alone} without {missing}", missing, why, remedy)
 
 
 def compare(
@@ -25,11 +72,7 @@ def compare(
     /,
     *,
     channel: Words = None,
-    gain: str = "1",
-    harmonics: int = 5,
-    tacho: str | None = None,
-    pulses: int | None = None,
-    tacho_gear: Literal["pinion", "wheel"] = "pinion",
+    options: RecordingOptions = RecordingOptions(),
     out: Path | None = None,
     force: Flag = False,
     json: Flag = False,
@@ -45,17 +88,6 @@ def compare(
     channel : list of str
         Measured channel and computed signal, such as "acc=acceleration_loa_pinion", or with the
         sensitivity of the sensor, "acc=acceleration_loa_pinion, 100 mV/g"; one for each.
-    gain : str
-        Measured over computed signal of the transfer path, or "fit".
-    harmonics : int
-        Mesh harmonics that are compared with a recording.
-    tacho : str
-        Channel of the recording with the pulses of a tachometer. Without one, the speed is found
-        from the mesh lines of the compared channels, within 5 % of the computed speed.
-    pulses : int
-        Pulses of the tachometer in a revolution.
-    tacho_gear : {"pinion", "wheel"}
-        Gear on whose shaft the tachometer is.
     out : Path
         Directory for the report of the comparison with a recording.
     force : bool
@@ -64,9 +96,8 @@ def compare(
         Write values and figures in SI as one JSON object to stdout.
     """
     if not second.is_dir() and second.exists():
-        shaft = _shaft(tacho, pulses, tacho_gear)
-        output = (out, force, json)
-        _with_recording(first, second, _pairs(channel), (gain, harmonics, shaft), output)
+        options.check()
+        _with_recording(first, second, _pairs(channel), options, (out, force, json))
         return
     from tribodyn.cases.load import load_case
     from tribodyn.cases.stored_result import read_summary
@@ -99,21 +130,12 @@ def _pairs(words: list[str] | None) -> tuple[dict[str, str], dict[str, str]]:
     return signals, sensitivity
 
 
-def _shaft(tacho: str | None, pulses: int | None, gear: str) -> tuple[str, int, str] | None:
-    """Channel of the tachometer, its pulses in a revolution and its gear; None without one."""
-    if tacho is None and pulses is None:
-        return None
-    if tacho is None or pulses is None:
-        what = f"--tacho {tacho}" if pulses is None else f"--pulses {pulses}"
-        missing = "--pulses" if pulses is None else "--tacho"
-        why = "A tachometer needs its channel and its pulses in a revolution"
-        remedy = "Write --tacho CHANNEL --pulses N"
-        raise InputError(f"{what} without {missing}", missing, why, remedy)
-    return tacho, pulses, gear
-
-
 def _with_recording(
-    first: Path, second: Path, pairs: tuple[dict[str, str], ...], options: Any, output: Any
+    first: Path,
+    second: Path,
+    pairs: tuple[dict[str, str], ...],
+    options: RecordingOptions,
+    output: Any,
 ) -> None:
     from tribodyn.cases.stored_result import load_result
     from tribodyn.cli.commands.study_commands import finish
@@ -122,28 +144,23 @@ def _with_recording(
     from tribodyn.report.answers import Answer
 
     channels, sensitivity = pairs
-    gain, harmonics, shaft = options
     out, force, json = output
     if not channels:
         remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g", one for each channel'
         raise InputError("no channel of the recording is named", "--channel", "", remedy)
-    number = plain_number(gain)
-    if number is None and gain != "fit":
-        raise InputError(f'gain = "{gain}"', "--gain", "", 'Give a number, or "fit"')
+    number = plain_number(options.gain)
+    if number is None and options.gain != "fit":
+        raise InputError(f'gain = "{options.gain}"', "--gain", "", 'Give a number, or "fit"')
     if out is not None:
         check_place(out, force)
     result = load_result(first)
-    tacho: dict[str, Any] = {}
-    if shaft is not None:
-        teeth = getattr(result.case.gears, shaft[2]).teeth
-        tacho = {"tacho": shaft[0], "pulses": shaft[1], "teeth": teeth}
     comparison = compared(
         result,
         read(second, sensitivity=sensitivity),
         channels,
-        harmonics=harmonics,
+        harmonics=options.harmonics,
         gain="fit" if number is None else number,
-        **tacho,
+        **options.tachometer(result.case),
     )
     head = ("channel", "figure", "computed", "measured", f"error, of the {comparison.base} value")
     rows = [_cells(*row) for row in _rows(comparison)]
