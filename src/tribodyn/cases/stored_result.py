@@ -13,7 +13,7 @@ import numpy as np
 
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
-from tribodyn.study.case.derive import placed
+from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.save import RESULT_FILES
@@ -79,7 +79,7 @@ Give the directory that tribodyn run or Result.save wrote.
     _compare(folder, summary, data)
     try:
         friction, coupling = _friction(mesh, data), _coupling(mesh, data)
-        with placed(case), collected():
+        with locate_errors(case), collected():
             damping = damping_of(case, mesh)
             system = system_of(case, mesh, damping, friction)
         response = _response(folder, system, data)

@@ -33,7 +33,7 @@ _JOBS = {
 
 
 @contextmanager
-def compiled_beside(case: Case, study: str = "run") -> Iterator[bool]:
+def compile_in_parallel(case: Case, study: str = "run") -> Iterator[bool]:
     """Compile in parallel what a study needs inside the block; yield whether there is anything."""
     jobs = _missing(case, study) if allowed and processors() > 1 else []
     with ExitStack() as stack:

@@ -127,7 +127,7 @@ def test_where_no_folder_can_be_made_a_run_compiles_alone(monkeypatch: pytest.Mo
     monkeypatch.setattr(first_use, "aside", lambda *given: asked.append(given))
     monkeypatch.setattr(first_use, "_missing", lambda *_: ["loads"])
     monkeypatch.setattr(first_use, "processors", lambda: 2)
-    with first_use.compiled_beside(load_case("fzg-roughness")):
+    with first_use.compile_in_parallel(load_case("fzg-roughness")):
         asked.append("run")
     assert asked == ["run"]
 

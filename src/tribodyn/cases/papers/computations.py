@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.errors import collected
 from tribodyn.model import Registry
-from tribodyn.study.case.derive import mesh_law_of, placed, unused_lubricant
+from tribodyn.study.case.derive import locate_errors, mesh_law_of, unused_lubricant
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.first_look import operating_figures
 from tribodyn.study.pipeline.run import computed
@@ -109,7 +109,7 @@ def _spur_pair(case: Case) -> dict[str, float]:
 @COMPUTATIONS.register("mesh")
 def _mesh(case: Case, meshes: Meshes) -> Figures:
     """Friction: mean, change over a mesh cycle, and at five places of the path of spur gears."""
-    with placed(case), collected():
+    with locate_errors(case), collected():
         mesh = meshes.table(case)
     sums = np.abs(mesh.friction_sum)
     figures = {
@@ -261,7 +261,7 @@ def _modes(case: Case, meshes: Meshes) -> Figures:
     from tribodyn.dynamics import natural_modes
     from tribodyn.study.pipeline.assembly import whole_system
 
-    with placed(case), collected():
+    with locate_errors(case), collected():
         mesh = meshes.table(case)
         modes = natural_modes(whole_system(case, mesh))
     nearest = int(np.argmin(np.abs(modes.frequency - 5.0 * mesh.mesh_frequency)))

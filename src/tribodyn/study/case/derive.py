@@ -287,7 +287,7 @@ def _key_in(case: CaseData, problem: Problem) -> str:
 
 
 @contextmanager
-def placed(case: CaseData) -> Iterator[None]:
+def locate_errors(case: CaseData) -> Iterator[None]:
     """Name file, line and key in the input errors that are raised inside the block."""
     try:
         yield

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.errors import ModelWarning, collected, frames
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import placed
+from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.read import unchanged_files
 from tribodyn.study.coupling import Follow, coupled
-from tribodyn.study.first_use import compiled_beside
+from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.heat_balance import balanced
 from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.cautions import (
@@ -80,7 +80,7 @@ def run(
     >>> case = tribodyn.load_case("fzg-roughness")
     >>> result = run(case)  # doctest: +SKIP
     """
-    with nullcontext() if _has_marched() else compiled_beside(case):
+    with nullcontext() if _has_marched() else compile_in_parallel(case):
         result = computed(case, progress, follow=follow)
     for warning in result.warnings:
         warnings.warn(warning, stacklevel=frames(stacklevel, sys._getframe()))
@@ -98,7 +98,7 @@ def rehearse(case: Case) -> tuple[ModelWarning, ...]:
     """Refuse what a run would refuse because of the case alone; tell what it would of the load."""
     from tribodyn.dynamics.equations.compiled import compile_for
 
-    with placed(case), collected():
+    with locate_errors(case), collected():
         mesh = mesh_of(case, rehearsal=True)
         system = system_of(case, mesh, damping_of(case, mesh))
         steps = steps_of(case, system, mesh.mesh_frequency)
@@ -141,7 +141,7 @@ class Begun:
     def result(self, progress: Progress = SILENT) -> Result:
         """Find the motion if it is not known, and the result."""
         case, mesh, response, compared = self.case, self.mesh, self.response, None
-        with unchanged_files(case), placed(case), collected() as found:
+        with unchanged_files(case), locate_errors(case), collected() as found:
             if response is None:
                 with friction_suspected(mesh):
                     response = motion_of(case, self.system, mesh.mesh_frequency, progress)
@@ -166,7 +166,7 @@ def begin(
     follow: Follow | None = None,
 ) -> Begun:
     """Compute a case up to its motion, as :func:`computed`."""
-    with unchanged_files(case), placed(case), collected() as found:
+    with unchanged_files(case), locate_errors(case), collected() as found:
         progress.start("Tooth contact")
 
         def mesh_at(point: Case) -> tuple[Case, MeshTable, Coupling | None]:

@@ -13,7 +13,7 @@ import numpy as np
 from tribodyn.errors import ComputationError, InputError, ModelWarning, collected, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import derive
-from tribodyn.study.case.derive import chosen_options, friction_of_table, mesh_law_of, placed
+from tribodyn.study.case.derive import chosen_options, friction_of_table, locate_errors, mesh_law_of
 from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.studies.axes import pinion_torques
 
@@ -254,7 +254,7 @@ def loaded_contact(
 
     values = pinion_torques(case, torque)
     single = torque is None or isinstance(torque, int | float | str)
-    with placed(case):
+    with locate_errors(case):
         return compute(
             case.gear_pair, values[0] if single else values, phases=phases, **loaded_settings(case)
         )

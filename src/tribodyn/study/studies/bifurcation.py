@@ -1,4 +1,4 @@
-"""The motion of a case over one of its values: jumps, doubled periods, chaos; and what it says."""
+"""Bifurcation diagram of a case over one of its values, and its findings in sentences."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import numpy as np
 from tribodyn.checkpoints import Members
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import placed
+from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.provenance import spec_of
-from tribodyn.study.first_use import compiled_beside
+from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.studies.axes import Axis, ends_of
 from tribodyn.study.studies.grid import contact_without_speed, identity, varied
 from tribodyn.study.studies.structure import study_steps
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
-#: Steps of all values are those of the slowest where these are no more than this times as many;
-#: values of one structure are then marched side by side.
-_ALIKE = 2
+#: All values take the steps of the one that needs most while the counts differ by no more than this
+#: factor, so that values of the same structure are integrated in one batch.
+_MAX_STEP_RATIO = 2
 
 
 def bifurcation(
@@ -42,7 +42,7 @@ def bifurcation(
     members: Members | None = None,
     **options: Any,
 ) -> Bifurcation:
-    """Follow the motion of a case over one of its values.
+    """Compute the bifurcation diagram of a case over one of its values.
 
     Parameters
     ----------
@@ -55,14 +55,15 @@ def bifurcation(
     points : int
         Values, evenly spaced, the ends included.
     steps : int, optional
-        Steps per mesh cycle; those of the case, else a quarter of what a single run takes and at
-        least 512. Every motion is judged by a repetition with half the step.
+        Steps per mesh cycle; by default those of the case, else a quarter of those of a single run
+        and at least 512. Every motion is judged by a repetition with half the step.
     by : str
-        What asks, for messages; then a bare number for a dimension is refused as in a file.
+        Name of the caller in messages; if set, a bare number for a dimension is refused as in a
+        file.
     progress : Progress
-        Told how far the study has come; silent by default.
+        Receives the progress of the study; silent by default.
     members : tribodyn.checkpoints.Members, optional
-        Keeps what is finished as it comes, and has what a killed process finished.
+        Stores each finished motion, and restores those that a killed process had finished.
     **options : object
         ``sweep``, ``cycles``, ``transient``, ``keep``, ``signal``, ``verdict``, ``exponents`` and
         ``keep_partial`` of :func:`tribodyn.analysis.bifurcation`.
@@ -70,7 +71,7 @@ def bifurcation(
     Returns
     -------
     Bifurcation
-        Its parameter is in the unit of the key, SI.
+        Its parameter is in the SI unit of the key.
 
     Raises
     ------
@@ -81,16 +82,16 @@ def bifurcation(
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-roughness")
-    >>> found = bifurcation(case, between=("1800 rpm", "2000 rpm"), points=2, transient=20)
-    >>> found.parameter_name, found.parameter.round(1).tolist()
+    >>> diagram = bifurcation(case, between=("1800 rpm", "2000 rpm"), points=2, transient=20)
+    >>> diagram.parameter_name, diagram.parameter.round(1).tolist()
     ('operation.speed', [188.5, 209.4])
     """
     from tribodyn.analysis import bifurcation as compute
 
     values = _values(case, over, between, points, by)
-    told = identity("bifurcation", case, [over, values.tolist()], steps=steps, **options)
-    members = (Members() if members is None else members).begin(told)
-    with compiled_beside(case, "bifurcation"):
+    study = identity("bifurcation", case, [over, values.tolist()], steps=steps, **options)
+    members = (Members() if members is None else members).begin(study)
+    with compile_in_parallel(case, "bifurcation"):
         systems, frequency, counts = _systems(case, over, values, steps, progress, members)
         return compute(
             systems,
@@ -106,13 +107,13 @@ def bifurcation(
 
 
 def _systems(
-    case: Case, over: str, values: Any, steps: int | None, progress: Progress, kept: Members
+    case: Case, over: str, values: Any, steps: int | None, progress: Progress, checkpoints: Members
 ) -> tuple[list[System], list[float], list[int]]:
-    """Structure, mesh frequency and steps of every value; one structure where none differs."""
+    """Structure, mesh frequency and steps of every value; one shared structure if none differs."""
     same = over == "operation.speed" and contact_without_speed(case)
     changes = [{over: float(value)} for value in values]
-    with placed(case), collected():
-        members = varied(case, changes[:1] if same else changes, progress, kept)
+    with locate_errors(case), collected():
+        members = varied(case, changes[:1] if same else changes, progress, checkpoints)
         systems = [member.system for member in members]
         frequency = [member.mesh.mesh_frequency for member in members]
         cases = [member.case for member in members]
@@ -123,13 +124,13 @@ def _systems(
         counts = [
             steps or study_steps(*member) for member in zip(cases, systems, frequency, strict=True)
         ]
-    if same and max(counts) <= _ALIKE * min(counts):
+    if same and max(counts) <= _MAX_STEP_RATIO * min(counts):
         counts = [max(counts)] * len(counts)
     return systems, frequency, counts
 
 
 def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int, by: str) -> Any:
-    """Values of the key in SI; the two ends are checked like the key of the case."""
+    """Return the values of the key in SI; both ends are checked like the key of the case."""
     if between is None or len(between) != 2 or int(points) != points or points < 2:
         why = "A diagram goes from one value to another in at least two points"
         remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
@@ -143,29 +144,29 @@ def _unit(case: Case, over: str) -> str:
     return str(spec.unit) if spec is not None and spec.unit else "-"
 
 
-#: A jump changes the rms by more than this part of it, and by more than this times as much as
-#: the changes before and after it.
-_JUMP, _BESIDE = 0.1, 3.0
-#: Two motions at one value differ by more than this part in rms.
-_APART = 0.05
+#: A jump changes the rms by more than this share of it, and by more than this multiple of the
+#: changes before and after it.
+_JUMP, _STEEPER = 0.1, 3.0
+#: Two motions at one value differ in rms by more than this share.
+_DIFFERENT = 0.05
 
 
 class Findings:
-    """What a diagram says."""
+    """Findings of a bifurcation diagram: sentences, figures and a table."""
 
-    def __init__(self, case: Case, found: Bifurcation) -> None:
-        spec = spec_of(case, found.parameter_name)
+    def __init__(self, case: Case, diagram: Bifurcation) -> None:
+        spec = spec_of(case, diagram.parameter_name)
         units = (spec.unit, spec.display_unit) if spec else ("", "")
-        values = tuple(float(value) for value in found.parameter)
-        self.found, self.axis = found, Axis(found.parameter_name, values, *units)
+        values = tuple(float(value) for value in diagram.parameter)
+        self.diagram, self.axis = diagram, Axis(diagram.parameter_name, values, *units)
 
     def lead(self) -> str:
-        """Tell what varies."""
+        """Describe the parameter and its range."""
         ends = f"from {self._at(0)} to {self._at(-1)}"
         return f"{len(self.axis.values)} values of {self.axis.key} {ends}"
 
     def sentences(self) -> list[str]:
-        """Tell verdicts, run-aways, step limit, periods, jumps, and where two motions exist."""
+        """Report verdicts, run-aways, step limit, periods, jumps and coexisting motions."""
         return [
             *self._counts(),
             *self._lost(),
@@ -176,34 +177,34 @@ class Findings:
         ]
 
     def figures(self) -> dict[str, Any]:
-        """Return the same for a program, in SI."""
+        """Return the findings as values in SI."""
         onset = self._onset()
         return {
-            "parameter": self.found.parameter_name,
-            "unit": self.found.parameter_unit,
-            "values": int(self.found.parameter.size),
-            "finished": int(self.found.finished.sum()),
-            "verdicts": self.found.verdicts(),
-            "ran_away": int(self.found.ran_away.sum()),
-            "step_limited_onset": None if onset is None else float(self.found.parameter[onset]),
+            "parameter": self.diagram.parameter_name,
+            "unit": self.diagram.parameter_unit,
+            "values": int(self.diagram.parameter.size),
+            "finished": int(self.diagram.finished.sum()),
+            "verdicts": self.diagram.verdicts(),
+            "ran_away": int(self.diagram.ran_away.sum()),
+            "step_limited_onset": None if onset is None else float(self.diagram.parameter[onset]),
             "omega_max_dt_at_onset": None
             if onset is None
-            else float(self.found.step_number[onset]),
+            else float(self.diagram.step_number[onset]),
             "periods": [
                 {"branch": b, "period": p, "from": float(v[0]), "to": float(v[-1])}
                 for b, p, v in self._runs()
             ],
             "jumps": [
-                {"branch": b, "between": [float(self.found.parameter[i]) for i in (n, n + 1)]}
+                {"branch": b, "between": [float(self.diagram.parameter[i]) for i in (n, n + 1)]}
                 for b, n in self._leaps()
             ],
         }
 
     def rows(self) -> tuple[list[str], list[list[str]]]:
         """Return the diagram as a table."""
-        found = self.found
+        diagram = self.diagram
         unit = f" [{self.axis.display_unit}]" if self.axis.display_unit else ""
-        turns = "theta" in self.found.signal
+        turns = "theta" in self.diagram.signal
         head = [
             f"{self.axis.name.replace('_', ' ')}{unit}",
             "branch",
@@ -215,11 +216,11 @@ class Findings:
         ]
         cells = []
         for number, value in enumerate(self.axis.shown()):
-            for branch, name in enumerate(found.branches):
-                if found.finished[branch, number]:
-                    period, rms = found.period[branch, number], found.rms[branch, number]
-                    loss = found.contact_loss_share[branch, number]
-                    lost = found.ran_away[branch, number]
+            for branch, name in enumerate(diagram.branches):
+                if diagram.finished[branch, number]:
+                    period, rms = diagram.period[branch, number], diagram.rms[branch, number]
+                    loss = diagram.contact_loss_share[branch, number]
+                    lost = diagram.ran_away[branch, number]
                     size = f"{rms if turns else 1e6 * rms:.5g}"
                     cells.append(
                         [
@@ -228,8 +229,8 @@ class Findings:
                             str(period) if period else "none",
                             "ran away" if lost else size,
                             "" if lost else f"{loss:.3g}",
-                            f"{found.step_number[number]:.3g}",
-                            str(found.verdict[branch, number]),
+                            f"{diagram.step_number[number]:.3g}",
+                            str(diagram.verdict[branch, number]),
                         ]
                     )
         return head, cells
@@ -238,100 +239,102 @@ class Findings:
         return self.axis.show(self.axis.values[number])
 
     def _counts(self) -> Iterator[str]:
-        words = ", ".join(f"{count} {word}" for word, count in self.found.verdicts().items())
-        done = int(self.found.finished.sum())
-        unjudged = done - sum(self.found.verdicts().values())
+        text = ", ".join(f"{count} {verdict}" for verdict, count in self.diagram.verdicts().items())
+        done = int(self.diagram.finished.sum())
+        unjudged = done - sum(self.diagram.verdicts().values())
         if unjudged:
-            words = ", ".join(part for part in (words, f"{unjudged} not judged") if part)
-        yield f"{done} motions: {words}"
+            text = ", ".join(part for part in (text, f"{unjudged} not judged") if part)
+        yield f"{done} motions: {text}"
 
     def _lost(self) -> Iterator[str]:
-        for branch, name in enumerate(self.found.branches):
-            places = np.flatnonzero(self.found.ran_away[branch])
+        for branch, name in enumerate(self.diagram.branches):
+            places = np.flatnonzero(self.diagram.ran_away[branch])
             if places.size:
-                lost = self.found.parameter[places]
-                many = f"{places.size} motions" if places.size > 1 else "1 motion"
-                yield f"{name}: {many} grew beyond all bounds {self._span(lost[0], lost[-1])}"
+                lost = self.diagram.parameter[places]
+                count = f"{places.size} motions" if places.size > 1 else "1 motion"
+                yield f"{name}: {count} grew beyond all bounds {self._span(lost[0], lost[-1])}"
 
     def _onset(self) -> int | None:
-        limited = np.any(self.found.verdict == "step-limited", axis=0)
+        limited = np.any(self.diagram.verdict == "step-limited", axis=0)
         return int(np.argmax(limited)) if limited.any() else None
 
     def _limit(self) -> Iterator[str]:
         onset = self._onset()
         if onset is None:
             return
-        found = self.found
-        refined = found.refined_period[:, onset].max()
+        diagram = self.diagram
+        refined = diagram.refined_period[:, onset].max()
         yield (
             f"step-limited from {self._at(onset)} on: omega_max dt = "
-            f"{found.step_number[onset]:.3g} with {found.steps[onset]} steps per mesh cycle; with "
-            f"{found.refined_steps[onset]} steps the motion "
+            f"{diagram.step_number[onset]:.3g} with {diagram.steps[onset]} steps per mesh cycle; "
+            f"with {diagram.refined_steps[onset]} steps the motion "
             + (f"has period {refined}" if refined else "does not repeat")
         )
-        for branch, name in enumerate(found.branches):
-            wild = (found.verdict[branch] == "step-limited") & (found.period[branch] != 1)
-            wild &= found.refined_period[branch] == 1
+        for branch, name in enumerate(diagram.branches):
+            wild = (diagram.verdict[branch] == "step-limited") & (diagram.period[branch] != 1)
+            wild &= diagram.refined_period[branch] == 1
             if wild.any():
                 first = int(np.argmax(wild))
                 yield (
                     f"{name}: the step turns period 1 into another motion from {self._at(first)} "
-                    f"on, omega_max dt = {found.step_number[first]:.3g}"
+                    f"on, omega_max dt = {diagram.step_number[first]:.3g}"
                 )
 
     def _runs(self) -> Iterator[tuple[str, int, Array]]:
-        """Stretches of the same period, step-limited motions and runaways left out."""
-        found = self.found
-        for branch, name in enumerate(found.branches):
-            kept = found.finished[branch] & (found.verdict[branch] != "step-limited")
-            kept &= ~found.ran_away[branch]
-            places = np.flatnonzero(kept)
-            for period, group in groupby(places, key=lambda i, b=branch: int(found.period[b, i])):  # type: ignore[misc]
-                yield name, period, found.parameter[list(group)]
+        """Ranges of the same period, without step-limited motions and run-aways."""
+        diagram = self.diagram
+        for branch, name in enumerate(diagram.branches):
+            settled = diagram.finished[branch] & (diagram.verdict[branch] != "step-limited")
+            settled &= ~diagram.ran_away[branch]
+            places = np.flatnonzero(settled)
+            for period, group in groupby(places, key=lambda i, b=branch: int(diagram.period[b, i])):  # type: ignore[misc]
+                yield name, period, diagram.parameter[list(group)]
 
     def _periods(self) -> Iterator[str]:
         for name, period, values in self._runs():
-            words = f"period {period}" if period else "no period within 16 mesh cycles"
-            yield f"{name}: {words} {self._span(values[0], values[-1])}"
+            text = f"period {period}" if period else "no period within 16 mesh cycles"
+            yield f"{name}: {text} {self._span(values[0], values[-1])}"
 
     def _span(self, first: float, last: float) -> str:
         ends = [self.axis.show(value) for value in (first, last)]
         return f"at {ends[0]}" if first == last else f"from {ends[0]} to {ends[1]}"
 
     def _leaps(self) -> Iterator[tuple[str, int]]:
-        found = self.found
-        for branch, name in enumerate(found.branches):
-            rms = np.where(found.verdict[branch] == "step-limited", np.nan, found.rms[branch])
+        diagram = self.diagram
+        for branch, name in enumerate(diagram.branches):
+            rms = np.where(diagram.verdict[branch] == "step-limited", np.nan, diagram.rms[branch])
             change = np.abs(np.diff(rms))
-            beside = np.maximum(change[:-2], change[2:])
+            neighbours = np.maximum(change[:-2], change[2:])
             larger = np.maximum(rms[1:], rms[:-1])[1:-1]
-            steep = change[1:-1] > np.maximum(_JUMP * larger, _BESIDE * beside)
+            steep = change[1:-1] > np.maximum(_JUMP * larger, _STEEPER * neighbours)
             # Without loss of contact only another period jumps; else it is a peak between points.
-            loss, period = found.contact_loss_share[branch], found.period[branch]
+            loss, period = diagram.contact_loss_share[branch], diagram.period[branch]
             free = (loss[1:] > 0.0) | (loss[:-1] > 0.0) | (period[1:] != period[:-1])
             for place in np.flatnonzero(steep & free[1:-1]):
                 yield name, int(place) + 1
 
     def _jumps(self) -> Iterator[str]:
         for name, place in self._leaps():
-            before, after = self.found.rms[self.found.branches.index(name), place : place + 2]
+            before, after = self.diagram.rms[self.diagram.branches.index(name), place : place + 2]
             yield (
                 f"{name}: the rms jumps between {self._at(place)} and {self._at(place + 1)}, "
                 f"from {self._size(before)} to {self._size(after)}"
             )
 
     def _size(self, rms: float) -> str:
-        """Write a size of the signal, which turns or moves."""
-        return f"{rms:.3g} rad" if "theta" in self.found.signal else f"{1e6 * rms:.3g} um"
+        """Format an rms of the signal, an angle or a displacement."""
+        return f"{rms:.3g} rad" if "theta" in self.diagram.signal else f"{1e6 * rms:.3g} um"
 
     def _two(self) -> Iterator[str]:
-        if len(self.found.branches) < 2:
+        if len(self.diagram.branches) < 2:
             return
-        up, down = self.found.rms[:2]
-        both = np.flatnonzero(np.abs(up - down) > _APART * np.fmax(up, down))
-        for _, group in groupby(enumerate(both), key=lambda pair: pair[1] - pair[0]):
-            at = [place for _, place in group]
-            span = self._span(self.found.parameter[at[0]], self.found.parameter[at[-1]])
-            ends = at[0] == 0 or at[-1] == self.found.parameter.size - 1
+        up, down = self.diagram.rms[:2]
+        places = np.flatnonzero(np.abs(up - down) > _DIFFERENT * np.fmax(up, down))
+        for _, group in groupby(enumerate(places), key=lambda pair: pair[1] - pair[0]):
+            numbers = [number for _, number in group]
+            span = self._span(
+                self.diagram.parameter[numbers[0]], self.diagram.parameter[numbers[-1]]
+            )
+            ends = numbers[0] == 0 or numbers[-1] == self.diagram.parameter.size - 1
             beyond = "; the range ends there, and they may go on beyond it" if ends else ""
             yield f"two motions are possible {span}: up and down differ{beyond}"

@@ -14,7 +14,7 @@ import numpy as np
 from tribodyn.checkpoints import Members
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import mesh_law_of, placed
+from tribodyn.study.case.derive import locate_errors, mesh_law_of
 from tribodyn.study.pipeline.run import Asked
 from tribodyn.study.pipeline.tooth_contact import contact_settings
 from tribodyn.study.studies.axes import Axis, ends_of
@@ -165,7 +165,7 @@ def _loaded(base: Case, progress: Progress) -> dict[str, LoadedMesh]:
 
     def load(driver: str) -> LoadedMesh:
         case = base.replace({_KEYS[0]: driver})
-        with placed(case), collected():
+        with locate_errors(case), collected():
             return loaded_mesh(
                 case.gear_pair,
                 contact_settings(case),

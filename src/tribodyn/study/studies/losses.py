@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.errors import ModelWarning, collected, warn
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import placed
+from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.pipeline.first_look import gearbox_losses_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 from tribodyn.study.studies.axes import pinion_speeds, pinion_torques
@@ -73,13 +73,13 @@ def loss_map(
     for row, load in enumerate(torques):
         for column, turning in enumerate(speeds):
             point = {"operation.torque": load * turns, "operation.speed": turning / turns}
-            with placed(case), collected() as told:
+            with locate_errors(case), collected() as told:
                 lost[row, column] = mesh_of(case.replace(point)).mean_friction_power
             heard += {warning.code: warning for warning in told}.values()
             progress.advance()
     progress.finish()
     _tell(heard, lost.size)
-    with placed(case):
+    with locate_errors(case):
         return gearbox_losses_of(case, lost, pinion_torque=torques, pinion_speed=speeds)
 
 
@@ -120,7 +120,7 @@ def rig_power_flow(case: Case, slave: Case | None = None) -> RigPowerFlow:
 
     found = []
     for each in (case, case if slave is None else slave):
-        with placed(each), collected() as told:
+        with locate_errors(each), collected() as told:
             found.append(gearbox_losses_of(each, mesh_of(each).mean_friction_power))
         _tell(told, 1)
     return compute(*found)

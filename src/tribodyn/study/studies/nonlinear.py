@@ -9,8 +9,8 @@ import numpy as np
 
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import placed
-from tribodyn.study.first_use import compiled_beside
+from tribodyn.study.case.derive import locate_errors
+from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.studies.axes import ends_of
 from tribodyn.study.studies.grid import built, contact_without_speed
 from tribodyn.study.studies.structure import build_system, study_steps
@@ -74,7 +74,7 @@ def lyapunov_exponents(
     from tribodyn.analysis import lyapunov_exponents as compute
 
     system, frequency = build_system(case, progress=progress)
-    with placed(case), compiled_beside(case, "bifurcation"):
+    with locate_errors(case), compile_in_parallel(case, "bifurcation"):
         return compute(
             system,
             frequency,
@@ -147,7 +147,7 @@ def basins(
         )
     ]
     system, frequency = build_system(case, progress=progress)
-    with placed(case), compiled_beside(case, "bifurcation"):
+    with locate_errors(case), compile_in_parallel(case, "bifurcation"):
         count = steps or study_steps(case, system, frequency)
         usual = _plane_about_rest(system, frequency, count)
         first, second = (own or other for own, other in zip(ends, usual, strict=True))
@@ -270,7 +270,7 @@ def continuation(
         member = built(case.replace({over: value}))
         return member.system, member.mesh.mesh_frequency
 
-    with placed(case), collected(), compiled_beside(case, "bifurcation"):
+    with locate_errors(case), collected(), compile_in_parallel(case, "bifurcation"):
         counts = [study_steps(case.replace({over: value}), *at(value)) for value in (first, last)]
         progress.start("Branch")
         return compute(

@@ -9,10 +9,10 @@ import numpy as np
 
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import placed
+from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.first_use import compiled_beside
+from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.studies.axes import read_axes
 from tribodyn.study.studies.grid import varied
 
@@ -87,7 +87,7 @@ def run_up(
         what = f"tables = {tables}"
         raise InputError(what, "argument tables", "A whole number >= 1", "Give 1 or more")
     speeds = np.geomspace(low, high, count) if count > 1 else np.array([np.sqrt(low * high)])
-    with placed(case), collected(), compiled_beside(case, "run-up"):
+    with locate_errors(case), collected(), compile_in_parallel(case, "run-up"):
         systems, per_speed = speed_systems(case, speeds, progress)
         first = next(iter(systems.values()))
         profile = speed_ramp(low * per_speed, high * per_speed, duration, hold=hold, down=down)
@@ -217,7 +217,7 @@ def speed_sweep(
     (axis,) = read_axes(case, {_SPEED: (*between, points)})
     speeds = np.array(axis.values, dtype=float)
     nodes = np.geomspace(speeds[0], speeds[-1], tables) if tables > 1 else [speeds.mean()]
-    with placed(case), collected():
+    with locate_errors(case), collected():
         systems, per_speed = speed_systems(case, nodes, progress)
         first = next(iter(systems.values()))
         return compute(

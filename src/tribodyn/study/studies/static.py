@@ -12,7 +12,7 @@ from tribodyn.errors import Argument, InputError, require_between, shortened
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import record
 from tribodyn.stiffness import TipReliefOptimum
-from tribodyn.study.case.derive import placed
+from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.pipeline.tooth_contact import (
@@ -102,7 +102,7 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
         torques = list(np.linspace(*_RANGE, _TORQUES) * torques[0])
     if case.gears.kind == "hypoid":
         return _hypoid_map(case, torques, phases)
-    with placed(case):
+    with locate_errors(case):
         return transmission_error_over_torque(
             case.gear_pair, torques, phases=phases, **loaded_settings(case)
         )
@@ -161,7 +161,7 @@ def optimize_tip_relief(
     torques = pinion_torques(case, torque)
     if torque is None:
         torques = [0.5 * torques[0], torques[0]]
-    with placed(case):
+    with locate_errors(case):
         found = compute(
             case.gear_pair,
             torques,
@@ -241,7 +241,7 @@ def comprehensive_stiffness(
     settings = model_settings(case)
     settings.pop("composite_roughness")
     kinds = [case.film.stiffness, *FILM_MODELS[case.film.model].stiffness_kinds]
-    with placed(case):
+    with locate_errors(case):
         return compute(
             case.gear_pair,
             pinion_torque=pinion_torques(case, torque),
@@ -291,7 +291,7 @@ def film_over_operation(
         remedy = 'Choose one: case.replace({"film.model": "newton"})'
         raise InputError('film.model = "none"', "argument case", "No film", remedy)
     pair = case.gear_pair
-    with placed(case):
+    with locate_errors(case):
         return compute(
             pair,
             pinion_torque=pinion_torques(case, torque),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from tribodyn.errors import collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import placed
+from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.grid import built
 
@@ -45,7 +45,7 @@ def build_system(case: Case, *, progress: Progress = SILENT) -> tuple[System, fl
     >>> system.size, round(mesh_frequency, 1)
     (6, 453.1)
     """
-    with placed(case), collected():
+    with locate_errors(case), collected():
         progress.start("Tooth contact")
         member = built(case)
         progress.finish()

@@ -19,7 +19,7 @@ from tribodyn.interrupt import STOPPED, in_threads, refuse_stopped, stop_flag
 from tribodyn.mesh.film.tabled_film import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.first_use import compiled_beside
+from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.pipeline.run import Asked, Begun, begin, move_together, with_tables
 from tribodyn.study.processes import helpers
 from tribodyn.study.studies.axes import Axis, read_axes
@@ -214,7 +214,7 @@ def _first_use(
     if not isinstance(known, Asked):
         return 0
     study = "map" if len(places[0]) >= _ABREAST else "run"
-    with compiled_beside(known.case, study) as compiles:
+    with compile_in_parallel(known.case, study) as compiles:
         if compiles:
             keep(_points(asked, places[0]))
     return int(compiles)

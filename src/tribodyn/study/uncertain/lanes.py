@@ -12,7 +12,7 @@ from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.errors import Argument, InputError, quiet
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import placed
+from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.given import spread_problem
 from tribodyn.study.case.provenance import effective, spec_of
 from tribodyn.study.pipeline.motion import steps_of
@@ -93,7 +93,7 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
             factors[name] = factors[name] * (np.asarray(column) / nominal)
         else:
             keyed[key] = column
-    with placed(case), quiet():
+    with locate_errors(case), quiet():
         if keyed:
             # Lanes of the same values share one structure, and so one march.
             rows = [tuple(map(float, row)) for row in zip(*keyed.values(), strict=True)]
@@ -138,7 +138,7 @@ def _contact_without_load(case: Case, torques: Array) -> bool:
     """Whether the tooth contact is the same for the least, the greatest and the stated torque."""
     if not contact_without_speed(case):
         return False
-    with placed(case), quiet():
+    with locate_errors(case), quiet():
         torques = np.array([np.min(torques), np.max(torques), case.operation.torque])
         systems = [
             built(case.replace({"operation.torque": float(each)})).system for each in torques
