@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dash import dcc, html
 
-from tribodyn.app.desk import RUNS, Desk
+from tribodyn.app.session import RUNS, Desk
 from tribodyn.app.studies import STUDIES
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.report.blocks import drawn_block, topic_of

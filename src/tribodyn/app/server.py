@@ -13,10 +13,10 @@ from dash import ClientsideFunction, Input, Output, State, dcc, html
 from werkzeug.serving import BaseWSGIServer, WSGIRequestHandler, make_server
 
 from tribodyn.app import results
-from tribodyn.app.desk import Desk, at_start
-from tribodyn.app.folder import Folder
-from tribodyn.app.guard import LARGEST, Guard, RefusalError, Session, headers
+from tribodyn.app.authentication import LARGEST, Guard, RefusalError, Session, headers
 from tribodyn.app.jobs import Jobs
+from tribodyn.app.session import Desk, at_start
+from tribodyn.app.workspace import Folder
 from tribodyn.errors import InputError, TribodynError
 from tribodyn.report.html import text_of
 

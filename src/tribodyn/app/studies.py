@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.app.form import field_of
+from tribodyn.app.case_form import field_of
 from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.study.studies.range_words import UnreadError, read_list, read_range, read_values

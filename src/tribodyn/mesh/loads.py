@@ -15,9 +15,9 @@ from tribodyn.errors import ComputationError, quiet, warn
 from tribodyn.friction import PitchPoint, TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film.film_columns import smallest_film
+from tribodyn.mesh.film.film_lookup import TabledFilm, UntabledError, tabled_film
 from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
 from tribodyn.mesh.film.path_film import FilmAt, FormulaFilm, PathFilm, film_of
-from tribodyn.mesh.film.tabled_film import TabledFilm, UntabledError, tabled_film
 from tribodyn.mesh.sharing import LEAST_SHARE, FilmSprings, SharedLoad, Teeth, ToothContact
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Mask

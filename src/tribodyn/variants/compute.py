@@ -12,7 +12,7 @@ import numpy as np
 
 from tribodyn.errors import Problem, TribodynError, quiet
 from tribodyn.interrupt import deferred
-from tribodyn.mesh.film.tabled_film import shared_films
+from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.types import Array

@@ -13,7 +13,7 @@ from threading import Timer
 import pytest
 
 from tribodyn.errors import InputError, collected
-from tribodyn.mesh.film import tabled_film
+from tribodyn.mesh.film import film_lookup
 from tribodyn.variants import read_study, run, run_study
 from tribodyn.variants.compute import KINDS, Job, Part
 from tribodyn.variants.run import compute_alone
@@ -92,14 +92,14 @@ def test_chunks_of_a_study_share_their_solved_films(monkeypatch: pytest.MonkeyPa
     tables = []
 
     def compute(*_: object) -> Part:
-        tables.append(tabled_film._shared.get())
+        tables.append(film_lookup._shared.get())
         return Part({}, [""], [""])
 
     monkeypatch.setitem(KINDS, "summary", replace(KINDS["summary"], compute=compute))
     study = read_study(_STUDY)
     for speed in (100.0, 110.0):
         Job("summary", study.case, (), {"operation.speed": [speed]}).compute()
-    assert isinstance(tables[0], tabled_film._Shared)
+    assert isinstance(tables[0], film_lookup._Shared)
     assert tables[0] is tables[1]
-    with tabled_film.shared_films():
-        assert tabled_film._shared.get() not in (None, tables[0])
+    with film_lookup.shared_films():
+        assert film_lookup._shared.get() not in (None, tables[0])

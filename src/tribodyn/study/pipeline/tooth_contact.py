@@ -127,7 +127,7 @@ def alike(case: Case) -> object:
 
 def meshes_of(cases: Sequence[Case]) -> list[Callable[[], MeshTable]]:
     """Mesh tables of such cases from one pass; none where each has to be computed by itself."""
-    from tribodyn.mesh.rows import mesh_tables
+    from tribodyn.mesh.operating_points import mesh_tables
 
     first, points = cases[0], [(case.pinion_speed, case.pinion_torque) for case in cases]
     law = mesh_law_of(first) == "force-law"

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from tribodyn.checkpoints import Members
 from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.interrupt import STOPPED, in_threads, refuse_stopped, stop_flag
-from tribodyn.mesh.film.tabled_film import shared_films
+from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.first_use import compile_in_parallel

@@ -10,10 +10,10 @@ import pytest
 pytest.importorskip("dash", reason="the page needs Dash")
 
 from tribodyn.app import results
-from tribodyn.app.desk import Desk
-from tribodyn.app.folder import Folder
-from tribodyn.app.form import CaseForm
+from tribodyn.app.case_form import CaseForm
 from tribodyn.app.jobs import Job
+from tribodyn.app.session import Desk
+from tribodyn.app.workspace import Folder
 from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError

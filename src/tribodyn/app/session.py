@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.app.folder import Folder
-from tribodyn.app.form import CaseForm, words
+from tribodyn.app.case_form import CaseForm, words
 from tribodyn.app.jobs import Job, Jobs
 from tribodyn.app.studies import STUDIES, first_values, form_of, numeric_keys
+from tribodyn.app.workspace import Folder
 from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected

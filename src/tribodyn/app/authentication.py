@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any
 from urllib.parse import urlsplit
 
-from tribodyn.app.desk import Desk
+from tribodyn.app.session import Desk
 
 #: Sessions of a server, and tabs of a session.
 SESSIONS, DESKS = 24, 12
