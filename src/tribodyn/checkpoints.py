@@ -1,4 +1,4 @@
-"""Finished members of a long study, kept on disk as they come, so that it goes on after a kill."""
+"""Checkpoints of long studies: finished runs are stored on disk, so that a killed study resumes."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from tribodyn.files import absolute_target, cannot_write, lock
 
 __all__ = ["NAME", "Members", "read_lines"]
 
-#: File of the members.
+#: File of the finished runs.
 NAME = "members.jsonl"
-#: What a study is told by, and how a message calls it.
-_WORDS = {
+#: Parts of the identity of a study, and the message when they differ.
+_DIFFERENCES = {
     "study": "it is another study",
-    "version": "another version of tribodyn began it",
+    "version": "another version of tribodyn started it",
     "case": "its case differs",
-    "over": "other values vary",
+    "over": "it varies other values",
     "options": "its options differ",
 }
 
 
 class Members:
-    """Members of a study by name, in a hidden folder beside its place until it is discarded.
+    """Finished runs of a study by name, in a hidden folder next to its target until discarded.
 
-    ``inside`` keeps them in the place itself, for good.
+    With ``inside`` they are stored in the target folder itself and stay there.
     """
 
     def __init__(
@@ -40,13 +40,13 @@ class Members:
     ) -> None:
         self.target, self.anew, self.inside = target, anew, inside
         self.folder: Path | None = None
-        self._found: dict[str, Any] = {}
-        self._held, self._kept = -1, False
+        self._earlier: dict[str, Any] = {}
+        self._descriptor, self._stored_new = -1, False
         self._file: BinaryIO | None = None
         self._writing = threading.Lock()
 
     def begin(self, identity: Mapping[str, Any]) -> Members:
-        """Say which study it is; members of the same one are there already."""
+        """Open the checkpoints of a study; runs that the same study has finished are loaded."""
         if self.target is None:
             return self
         place = absolute_target(self.target)
@@ -61,15 +61,17 @@ class Members:
     def _hold(self, folder: Path) -> None:
         while True:
             folder.mkdir(exist_ok=True)
-            held = lock(folder)
-            if held is None:
-                why = "Another process computes a study that is to be saved there"
-                remedy = "Wait for it, or choose another place"
-                raise InputError("this place is taken", str(self.target), why, remedy)
-            self._held = held
-            if held < 0 or (folder.exists() and os.path.samestat(os.fstat(held), folder.stat())):
+            descriptor = lock(folder)
+            if descriptor is None:
+                why = "Another process that is still active computes a study there"
+                remedy = "Wait until it has finished, or choose another directory"
+                raise InputError("this directory is in use", str(self.target), why, remedy)
+            self._descriptor = descriptor
+            if descriptor < 0 or (
+                folder.exists() and os.path.samestat(os.fstat(descriptor), folder.stat())
+            ):
                 return
-            os.close(held)
+            os.close(descriptor)
 
     def _open(self, folder: Path, identity: dict[str, Any]) -> None:
         path = folder / NAME
@@ -85,30 +87,30 @@ class Members:
         self._file.truncate(size)
         if not lines:
             self._write(identity)
-        self._found = {line["name"]: line["value"] for line in lines[1:]}
+        self._earlier = {line["name"]: line["value"] for line in lines[1:]}
 
     def __len__(self) -> int:
-        """Number of members that were there."""
-        return len(self._found)
+        """Number of runs that an earlier process has finished."""
+        return len(self._earlier)
 
     def all(self) -> dict[str, Any]:
-        """Everything that was there, by name."""
-        return dict(self._found)
+        """All runs that an earlier process has finished, by name."""
+        return dict(self._earlier)
 
     def get(self, name: str) -> Any:
-        """Member that an earlier process has finished, or None."""
-        return self._found.get(name)
+        """Value of a run that an earlier process has finished, or None."""
+        return self._earlier.get(name)
 
     def keep(self, name: str, value: Any) -> None:
-        """Keep a finished member."""
+        """Store a finished run."""
         if self._file is not None:
             self._write({"name": name, "value": value})
-            self._kept = True
+            self._stored_new = True
 
     def _write(self, line: Mapping[str, Any]) -> None:
         text = json.dumps(line, default=lambda array: array.tolist()).encode()
         with self._writing:
-            if self._file is None:  # A thread that outlives an interruption has nowhere to write.
+            if self._file is None:  # closed: a thread is still running after an interruption
                 return
             try:
                 self._file.write(b"%08x %s\n" % (zlib.crc32(text), text))
@@ -118,17 +120,17 @@ class Members:
                 raise ComputationError(cannot_write(self.target, error)) from None
 
     def close(self) -> None:
-        """Let another process go on with what is kept."""
+        """Close the file and release the lock, so that another process can resume the study."""
         with self._writing:
             if self._file is not None:
                 self._file.close()
                 self._file = None
-        if self._held >= 0:
-            os.close(self._held)
-            self._held = -1
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
+            self._descriptor = -1
 
     def discard(self) -> None:
-        """Remove what is kept."""
+        """Remove all checkpoints."""
         if self.folder is not None:
             aside = self.folder.with_suffix(f".{secrets.token_hex(4)}.part")
             self.folder.rename(aside)
@@ -136,38 +138,47 @@ class Members:
         self.close()
 
     def close_after(self, complete: bool) -> None:
-        """Discard what is kept of a study that is saved, unless it was interrupted."""
+        """Remove the checkpoints of a study after it was saved, unless it was interrupted."""
         if complete:
             self.discard()
         elif self.folder is not None:
-            os.utime(self.folder / NAME)  # It is newer than what is saved, and stays.
+            os.utime(self.folder / NAME)  # newer than the saved result, so that it is not removed
 
     def __enter__(self) -> Members:
-        """Use it in a block."""
+        """Return the checkpoints for a ``with`` block."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Close it; what is kept stays, if there is anything."""
-        if self._file is not None and not (self._kept or self._found):
+        """Close the file; an empty one is removed."""
+        if self._file is not None and not (self._stored_new or self._earlier):
             self.discard()
         self.close()
 
 
 def read_lines(path: Path) -> tuple[list[Any], int]:
-    """Lines that were written whole, and where the last of them ends."""
-    found, size = [], 0
+    """Complete lines of a file, and the position after the last of them."""
+    lines, size = [], 0
     content = path.read_bytes() if path.is_file() else b""
     for line in content.splitlines(keepends=True):
-        told, _, text = line.partition(b" ")
-        if not line.endswith(b"\n") or told != b"%08x" % zlib.crc32(text[:-1]):
+        checksum, _, text = line.partition(b" ")
+        if not line.endswith(b"\n") or checksum != b"%08x" % zlib.crc32(text[:-1]):
             break
-        found.append(json.loads(text))
+        lines.append(json.loads(text))
         size += len(line)
-    return found, size
+    return lines, size
 
 
-def _other(target: str, there: Any, asked: Mapping[str, Any]) -> tuple[str, str, str, str]:
-    """Say that an unfinished study in a place is another one."""
-    differ = [words for key, words in _WORDS.items() if there.get(key) != asked.get(key)]
-    remedy = "Repeat its command to finish it, choose another place, or start anew with --force"
-    return "an unfinished study lies here", target, ", ".join(differ).capitalize(), remedy
+def _other(target: str, stored: Any, requested: Mapping[str, Any]) -> tuple[str, str, str, str]:
+    """Message for an unfinished study in a folder that differs from the requested one."""
+    differ = [
+        difference
+        for key, difference in _DIFFERENCES.items()
+        if stored.get(key) != requested.get(key)
+    ]
+    remedy = "Repeat its command to finish it, choose another directory, or restart with --force"
+    return (
+        "the directory contains another unfinished study",
+        target,
+        ", ".join(differ).capitalize(),
+        remedy,
+    )

@@ -1,4 +1,4 @@
-"""Arguments that are quantities of the nomenclature: finite, positive, as arrays."""
+"""Checks of arguments that are quantities of the nomenclature."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribodyn.errors import Argument, InputError, floats, real_numbers, require_
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.types import Array
 
-#: What to do about a value that is not positive.
+#: Remedy for a value that is not positive.
 _REMEDIES = {
     "load_per_width": "1 N/mm is 1000 N/m",
     "entrainment_speed": "A film needs a rolling motion: give half the sum of the surface speeds",
@@ -20,7 +20,7 @@ _REMEDIES = {
 
 
 def positive(**quantities: ArrayLike) -> list[Array]:
-    """Arrays of quantities to be read, each called by its name; refused unless finite, positive."""
+    """Arrays of named quantities; raise unless all values are finite and positive."""
     arrays = [floats(Argument(name), value) for name, value in quantities.items()]
     for name, array in zip(quantities, arrays, strict=True):
         if not array.size or (array.min() > 0.0 and array.max() < np.inf):
@@ -38,17 +38,17 @@ def require_one_shape(**arrays: Array) -> None:
         np.broadcast_shapes(*(array.shape for array in arrays.values()))
     except ValueError:
         what = ", ".join(f"{name} has the shape {array.shape}" for name, array in arrays.items())
-        why, remedy = "They are combined one by one", "Give numbers, or arrays of one shape"
+        why, remedy = "They are combined element by element", "Give numbers, or arrays of one shape"
         raise InputError(what, Argument(" and ".join(arrays)), why, remedy) from None
 
 
 def one_or_more(**quantities: ArrayLike) -> list[Array]:
-    """Lists of quantities of which one value or several are given, all of them positive."""
+    """Lists of positive quantities, each given as one value or as several."""
     lists = [np.array(positive(**{n: v})[0], ndmin=1) for n, v in quantities.items()]
     for name, values in zip(quantities, lists, strict=True):
         if values.ndim != 1 or values.size == 0:
             what = f"{name} has the shape {values.shape}"
-            remedy = "Give each value once; several quantities are combined, each with each"
+            remedy = "Give each value once; all combinations are computed"
             raise InputError(what, Argument(name), "It is one value or a list of values", remedy)
     return lists
 

@@ -1,7 +1,7 @@
-"""Figures by name and by the type of result that they draw.
+"""Registry of figures by name and by the type of result that they draw.
 
 A figure is a function that takes a result and returns a plotly figure. It registers itself with
-:func:`drawing` and names the classes that it draws; a result that draws itself asks :func:`draw`.
+:func:`drawing` and names the classes that it draws; a result calls :func:`draw` to plot itself.
 This module knows neither figures nor results: those of the package come from the entry-point
 group ``tribodyn.figures``, which names modules to import, those of others also from the group
 ``tribodyn.plot``, which names single figures.
@@ -29,48 +29,48 @@ from tribodyn.model import Registry
 
 Writer = TypeVar("Writer", bound=Callable[..., Path])
 
-#: Why a result lacks what a figure draws; empty if it has it.
+#: Reason why a result cannot be drawn by a figure; empty if it can.
 Lack = Callable[[Any], str]
 
 
 @dataclass(frozen=True)
 class Need:
-    """Something that a result must have before a figure of it can be drawn."""
+    """Data that a result must have to be drawn by a figure."""
 
-    attributes: str  #: names, of which one that is not None is enough, separated by blanks
-    reason: str  #: one sentence for a result that has none of them, with the remedy
+    attributes: str  #: attribute names separated by blanks, of which one must not be None
+    reason: str  #: message and remedy for a result without any of them
 
     def __call__(self, subject: Any) -> str:
-        """Return the reason where the need is not met."""
+        """Return the message if the data are missing."""
         values = (getattr(subject, name, None) for name in self.attributes.split())
         return "" if any(value is not None for value in values) else self.reason
 
 
 @dataclass
 class Sketch:
-    """A figure as it is described to plotly, which is loaded only for whoever wants its own."""
+    """Figure as plain data; plotly is imported only if its figure object is requested."""
 
     data: list[dict[str, Any]]
     layout: dict[str, Any]
     frames: list[dict[str, Any]] = field(default_factory=list)
 
     def figure(self) -> Any:
-        """The figure of plotly, which refuses what it does not know."""
+        """Figure object of plotly, which validates the data."""
         import plotly.graph_objects as go
 
         return go.Figure(vars(self))
 
     def to_json(self) -> str:
-        """What the figure of plotly writes, without making one."""
+        """JSON as plotly writes it, without importing plotly."""
         parts = {name: part for name, part in vars(self).items() if part or name != "frames"}
         try:
             return json.dumps(parts, default=_packed, allow_nan=False, separators=(",", ":"))
-        except ValueError:  # JSON has no word for what is no number.
+        except ValueError:  # JSON has no NaN.
             return json.dumps(_finite(parts), default=_packed, separators=(",", ":"))
 
 
 def _packed(value: Any) -> Any:
-    """Numbers as plotly packs them into text: whole ones into as few bytes as hold them."""
+    """Numbers in the base64 encoding of plotly, integers in as few bytes as possible."""
     if not isinstance(value, np.ndarray):
         return value.isoformat() if hasattr(value, "isoformat") else value.item()
     if value.dtype.kind in "iu" and value.size:
@@ -85,7 +85,7 @@ def _packed(value: Any) -> Any:
 
 
 def _finite(part: Any) -> Any:
-    """The same with nothing in the place of what is no number."""
+    """The same data with None instead of NaN and infinity."""
     if isinstance(part, dict):
         return {name: _finite(each) for name, each in part.items()}
     if isinstance(part, list | tuple):
@@ -94,13 +94,13 @@ def _finite(part: Any) -> Any:
 
 
 def _always(result: Any) -> str:
-    """Give no reason against a figure: it fits whatever it draws."""
+    """Return no message: the figure needs no optional data."""
     return ""
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure function together with what a reader should know about it.
+    """Figure function with its caption and requirements.
 
     Parameters
     ----------
@@ -111,13 +111,13 @@ class Drawing:
     heading : str
         Heading of the figure in a report.
     caption : str or callable
-        What to look for, in plain language; a callable takes what is drawn and says it.
+        What to look for, in plain language; or a function of the result that returns it.
     missing : callable
-        Takes what is drawn and says in one sentence why it has no such figure; empty if it has.
+        Function of the result that returns why it cannot be drawn; empty if it can.
     of : tuple of str
         Classes that it draws, by name: ``"Campbell"``, or ``"Result.mesh"`` for a part of one.
     made_by : str
-        How to come by such a result, told to whoever draws it from another one.
+        How to obtain such a result, for the message when another result is drawn.
     """
 
     name: str
@@ -129,11 +129,11 @@ class Drawing:
     made_by: str = ""
 
     def __post_init__(self) -> None:
-        """Let ``missing`` answer for any result, not only for what the figure draws."""
+        """Extend ``missing`` to results of any class."""
         lack = self.missing
 
         def missing(result: Any) -> str:
-            """Say in one sentence why a result has no such figure; empty if it has."""
+            """Sentence that says why a result cannot be drawn; empty if it can."""
             subject = self.subject(result)
             if subject is not None:
                 return lack(subject)
@@ -167,7 +167,7 @@ class Drawing:
         return None if self.of else result
 
     def caption_of(self, result: Any) -> str:
-        """Tell what to look for in the figure of a result.
+        """Caption: what to look for in the figure of a result.
 
         Parameters
         ----------
@@ -195,11 +195,11 @@ class Drawing:
         InputError
             If the result has nothing to draw.
         """
-        drawn = self.sketch(result, *arguments, **options)
-        return drawn.figure() if isinstance(drawn, Sketch) else drawn
+        figure = self.sketch(result, *arguments, **options)
+        return figure.figure() if isinstance(figure, Sketch) else figure
 
     def sketch(self, result: Any, *arguments: Any, **options: Any) -> Any:
-        """Draw the figure of a result, and load plotly only where the function itself does.
+        """Draw the figure of a result without importing plotly, unless the figure function does.
 
         Parameters
         ----------
@@ -226,7 +226,7 @@ class Drawing:
 
 
 def figure_text(text: str, argument: str, kinds: Iterable[str] = ()) -> str:
-    """Docstring of a figure function: what it draws, taken from where it registers."""
+    """Docstring of a figure function, completed from its registration."""
     if "\nParameters\n" in text:
         return text
     what = " or ".join(kinds) or "object"
@@ -255,14 +255,14 @@ def drawing(
     heading : str
         Heading of the figure in a report.
     caption : str or callable
-        What to look for, in plain language; a callable takes what is drawn and says it.
+        What to look for, in plain language; or a function of the result that returns it.
     missing : callable
-        Takes what is drawn and says why it has no such figure, empty if it has, see :class:`Need`.
+        Function of the result that returns why it cannot be drawn, see :class:`Need`.
     of : str or iterable of str
         Classes that it draws, by name, or parts of them: ``("MeshTable", "Result.mesh")``. The
         function is handed the part. Empty: any result, which is handed over as it is.
     made_by : str
-        How to come by such a result, told to whoever draws it from another one.
+        How to obtain such a result, for the message when another result is drawn.
 
     Returns
     -------
@@ -304,7 +304,7 @@ def figures_of(result: Any) -> list[str]:
 def _draws(figure: Callable[..., Any], result: Any) -> bool:
     try:
         return not isinstance(figure, Drawing) or figure.subject(result) is not None
-    except InputError:  # It draws gears of another kind.
+    except InputError:  # The figure draws gears of another kind.
         return False
 
 
@@ -320,7 +320,7 @@ def draw(result: Any, name: str = "", *arguments: Any, **options: Any) -> Any:
             if isinstance(figure, Drawing) and kind in figure.of:
                 return figure(result, *arguments, **options)
     what = f"no figure draws a {kinds[0]}"
-    why = "Figures say which classes they draw when they register"
+    why = "Figures are registered with the classes that they draw"
     raise InputError(what, why=why, remedy=f'Register one with @drawing(..., of="{kinds[0]}")')
 
 
@@ -345,6 +345,6 @@ def write_report_of(result: Any, path: Path) -> Path:
     for kind in kinds:
         if kind in REPORTS:
             return REPORTS[kind](result, path)
-    what = f"no report tells of a {kinds[0]}"
-    why = "Reports say which class they tell of when they register"
+    what = f"there is no report of a {kinds[0]}"
+    why = "Reports are registered with their class"
     raise InputError(what, why=why, remedy=f'Register one with @report_of("{kinds[0]}")')

@@ -39,17 +39,17 @@ __all__ = [
 ]
 
 
-#: What takes the model warnings of this thread before they are issued, the innermost last.
+#: Handlers of the model warnings of this thread, the innermost last.
 _listeners: ContextVar[tuple[Callable[[ModelWarning], bool], ...]] = ContextVar(
     "listeners", default=()
 )
 
 
-#: Characters of a value that a message repeats, and of a whole part of a message.
+#: Most characters of a value that a message quotes, and of one part of a message.
 _QUOTED, _PART = 200, 4000
-#: Faults that one error tells.
+#: Most problems that one error lists.
 _MOST = 50
-#: What moves the cursor, turns the direction of writing or is half a character.
+#: Control characters, characters that change the writing direction, and lone surrogates.
 _CONTROL = re.compile(
     "[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
@@ -58,13 +58,13 @@ _LONG_QUOTE = re.compile(f'(?<![^\\s(\\[=,:])"[^"]{{{_QUOTED + 1},}}"?|[^\\s"]{{
 
 
 def shortened(text: str, most: int = _QUOTED) -> str:
-    """Text as a message repeats it: not too long, and with control characters written out."""
+    """Text for a message: shortened, and with control characters escaped."""
     text = _CONTROL.sub(lambda match: repr(match[0])[1:-1], text[: most + 1])
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def _message(part: str) -> str:
-    """Part of a message, with each value that it repeats shortened."""
+    """Part of a message, with long quoted values shortened."""
     if len(part) > _QUOTED:
         part = _LONG_QUOTE.sub(lambda match: shortened(match[0], _QUOTED), part)
     return shortened(part, _PART)
@@ -127,7 +127,7 @@ class ModelOption:
 
 @dataclass(frozen=True)
 class Problem:
-    """One fault, told as a colleague would.
+    """One problem: what is wrong, where, why, and how to fix it.
 
     Parameters
     ----------
@@ -193,8 +193,10 @@ class TribodynError(Exception):
         )
         more = len(self.problems) - _MOST
         if more > 0:
-            rest = Problem(f"{more} more faults are not listed", "", "", "Correct these first")
-            self.problems = (*self.problems[:_MOST], rest)
+            remainder = Problem(
+                f"{more} more problems are not listed", "", "", "Correct these first"
+            )
+            self.problems = (*self.problems[:_MOST], remainder)
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
 
@@ -268,18 +270,18 @@ def _listening(takes: Callable[[ModelWarning], bool]) -> Iterator[None]:
 
 @contextmanager
 def collected() -> Iterator[list[ModelWarning]]:
-    """Collect the model warnings issued inside the block, each once, and by this thread alone."""
-    found: dict[str, ModelWarning] = {}
-    told: list[ModelWarning] = []
+    """Collect the model warnings of this thread inside the block, each once."""
+    by_text: dict[str, ModelWarning] = {}
+    warnings: list[ModelWarning] = []
 
     def keep(warning: ModelWarning) -> bool:
-        if str(warning) not in found:
-            found[str(warning)] = warning
-            told.append(warning)
+        if str(warning) not in by_text:
+            by_text[str(warning)] = warning
+            warnings.append(warning)
         return True
 
     with _listening(keep):
-        yield told
+        yield warnings
 
 
 @contextmanager
@@ -324,10 +326,10 @@ def real_numbers(
 def floats(
     where: Argument | ModelOption | str, value: Any, wanted: str = "real numbers"
 ) -> NDArray[np.float64]:
-    """The same to look at: an array of floats is handed back as it is."""
+    """Read numbers as floats without a copy where that is possible."""
     try:
         array = np.asarray(value)
-        if array.dtype.kind == "O" and all(isinstance(one, int) for one in array.flat):
+        if array.dtype.kind == "O" and all(isinstance(item, int) for item in array.flat):
             array = array.astype(float)
     except (TypeError, ValueError, OverflowError):
         array = np.asarray(None)
@@ -342,7 +344,7 @@ def _brief(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-#: What a value in the unit of engineers is in SI, told where a number is out of range.
+#: Conversion hint for messages about numbers out of range, by SI unit.
 _IN_SI = {
     "m": "1 mm is 1e-3 m, 1 um is 1e-6 m",
     "N/m": "1 N/mm is 1000 N/m",
@@ -361,20 +363,20 @@ _IN_SI = {
     "s": "1 ms is 1e-3 s",
 }
 
-#: No quantity in SI is as large, and powers of this one still are numbers of the machine.
+#: Upper bound of any quantity in SI; its powers do not overflow.
 ENDLESS = 1e60
-#: Numbers of which fewer are looked at one by one.
+#: Array size below which elements are checked one by one.
 _FEW = 8
 
 
 def _all_hold(value: Any, holds: Callable[[Any], Any]) -> bool:
-    """Whether floats, as most arguments are, fulfil a limit, which all do that lie in between."""
+    """Whether floats satisfy a convex limit, checked at the extremes of an array."""
     if isinstance(value, float):
         return abs(value) < ENDLESS and bool(holds(value))
     if type(value) is not np.ndarray or value.dtype != float or not value.size:
         return False
-    few = value.size < _FEW
-    ends = value.ravel().tolist() if few else (float(value.min()), float(value.max()))
+    small = value.size < _FEW
+    ends = value.ravel().tolist() if small else (float(value.min()), float(value.max()))
     return all(abs(end) < ENDLESS and holds(end) for end in ends)
 
 
@@ -463,7 +465,7 @@ def require_between(
 
 
 def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
-    """Return a value that is one of the known words, or raise :class:`InputError`.
+    """Return a value if it is one of the allowed names, or raise :class:`InputError`.
 
     Parameters
     ----------
@@ -484,16 +486,16 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
     >>> require_one_of("inlet", "flooded", ("flooded", "zero"))
     'flooded'
     """
-    words = list(known)
-    if not isinstance(value, str) or value not in words:
-        what, why = f'{name} = "{value}"', f"Known: {', '.join(words)}"
+    choices = list(known)
+    if not isinstance(value, str) or value not in choices:
+        what, why = f'{name} = "{value}"', f"Known: {', '.join(choices)}"
         raise InputError(what, f"argument {name}", why, "Choose one of these")
     return value
 
 
 def did_you_mean(name: object, known: Iterable[str], otherwise: str = "") -> str:
-    """Remedy for an unknown name: the known one that was probably meant, or something else."""
-    from difflib import get_close_matches  # most messages do without
+    """Remedy for an unknown name: the closest known name, or another text."""
+    from difflib import get_close_matches  # not needed by most messages
 
-    near = get_close_matches(str(name), list(known), n=1)
-    return f'Did you mean "{near[0]}"?' if near else otherwise
+    matches = get_close_matches(str(name), list(known), n=1)
+    return f'Did you mean "{matches[0]}"?' if matches else otherwise

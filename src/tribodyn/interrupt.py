@@ -1,9 +1,9 @@
-"""Ctrl-C that ends compiled calls: they run in threads, and look at a flag after every step.
+"""Interrupt compiled calls with Ctrl-C: they run in threads and check a flag after every step.
 
-Python hands an interruption to its main thread, and only between two lines of Python: a compiled
-call that runs there keeps it waiting. So the main thread waits while other threads compute, and
-raises the flag of all threads that it began, and of those that these began, when it is
-interrupted.
+Python raises an interruption in its main thread, between two bytecode instructions: a compiled
+call in the main thread would delay it until it returns. Therefore the main thread waits while
+worker threads compute, and when it is interrupted it sets the flag that these threads, and the
+threads that they started, share.
 """
 
 from __future__ import annotations
@@ -40,23 +40,23 @@ __all__ = [
 Item = TypeVar("Item")
 Value = TypeVar("Value")
 
-#: What a compiled march returns that ended because of the flag.
+#: Status that a compiled time integration returns when the flag ended it.
 STOPPED = -2
-#: Longest wait that lets no signal through [s], and that for threads to end after the flag was
-#: raised [s]. What still runs then, a compiler perhaps, ends with the process at the latest.
-_MOMENT, _GRACE = 0.1, 1.0
+#: Longest wait during which no signal is handled [s], and time for threads to end after the flag
+#: was set [s]. A thread that still runs then, in a compiler perhaps, ends with the process.
+_POLL_INTERVAL, _GRACE = 0.1, 1.0
 
-_here = threading.local()
+_thread_state = threading.local()
 
 
 def stop_flag() -> NDArray[np.int64]:
-    """Flag of this thread, which a compiled call looks at: not zero when it has to end."""
-    flag = getattr(_here, "flag", None)
+    """Flag of this thread that compiled calls check: non-zero when they must end."""
+    flag = getattr(_thread_state, "flag", None)
     return np.zeros(1, dtype=np.int64) if flag is None else flag
 
 
 def refuse_stopped(code: int) -> int:
-    """Raise the interruption that ended a compiled march; else hand on what it returned."""
+    """Raise KeyboardInterrupt if the flag ended a compiled call; else return its status."""
     if code == STOPPED:
         raise KeyboardInterrupt
     return code
@@ -64,7 +64,7 @@ def refuse_stopped(code: int) -> int:
 
 @contextmanager
 def deferred() -> Iterator[None]:
-    """Raise an interruption after the block: in HDF5 it may leave a lock that nobody releases."""
+    """Delay an interruption until the block ends: inside HDF5 it could leave its lock acquired."""
     main_thread = threading.current_thread() is threading.main_thread()
     handler = signal.getsignal(signal.SIGINT) if main_thread else None
     if not callable(handler):
@@ -81,7 +81,7 @@ def deferred() -> Iterator[None]:
 
 
 class Threads:
-    """Threads that end with the block that began them: soon where it was interrupted."""
+    """Worker threads that end with the ``with`` block, or soon after an interruption."""
 
     def __init__(self, count: int) -> None:
         self.flag = stop_flag()
@@ -90,7 +90,7 @@ class Threads:
         self._threads = [threading.Thread(target=self._work, daemon=True) for _ in range(count)]
 
     def _work(self) -> None:
-        _here.flag = self.flag
+        _thread_state.flag = self.flag
         while (task := self._tasks.get()) is not None:
             future, function, arguments = task
             if not future.set_running_or_notify_cancel():
@@ -102,15 +102,15 @@ class Threads:
             del task, future, function, arguments
 
     def submit(self, function: Callable[..., Value], *arguments: Any) -> Future[Value]:
-        """Let one of the threads call a function."""
+        """Run a function in one of the threads."""
         future: Future[Value] = Future()
         self._waiting.append(future)
-        # What listens to warnings here listens to those of the thread too.
+        # Warnings in the thread reach the collectors of this context.
         self._tasks.put((future, copy_context().run, (function, *arguments)))
         return future
 
     def __enter__(self) -> Threads:
-        """Begin the threads."""
+        """Start the threads."""
         try:
             for thread in self._threads:
                 thread.start()
@@ -125,20 +125,20 @@ class Threads:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Wait for the threads; after an error nothing new begins, and an interruption ends all."""
+        """Wait for the threads; an error cancels waiting tasks, an interruption ends all."""
         try:
             if error is not None and not isinstance(error, Exception):
                 self._stop()
             self._dismiss(cancel=kind is not None)
             while any(thread.is_alive() for thread in self._threads):
                 for thread in self._threads:
-                    thread.join(_MOMENT)
+                    thread.join(_POLL_INTERVAL)
         except BaseException:
             self._stop()
             raise
 
     def _dismiss(self, cancel: bool) -> None:
-        """Let every thread end after its task; with ``cancel`` nothing that waits is begun."""
+        """Let every thread end after its task; ``cancel`` drops the tasks that wait."""
         if cancel:
             for future in self._waiting:
                 future.cancel()
@@ -146,33 +146,33 @@ class Threads:
             self._tasks.put(None)
 
     def _stop(self) -> None:
-        """Raise the flag, and wait a little for the threads to see it."""
+        """Set the flag and give the threads a short time to end."""
         self.flag[0] = 1
         self._dismiss(cancel=True)
         end = time.monotonic() + _GRACE
         while any(thread.is_alive() for thread in self._threads) and time.monotonic() < end:
-            time.sleep(0.1 * _MOMENT)
+            time.sleep(0.1 * _POLL_INTERVAL)
         self._threads = []
 
 
 @contextmanager
 def alone() -> Iterator[None]:
-    """Let this thread begin no others inside the block: others like it keep the processors busy."""
-    _here.alone = True
+    """Start no threads from this one inside the block: parallel workers use all processors."""
+    _thread_state.alone = True
     try:
         yield
     finally:
-        _here.alone = False
+        _thread_state.alone = False
 
 
 def processors() -> int:
-    """Threads that this one may begin."""
-    return 1 if getattr(_here, "alone", False) else os.cpu_count() or 1
+    """Number of threads that this thread may start."""
+    return 1 if getattr(_thread_state, "alone", False) else os.cpu_count() or 1
 
 
 def begins_thread() -> bool:
-    """Whether a stoppable call from here needs a thread: not beside others, nor in one already."""
-    if getattr(_here, "alone", False) or getattr(_here, "flag", None) is not None:
+    """Whether an interruptible call needs a thread: in the main thread outside :func:`alone`."""
+    if getattr(_thread_state, "alone", False) or getattr(_thread_state, "flag", None) is not None:
         return False
     return threading.current_thread() is threading.main_thread()
 
@@ -180,38 +180,38 @@ def begins_thread() -> bool:
 def in_threads(
     function: Callable[[Item], Value], items: Iterable[Item], count: int, *, brief: bool = False
 ) -> list[Value]:
-    """Results of a function of every item, as many at a time as there are threads.
+    """Apply a function to every item, in ``count`` threads; results in the order of the items.
 
-    What is ``brief`` anyway, and what one thread of several does by itself, is computed here.
+    A single item that is ``brief``, or that comes from a worker thread, is computed directly.
     """
     items = list(items)
-    count = 1 if getattr(_here, "alone", False) else max(min(count, len(items)), 1)
+    count = 1 if getattr(_thread_state, "alone", False) else max(min(count, len(items)), 1)
     if count == 1 and (brief or not begins_thread()):
         return [function(item) for item in items]
     with Threads(count) as threads:
         running = [threads.submit(function, item) for item in items]
         left: set[Future[Value]] = set(running)
         while left:
-            done, left = wait(left, _MOMENT, "FIRST_EXCEPTION")
+            done, left = wait(left, _POLL_INTERVAL, "FIRST_EXCEPTION")
             for future in done:
                 future.result()
         return [future.result() for future in running]
 
 
 def aside(work: Callable[[], Value]) -> Value:
-    """Let a thread do several stoppable calls and what lies between them: it is begun once."""
+    """Run a function with several interruptible calls in one thread."""
     if not begins_thread():
         return work()
     with Threads(1) as threads:
         future = threads.submit(work)
         while not future.done():
             with suppress(TimeoutError):
-                future.exception(_MOMENT)
+                future.exception(_POLL_INTERVAL)
         return future.result()
 
 
 def stoppable(kernel: Callable[..., Any], *arguments: Any, brief: bool = False) -> Any:
-    """Call a compiled function that takes the flag last, and returns its status (first)."""
+    """Call a compiled function that takes the flag last and returns its status (first)."""
     answer = in_threads(lambda _: kernel(*arguments, stop_flag()), (0,), 1, brief=brief)[0]
     refuse_stopped(answer[0] if isinstance(answer, tuple) else answer)
     return answer

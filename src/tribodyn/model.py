@@ -1,6 +1,6 @@
-"""Models by name, the options that they bring, and the registries in which they are found.
+"""Models selected by name, their options, and the registries that list them.
 
-An :class:`Option` tells everything about one value that a user may give: what it means, its unit,
+An :class:`Option` describes one value that a user may set: its meaning, its unit,
 its range and why, an example, the argument of the physics that it becomes. The keys of the case
 file are options, and so are the values that a friction law or a film formula takes. A model of a
 third party is one file: a function, decorated with :meth:`Registry.define` and its options. From
@@ -33,9 +33,9 @@ NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 @dataclass(frozen=True)
 class Option:
-    """What is known about one value that a user may give.
+    """Description of one value that a user may set.
 
-    Made by :func:`number`, :func:`numbers`, :func:`integer`, :func:`choice`, :func:`flag`,
+    Created by :func:`number`, :func:`numbers`, :func:`integer`, :func:`choice`, :func:`flag`,
     :func:`text` and :func:`file_path`. Ranges and defaults are in SI.
     """
 
@@ -48,15 +48,15 @@ class Option:
     low: float = -math.inf
     high: float = math.inf
     positive: bool = False  #: zero is refused although ``low`` is zero
-    pair: bool = False  #: a list of two is taken too, of pinion and wheel
-    origin: str = ""  #: why the limits are what they are
-    names: Names | None = None  #: names allowed, for a choice
-    meanings: Mapping[str, str] = field(default_factory=dict)  #: what the names mean
-    example: str = ""  #: TOML value shown where the value is missing
-    basis: str = ""  #: what the value is derived from where it is not given
-    argument: str = ""  #: argument of the physics that it becomes, where that is called otherwise
-    absent: str = ""  #: why the models that do not have this option have none
-    in_case: bool = True  #: whether it is a key of the case file, and not for programs alone
+    pair: bool = False  #: a list of two, for pinion and wheel, is accepted too
+    origin: str = ""  #: reason for the limits
+    names: Names | None = None  #: allowed names of a choice
+    meanings: Mapping[str, str] = field(default_factory=dict)  #: meanings of the names
+    example: str = ""  #: TOML value displayed where the value is missing
+    basis: str = ""  #: source of the value where it is not set
+    argument: str = ""  #: name of the argument that it is passed as, if that differs
+    absent: str = ""  #: reason why other models do not have this option
+    in_case: bool = True  #: whether it is a key of the case file, not only an argument in Python
 
     @property
     def required(self) -> bool:
@@ -76,7 +76,7 @@ class Option:
         return f"{value:.10g}" if isinstance(value, float) else str(value)
 
     def allowed(self) -> str:
-        """Range or names that are accepted, as one phrase."""
+        """Accepted range or names, as text."""
         if self.kind == "flag":
             return "true or false"
         if self.names is not None:
@@ -113,7 +113,7 @@ def number(
         Why the range is what it is.
     of : str
         Its quantity in :data:`tribodyn.nomenclature.QUANTITIES`, which knows symbol, unit, meaning
-        and example. Whatever is given beside it goes before.
+        and example. Arguments override them.
     meaning, unit, display_unit, symbol, example : str
         Of a quantity that is not in the nomenclature, or of this option alone.
     **more : object
@@ -129,18 +129,18 @@ def number(
     >>> slope.allowed()
     '0 to 1'
     """
-    known = _quantity(of)
+    quantity = _quantity(of)
     return Option(
         kind=more.pop("kind", "number"),
-        meaning=meaning or known.meaning,
+        meaning=meaning or quantity.meaning,
         default=default,
-        symbol=symbol or known.symbol,
-        unit=unit or known.unit,
-        display_unit=display_unit or unit or known.display_unit,
+        symbol=symbol or quantity.symbol,
+        unit=unit or quantity.unit,
+        display_unit=display_unit or unit or quantity.display_unit,
         low=low,
         high=high,
         origin=origin,
-        example=example or known.example or (f'"1 {display_unit or unit}"' if unit else "1.0"),
+        example=example or quantity.example or (f'"1 {display_unit or unit}"' if unit else "1.0"),
         **more,
     )
 
@@ -162,13 +162,13 @@ def integer(default: Any, low: int, high: int, origin: str, *, meaning: str, **m
 
 
 def choice(default: Any, names: Any, *, meaning: str, **more: Any) -> Any:
-    """Declare one of several names: a list, a mapping to what they mean, or a function of these."""
+    """Declare a choice of names: a list, a mapping to meanings, or a function returning these."""
     if callable(names):
         return Option("choice", meaning, default, names=names, **more)
-    known = tuple(names)
+    names_listed = tuple(names)
     meanings = dict(names) if isinstance(names, Mapping) else {}
-    more.setdefault("example", f'"{known[0]}"')
-    names = partial(list, known)
+    more.setdefault("example", f'"{names_listed[0]}"')
+    names = partial(list, names_listed)
     return Option("choice", meaning, default, names=names, meanings=meanings, **more)
 
 
@@ -188,7 +188,7 @@ def file_path(*, meaning: str, example: str) -> Any:
 
 
 def _declared(default: Any) -> Option:
-    """An option of which only the default is known."""
+    """Option with a default only."""
     if isinstance(default, Option):
         return default
     if default is None:
@@ -202,10 +202,10 @@ def _declared(default: Any) -> Option:
 
 
 class Model:
-    """What all models share: a name, a source, and options that know themselves.
+    """Base class of models: name, source and options.
 
     The dataclass of a model declares ``options`` as a mapping of names to :class:`Option` or to
-    bare defaults, and calls :meth:`declare` when it is made. Afterwards ``options`` holds the
+    bare defaults, and calls :meth:`declare` in its constructor. Afterwards ``options`` holds the
     defaults, None where a value must be given, and ``declared`` the options themselves.
     """
 
@@ -218,11 +218,11 @@ class Model:
     case_options: Mapping[str, Option]  #: those of them that are keys of the case file
 
     def __post_init__(self) -> None:
-        """Keep options and defaults apart."""
+        """Separate options from defaults."""
         self.declare(self.options)
 
     def declare(self, options: Mapping[str, Any]) -> None:
-        """Keep the options and their defaults apart."""
+        """Separate the options from their defaults."""
         declared = {name: _declared(option) for name, option in options.items()}
         defaults = {n: None if o.required else o.default for n, o in declared.items()}
         object.__setattr__(self, "declared", MappingProxyType(declared))
@@ -231,7 +231,7 @@ class Model:
         object.__setattr__(self, "case_options", MappingProxyType(keys))
 
     def nearest(self, option: str) -> str:
-        """Question for the option that was probably meant; empty if none is near."""
+        """Suggestion of the closest option name; empty if none is close."""
         return did_you_mean(option, self.declared)
 
 
@@ -239,12 +239,12 @@ _registries: list[Registry[Any]] = []
 
 
 def known_elsewhere() -> bool:
-    """Whether another process that loads this package knows all models that this one knows."""
+    """Whether a new process that imports this package has all models of this process."""
     return not any(registry.of_this_process() for registry in _registries)
 
 
 class Registry(Generic[T]):
-    """Named things of one kind, extended by the entry-point group of the same name.
+    """Registry of named items of one kind, extended by the entry-point group of the same name.
 
     Parameters
     ----------
@@ -282,16 +282,16 @@ class Registry(Generic[T]):
         self._searched = group is None
         self._entered: set[str] = set()
         self._added: set[str] = set()
-        self.version = 0  #: rises with everything that is registered
+        self.version = 0  #: incremented with every registration
         _registries.append(self)
 
     def register(self, name: str) -> Callable[[T], T]:
-        """Decorate a thing to make it known as ``name``."""
+        """Decorator that registers an item as ``name``."""
 
         def keep(item: T) -> T:
             self._items[name] = item
             self.version += 1
-            # A number or a table does not tell where it comes from, as a function does.
+            # A number or a table has no module, unlike a function.
             by = str(sys._getframe(1).f_globals.get("__name__", ""))
             (self._added.discard if by.startswith("tribodyn.") else self._added.add)(name)
             return item
@@ -299,13 +299,13 @@ class Registry(Generic[T]):
         return keep
 
     def define(self, name: str, **details: Any) -> Callable[[Callable[..., Any]], Any]:
-        """Decorate a function to make it a model of this kind; details are fields of its class."""
+        """Decorator that registers a function as a model; details are fields of the model class."""
 
         def keep(function: Callable[..., Any]) -> Callable[..., Any]:
             if self.model is None:
                 raise TypeError(f"a {self.kind} is registered, not defined")
-            made = {"name": name, self.part: function, "options": {}, **details}
-            self.register(name)(self.model(**made))
+            fields = {"name": name, self.part: function, "options": {}, **details}
+            self.register(name)(self.model(**fields))
             return function
 
         return keep
@@ -319,13 +319,13 @@ class Registry(Generic[T]):
             self.version += 1
 
     def of_this_process(self) -> bool:
-        """Whether it holds something that neither this package nor an entry point brought."""
-        own = {
+        """Whether it has items that come neither from this package nor from an entry point."""
+        added = {
             n: getattr(i, self.part, i) for n, i in self._items.items() if n not in self._entered
         }
-        modules = [getattr(made, "__module__", "tribodyn.") for made in own.values()]
+        modules = [getattr(item, "__module__", "tribodyn.") for item in added.values()]
         foreign = any(not module.startswith("tribodyn.") for module in modules)
-        return foreign or any(name in self._added for name in own)
+        return foreign or any(name in self._added for name in added)
 
     def names(self) -> list[str]:
         """All names, in order of registration."""
@@ -334,7 +334,7 @@ class Registry(Generic[T]):
         return list(self._items)
 
     def all(self) -> Mapping[str, T]:
-        """All things by name, in order of registration."""
+        """All items by name, in order of registration."""
         if not self._searched:
             self._search()
         return MappingProxyType(self._items)
@@ -344,13 +344,13 @@ class Registry(Generic[T]):
         return iter(self.names())
 
     def __contains__(self, name: object) -> bool:
-        """Tell whether ``name`` is known."""
+        """Whether ``name`` is registered."""
         if not self._searched:
             self._search()
         return name in self._items
 
     def __getitem__(self, name: str) -> T:
-        """Return the thing called ``name`` or raise :class:`InputError` naming the nearest."""
+        """Return the item called ``name``, or raise :class:`InputError` with the closest name."""
         if not self._searched:
             self._search()
         if isinstance(name, str) and name in self._items:
@@ -364,7 +364,7 @@ class Registry(Generic[T]):
 
 @dataclass(frozen=True)
 class Models:
-    """Names of the models of a registry that is loaded when it is first asked."""
+    """Names of the models of a registry that is imported at first use."""
 
     registry: Callable[[], Registry[Any]]
 
@@ -376,5 +376,5 @@ class Models:
 def model_choice(
     default: str, registry: Callable[[], Registry[Any]], *, meaning: str, **more: Any
 ) -> Any:
-    """Declare the name of a model; the chosen one brings its options into the same table."""
+    """Declare the choice of a model, whose options are keys of the same table."""
     return Option("choice", meaning, default, names=Models(cache(registry)), **more)

@@ -1,4 +1,4 @@
-"""A progress protocol, so that physics reports its advance and knows nothing of screens."""
+"""Progress protocol: computations report their progress, independent of its display."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["SILENT", "Progress"]
 
 
 class Progress(Protocol):
-    """Anything that can be told how far a job has come."""
+    """Receiver of the progress of a computation."""
 
     def start(self, task: str, total: int | None = None) -> None:
         """Begin a task of ``total`` steps (``None`` when unknown)."""
@@ -21,7 +21,7 @@ class Progress(Protocol):
 
 
 class _Silent:
-    """Progress that says nothing: the default everywhere."""
+    """Progress receiver that ignores everything: the default."""
 
     def start(self, task: str, total: int | None = None) -> None:
         """Begin a task silently."""
@@ -33,5 +33,5 @@ class _Silent:
         """End silently."""
 
 
-#: Progress that says nothing: the default everywhere.
+#: Progress receiver that ignores everything: the default.
 SILENT: Progress = _Silent()

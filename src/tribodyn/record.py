@@ -1,19 +1,19 @@
-"""Results that show themselves: fields with dimensions and units, and all that follows from them.
+"""Base class of results: fields with dimensions and units, and the methods derived from them.
 
-A result is a frozen dataclass made by :func:`record`. Its fields say what they are: a
+A result is a frozen dataclass created by :func:`record`. Each field is a
 :func:`quantity` over named dimensions with a unit, a :func:`fact` that belongs to the whole
-result, or a plain field that is not exported. From that come ``to_xarray``, equality, the table
-in a notebook, ``save`` and ``plot``. One line of text is all that a result class writes itself.
+result, or a plain field that is not exported. ``to_xarray``, equality, the table in a
+notebook, ``save`` and ``plot`` are derived from these declarations.
 
 >>> @record
 ... class Orders(Record):
 ...     order: Array = quantity("order", unit="1", axis=True)
 ...     rms: Array = quantity("order", unit="m")
 ...     teeth: int = fact()
->>> found = Orders(np.array([1.0, 2.0]), np.array([3e-6, 1e-6]), 24)
->>> found.to_xarray().rms.units
+>>> orders = Orders(np.array([1.0, 2.0]), np.array([3e-6, 1e-6]), 24)
+>>> orders.to_xarray().rms.units
 'm'
->>> found
+>>> orders
 Orders(order: 2, teeth 24)
 """
 
@@ -45,8 +45,8 @@ class Labels(NamedTuple):
     #: Unit; ``"@name"`` for the one in the field ``name``, None for that of the nomenclature.
     unit: str | None = None
     axis: bool = False  #: a coordinate rather than a variable
-    name: str = ""  #: name in the data set, where it is another one
-    of: str = ""  #: its quantity in the nomenclature, where that has another name
+    name: str = ""  #: name in the data set, if it differs
+    of: str = ""  #: its quantity in the nomenclature, if the name differs
 
 
 def quantity(
@@ -80,7 +80,7 @@ def record(cls: type[T]) -> type[T]:
 
 
 def labels_of(cls: type[Any]) -> dict[str, Labels]:
-    """How the fields of a record are exported, those that are not left out."""
+    """Labels of the exported fields of a record, by name."""
     return {each.name: each.metadata[_KEY] for each in fields(cls) if _KEY in each.metadata}
 
 
@@ -92,11 +92,11 @@ class Parts(NamedTuple):
     attributes: dict[str, Any]
 
     def over(self, names: tuple[str, str], units: tuple[str, str]) -> Parts:
-        """Call the dimensions ``first`` and ``second`` by names of their own, with their units."""
+        """Rename the dimensions ``first`` and ``second``, and set their units."""
         new = dict(zip(("first", "second"), names, strict=True))
         variables = {
-            name: (tuple(new.get(dim, dim) for dim in dims), values, told)
-            for name, (dims, values, told) in self.variables.items()
+            name: (tuple(new.get(dim, dim) for dim in dims), values, labels)
+            for name, (dims, values, labels) in self.variables.items()
         }
         axes = {
             new[old]: (new[old], self.coordinates[old][1], {"units": unit})
@@ -106,7 +106,7 @@ class Parts(NamedTuple):
 
 
 def drawn(name: str, text: str) -> Callable[[Any], Any]:
-    """Method that draws a result by a figure; the text says what is drawn."""
+    """Method that draws a result with a registered figure; the text is its docstring."""
 
     def method(self: Any) -> Any:
         return draw(self, name)
@@ -116,11 +116,11 @@ def drawn(name: str, text: str) -> Callable[[Any], Any]:
 
 
 class Record:
-    """Base of the results: what its fields declare is exported, shown, compared and drawn."""
+    """Base class of results: export, display, comparison and figures from the declared fields."""
 
     #: Variable that ``to_xarray`` returns as a DataArray with its coordinates; empty: a Dataset.
     ARRAY: ClassVar[str] = ""
-    #: Properties that are exported beside the fields.
+    #: Properties that are exported in addition to the fields.
     DERIVED: ClassVar[Mapping[str, Labels]] = {}
 
     def _array_name(self) -> str:
@@ -132,28 +132,28 @@ class Record:
         return [(each, labels[each.name]) for each in fields(self) if each.name in labels]  # type: ignore[arg-type]
 
     def _parts(self) -> Parts:
-        """Known variables, coordinates, attributes; a class adds what its fields are not."""
+        """Variables, coordinates and attributes of the fields; a subclass may add others."""
         parts = Parts({}, {}, {})
         for name, labels in {**labels_of(type(self)), **self.DERIVED}.items():
             value, exported = getattr(self, name), labels.name or name
             if value is None:
                 continue
             if not labels.dims:
-                # netCDF has no truth values.
+                # netCDF has no booleans.
                 parts.attributes[exported] = int(value) if isinstance(value, bool) else value
             else:
                 place = parts.coordinates if labels.axis else parts.variables
-                # xarray takes a tuple for one value.
-                given = list(value) if isinstance(value, tuple) else value
-                dims = labels.dims[len(labels.dims) - np.ndim(given) :]
-                place[exported] = (dims, given, self._told(name, labels))
+                # xarray would read a tuple as one value.
+                values = list(value) if isinstance(value, tuple) else value
+                dims = labels.dims[len(labels.dims) - np.ndim(values) :]
+                place[exported] = (dims, values, self._attributes(name, labels))
         return parts
 
-    def _told(self, name: str, labels: Labels) -> dict[str, str]:
-        known = QUANTITIES.get(labels.of or name) if labels.unit is None else None
-        if known is None:
+    def _attributes(self, name: str, labels: Labels) -> dict[str, str]:
+        quantity = QUANTITIES.get(labels.of or name) if labels.unit is None else None
+        if quantity is None:
             return self._units(labels.unit)
-        return {"units": known.unit or "1", "long_name": known.meaning}
+        return {"units": quantity.unit or "1", "long_name": quantity.meaning}
 
     def _units(self, unit: str | None) -> dict[str, str]:
         if unit is None:
@@ -161,12 +161,12 @@ class Record:
         return {"units": (getattr(self, unit[1:]) or "1") if unit.startswith("@") else unit}
 
     def _stored(self) -> Parts:
-        """Parts of the data set that holds it; those of one array tell of it alone."""
+        """Parts of the stored data set; global attributes of a single array become its own."""
         parts = self._parts()
         if not self.ARRAY:
             return parts
-        dims, values, told = parts.variables[self.ARRAY]
-        array = {self._array_name(): (dims, values, {**told, **parts.attributes})}
+        dims, values, labels = parts.variables[self.ARRAY]
+        array = {self._array_name(): (dims, values, {**labels, **parts.attributes})}
         return Parts(array, parts.coordinates, {})
 
     def to_xarray(self) -> Any:
@@ -193,15 +193,15 @@ class Record:
         Raises
         ------
         InputError
-            If the fields stand over different dimensions, so that they make no one table.
+            If the fields have different dimensions.
         """
         data = self.to_xarray()
         if hasattr(data, "data_vars"):
             shapes = {variable.dims for variable in data.data_vars.values()}
             if len(shapes) > 1:
-                told = ", ".join(" x ".join(dims) or "one value" for dims in sorted(shapes))
-                what = f"{type(self).__name__} is no one table: its fields stand over {told}"
-                why = "A table has one row for each value of its axes"
+                dimensions = ", ".join(" x ".join(dims) or "one value" for dims in sorted(shapes))
+                what = f"{type(self).__name__} has fields over different dimensions: {dimensions}"
+                why = "A table needs the same dimensions for all columns"
                 raise InputError(what, "", why, 'Take .to_xarray()[["name", ...]].to_dataframe()')
         return data.to_dataframe()
 
@@ -220,7 +220,7 @@ class Record:
         return draw(self, "", *arguments, **options)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the result to a netCDF file that appears whole or not at all.
+        """Write the result to a netCDF file, atomically.
 
         Parameters
         ----------
@@ -244,7 +244,7 @@ class Record:
         return self is other or _same_fields(self, other)
 
     def __hash__(self) -> int:
-        """Hash of the class and the facts: equal results have equal ones."""
+        """Hash of the class and the facts, equal for equal results."""
         facts = (getattr(self, each.name) for each, labels in self._labelled() if not labels.dims)
         return hash((type(self), *(value for value in facts if isinstance(value, str | int))))
 
@@ -255,7 +255,7 @@ class Record:
         return sizes
 
     def __repr__(self) -> str:
-        """One line: the sizes of the dimensions and the facts."""
+        """One line with the sizes of the dimensions and the facts."""
         sizes = [f"{name}: {size}" for name, size in self._sizes().items()]
         facts = [
             f"{each.name} {_short(getattr(self, each.name))}"
@@ -269,14 +269,14 @@ class Record:
         rows = []
         for each, labels in self._labelled():
             value = getattr(self, each.name)
-            unit = self._told(each.name, labels).get("units", "")
+            unit = self._attributes(each.name, labels).get("units", "")
             cells = (each.name, " x ".join(labels.dims), _short(value), unit)
             rows.append(cells)
         return html_table(repr(self), ("field", "over", "value", "unit"), rows)
 
 
 def html_table(title: str, head: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
-    """A table for notebooks; every text is escaped."""
+    """HTML table for notebooks; all text is escaped."""
 
     def line(cells: Iterable[Any], tag: str) -> str:
         return f"<tr>{''.join(f'<{tag}>{escape(str(cell))}</{tag}>' for cell in cells)}</tr>"
@@ -285,26 +285,28 @@ def html_table(title: str, head: Iterable[str], rows: Iterable[Iterable[Any]]) -
     return f"<b>{escape(title)}</b><table>{''.join(lines)}</table>"
 
 
-def _same_fields(one: Any, other: Any) -> bool:
-    return all(_equal(getattr(one, each.name), getattr(other, each.name)) for each in fields(one))
+def _same_fields(a: Any, b: Any) -> bool:
+    return all(_equal(getattr(a, each.name), getattr(b, each.name)) for each in fields(a))
 
 
-def _equal(one: Any, other: Any) -> bool:
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        a, b = np.asarray(one), np.asarray(other)
+def _equal(first: Any, second: Any) -> bool:
+    if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
+        a, b = np.asarray(first), np.asarray(second)
         numeric = a.dtype.kind in "fc" and b.dtype.kind in "fc"
         return bool(np.array_equal(a, b, equal_nan=numeric))
-    if isinstance(one, Mapping) and isinstance(other, Mapping):
-        return one.keys() == other.keys() and all(_equal(one[key], other[key]) for key in one)
-    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
-        return len(one) == len(other) and all(map(_equal, one, other))
-    if is_dataclass(one) and type(one) is type(other):
-        return _same_fields(one, other)
-    return bool(one == other) or (one != one and other != other)
+    if isinstance(first, Mapping) and isinstance(second, Mapping):
+        return first.keys() == second.keys() and all(
+            _equal(first[key], second[key]) for key in first
+        )
+    if isinstance(first, list | tuple) and isinstance(second, list | tuple):
+        return len(first) == len(second) and all(map(_equal, first, second))
+    if is_dataclass(first) and type(first) is type(second):
+        return _same_fields(first, second)
+    return bool(first == second) or (first != first and second != second)
 
 
 def _short(value: Any) -> str:
-    """A value in a few characters; of an array its range."""
+    """Short text of a value; for an array its range."""
     if isinstance(value, np.ndarray) and value.dtype.kind in "fiu" and value.size:
         if value.size == 1:
             return f"{value.item():.6g}"

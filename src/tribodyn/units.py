@@ -1,7 +1,7 @@
-"""Units at the border: text with a unit becomes an SI float, and back.
+"""Conversion between text with a unit and SI floats.
 
-``pint`` does the arithmetic, and is loaded only for a unit that is not in the small table of
-this field's usual ones (loading it costs more than everything else that reading a case does).
+``pint`` is imported only for units that are missing in the small table of common ones, since its
+import takes longer than reading a case.
 The field's spellings are known: ``Nm``, ``N·m``, ``r/min``, ``cSt``, ``cP``, ``mPa s``, ``µm``,
 ``N/(mm µm)``, ``kg mm2``, ``°``, ``°C``; plain pint reads ``150 Nm`` as a textile unit and rejects
 ``1400 r/min``. An angle is a kind of its own: ``15 Hz`` is no rotational speed, because only the
@@ -29,16 +29,16 @@ __all__ = [
 ]
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL | re.ASCII)
-#: Characters of a quantity.
+#: Most characters of a quantity.
 _LONGEST = 200
-#: A unit in plain spelling: names, whole factors, and powers of both that are one small number.
+#: A unit in plain spelling: names and integer factors, with small integer powers.
 _TOKEN = re.compile(
     r"\^\(?[+-]?\d(?:\.\d+)?(?![\d.])\)?(?!\^)|[A-Za-z_%][A-Za-z0-9_%]*"
     r"|\d{1,6}(?:\.\d{1,6})?(?![\w.])|[*/() ]",
     re.ASCII,
 )
 
-#: A number with a comma, or with thousands set apart, and what follows it.
+#: A number with a decimal comma or thousands separators, and the text after it.
 _GROUPED = re.compile(
     r"\s*([+-]?\d+(?:[.,'’\s]\d+)*(?:[eE][+-]?\d+)?)(?![\d/])\s*(.*?)\s*", re.DOTALL
 )
@@ -78,11 +78,11 @@ _SIGNS = {
 }
 _WORD = re.compile(
     r"(?<![A-Za-z0-9_°])(?:"
-    + "|".join(re.escape(word) for word in sorted(SPELLINGS, key=len, reverse=True))
+    + "|".join(re.escape(spelling) for spelling in sorted(SPELLINGS, key=len, reverse=True))
     + r")(?![A-Za-z0-9_])"
 )
 
-#: SI unit -> usual unit -> (times, per): SI value = value * times / per. Two whole numbers, so
+#: SI unit -> usual unit -> (times, per): SI value = value * times / per. Two integers, so
 #: that 4.5 mm is the float nearest to 0.0045. A test compares every entry with pint.
 _USUAL: dict[str, dict[str, tuple[float, float]]] = {
     "m": {"mm": (1, 1e3), "um": (1, 1e6), "cm": (1, 1e2), "nm": (1, 1e9)},
@@ -118,15 +118,15 @@ ZERO_CELSIUS, RPM = 273.15, math.pi / 30.0
 
 
 class UnitProblemError(ValueError):
-    """Text that is no quantity of the wanted dimension; the message says why and what to write."""
+    """Text is not a quantity of the required dimension; the message has the reason and the fix."""
 
 
-#: How numbers are written.
-NUMBERS = "the decimal sign is a point, not a comma, and thousands are not set apart"
+#: Rule for numbers.
+NUMBERS = "the decimal sign is a point, not a comma, and thousands have no separator"
 
 
 def quoted(texts: Iterable[str]) -> str:
-    """List texts in quotes, one or the other."""
+    """List texts in quotes, separated by or."""
     return " or ".join(f'"{text}"' for text in texts)
 
 
@@ -140,18 +140,18 @@ def _registry() -> Any:
 
 @lru_cache(maxsize=1024)
 def _plain(unit: str) -> str:
-    """Rewrite the field's spellings plainly: ``mPa s`` -> ``mPa*s``, ``kg mm2`` -> ``kg*mm^2``."""
+    """Rewrite common spellings of units: ``mPa s`` -> ``mPa*s``, ``kg mm2`` -> ``kg*mm^2``."""
     text = unit.strip()
     if len(text) > _LONGEST:
         raise UnitProblemError(f'"{text[:40]}..." is longer than any unit')
     for sign, plain in _SIGNS.items():
         text = text.replace(sign, plain)
-    text = _WORD.sub(lambda word: f" {SPELLINGS[word.group()]} ", text)
+    text = _WORD.sub(lambda match: f" {SPELLINGS[match.group()]} ", text)
     text = re.sub(r"([A-Za-z])(-?\d+)", r"\1^\2", text)
     text = re.sub(r"\s*([*/^()])\s*", r"\1", text.strip())
     text = re.sub(r"([A-Za-z0-9)])\s+(?=[A-Za-z(])|(?<=\))(?=[A-Za-z(])", r"\1*", text)
-    whole = re.fullmatch(r"\(([^()]*)\)", text)
-    return whole.group(1) if whole else text
+    bracketed = re.fullmatch(r"\(([^()]*)\)", text)
+    return bracketed.group(1) if bracketed else text
 
 
 def _usual(value: float, unit: str, si: str) -> float | None:
@@ -181,29 +181,29 @@ def _by_pint(value: float, unit: str, to: str) -> float:
     import pint
 
     registry = _registry()
-    # Nothing is handed on that pint would take for ever to compute, or read as a comment.
+    # Refuse units that pint would compute for ever or read as a comment.
     odd = _TOKEN.sub("", unit) or unit.count("(") > 5
     try:
         if odd:
             raise ValueError
         quantity = registry.Quantity(value, unit.replace("^", "**"))
         wanted = registry.Quantity(1.0, to.replace("^", "**"))
-    except Exception as error:  # pint lets its tokenizer's errors of many types through
-        raise UnitProblemError(f'"{unit}" is not a unit that tribodyn knows') from error
+    except Exception as error:  # the tokenizer of pint raises errors of many types
+        raise UnitProblemError(f'"{unit}" is not a known unit') from error
     message = (
         f'"{value:g} {unit}" cannot be expressed in {to or "a pure number"}: wrong kind of quantity'
     )
     try:
         if _angle_power(quantity) != _angle_power(wanted):
             raise UnitProblemError(f"{message} (one is an angle or a rotational speed)")
-        found = float(quantity.to(wanted.units).magnitude)
+        converted = float(quantity.to(wanted.units).magnitude)
     except (pint.DimensionalityError, pint.OffsetUnitCalculusError) as error:
         raise UnitProblemError(message) from error
     except ArithmeticError:
-        found = math.inf
-    if not math.isfinite(found):
-        raise UnitProblemError(f'"{value:g} {unit}" is beyond all numbers in {to}')
-    return found
+        converted = math.inf
+    if not math.isfinite(converted):
+        raise UnitProblemError(f'"{value:g} {unit}" is too large a number in {to}')
+    return converted
 
 
 def _angle_power(quantity: Any) -> float:
@@ -212,7 +212,7 @@ def _angle_power(quantity: Any) -> float:
 
 
 def readings(text: str) -> list[str]:
-    """What text whose number has a comma, or thousands set apart, may mean; empty for plain text.
+    """Possible meanings of a number with commas or separators; empty for a plain number.
 
     Parameters
     ----------
@@ -233,20 +233,20 @@ def readings(text: str) -> list[str]:
     if match is None or any(each.isdecimal() and not each.isascii() for each in text):
         return []
     number, unit = match.groups()
-    whole, power, exponent = re.fullmatch(r"([^eE]*)([eE]?)(.*)", number).groups()  # type: ignore[union-attr]
-    head, *rest = re.split(r"[.,'’\s]", whole)
-    signs = re.sub(r"[\d+-]", "", whole)
+    mantissa, power, exponent = re.fullmatch(r"([^eE]*)([eE]?)(.*)", number).groups()  # type: ignore[union-attr]
+    head, *rest = re.split(r"[.,'’\s]", mantissa)
+    signs = re.sub(r"[\d+-]", "", mantissa)
     in_threes = all(len(group) == 3 for group in rest)
-    apart = 0 < len(head.lstrip("+-")) <= 3 and head.lstrip("+-") != "0"
-    found = []
-    if signs and signs != "." and apart and in_threes and len(set(signs)) == 1:
-        found.append(head + "".join(rest))
+    short_head = 0 < len(head.lstrip("+-")) <= 3 and head.lstrip("+-") != "0"
+    meanings = []
+    if signs and signs != "." and short_head and in_threes and len(set(signs)) == 1:
+        meanings.append(head + "".join(rest))
     if signs == ",":
-        found.append(f"{head}.{rest[0].rstrip('0') or '0' if found else rest[0]}")
+        meanings.append(f"{head}.{rest[0].rstrip('0') or '0' if meanings else rest[0]}")
     elif len(signs) > 1 and signs[-1] in ".," and len(set(signs[:-1])) == 1 != len(set(signs)):
-        grouped = apart and all(len(group) == 3 for group in rest[:-1])
-        found += [f"{head}{''.join(rest[:-1])}.{rest[-1]}"] if grouped else []
-    return [f"{reading}{power}{exponent} {unit}".strip() for reading in found]
+        grouped = short_head and all(len(group) == 3 for group in rest[:-1])
+        meanings += [f"{head}{''.join(rest[:-1])}.{rest[-1]}"] if grouped else []
+    return [f"{reading}{power}{exponent} {unit}".strip() for reading in meanings]
 
 
 def split(text: str) -> tuple[float, str]:
@@ -275,8 +275,8 @@ def split(text: str) -> tuple[float, str]:
     if meant := readings(text):
         raise UnitProblemError(f'"{text}": {NUMBERS}; write {quoted(meant)}')
     if len(text) > _LONGEST:
-        told = f'"{text[:40]}..." has {len(text)} characters'
-        raise UnitProblemError(f"{told}, and a quantity at most {_LONGEST}")
+        length_text = f'"{text[:40]}..." has {len(text)} characters'
+        raise UnitProblemError(f"{length_text}, and a quantity at most {_LONGEST}")
     if any(each.isdecimal() and not each.isascii() for each in text):
         raise UnitProblemError(f'"{text}": the digits of a number are 0 to 9')
     match = _NUMBER.fullmatch(text)
@@ -354,14 +354,14 @@ def convert(value: float, unit: str, to: str) -> float:
     4.5
     """
     plain, wanted = _plain(unit), _plain(to)
-    for found in (_usual(value, plain, wanted), _from_si(value, plain, wanted)):
-        if found is not None:
-            return found
+    for converted in (_usual(value, plain, wanted), _from_si(value, plain, wanted)):
+        if converted is not None:
+            return converted
     return _by_pint(value, plain, wanted)
 
 
 def shown_in(value: float, unit: str) -> float:
-    """Return an SI value in one of its usual units; a unit that has no other is SI itself."""
+    """Return an SI value in one of its common units, or in SI if it has none."""
     plain = _plain(unit)
     if plain == "%":
         return 100.0 * value
@@ -370,7 +370,7 @@ def shown_in(value: float, unit: str) -> float:
 
 
 def usual_units(unit: str) -> list[str]:
-    """Units in which a quantity of this SI unit is usually written, that itself first."""
+    """Common units for an SI unit, the SI unit first."""
     return [unit, *_USUAL.get(unit, {}), *(["degC"] if unit == "K" else [])]
 
 
@@ -391,8 +391,8 @@ def format_quantity(value: float, unit: str, display_unit: str | None = None) ->
     >>> format_quantity(0.0045, "m", "mm")
     '4.5 mm'
     """
-    shown = display_unit or unit
-    return f"{convert(float(value), unit, shown):.10g} {shown}".strip()
+    target_unit = display_unit or unit
+    return f"{convert(float(value), unit, target_unit):.10g} {target_unit}".strip()
 
 
 guard(__name__)

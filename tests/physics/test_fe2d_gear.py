@@ -115,7 +115,7 @@ def patch_split(gear: SpurGear, size: MeshSize, rho: np.ndarray, half_width: flo
     mesh = tooth_mesh(gear, 0.5 * gear.bore_diameter, size)
     ring = Ring(mesh, plane_stress(1.0, 0.3))
     loads = flank_loads(gear, mesh, rho, half_width)
-    mean = np.diagonal(ring.seen(ring.solve(loads.forces), loads.forces, [0])[0])
+    mean = np.diagonal(ring.weighted_displacements(ring.solve(loads.forces), loads.forces, [0])[0])
     # Hertz: the middle lies 1/(2 pi E) deeper than the mean over the pressure
     middle = mean + 0.5 / math.pi
     return middle - 2.0 / math.pi * (np.log(2.0 * loads.depth / half_width) - 0.5 * 0.3)
@@ -143,7 +143,7 @@ def point_split(
     direction = np.broadcast_to(middle.direction, (count, 2))
     elasticity = plane_stress(1.0, 0.3)
     forces = remainder_loads(mesh, sources.place, direction, depth, elasticity)
-    remainder = ring.seen(ring.solve(forces), middle.forces, [0])[0][:, 0]
+    remainder = ring.weighted_displacements(ring.solve(forces), middle.forces, [0])[0][:, 0]
     half_plane = half_plane_displacement(middle.place - sources.place, direction, depth, 0.3)
     normal = half_plane @ middle.direction[0]
     # what the half plane does at the same distance on its straight edge is the local part
@@ -215,7 +215,9 @@ def test_reciprocal_theorem_between_different_places(influences):
     forces = remainder_loads(mesh, *loads[:3], plane_stress(1.0, 0.3))
     solution = ring.solve(forces)
     for n in (1, 2, 3):
-        onward, back = (ring.seen(solution, loads.forces, [k])[0] for k in (n, -n))
+        onward, back = (
+            ring.weighted_displacements(solution, loads.forces, [k])[0] for k in (n, -n)
+        )
         assert onward == pytest.approx(back.T, rel=1e-4)
 
 
@@ -228,10 +230,13 @@ def test_left_flank_mirrors_the_right_one():
     left[mesh.tooth[-1]] = right[mesh.tooth[0]] * np.array([-1.0, 1.0])[:, None]
     right, left = right.reshape(-1, 3), left.reshape(-1, 3)
     for n in (1, 2):
-        ours = ring.seen(ring.solve(right), right, [n])[0]
-        mirrored = ring.seen(ring.solve(left), left, [-n])[0]
+        ours = ring.weighted_displacements(ring.solve(right), right, [n])[0]
+        mirrored = ring.weighted_displacements(ring.solve(left), left, [-n])[0]
         assert mirrored == pytest.approx(ours, rel=2e-4)
-        assert np.abs(ring.seen(ring.solve(left), left, [n])[0] / ours - 1.0).max() > 0.01
+        assert (
+            np.abs(ring.weighted_displacements(ring.solve(left), left, [n])[0] / ours - 1.0).max()
+            > 0.01
+        )
 
 
 def test_compliance_falls_with_the_modulus(pair, influences):
@@ -329,8 +334,11 @@ def test_nodes_suffice_for_the_interpolation(pair, influences):
     ring = Ring(mesh, plane_stress(1.0, 0.3))
     loads = flank_loads(gear, mesh, middles)
     solution = ring.solve(remainder_loads(mesh, *loads[:3], plane_stress(1.0, 0.3)))
-    exact = np.diagonal(ring.seen(solution, loads.forces, [0])[0]) / STEEL.youngs_modulus
+    exact = (
+        np.diagonal(ring.weighted_displacements(solution, loads.forces, [0])[0])
+        / STEEL.youngs_modulus
+    )
     assert influences[1].at(middles) == pytest.approx(exact, rel=3e-4)
-    cross = ring.seen(solution, loads.forces, [-1])[0] / STEEL.youngs_modulus
+    cross = ring.weighted_displacements(solution, loads.forces, [-1])[0] / STEEL.youngs_modulus
     found = influences[1].between(middles[:, None], middles[None, :], 1)
     assert found == pytest.approx(cross, rel=1e-4)

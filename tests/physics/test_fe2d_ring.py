@@ -140,7 +140,7 @@ def chained(mesh: SectorMesh, copies: int, closed: bool) -> tuple[csc_array, np.
 def solved_in_full(mesh: SectorMesh, copies: int, closed: bool, forces: np.ndarray) -> np.ndarray:
     """Displacements of all copies under forces on the copy in the middle, shape (copies, ...)."""
     matrix, number = chained(mesh, copies, closed)
-    held = number[:, (2 * mesh.held[:, None] + np.arange(2)).ravel()]
+    held = number[:, (2 * mesh.fixed[:, None] + np.arange(2)).ravel()]
     free = np.setdiff1d(np.unique(number), held)
     load = np.zeros((number.size, forces.shape[1]))
     load[number[copies // 2]] = forces
@@ -154,7 +154,7 @@ def test_the_harmonics_give_the_ring_assembled_in_full(solved):
     full = solved_in_full(mesh, mesh.count, True, forces)
     middle = mesh.count // 2
     for sector in range(mesh.count):
-        ours = ring.seen(solution, forces, [sector])[0]
+        ours = ring.weighted_displacements(solution, forces, [sector])[0]
         theirs = full[(middle + sector) % mesh.count].T @ forces
         assert ours == pytest.approx(theirs, rel=1e-9), sector
 
@@ -163,7 +163,9 @@ def test_the_harmonics_give_the_ring_assembled_in_full(solved):
 def test_displacements_of_a_sector_are_what_weights_see(solved, sector):
     _, ring, forces, solution = solved
     moved = ring.displacement(solution, sector)
-    assert moved.T @ forces == pytest.approx(ring.seen(solution, forces, [sector])[0], rel=1e-10)
+    assert moved.T @ forces == pytest.approx(
+        ring.weighted_displacements(solution, forces, [sector])[0], rel=1e-10
+    )
 
 
 def test_neighbouring_sectors_move_together_at_their_cut(solved):
@@ -185,13 +187,13 @@ def test_work_of_the_load_is_the_energy_of_the_elements(solved):
         moved = ring.displacement(solution, sector)[:, 0].reshape(-1, 2)[mesh.elements]
         moved = moved.reshape(len(mesh.elements), 18)
         energy += 0.5 * (moved * np.einsum("eij,ej->ei", matrices, moved)).sum()
-    work = 0.5 * ring.seen(solution, forces, [0])[0][0, 0]
+    work = 0.5 * ring.weighted_displacements(solution, forces, [0])[0][0, 0]
     assert energy == pytest.approx(work, rel=1e-9)
 
 
 def test_reciprocal_theorem(solved):
     _, ring, forces, solution = solved
-    onward, back = (ring.seen(solution, forces, [n])[0] for n in (2, -2))
+    onward, back = (ring.weighted_displacements(solution, forces, [n])[0] for n in (2, -2))
     assert onward == pytest.approx(back.T, rel=1e-9)
     assert np.abs(onward - onward.T).max() > 1e-3 * np.abs(onward).max()
 
@@ -215,7 +217,9 @@ def test_a_segment_of_three_teeth_is_no_gear(solved):
     # The mutation that the whole ring guards against.
     mesh, ring, forces, solution = solved
     segment = solved_in_full(mesh, 3, False, forces)
-    own = np.diagonal(segment[1].T @ forces) / np.diagonal(ring.seen(solution, forces, [0])[0])
-    cross = (segment[2].T @ forces) / ring.seen(solution, forces, [1])[0]
+    own = np.diagonal(segment[1].T @ forces) / np.diagonal(
+        ring.weighted_displacements(solution, forces, [0])[0]
+    )
+    cross = (segment[2].T @ forces) / ring.weighted_displacements(solution, forces, [1])[0]
     assert np.all(own > 1.05)
     assert np.all(cross > 1.5)

@@ -60,7 +60,7 @@ def test_another_study_is_refused_or_begun_anew(tmp_path: Path, part: str) -> No
     first.keep("0", 1.0)
     first.close()
     other = {**_STUDY, part: "other"}
-    with pytest.raises(InputError, match=r"unfinished study lies here.*--force"):
+    with pytest.raises(InputError, match=r"another unfinished study.*--force"):
         Members(tmp_path / "s").begin(other)
     with Members(tmp_path / "s", anew=True).begin(_STUDY) as same:
         assert same.get("0") == 1.0
@@ -70,7 +70,7 @@ def test_another_study_is_refused_or_begun_anew(tmp_path: Path, part: str) -> No
 
 def test_a_living_process_has_the_place_alone(tmp_path: Path) -> None:
     with Members(tmp_path / "s").begin(_STUDY):
-        with pytest.raises(InputError, match="taken"):
+        with pytest.raises(InputError, match="directory is in use"):
             Members(tmp_path / "s", anew=True).begin(_STUDY)
         clear_leftovers(tmp_path / "s")
         assert (tmp_path / ".s.members").is_dir()

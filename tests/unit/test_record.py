@@ -125,7 +125,7 @@ def test_a_report_is_written_by_whoever_registered_for_the_class(tmp_path) -> No
         assert write_report_of(level(), tmp_path / "level.txt").read_text() == repr(level())
     finally:
         REPORTS._items.pop("Level")
-    with pytest.raises(InputError, match="no report tells of a Line"):
+    with pytest.raises(InputError, match="there is no report of a Line"):
         write_report_of(Line(np.ones(1), np.ones(1), ""), tmp_path / "line.txt")
 
 

@@ -1,9 +1,9 @@
-"""Arguments of public functions, held against their annotations.
+"""Validation of the arguments of public functions by their annotations.
 
-| Module | What it answers |
+| Module | Content |
 |---|---|
-| `annotations` | Which values does an annotation ask for? |
-| `reading` | Which argument is wrong, and what did a function stumble over? |
+| `annotations` | values that an annotation accepts |
+| `reading` | validated calls, and messages about wrong arguments |
 """
 
 from __future__ import annotations

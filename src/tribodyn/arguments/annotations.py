@@ -1,7 +1,7 @@
-"""What annotations ask for, as tests that values pass or not.
+"""Convert annotations to checks of values.
 
-They are mild: what may work is let through, and held against the annotation more strictly only
-after a function stumbled over it.
+The checks are lenient: values that may work are passed on, and compared strictly with the
+annotation only after a function has failed.
 """
 
 from __future__ import annotations
@@ -23,46 +23,46 @@ from numpy.typing import ArrayLike
 from tribodyn.errors import ENDLESS
 
 TINY = 1.0 / ENDLESS
-#: Classes of these modules stand for no object of a mechanism.
+#: Classes of these modules are no objects of this package.
 _PLAIN = {"builtins", "numpy", "datetime", "decimal", "fractions", "pathlib"}
 _USUAL = frozenset((float, int, np.float64))
 _ITEMS = {np.float64: "fiu", np.int64: "iu", np.bool_: "b", np.complex128: "fiuc"}
 _ARRAYS = {
     "b": "an array of True and False",
-    "iu": "an array of whole numbers",
+    "iu": "an array of integers",
     "fiu": "numbers, in an array or a list of even rows",
 }
 
 
 class ValueRefusedError(TypeError):
-    """The kind is right, the value is not; the message says which values are."""
+    """The type is right but the value is not; the message says which values are accepted."""
 
 
 class Wanted(NamedTuple):
-    """What an annotation asks for.
+    """Check of the values that an annotation accepts.
 
-    ``fits`` knows the usual values, in a tenth of a microsecond; ``read`` knows all that belong
-    there and converts some of them, and raises TypeError for what does not.
+    ``fits`` accepts the common values, in a tenth of a microsecond; ``read`` accepts all valid
+    values, converts some of them, and raises TypeError for others.
     """
 
-    words: str
+    description: str
     read: Callable[[Any], Any]
     types: frozenset[type] = frozenset()
     numbers: tuple[float, float] = (1.0, -1.0)
     kinds: str = ""
 
     def fits(self) -> Callable[[Any], bool]:
-        """Quick look at a value."""
-        known, (least, most), kinds = self.types, self.numbers, self.kinds
-        if not self.words:
+        """Quick check of a value."""
+        accepted_types, (least, most), kinds = self.types, self.numbers, self.kinds
+        if not self.description:
             return lambda value: True
 
         def quick(value: Any) -> bool:
             kind = type(value)
             if kind in _USUAL:
                 sized = least < value < most or value == 0 or -most < value < -least
-                return kind in known and sized
-            return kind in known or (kind is np.ndarray and value.dtype.kind in kinds)
+                return kind in accepted_types and sized
+            return kind in accepted_types or (kind is np.ndarray and value.dtype.kind in kinds)
 
         return quick
 
@@ -73,19 +73,19 @@ def _require(holds: Any) -> None:
 
 
 def _array(value: Any, kinds: str) -> Any:
-    """Array of numbers of one of these kinds; entries may be NaN, for nothing there."""
+    """Array of numbers of one of these kinds; entries may be NaN for missing values."""
     array = np.asarray(value)
     if array.dtype.kind == "O" and all(isinstance(item, Real | Decimal) for item in array.flat):
         _require(not any(isinstance(item, bool) for item in array.flat))
-        array = array.astype(float)  # fractions, whole numbers of more than 64 bits
+        array = array.astype(float)  # fractions, integers of more than 64 bits
     if not array.size and array.dtype.kind == "f" and kinds in ("b", "iu"):
         array = array.astype(bool if kinds == "b" else np.int64)
     _require(array.dtype.kind in kinds)
     return array
 
 
-def _number(value: Any, sized: int, whole: bool, several: bool) -> Any:
-    """One number; ``several`` lets arrays of numbers through, as they are."""
+def _number(value: Any, sized: int, integer: bool, several: bool) -> Any:
+    """One number; with ``several`` arrays of numbers are returned unchanged."""
     number = _array(value, "fiu")
     if number.ndim and several:
         return value
@@ -95,7 +95,7 @@ def _number(value: Any, sized: int, whole: bool, several: bool) -> Any:
         raise ValueRefusedError(
             f"Wanted: a finite number, zero or between {TINY:g} and {ENDLESS:g} in size"
         )
-    if whole:
+    if integer:
         _require(value == value and int(value) == value)
         return int(value)
     return value
@@ -107,25 +107,25 @@ def _numbers(kinds: str, sized: int, as_given: bool) -> Wanted:
     def read(value: Any) -> Any:
         array = _array(value, kinds)
         if sized and not array.ndim and array != array:
-            raise ValueRefusedError("Wanted: numbers; NaN is none")
+            raise ValueRefusedError("Wanted: numbers, not NaN")
         return value if as_given else array
 
-    words = _ARRAYS.get(kinds, _ARRAYS["fiu"])
+    description = _ARRAYS.get(kinds, _ARRAYS["fiu"])
     if as_given:
-        return Wanted(words, read, _USUAL, (0.0, 1e300), kinds)
-    return Wanted(words, read, kinds=kinds)
+        return Wanted(description, read, _USUAL, (0.0, 1e300), kinds)
+    return Wanted(description, read, kinds=kinds)
 
 
-def _that(words: str, holds: Callable[[Any], Any], *kinds: type) -> Wanted:
+def _that(description: str, holds: Callable[[Any], Any], *kinds: type) -> Wanted:
     def read(value: Any) -> Any:
         _require(holds(value))
         return value
 
-    return Wanted(words, read, frozenset(kinds))
+    return Wanted(description, read, frozenset(kinds))
 
 
 def _instance(kind: type, strict: bool) -> Wanted:
-    """Objects of a class; others may stand for them until a function stumbles over one."""
+    """Objects of a class; other objects are refused only after a function has failed."""
 
     def holds(value: Any) -> bool:
         if strict and not getattr(kind, "_is_protocol", False):
@@ -138,22 +138,22 @@ def _instance(kind: type, strict: bool) -> Wanted:
 
 
 def _items(hint: Any, origin: type, strict: bool) -> Wanted:
-    """Lists, tuples and mappings of what is wanted."""
+    """Lists, tuples and mappings of checked items."""
     kinds = [kind for kind in typing.get_args(hint) if kind is not ...]
-    # Entries may be NaN, for what is not there, as those of arrays may.
+    # Entries may be NaN for missing values, as in arrays.
     each = [wanted(kind, 0, strict) for kind in kinds]
-    quick = [one.fits() for one in each]
+    quick = [item_kind.fits() for item_kind in each]
     fixed = origin is tuple and bool(each) and ... not in typing.get_args(hint)
 
     def read(value: Any) -> Any:
         if issubclass(origin, Mapping):
             _require(isinstance(value, Mapping))
-            for items, one in zip((value, value.values()), each, strict=False):
+            for items, item_kind in zip((value, value.values()), each, strict=False):
                 for item in items:
-                    one.read(item)
+                    item_kind.read(item)
             return value
         if each and not strict and not isinstance(value, Iterable):
-            return each[0].read(value)  # one alone, which some functions take too
+            return each[0].read(value)  # a single item, which some functions accept
         texts = isinstance(value, str) and kinds == [str]
         _require(isinstance(value, Iterable) and not isinstance(value, bytes))
         _require(texts or not isinstance(value, str))
@@ -165,25 +165,28 @@ def _items(hint: Any, origin: type, strict: bool) -> Wanted:
         _require(not fixed or len(value) == len(each))
         count = 1 if fixed else len(value)
         items = tuple(
-            item if fits(item) else one.read(item)
-            for item, one, fits in zip(value, each * count, quick * count, strict=False)
+            item if fits(item) else item_kind.read(item)
+            for item, item_kind, fits in zip(value, each * count, quick * count, strict=False)
         )
         return items if origin is tuple and each and not isinstance(value, tuple) else value
 
-    inner = [re.sub(r"^a (list|[\w ]+$)", r"\1s", one.words or "values") for one in each]
-    words = "a mapping" if issubclass(origin, Mapping) else "a list"
-    return Wanted(f"{words} of {', '.join(inner)}" if inner else words, read)
+    inner = [
+        re.sub(r"^a (list|[\w ]+$)", r"\1s", item_kind.description or "values")
+        for item_kind in each
+    ]
+    container = "a mapping" if issubclass(origin, Mapping) else "a list"
+    return Wanted(f"{container} of {', '.join(inner)}" if inner else container, read)
 
 
 def _any_of(hints: Iterable[Any], sized: int, strict: bool) -> Wanted:
     several = [wanted(hint, sized, strict) for hint in hints]
-    calls = any(one.words.startswith("a function") for one in several)
+    calls = any(alternative.description.startswith("a function") for alternative in several)
 
     def read(value: Any) -> Any:
         fault = TypeError()
-        for one in several:
+        for alternative in several:
             try:
-                return one.read(value)
+                return alternative.read(value)
             except ValueRefusedError as refused:
                 fault = refused
             except (TypeError, ValueError, OverflowError):
@@ -192,10 +195,17 @@ def _any_of(hints: Iterable[Any], sized: int, strict: bool) -> Wanted:
             return [read(item) for item in value] and value  # functions and numbers, in turn
         raise fault
 
-    words = " or ".join(dict.fromkeys(one.words for one in several if one.words))
-    known, kinds = frozenset().union(*(one.types for one in several)), {o.kinds for o in several}
-    numbers = [one.numbers for one in several if one.types & {float, int}]
-    return Wanted(words, read, known, numbers[0] if numbers else (1.0, -1.0), "".join(kinds))
+    description = " or ".join(
+        dict.fromkeys(alternative.description for alternative in several if alternative.description)
+    )
+    accepted_types, kinds = (
+        frozenset().union(*(alternative.types for alternative in several)),
+        {o.kinds for o in several},
+    )
+    numbers = [alternative.numbers for alternative in several if alternative.types & {float, int}]
+    return Wanted(
+        description, read, accepted_types, numbers[0] if numbers else (1.0, -1.0), "".join(kinds)
+    )
 
 
 def _function(count: int, strict: bool) -> Wanted:
@@ -210,8 +220,8 @@ def _function(count: int, strict: bool) -> Wanted:
             return callable(value)
         return True
 
-    words = f"a function of {count} value{'s'[: count - 1]}"
-    return _that(words, holds if strict else callable, types.FunctionType)
+    description = f"a function of {count} value{'s'[: count - 1]}"
+    return _that(description, holds if strict else callable, types.FunctionType)
 
 
 ANYTHING = Wanted("", lambda value: value)
@@ -226,18 +236,18 @@ _SIMPLE = {
 
 
 def wanted(hint: Any, sized: int, strict: bool = False, several: bool = False) -> Wanted:
-    """What an annotation asks for; ``strict`` for a closer look, after something went wrong.
+    """Check of an annotation; ``strict`` after a function has failed.
 
     ``sized`` is 0 for records, whose numbers may be NaN, 1 for methods, and 2 for functions;
-    ``several`` lets an array stand for a number.
+    ``several`` accepts an array for a number.
     """
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     every, kind = set(typing.get_args(ArrayLike)), origin or hint
     if hint in (float, int):
         several = several and hint is float and not strict
-        read = functools.partial(_number, sized=sized, whole=hint is int, several=several)
-        words, usual = ("a whole number", {int}) if hint is int else ("a number", _USUAL)
-        return Wanted(words, read, frozenset(usual), (TINY, ENDLESS))
+        read = functools.partial(_number, sized=sized, integer=hint is int, several=several)
+        description, usual = ("a whole number", {int}) if hint is int else ("a number", _USUAL)
+        return Wanted(description, read, frozenset(usual), (TINY, ENDLESS))
     if hint in _SIMPLE:
         return _SIMPLE[hint]
     if hint == ArrayLike:
@@ -245,17 +255,19 @@ def wanted(hint: Any, sized: int, strict: bool = False, several: bool = False) -
     if isinstance(hint, typing.TypeVar):
         return _any_of(hint.__constraints__, sized, strict) if hint.__constraints__ else ANYTHING
     if origin in (typing.Union, types.UnionType):
-        whole = [ArrayLike] if every <= set(args) else []
-        rest = [arg for arg in args if not whole or arg not in every]
-        return ANYTHING if {Any, object} & set(rest) else _any_of([*whole, *rest], sized, strict)
+        array_like = [ArrayLike] if every <= set(args) else []
+        others = [arg for arg in args if not array_like or arg not in every]
+        if {Any, object} & set(others):
+            return ANYTHING
+        return _any_of([*array_like, *others], sized, strict)
     if origin is np.ndarray:
         item = typing.get_args(args[1])[0]
         # Methods and records also serve the package itself, for complex and logical arrays too.
         kinds = _ITEMS.get(item, "") + "cb" * (sized < 2)
         return _numbers(kinds, sized, as_given=False) if item in _ITEMS else ANYTHING
     if origin is typing.Literal:
-        words = ", ".join(f'"{v}"' if isinstance(v, str) else str(v) for v in args)
-        return _that(words, lambda value: isinstance(value, str | int) and value in args)
+        description = ", ".join(f'"{v}"' if isinstance(v, str) else str(v) for v in args)
+        return _that(description, lambda value: isinstance(value, str | int) and value in args)
     if kind is abc.Callable:
         count = len(args[0]) if args and isinstance(args[0], list) else None
         return _that("a function", callable) if count is None else _function(count, strict)

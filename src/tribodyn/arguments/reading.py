@@ -1,4 +1,4 @@
-"""Public functions that read their arguments by their annotations before they compute.
+"""Public functions that check their arguments against their annotations.
 
 A page of public names ends with :func:`guard`. Its functions, constructors and methods then refuse
 values of another kind than they are annotated with: texts, truth values, complex numbers, numbers
@@ -30,16 +30,16 @@ from tribodyn.errors import Argument, ComputationError, InputError, Problem, sho
 
 _FUNCTIONS = (types.FunctionType, functools._lru_cache_wrapper)
 _PATHS = map(sysconfig.get_path, ("stdlib", "purelib", "platlib"))
-#: Where the frames of a traceback lie that are not the user's.
+#: Folders of traceback frames that are not user code.
 _HOMES = (str(Path(__file__).parents[1]), *_PATHS, "<")
 _PACKAGES = re.compile(r"[/\\](site|dist)-packages[/\\]")
-#: Parameters of functions that leave files behind.
+#: Parameters of functions that write files.
 _WRITES = {"path", "directory", "folder", "place", "force"}
 #: What NumPy does about numbers out of range, whatever the user's script has set: what is computed
 #: here rounds to zero where it does so on purpose.
 _USUAL: dict[str, Any] = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
 _REFUSED = (TypeError, ValueError, OverflowError)
-#: Modules of the package, among those that call what is guarded.
+#: Modules of the package, which call guarded functions without checks.
 _INSIDE = f"{__name__.partition('.')[0]}."
 
 
@@ -66,7 +66,7 @@ def _makes(function: Any) -> bool:
 
 
 def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict[str, Wanted]:
-    """What the parameters of a function want, several that share a name too."""
+    """Checks of the parameters of a function by name."""
     homes = [each.__module__ for each in getattr(owner, "__mro__", [])]
     names = _Names([*homes, getattr(function, "__globals__", {}).get("__name__", "")])
     wants, makes = {}, _makes(function)
@@ -85,17 +85,17 @@ def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict
     return wants
 
 
-#: What documentation marks up, and a message does not.
+#: Markup of documentation, which messages do not have.
 _MARKUP = re.compile(r"(?::\w+:)?`+~?([^`]+)`+")
 
 
 @functools.cache
 def _entries(documented: Any) -> dict[str, str]:
-    """What a docstring says of its parameters."""
+    """Entries of the parameters in a docstring."""
     pattern = r"^ *(?=((?:\w+, )*\w+) : (.*\n +.*(?:\n +[a-z(].*)*))"
     entries: dict[str, str] = {}
-    whole = _MARKUP.sub(r"\1", inspect.getdoc(documented) or "")
-    for names, text in re.findall(pattern, whole, re.MULTILINE):
+    docstring = _MARKUP.sub(r"\1", inspect.getdoc(documented) or "")
+    for names, text in re.findall(pattern, docstring, re.MULTILINE):
         for name in names.split(", "):
             entries.setdefault(name, re.sub(r"\s+", " ", text.replace("\n", "|", 1)))
     return entries
@@ -106,56 +106,58 @@ def _entry(documented: Any, name: str) -> str:
 
 
 def _fault(documented: Any, name: str, value: Any, want: Wanted) -> Problem | None:
-    """Fault of one argument, with unit and meaning as documented; None if it has none."""
+    """Problem of one argument, with documented unit and meaning; None if it is valid."""
     try:
         want.read(value)
     except ValueRefusedError as refused:
         why = str(refused)
     except _REFUSED:
-        why = f"Wanted: {want.words}"
+        why = f"Wanted: {want.description}"
     else:
         return None
     kind, _, text = _entry(documented, name).partition("|")
     unit, meaning = re.search(r"\[(.+?)\]", kind), re.split(r"[.;:](?:\s|$)", text.strip())[0]
     remedy = f"Give {name}{f' in {unit[1]}' if unit else ''}{': ' * bool(meaning)}{meaning}"
-    if isinstance(value, str) and "number" in want.words:
+    if isinstance(value, str) and "number" in want.description:
         remedy += f". Functions take numbers in {unit[1] if unit else 'SI units'}, not texts"
-    given = f'"{value[:60]}"' if isinstance(value, str) else _shown(value)
+    shown_value = f'"{value[:60]}"' if isinstance(value, str) else _short_repr(value)
     owner = f"{documented.__name__}." if isinstance(documented, type) else ""
-    return Problem(f"{name} = {given}", Argument(owner + name), why, remedy)
+    return Problem(f"{name} = {shown_value}", Argument(owner + name), why, remedy)
 
 
-def _shown(value: Any) -> str:
+def _short_repr(value: Any) -> str:
     try:
         return shortened(repr(value), 60)
-    except Exception:  # objects of wrong things cannot always be shown
+    except Exception:  # __repr__ of a foreign object may fail
         return f"an object of the class {type(value).__name__}"
 
 
 def _is_own(error: Exception) -> bool:
-    """Whether an error is one of the package, or a warning that is asked to be an error."""
+    """Whether an error comes from the package, or is a warning turned into an error."""
     return type(error).__module__.startswith("tribodyn") or isinstance(error, Warning | ImportError)
 
 
 class _Reader:
-    """What one function is given, read by its annotations, and what it stumbles over."""
+    """Checks of the arguments of one function, and explanation of its failures."""
 
     def __init__(self, function: Callable[..., Any], owner: type | None) -> None:
         self.function, self.owner, self.wanted = function, owner, _parameters(function, owner)
         every = inspect.signature(function).parameters.values()
         self.names = [each.name for each in every if each.kind <= each.VAR_POSITIONAL]
         self.several = any(each.kind is each.VAR_POSITIONAL for each in every)
-        self.fits = {name: one.fits() for name, one in self.wanted.items()}
+        self.fits = {name: want.fits() for name, want in self.wanted.items()}
         self.first = [self.fits[name] for name in self.names]
 
-    def given(self, args: Sequence[Any], named: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    def named_values(
+        self, args: Sequence[Any], named: Mapping[str, Any]
+    ) -> Iterator[tuple[str, Any]]:
         """Arguments with the names of their parameters."""
         more = len(args) - len(self.names) if self.several else 0
         names = [*self.names, *self.names[-1:] * more]
         return chain(zip(names, args, strict=False), named.items())
 
     def fitting(self, args: Any, named: dict[str, Any]) -> bool:
-        """Whether a quick look finds the kinds that are wanted."""
+        """Whether all arguments pass the quick check."""
         if self.several:
             return False
         for quick, value in zip(self.first, args, strict=False):
@@ -167,13 +169,13 @@ class _Reader:
     def read(self, args: Any, named: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         wants = self.wanted
         try:
-            first = [wants[name].read(value) for name, value in self.given(args, {})]
-            rest = {k: wants[k].read(v) if k in wants else v for k, v in named.items()}
+            first = [wants[name].read(value) for name, value in self.named_values(args, {})]
+            by_name = {k: wants[k].read(v) if k in wants else v for k, v in named.items()}
         except _REFUSED:
             refused = InputError(self.faults(args, named, wants))
         else:
-            return (*first, *args[len(first) :]), rest
-        # What the function itself says of it knows more; what writes is not begun.
+            return (*first, *args[len(first) :]), by_name
+        # The message of the function itself is more specific; functions that write are not called.
         if not _WRITES & set(wants):
             try:
                 self.function(*args, **named)
@@ -183,12 +185,12 @@ class _Reader:
         raise refused
 
     def faults(self, args: Any, named: Any, wants: Mapping[str, Wanted]) -> list[Problem]:
-        told = functools.partial(_fault, self.owner if _makes(self.function) else self.function)
-        given = ((n, v, wants[n]) for n, v in self.given(args, named) if n in wants)
-        return [fault for fault in (told(*each) for each in given) if fault]
+        fault_of = functools.partial(_fault, self.owner if _makes(self.function) else self.function)
+        values = ((n, v, wants[n]) for n, v in self.named_values(args, named) if n in wants)
+        return [fault for fault in (fault_of(*each) for each in values) if fault]
 
-    def told(self, error: Exception, args: Any, named: dict[str, Any]) -> Exception:
-        """Error of the package that says what a function stumbled over."""
+    def explain(self, error: Exception, args: Any, named: dict[str, Any]) -> Exception:
+        """Error of the package that explains the failure of a function."""
         name = self.function.__qualname__.removesuffix(".__init__").removesuffix(".__new__")
         where, what = f"{name}()", f"{type(error).__name__}: {error}"
         try:
@@ -203,30 +205,30 @@ class _Reader:
         others = (each for each in frames if not each.filename.startswith(_HOMES))
         users = [each for each in others if not _PACKAGES.search(each.filename)]
         if users and type(error).__module__ != "builtins":
-            return error  # raised on purpose by what the user wrote
+            return error  # raised on purpose by user code
         if users:
-            place, why = users[-1], "It is called with numbers, and returns numbers"
-            told = f"a function that was given raised {what}"
-            return InputError(told, f"{place.filename}:{place.lineno}", why, "Correct it there")
-        why = "Values or shapes of what it was given do not go together"
-        remedy = f"Hold them against help({name}); if they are as stated there, please report this"
+            place, why = users[-1], "It is called with numbers and must return numbers"
+            what = f"a function that was passed raised {what}"
+            return InputError(what, f"{place.filename}:{place.lineno}", why, "Correct it there")
+        why = "The values or shapes of its arguments do not fit together"
+        remedy = f"Compare them with help({name}); if they agree with it, please report this"
         return ComputationError(what, where, why, remedy)
 
 
 def checked(function: Callable[..., Any], owner: type | None = None) -> Callable[..., Any]:
-    """Have a function, or a method of the class ``owner``, read its arguments.
+    """Check the arguments of a function, or of a method of the class ``owner``.
 
-    What the package itself calls has been read where the user called the package.
+    Calls from within the package are not checked again.
     """
-    made: list[_Reader] = []
+    readers: list[_Reader] = []
 
     @functools.wraps(function)
     def reading_arguments(*args: Any, **named: Any) -> Any:
         if sys._getframe(1).f_globals.get("__name__", "").startswith(_INSIDE):
             return function(*args, **named)
-        if not made:
-            made.append(_Reader(function, owner))
-        reader = made[0]
+        if not readers:
+            readers.append(_Reader(function, owner))
+        reader = readers[0]
         try:
             if not reader.fitting(args, named):
                 args, named = reader.read(args, named)
@@ -235,44 +237,44 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
         except Exception as error:
             if _is_own(error):
                 raise
-            told = reader.told(error, args, named)
-            if told is error:
+            explained = reader.explain(error, args, named)
+            if explained is error:
                 raise
-            raise told from error
+            raise explained from error
 
     return reading_arguments
 
 
-def guarded(thing: Any, page: str) -> Any:
-    """Have one public function or class read its arguments; anything else is left as it is.
+def guarded(member: Any, page: str) -> Any:
+    """Check the arguments of one public function or class; other objects are returned unchanged.
 
     Parameters
     ----------
-    thing : object
-        What a page names.
+    member : object
+        Public name of a page.
     page : str
         Name of its module.
 
     Returns
     -------
     object
-        The function that reads its arguments first, or the same class.
+        The function with checked arguments, or the same class.
     """
-    if isinstance(thing, _FUNCTIONS):
-        if getattr(thing, "reads", False):
-            return thing
-        new: Any = checked(thing)
+    if isinstance(member, _FUNCTIONS):
+        if getattr(member, "reads", False):
+            return member
+        new: Any = checked(member)
         new.__module__, new.reads = page, True  # pickled by the name that it is found under
         return new
-    if isinstance(thing, type) and not issubclass(thing, Exception):
-        for home in thing.__mro__:
+    if isinstance(member, type) and not issubclass(member, Exception):
+        for home in member.__mro__:
             if home.__module__.startswith("tribodyn") and not getattr(home, "_is_protocol", False):
                 _guard_methods(home)
-    return thing
+    return member
 
 
 def _guard_methods(owner: type) -> None:
-    """Have the constructor and the public methods of a class read their arguments."""
+    """Check the arguments of the constructor and the public methods of a class."""
     for name, value in list(vars(owner).items()):
         kind = type(value) if isinstance(value, classmethod | staticmethod) else None
         method = value.__func__ if kind else value
@@ -284,7 +286,7 @@ def _guard_methods(owner: type) -> None:
 
 
 def guard(page: str) -> None:
-    """Have the public functions, constructors and methods of a page read their arguments.
+    """Check the arguments of the public functions, constructors and methods of a page.
 
     Parameters
     ----------

@@ -38,8 +38,8 @@ def _slopes(step: Array, secant: Array) -> Array:
 
 
 def _end(step: Array, next_step: Array, secant: Array, next_secant: Array) -> Array:
-    """Slope at an end that keeps the sense of its piece, and overshoots none."""
+    """Slope at an end with the sign of its interval, limited so that there is no overshoot."""
     slope = ((2.0 * step + next_step) * secant - step * next_secant) / (step + next_step)
     turned = (np.sign(secant) != np.sign(next_secant)) & (np.abs(slope) > 3.0 * np.abs(secant))
-    kept = np.where(turned, 3.0 * secant, slope)
-    return np.asarray(np.where(np.sign(slope) != np.sign(secant), 0.0, kept))
+    limited = np.where(turned, 3.0 * secant, slope)
+    return np.asarray(np.where(np.sign(slope) != np.sign(secant), 0.0, limited))

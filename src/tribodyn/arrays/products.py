@@ -1,4 +1,4 @@
-"""Products of a small matrix and many vectors, laid out for what is done with them afterwards."""
+"""Products of a small matrix and many vectors, in a memory layout for later vector operations."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import numpy as np
 
 from tribodyn.types import Array
 
-#: Gives an array of a shape, whatever is in it.
-Room = Callable[[tuple[int, ...]], Array]
+#: Returns an array of a shape with undefined content.
+Allocator = Callable[[tuple[int, ...]], Array]
 
 
-def times(vectors: Array, matrix: Array, lead: int = 0, room: Room = np.empty) -> Array:
-    """Matrix (m, n) times vectors (..., n); all first items lie side by side, then all second ones.
+def times(vectors: Array, matrix: Array, lead: int = 0, allocate: Allocator = np.empty) -> Array:
+    """Matrix (m, n) times vectors (..., n); the first components of all results are contiguous.
 
-    What sums and scales many vectors afterwards has long loops then. Along the first ``lead`` axes
-    each has its own memory, which ``room`` gives.
+    Sums and scalings of many vectors then run in long loops. The first ``lead`` axes are not
+    interleaved; ``allocate`` provides the memory.
     """
     flat = vectors.reshape(*vectors.shape[:lead], -1, vectors.shape[-1])
-    memory = room((*flat.shape[:-2], len(matrix), flat.shape[-2]))
-    found = np.swapaxes(np.matmul(matrix, np.swapaxes(flat, -1, -2), out=memory), -1, -2)
-    return np.asarray(found.reshape(*vectors.shape[:-1], len(matrix)))
+    memory = allocate((*flat.shape[:-2], len(matrix), flat.shape[-2]))
+    product = np.swapaxes(np.matmul(matrix, np.swapaxes(flat, -1, -2), out=memory), -1, -2)
+    return np.asarray(product.reshape(*vectors.shape[:-1], len(matrix)))

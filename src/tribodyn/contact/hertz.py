@@ -182,24 +182,26 @@ def hertz_ellipse(
     radii = {"first_radius": first_radius, "second_radius": second_radius}
     for name, radius in radii.items():
         require_positive(name, radius, "m", remedy="A contact without curvature is a line")
-    force, one, two, modulus = np.broadcast_arrays(force, *map(np.asarray, radii.values()), modulus)
-    wide, narrow = np.maximum(one, two), np.minimum(one, two)
+    force, first_radii, second_radii, modulus = np.broadcast_arrays(
+        force, *map(np.asarray, radii.values()), modulus
+    )
+    wide, narrow = np.maximum(first_radii, second_radii), np.minimum(first_radii, second_radii)
     low, high = np.full(wide.shape, math.log(_LEAST)), np.zeros(wide.shape)
     for _ in range(_STEPS):
         middle = 0.5 * (low + high)
         square = np.exp(2.0 * middle)
-        part = elliprd(0.0, square, 1.0) / 3.0
-        slender = (ellipkm1(square) - part) / (square * part) > wide / narrow
+        second_integral = elliprd(0.0, square, 1.0) / 3.0
+        slender = (ellipkm1(square) - second_integral) / (square * second_integral) > wide / narrow
         low, high = np.where(slender, middle, low), np.where(slender, high, middle)
     ratio = np.exp(0.5 * (low + high))
-    part, whole = elliprd(0.0, ratio**2, 1.0) / 3.0, ellipkm1(ratio**2)
+    second_integral, first_integral = elliprd(0.0, ratio**2, 1.0) / 3.0, ellipkm1(ratio**2)
     # Half the gap's curvature, over the reduced modulus of Johnson, which is half of E'.
-    long = np.cbrt(6.0 * force * part * wide / (math.pi * modulus))
+    long = np.cbrt(6.0 * force * second_integral * wide / (math.pi * modulus))
     short = ratio * long
-    first = one >= two
+    first = first_radii >= second_radii
     return HertzEllipse(
         np.where(first, long, short)[()],
         np.where(first, short, long)[()],
         (1.5 * force / (math.pi * long * short))[()],
-        (3.0 * force * whole / (math.pi * long * modulus))[()],
+        (3.0 * force * first_integral / (math.pi * long * modulus))[()],
     )

@@ -320,8 +320,8 @@ def pitch_point_age(contact: PathOfContact) -> float:
 
 def _travel_breaks(contact: PathOfContact) -> Array:
     """Travel from A, in base pitches, at which load share or sliding may change abruptly."""
-    ratio, whole = contact.contact_ratio, np.arange(contact.pairs + 1)
-    breaks = np.concatenate([whole, ratio - whole, [pitch_point_age(contact), ratio]])
+    ratio, integers = contact.contact_ratio, np.arange(contact.pairs + 1)
+    breaks = np.concatenate([integers, ratio - integers, [pitch_point_age(contact), ratio]])
     return np.unique(np.clip(breaks, 0.0, ratio))
 
 

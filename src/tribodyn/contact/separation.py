@@ -122,14 +122,14 @@ def extended_contact(pair: MeshGeometry, path: ArrayLike) -> ExtendedContact:
     require_between("path", path, -np.inf, np.inf, "m")
     place = np.asarray(path, dtype=float)
     length, (low, high) = pair.line_of_action_length, pair.path_limits
-    far = _corner(pair.pinion, pair.wheel, length, np.maximum(place, high))
-    near = _corner(pair.wheel, pair.pinion, length, np.maximum(length - place, length - low))
+    exit_ = _corner(pair.pinion, pair.wheel, length, np.maximum(place, high))
+    entry = _corner(pair.wheel, pair.pinion, length, np.maximum(length - place, length - low))
     before, after = place < low, place > high
-    possible = np.where(after, far.possible, np.where(before, near.possible, True))
-    gap = np.where(after, far.separation, np.where(before, near.separation, 0.0))
-    pinion = np.where(after, high, np.where(before, near.mate_curvature_radius, place))
+    possible = np.where(after, exit_.possible, np.where(before, entry.possible, True))
+    gap = np.where(after, exit_.separation, np.where(before, entry.separation, 0.0))
+    pinion = np.where(after, high, np.where(before, entry.mate_curvature_radius, place))
     wheel = np.where(
-        before, length - low, np.where(after, far.mate_curvature_radius, length - place)
+        before, length - low, np.where(after, exit_.mate_curvature_radius, length - place)
     )
     separation = np.where(possible, np.maximum(gap, 0.0), np.inf)
     return ExtendedContact(separation, pinion, wheel, possible)

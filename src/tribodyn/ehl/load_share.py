@@ -201,10 +201,10 @@ class _Table:
         """Logarithm of F_5/2, and its slope."""
         place = np.clip((log_gap - self.first) / self.step, 0.0, self.log_integral.size - 1.001)
         index = place.astype(np.intp)
-        rest = (place - index) * self.step
+        offset = (place - index) * self.step
         a, b, c, d = (values[index] for values in self.coefficients)
-        value = ((a * rest + b) * rest + c) * rest + d
-        return value, (3.0 * a * rest + 2.0 * b) * rest + c
+        value = ((a * offset + b) * offset + c) * offset + d
+        return value, (3.0 * a * offset + 2.0 * b) * offset + c
 
     def dry_gap(self, hardness: Array) -> Array:
         """Logarithm of the gap at which asperities carry the whole load."""
@@ -232,8 +232,8 @@ def _table() -> _Table:
 
     separation = np.linspace(*_REACH, _KNOTS)
     log_gap = np.log(asperity_integral(-separation, 1.0))
-    known = CubicSpline(log_gap, np.log(asperity_integral(separation)))
+    spline_of_gap = CubicSpline(log_gap, np.log(asperity_integral(separation)))
     places = np.linspace(log_gap[0], log_gap[-1], _KNOTS)
-    spline = CubicSpline(places, known(places))
+    spline = CubicSpline(places, spline_of_gap(places))
     cubics = tuple(np.ascontiguousarray(row) for row in spline.c)
-    return _Table(float(places[0]), float(places[1] - places[0]), known(places), cubics)
+    return _Table(float(places[0]), float(places[1] - places[0]), spline_of_gap(places), cubics)

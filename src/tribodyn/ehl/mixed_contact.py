@@ -146,10 +146,12 @@ def mixed_line_contact(
         part = np.maximum(share, _LEAST)
         state = part * load, radius, speed, part * effective_modulus
         columns: list[Any] = [*zip(*state, strict=True)] if model.method else [state]
-        told = [model.films(w, r, u, lubricant, e, **options) for w, r, u, e in columns]
-        known = [[h for h in (f.central_film, f.minimum_film) if h is not None] for f in told]
-        central = np.array([each[0] for each in known]).reshape(load.shape)
-        return central, np.array([np.min(each, axis=0) for each in known]).reshape(load.shape)
+        solutions = [model.films(w, r, u, lubricant, e, **options) for w, r, u, e in columns]
+        thicknesses = [
+            [h for h in (f.central_film, f.minimum_film) if h is not None] for f in solutions
+        ]
+        central = np.array([each[0] for each in thicknesses]).reshape(load.shape)
+        return central, np.array([np.min(each, axis=0) for each in thicknesses]).reshape(load.shape)
 
     smooth, least = films(np.ones(load.shape))
     share, gap = _settled(

@@ -142,10 +142,10 @@ class FilmModel(Model):
         kind : str
             The stiffness asked for.
         """
-        known = f"Its film has: {', '.join(self.stiffness_kinds)}"
+        supported = f"Its film has: {', '.join(self.stiffness_kinds)}"
         if kind != "approach" or self.central is None:
-            return known
-        return f"{known}. A formula gives the film and not how near the bodies come"
+            return supported
+        return f"{supported}. A formula gives the film and not how near the bodies come"
 
     def complete(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options with the defaults filled in.
@@ -169,16 +169,16 @@ class FilmModel(Model):
         >>> FILM_MODELS["moes"].complete({"stiffness": "tangent"})
         {'stiffness': 'tangent'}
         """
-        given = {name: value for name, value in options.items() if value is not None}
-        problems = [self._unknown(name) for name in given if name not in self.options]
-        kind = given.get("stiffness", self.options["stiffness"])
+        supplied = {name: value for name, value in options.items() if value is not None}
+        problems = [self._unknown(name) for name in supplied if name not in self.options]
+        kind = supplied.get("stiffness", self.options["stiffness"])
         if kind not in self.stiffness_kinds:
             what = f'stiffness = "{kind}"'
             remedy = 'Choose one of these, or the film model "newton"'
             problems.append(Problem(what, f'film model "{self.name}"', self.why_not(kind), remedy))
         if problems:
             raise InputError(problems)
-        return {**self.options, **given}
+        return {**self.options, **supplied}
 
     def _unknown(self, name: str) -> Problem:
         what, why = f'there is no option "{name}"', f"Its options are: {', '.join(self.options)}"
@@ -246,11 +246,11 @@ class FilmModel(Model):
             return solved_films(*contacts, lubricant, effective_modulus, **chosen)
         oil = lubricant.dynamic_viscosity, lubricant.pressure_viscosity_coefficient
         arguments = *contacts, *oil, effective_modulus
-        own = {name: value for name, value in chosen.items() if name != "stiffness"}
-        central = None if self.central is None else self.central(*arguments, **own)
-        minimum = None if self.minimum is None else self.minimum(*arguments, **own)
+        model_options = {name: value for name, value in chosen.items() if name != "stiffness"}
+        central = None if self.central is None else self.central(*arguments, **model_options)
+        minimum = None if self.minimum is None else self.minimum(*arguments, **model_options)
         exponent = self.load_exponent
-        slope = exponent(*arguments, **own) if callable(exponent) else exponent
+        slope = exponent(*arguments, **model_options) if callable(exponent) else exponent
         stiffness = None
         if central is not None and slope is not None:
             stiffness = -length * np.asarray(load_per_width) / (slope * central)

@@ -133,11 +133,11 @@ class TribologicalContact:
     def _require_consistent_sliding(self) -> None:
         """Refuse a slide-to-roll ratio that was formed with the sum of the speeds, say."""
         expected = np.atleast_1d(self.sliding_speed) / np.atleast_1d(self.entrainment_speed)
-        given = np.atleast_1d(self.slide_to_roll_ratio)
-        wrong = ~(np.abs(given - expected) <= 1e-4 * np.abs(expected) + 1e-9)
+        ratio = np.atleast_1d(self.slide_to_roll_ratio)
+        wrong = ~(np.abs(ratio - expected) <= 1e-4 * np.abs(expected) + 1e-9)
         if np.any(wrong):
             raise InputError(
-                f"slide_to_roll_ratio = {given[wrong][0]:.6g}, but sliding_speed over "
+                f"slide_to_roll_ratio = {ratio[wrong][0]:.6g}, but sliding_speed over "
                 f"entrainment_speed = {expected[wrong][0]:.6g}",
                 where="TribologicalContact",
                 why="the ratio is (u1 - u2) / ((u1 + u2)/2)",
@@ -292,8 +292,8 @@ class FrictionLaw(Model):
         InputError
             If an option is unknown or missing, or the law cannot be applied.
         """
-        found = self.told(contact, options)
-        return found.coefficient if isinstance(found, FrictionParts) else found
+        friction = self.told(contact, options)
+        return friction.coefficient if isinstance(friction, FrictionParts) else friction
 
     def told(
         self, contact: TribologicalContact, options: Mapping[str, Any]
@@ -378,9 +378,11 @@ _CALLED = {"roughness": "composite_roughness", "roughness_rms": "composite_rough
 
 def of_columns(formula: Callable[..., Array]) -> Callable[..., Array]:
     """Law of a formula whose arguments are columns of the contacts, by name, and options."""
-    known = {each.name for each in fields(TribologicalContact)} | {"kinematic_viscosity"}
+    fields_of_contact = {each.name for each in fields(TribologicalContact)} | {
+        "kinematic_viscosity"
+    }
     named = {name: _CALLED.get(name, name) for name in signature(formula).parameters}
-    columns = {name: column for name, column in named.items() if column in known}
+    columns = {name: column for name, column in named.items() if column in fields_of_contact}
 
     def law(contact: TribologicalContact, **options: Any) -> Array:
         return formula(**{n: getattr(contact, column) for n, column in columns.items()}, **options)
@@ -400,7 +402,7 @@ class Range(NamedTuple):
 
 def warn_outside(law: str, ranges: Iterable[Range], remedy: str) -> None:
     """Warn once, naming every quantity outside of its range with all that it runs through."""
-    faults = [_told(quantity) for quantity in ranges if _leaves(quantity)]
+    faults = [_range_text(quantity) for quantity in ranges if _leaves(quantity)]
     if faults:
         warn("friction-range", f"{law}: {'; '.join(faults)}. {remedy}", stacklevel=3)
 
@@ -410,7 +412,7 @@ def _leaves(quantity: Range) -> bool:
     return not quantity.low <= low <= high <= quantity.high
 
 
-def _told(quantity: Range) -> str:
+def _range_text(quantity: Range) -> str:
     """Write the whole range of a quantity and the one of the law."""
     low, high = f"{np.min(quantity.value):.4g}", f"{np.max(quantity.value):.4g}"
     values = low if low == high else f"{low} to {high}"

@@ -151,7 +151,7 @@ def _warn_of_range(coefficient: Array, rough: Array, entrainment_speed: ArrayLik
     """Say where the surfaces creep, or that roughness lifts friction above that of steel."""
     greatest, slowest = float(np.max(coefficient)), float(np.min(entrainment_speed))
     factor = float(np.max(rough))
-    told = f"benedict-kelly: friction coefficient up to {greatest:.3g}"
+    observation = f"benedict-kelly: friction coefficient up to {greatest:.3g}"
     steel = f"lubricated steel stays below {_GREATEST:g}"
     if slowest < _CREEP:
         cause = (
@@ -168,7 +168,7 @@ def _warn_of_range(coefficient: Array, rough: Array, entrainment_speed: ArrayLik
         )
     else:
         return
-    warn("friction-range", f"{told} {cause}", stacklevel=3)
+    warn("friction-range", f"{observation} {cause}", stacklevel=3)
 
 
 _OPTIONS = {

@@ -112,10 +112,12 @@ def _law(
     return shared_friction(share, film, boundary_friction_coefficient)
 
 
-def friction_of_film(contact: TribologicalContact, roughness: float, given: float | None) -> Array:
+def friction_of_film(
+    contact: TribologicalContact, roughness: float, coefficient: float | None
+) -> Array:
     """Friction of the film alone: as given, or by the regression of Xu."""
-    if given is not None:
-        return np.full(np.shape(contact.load_per_width), given)
+    if coefficient is not None:
+        return np.full(np.shape(contact.load_per_width), coefficient)
     return xu_2007(
         contact.slide_to_roll_ratio,
         contact.hertz_pressure,

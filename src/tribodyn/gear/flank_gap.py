@@ -68,11 +68,11 @@ def tooth_positions(gear: SpurGear) -> Array:
     >>> [round(float(place) * 1e6, 6) for place in tooth_positions(gear)]
     [0.0, 2.0, 4.0, 6.0, 6.0]
     """
-    given = gear.modification
-    if given.cumulative_pitch_deviation:
-        return np.array(given.cumulative_pitch_deviation)
-    if given.single_pitch_deviation:
-        single = np.array(given.single_pitch_deviation)
+    modification = gear.modification
+    if modification.cumulative_pitch_deviation:
+        return np.array(modification.cumulative_pitch_deviation)
+    if modification.single_pitch_deviation:
+        single = np.array(modification.single_pitch_deviation)
         places = np.cumsum(single - single.mean())
         return np.asarray(places - places[0])
     return np.zeros(gear.teeth)
@@ -155,9 +155,9 @@ def run_out_gap(pair: SpurPair, pinion_rotation: ArrayLike) -> Array:
     turned = np.asarray(pinion_rotation, dtype=float)
     gap = np.zeros(turned.shape)
     for gear in (pair.pinion, pair.wheel):
-        given = gear.modification
-        angle = turned * (pair.pinion.teeth / gear.teeth) - given.run_out_phase
-        gap = gap - 0.5 * given.run_out * np.cos(angle)
+        modification = gear.modification
+        angle = turned * (pair.pinion.teeth / gear.teeth) - modification.run_out_phase
+        gap = gap - 0.5 * modification.run_out * np.cos(angle)
     return gap
 
 
@@ -167,8 +167,8 @@ def _relief(distance: Array, amount: float, length: float, shape: str) -> Array:
     return amount * (left if shape == "linear" else left**2)
 
 
-def _worn(given: FlankModification, place: Array) -> Array:
-    depth = np.atleast_1d(np.asarray(given.wear_depth, dtype=float))
+def _worn(modification: FlankModification, place: Array) -> Array:
+    depth = np.atleast_1d(np.asarray(modification.wear_depth, dtype=float))
     if depth.size == 0:
         return np.zeros(place.shape)
     return np.asarray(np.interp(place, np.linspace(0.0, 1.0, depth.size), depth))
@@ -220,17 +220,25 @@ def profile_gap(
     [0.0, 5.0, 10.0]
     """
     require_positive("relief_length", relief_length, "m")
-    given = gear.modification
+    modification = gear.modification
     radius = np.clip(np.asarray(curvature_radius, dtype=float), *flank)
     place = (radius - flank.lowest) / flank.length
     tip, root = (
         relief_length if length is None else length
-        for length in (given.tip_relief_length, given.root_relief_length)
+        for length in (modification.tip_relief_length, modification.root_relief_length)
     )
-    gap = _relief(flank.highest - radius, given.tip_relief, tip, given.tip_relief_shape)
-    gap = gap + _relief(radius - flank.lowest, given.root_relief, root, given.root_relief_shape)
-    gap = gap + given.profile_crowning * (2.0 * place - 1.0) ** 2 + given.profile_slope * place
-    return np.asarray(gap + _worn(given, place))
+    gap = _relief(
+        flank.highest - radius, modification.tip_relief, tip, modification.tip_relief_shape
+    )
+    gap = gap + _relief(
+        radius - flank.lowest, modification.root_relief, root, modification.root_relief_shape
+    )
+    gap = (
+        gap
+        + modification.profile_crowning * (2.0 * place - 1.0) ** 2
+        + modification.profile_slope * place
+    )
+    return np.asarray(gap + _worn(modification, place))
 
 
 def lead_gap(gear: SpurGear, face_position: ArrayLike) -> Array:
@@ -263,9 +271,9 @@ def lead_gap(gear: SpurGear, face_position: ArrayLike) -> Array:
     >>> [round(float(value) * 1e6, 6) for value in lead_gap(gear, [-5e-3, 0.0, 2.5e-3])]
     [8.0, 0.0, 2.0]
     """
-    given = gear.modification
+    modification = gear.modification
     place = np.asarray(face_position, dtype=float) / gear.face_width
-    return np.asarray(given.crowning * (2.0 * place) ** 2 + given.lead_slope * place)
+    return np.asarray(modification.crowning * (2.0 * place) ** 2 + modification.lead_slope * place)
 
 
 def flank_gap(

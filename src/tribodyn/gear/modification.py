@@ -156,14 +156,14 @@ def _problem(what: str, why: str, remedy: str = "Correct the map") -> Problem:
 
 
 def _name_problems(chart: ProfileMap) -> list[Problem]:
-    known = {"coordinate": COORDINATES, "interpolation": tuple(INTERPOLATIONS)}
+    allowed_names = {"coordinate": COORDINATES, "interpolation": tuple(INTERPOLATIONS)}
     return [
         _problem(
             f'{name} = "{getattr(chart, name)}" of profile_map',
             f"Allowed: {', '.join(allowed)}",
             "Choose one of these",
         )
-        for name, allowed in known.items()
+        for name, allowed in allowed_names.items()
         if getattr(chart, name) not in allowed
     ]
 
@@ -397,8 +397,10 @@ class FlankModification:
     def __repr__(self) -> str:
         """What was given, with units."""
         values = [(field, getattr(self, field.name)) for field in fields(self)]
-        given = (_shown(field.name, value) for field, value in values if value != field.default)
-        return f"FlankModification({', '.join(given)})"
+        texts = (
+            _field_text(field.name, value) for field, value in values if value != field.default
+        )
+        return f"FlankModification({', '.join(texts)})"
 
 
 def amount_problems(name: str, value: object, low: float, high: float) -> list[Problem]:
@@ -407,9 +409,9 @@ def amount_problems(name: str, value: object, low: float, high: float) -> list[P
         number = isinstance(item, (int, float))
         if number and math.isfinite(item) and low <= item <= high:
             continue
-        shown = f"{item * 1e6:.6g} um" if number else repr(item)
+        quantity = f"{item * 1e6:.6g} um" if number else repr(item)
         why = f"{name} must be finite and from {low * 1e6:g} to {high * 1e6:g} um"
-        return [Problem(f"{name} = {shown}", Argument(name), why, "Check value and unit")]
+        return [Problem(f"{name} = {quantity}", Argument(name), why, "Check value and unit")]
     return []
 
 
@@ -417,7 +419,7 @@ def _any(value: float | tuple[float, ...]) -> bool:
     return any(value) if isinstance(value, tuple) else value != 0.0
 
 
-def _shown(name: str, value: Any) -> str:
+def _field_text(name: str, value: Any) -> str:
     if isinstance(value, tuple):
         return f"{name} {min(value) * 1e6:.4g} to {max(value) * 1e6:.4g} um"
     if isinstance(value, ProfileMap):

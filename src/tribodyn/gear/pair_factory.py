@@ -178,9 +178,9 @@ def _less_play(backlash: float, mesh: MeshGeometry) -> str:
         middle = 0.5 * (low + high)
         wide = replace(mesh, center_distance=middle).geometric_backlash > backlash
         low, high = (low, middle) if wide else (middle, high)
-    near = math.floor(low * 1e6) / 1e3
+    distance = math.floor(low * 1e6) / 1e3
     reach = mesh.pinion.tip_radius + mesh.wheel.tip_radius
-    shorten = f"Reduce the centre distance to {near:.7g} mm"
+    shorten = f"Reduce the centre distance to {distance:.7g} mm"
     if mesh.center_distance >= reach - mesh.pinion.normal_module:
         return (
             f"{shorten}: at {mesh.center_distance * 1e3:.6g} mm the teeth hardly reach each other"
@@ -298,7 +298,7 @@ def spur_pair(
     >>> round(pair.pinion.tip_diameter * 1e3, 3), round(pair.transverse_contact_ratio, 6)
     (88.593, 1.326952)
     """
-    given = locals() | {
+    inputs = locals() | {
         "pinion_rack": pinion_rack or BasicRack(),
         "wheel_rack": wheel_rack or BasicRack(),
         "wheel_face_width": pinion_face_width if wheel_face_width is None else wheel_face_width,
@@ -307,7 +307,7 @@ def spur_pair(
     }
     pinion, wheel = (
         {
-            field.name: given[field.name if field.name in _SHARED else f"{name}_{field.name}"]
+            field.name: inputs[field.name if field.name in _SHARED else f"{name}_{field.name}"]
             for field in fields(GearData)
         }
         for name in ("pinion", "wheel")

@@ -155,13 +155,13 @@ def _warn_of_limits(form: ToothForm) -> None:
             "tip diameter or the profile shift",
             stacklevel=4,
         )
-    given = form.rack.tip_radius_coefficient
+    tip_radius = form.rack.tip_radius_coefficient
     fitting = form.rack.fitting_tip_radius_coefficient(form.normal_pressure_angle)
-    if fitting < given:
+    if fitting < tip_radius:
         warn(
             "full-fillet",
-            f"{who}: a rack tip radius of {given:.4g} modules does not fit between the flanks; the "
-            f"full round of {fitting:.4g} modules is cut. Give a tip radius of at most this value, "
-            "or a smaller dedendum",
+            f"{who}: a rack tip radius of {tip_radius:.4g} modules does not fit between the "
+            f"flanks; the full round of {fitting:.4g} modules is cut. Give a tip radius of at most "
+            "this value, or a smaller dedendum",
             stacklevel=4,
         )

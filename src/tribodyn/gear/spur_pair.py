@@ -289,10 +289,12 @@ def misalignment_problems(misalignment: float) -> list[Problem]:
     return amount_problems("misalignment", misalignment, -LARGEST_AMOUNT, LARGEST_AMOUNT)
 
 
-def _length_problems(name: str, given: FlankModification, flank: FlankRange) -> list[Problem]:
+def _length_problems(
+    name: str, modification: FlankModification, flank: FlankRange
+) -> list[Problem]:
     problems = []
     for end in ("tip_relief", "root_relief"):
-        length = getattr(given, f"{end}_length")
+        length = getattr(modification, f"{end}_length")
         if length is None or length <= flank.length * (1.0 + _SLACK):
             continue
         problems.append(

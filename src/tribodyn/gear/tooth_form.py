@@ -162,12 +162,12 @@ def range_problems(
     if inside and value <= high:
         return []
     symbol, factor = unit
-    shown = f"{float(value) * factor:.6g} {symbol}".rstrip() if number else repr(value)
+    quantity = f"{float(value) * factor:.6g} {symbol}".rstrip() if number else repr(value)
     bound = f"{'greater than' if open_low else 'at least'} {low * factor:g}"
     if high < math.inf:
         bound += f" and at most {high * factor:g}"
     why = f"{name} must be finite, {bound} {symbol}".rstrip()
-    return [Problem(f"{name} = {shown}", Argument(name), why, "Check the value and its unit")]
+    return [Problem(f"{name} = {quantity}", Argument(name), why, "Check the value and its unit")]
 
 
 def _teeth_problems(teeth: int) -> list[Problem]:

@@ -394,9 +394,9 @@ def _shaft_losses(
     shaft: ShaftParts, speed: float, load: float, lubricant: Lubricant | None
 ) -> dict[str, float]:
     """Power of bearings and seals [W] at a speed [rad/s] under the force of the teeth [N]."""
-    found = {}
+    losses = {}
     if shaft.seal_diameter:
-        found["seal"] = shaft.seals * float(seal_loss(shaft.seal_diameter, speed))
+        losses["seal"] = shaft.seals * float(seal_loss(shaft.seal_diameter, speed))
     if shaft.bearing is not None and lubricant is not None:
         viscosity, bath = lubricant.kinematic_viscosity, shaft.bearing_oil_level
         moments = bearing_moments(
@@ -408,15 +408,15 @@ def _shaft_losses(
             oil_level=bath,
         )
         power = shaft.bearings * speed
-        found |= {f"bearing_{part}": power * moment for part, moment in vars(moments).items()}
-    return found
+        losses |= {f"bearing_{part}": power * moment for part, moment in vars(moments).items()}
+    return losses
 
 
 def _oil_losses(
     pair: SpurPair, gearbox: Gearbox, name: str, speed: float, lubricant: Lubricant | None
 ) -> dict[str, float]:
     """Churning and windage of one gear [W]."""
-    depth, found = getattr(gearbox, name).immersion, {}
+    depth, losses = getattr(gearbox, name).immersion, {}
     # The operating pitch circle: that is where the two gears roll on each other.
     radius = pair.center_distance / (1.0 + pair.ratio) * (1.0 if name == "pinion" else pair.ratio)
     width = getattr(pair, name).face_width
@@ -427,8 +427,8 @@ def _oil_losses(
     if depth and lubricant is not None:
         module, volume = pair.pinion.normal_module, gearbox.oil_volume
         oil = (volume, lubricant.density, lubricant.kinematic_viscosity)
-        found["churning"] = churning_loss(radius, width, module, depth, speed, *oil)
+        losses["churning"] = churning_loss(radius, width, module, depth, speed, *oil)
     if gearbox.windage:
         mist = lubricant.dynamic_viscosity if lubricant else 0.0
-        found["windage"] = windage_loss(radius, width, speed, mist)
-    return found
+        losses["windage"] = windage_loss(radius, width, speed, mist)
+    return losses

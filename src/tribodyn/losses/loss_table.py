@@ -37,7 +37,7 @@ _MORE = {"other_loss": "N*m"}
 _NAMED = {"speed": "speed [rpm]", **{n: f"{n} [N*m]" for n in (*list(COLUMNS)[1:], *_MORE)}}
 
 
-def _shown(value: float, unit: str) -> str:
+def _quantity_text(value: float, unit: str) -> str:
     """A value as users write it: speeds in rpm."""
     rpm = unit == "rad/s"
     return f"{value / RPM:.6g} rpm" if rpm else f"{value:.6g} {unit}"
@@ -121,7 +121,7 @@ class PowerLossTable:
         limits = {"speed": "above 0", **dict.fromkeys((*COLUMNS, *_MORE)[1:], "not negative")}
         problems = [
             Problem(
-                f"{name} = {_shown(value, unit)}",
+                f"{name} = {_quantity_text(value, unit)}",
                 self.place(row),
                 f"A run has a {name.replace('_', ' ')} that is finite and {limits[name]}",
                 "Mend the row, or leave it out",
@@ -219,33 +219,34 @@ def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any
 
 def _columns(file: Path, head: Sequence[str]) -> Mapping[str, tuple[int, float]]:
     """Place of each column and what its unit is in SI."""
-    found, bare, known = {}, list[str](), {**COLUMNS, **_MORE}
+    columns, bare, units_of = {}, list[str](), {**COLUMNS, **_MORE}
     for place, cell in enumerate(head):
         name, _, unit = (part.strip() for part in cell.partition("["))
-        if name in found:
+        if name in columns:
             raise InputError(f"two columns {name}", f"{file}:1", "Each stands once", "Keep one")
-        if name in known:
-            written = unit.rstrip("] ") or known[name]
+        if name in units_of:
+            written = unit.rstrip("] ") or units_of[name]
             bare += [] if unit else [name]
             try:
-                found[name] = (place, units.parse(f"1 {written}", known[name]))
+                columns[name] = (place, units.parse(f"1 {written}", units_of[name]))
             except units.UnitProblemError as error:
                 what = f'column "{cell.strip()}"'
                 remedy = 'Name the column as "speed [rpm]", with a unit that is known'
                 raise InputError(what, f"{file}:1", str(error), remedy) from None
-    missing = [name for name in COLUMNS if name not in found]
+    missing = [name for name in COLUMNS if name not in columns]
     if missing:
         remedy = f"Name the columns: {', '.join(_NAMED[name] for name in COLUMNS)}"
         raise InputError(f"no column {', '.join(missing)}", f"{file}:1", "", remedy)
     if bare:
-        taken = ", ".join(f"{name} in {known[name]}" for name in bare)
+        assumed_units = ", ".join(f"{name} in {units_of[name]}" for name in bare)
         named = ", ".join(_NAMED[name] for name in bare)
         warn(
             "friction-from-loss",
-            f"{file}: columns without a unit are taken in SI: {taken}. Write {named}, for example",
+            f"{file}: columns without a unit are read in SI: {assumed_units}. Write {named}, for "
+            "example",
             stacklevel=4,
         )
-    return found
+    return columns
 
 
 def _too_long(
@@ -273,10 +274,10 @@ def _column(
     """Values of a column in SI; every cell that is no number is added to the problems."""
     values = []
     for number, cells in lines:
-        shown = cells[column[0]].strip() if column[0] < len(cells) else ""
-        value = plain_number(shown)
+        text = cells[column[0]].strip() if column[0] < len(cells) else ""
+        value = plain_number(text)
         if value is None:
-            what = f'"{shown}" is no number' if shown else "a number is missing"
+            what = f'"{text}" is no number' if text else "a number is missing"
             why = f"Column {column[0] + 1} holds a number, with a point as decimal sign"
             problems.append(Problem(what, f"{file}:{number}", why, remedy="Correct this line"))
         values.append(value or 0.0)

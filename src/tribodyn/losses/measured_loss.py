@@ -142,7 +142,7 @@ def friction_from_power_loss(
     pairs = _matched(table, points, idles)
     torque = np.array([table.torque[point.rows].mean() for point in points])
     other = np.array([table.other_loss[point.rows].mean() for point in points])
-    loss = np.array([point.mean - rest.mean for point, rest in pairs])
+    loss = np.array([point.mean - idle_point.mean for point, idle_point in pairs])
     slope = 1.0 / (table.gear_sets * torque * table.gear_loss_factor)
     mu = (loss - other) * slope
     parts = _variances(table, pairs, torque, slope, mu)
@@ -151,20 +151,20 @@ def friction_from_power_loss(
     from scipy.stats import t
 
     reach = t.ppf(0.975, freedom) * uncertainty
-    found = FrictionFromLoss(
+    result = FrictionFromLoss(
         speed=np.array([table.speed[point.rows].mean() for point in points]),
         torque=torque,
         friction_coefficient=mu,
         standard_uncertainty=uncertainty,
         degrees_of_freedom=freedom,
-        monte_carlo_uncertainty=_drawn(table, pairs, torque, other, (draws, seed)),
+        monte_carlo_uncertainty=_monte_carlo_deviation(table, pairs, torque, other, (draws, seed)),
         low=mu - reach,
         high=mu + reach,
         sensitivity=slope,
         verdict=tuple(_verdict(*row) for row in zip(mu, uncertainty, pairs, strict=True)),
     )
     _warn_of_impossible([table.place(point.rows[0]) for point in points], mu)
-    return found
+    return result
 
 
 def _runs(table: PowerLossTable, rows: Index) -> list[list[int]]:
@@ -182,10 +182,10 @@ def _runs(table: PowerLossTable, rows: Index) -> list[list[int]]:
 
 
 def _point(table: PowerLossTable, rows: list[int]) -> _Point:
-    readings, given = table.torque_loss[rows], table.torque_loss_uncertainty
+    readings, uncertainty = table.torque_loss[rows], table.torque_loss_uncertainty
     count = len(rows)
-    if given is not None:
-        return _Point(rows, float(readings.mean()), given**2 / count, math.inf)
+    if uncertainty is not None:
+        return _Point(rows, float(readings.mean()), uncertainty**2 / count, math.inf)
     if count > 1:
         variance = float(readings.var(ddof=1)) / count
         return _Point(rows, float(readings.mean()), variance, count - 1.0)
@@ -201,31 +201,32 @@ def _matched(
     pairs, problems = [], []
     for point in points:
         speed = table.speed[point.rows[0]]
-        rest = [
+        idle_points = [
             idle
             for idle in idles
             if math.isclose(table.speed[idle.rows[0]], speed, rel_tol=_SAME_SPEED)
         ]
         where = table.place(point.rows[0])
-        if not rest:
-            known = sorted({round(table.speed[idle.rows[0]] / RPM, 1) for idle in idles})
+        if not idle_points:
+            idle_speeds = sorted({round(table.speed[idle.rows[0]] / RPM, 1) for idle in idles})
             what = f"no run without load at {speed / RPM:.4g} rpm"
-            why = f"Without load there are {', '.join(f'{k:g} rpm' for k in known) or 'no rows'}"
+            speeds = ", ".join(f"{rpm:g} rpm" for rpm in idle_speeds)
+            why = f"Without load there are {speeds or 'no rows'}"
             remedy = f"Measure one there, with at most {table.no_load_torque:g} N*m"
             problems.append(Problem(what, where, why, remedy))
             continue
-        scatter = math.sqrt(point.variance + rest[0].variance)
-        if point.mean < rest[0].mean - _SCATTER * scatter:
+        scatter = math.sqrt(point.variance + idle_points[0].variance)
+        if point.mean < idle_points[0].mean - _SCATTER * scatter:
             problems.append(
                 Problem(
-                    f"torque_loss = {point.mean:.4g} N*m is below the {rest[0].mean:.4g} N*m "
-                    f"without load at {speed / RPM:.4g} rpm",
+                    f"torque_loss = {point.mean:.4g} N*m is below the "
+                    f"{idle_points[0].mean:.4g} N*m without load at {speed / RPM:.4g} rpm",
                     where,
                     "A load can only add to the loss",
                     "Check columns, zero of the torque meter and oil temperature of both runs",
                 )
             )
-        pairs.append((point, rest[0]))
+        pairs.append((point, idle_points[0]))
     if problems:
         raise InputError(problems)
     return pairs
@@ -239,11 +240,11 @@ def _variances(
     mu: Array,
 ) -> Array:
     """Variance of the coefficient by loss, loss without load, and all that has no repeats."""
-    rest = (slope * table.other_loss_uncertainty) ** 2
-    rest += (mu * table.torque_uncertainty / torque) ** 2
-    rest += (mu * table.gear_loss_factor_uncertainty / table.gear_loss_factor) ** 2
+    other = (slope * table.other_loss_uncertainty) ** 2
+    other += (mu * table.torque_uncertainty / torque) ** 2
+    other += (mu * table.gear_loss_factor_uncertainty / table.gear_loss_factor) ** 2
     loaded, idle = np.array([[point.variance, base.variance] for point, base in pairs]).T
-    return np.stack([slope**2 * loaded, slope**2 * idle, rest])
+    return np.stack([slope**2 * loaded, slope**2 * idle, other])
 
 
 def _freedom(parts: Array, pairs: list[tuple[_Point, _Point]]) -> Array:
@@ -251,11 +252,11 @@ def _freedom(parts: Array, pairs: list[tuple[_Point, _Point]]) -> Array:
     freedom = np.array([[point.freedom, base.freedom, math.inf] for point, base in pairs]).T
     spread = np.sum(parts**2 / freedom, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = parts.sum(axis=0) ** 2 / spread
-    return np.where(spread > 0.0, found, np.inf)
+        freedom_welch = parts.sum(axis=0) ** 2 / spread
+    return np.where(spread > 0.0, freedom_welch, np.inf)
 
 
-def _drawn(
+def _monte_carlo_deviation(
     table: PowerLossTable,
     pairs: list[tuple[_Point, _Point]],
     torque: Array,
@@ -270,10 +271,10 @@ def _drawn(
 
     loaded = around([p.mean for p, _ in pairs], np.sqrt([p.variance for p, _ in pairs]))
     idle = around([b.mean for _, b in pairs], np.sqrt([b.variance for _, b in pairs]))
-    rest = around(other, table.other_loss_uncertainty)
+    other_loss = around(other, table.other_loss_uncertainty)
     factor = around(table.gear_loss_factor, table.gear_loss_factor_uncertainty)
     load = around(torque, table.torque_uncertainty)
-    mu = (loaded - idle - rest) / (table.gear_sets * load * factor)
+    mu = (loaded - idle - other_loss) / (table.gear_sets * load * factor)
     return np.asarray(mu.std(axis=0, ddof=1))
 
 

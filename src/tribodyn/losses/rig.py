@@ -50,8 +50,8 @@ class RigPowerFlow(Record):
 
     def __repr__(self) -> str:
         """One line."""
-        told = f"motor {self.motor_power:.5g} W for {self.circulating_power:.5g} W in the loop"
-        return f"RigPowerFlow({told})"
+        powers = f"motor {self.motor_power:.5g} W for {self.circulating_power:.5g} W in the loop"
+        return f"RigPowerFlow({powers})"
 
 
 def rig_power_flow(test: GearboxLosses, slave: GearboxLosses) -> RigPowerFlow:

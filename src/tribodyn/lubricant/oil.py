@@ -241,19 +241,19 @@ class Lubricant:
 
 
 def _coefficient(
-    given: float | None, base_oil: str | None, viscosity: float
+    coefficient: float | None, base_oil: str | None, viscosity: float
 ) -> tuple[float, tuple[str, ...]]:
     """Return the given pressure-viscosity coefficient, or its estimate with a remark."""
-    if given is not None and base_oil is None:
-        return given, ()
-    if given is None and base_oil is not None:
+    if coefficient is not None and base_oil is None:
+        return coefficient, ()
+    if coefficient is None and base_oil is not None:
         estimate = agma_925_coefficient(viscosity, base_oil)
         remark = (
             f"Pressure-viscosity coefficient {estimate:.3g} 1/Pa: estimated by AGMA 925 from the "
             f"viscosity, taking the base oil as {base_oil}; a measured value is better."
         )
         return estimate, (remark,)
-    what = f"pressure_viscosity_coefficient = {given} and base_oil = {base_oil}"
+    what = f"pressure_viscosity_coefficient = {coefficient} and base_oil = {base_oil}"
     why = "exactly one of the two determines how the viscosity rises with pressure"
     remedy = "Give a measured coefficient, or the base oil for an estimate"
     raise InputError(what, "arguments pressure_viscosity_coefficient and base_oil", why, remedy)

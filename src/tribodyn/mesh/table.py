@@ -225,11 +225,11 @@ class MeshTable(MeshColumns):
         if self.gears is None:
             attributes["format"] = FORMAT_WITHOUT_GEARS
             dims = ("knot", "coordinate")[-self.direction.ndim :]
-            told = self._told("direction", Labels(dims))
+            told = self._attributes("direction", Labels(dims))
             parts.variables["direction"] = (dims, self.direction, told)
         else:
             attributes["gear_pair"] = self.gears.written()
-        told = self._told("mesh_phase", Labels(("event",)))
+        told = self._attributes("mesh_phase", Labels(("event",)))
         parts.coordinates["event_phase"] = ("event", np.array(self.event_phases), told)
         parts.coordinates["intervals"] = ("event", np.array(self.grid.intervals))
         return parts._replace(attributes=attributes)

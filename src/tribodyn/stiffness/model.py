@@ -106,20 +106,20 @@ class StiffnessModel(Model):
         InputError
             If an option is unknown, missing or out of range.
         """
-        given = {name: value for name, value in options.items() if value is not None}
-        unknown = [name for name in given if name not in self.options]
+        supplied = {name: value for name, value in options.items() if value is not None}
+        unknown = [name for name in supplied if name not in self.options]
         if unknown:
             raise InputError([self._unknown(name) for name in unknown])
         return self.function(
-            pair, material, path, in_contact, phase, normal_force, **{**self.options, **given}
+            pair, material, path, in_contact, phase, normal_force, **{**self.options, **supplied}
         )
 
     def _unknown(self, name: str) -> Problem:
-        known = ", ".join(self.options)
+        names = ", ".join(self.options)
         return Problem(
             what=f'the stiffness model "{self.name}" has no option "{name}"',
             where=ModelOption("stiffness", name=name),
-            why=f"Its options are: {known}",
+            why=f"Its options are: {names}",
             remedy=self.nearest(name) or "Choose one of these, or leave it out",
         )
 
@@ -145,9 +145,9 @@ def share_equally(total: Array, in_contact: Mask) -> Array:
     return np.where(in_contact, (total / in_contact.sum(axis=1))[:, None], 0.0)
 
 
-def usable_stiffness(found: Array, in_contact: Mask, model: str) -> Array:
+def usable_stiffness(values: Array, in_contact: Mask, model: str) -> Array:
     """Check what a stiffness model gave; models of third parties are checked here once for all."""
-    stiffness = np.asarray(found)
+    stiffness = np.asarray(values)
     sound = stiffness.shape == in_contact.shape and bool(
         np.all(np.where(in_contact, np.isfinite(stiffness) & (stiffness > 0.0), stiffness == 0.0))
     )

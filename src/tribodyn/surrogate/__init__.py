@@ -1,8 +1,8 @@
 """Fast models learned from computed data: networks, their training, their errors.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| ``network`` | what a network computes, and how it learns: Levenberg and Marquardt |
+| ``network`` | network of one output, and its training by Levenberg and Marquardt |
 | ``preparation`` | gaps, outliers, scaling and split of a table |
 | ``training`` | a model from a table, and the size of its networks |
 | ``model`` | predictions with bands, stored and read |

@@ -1,4 +1,4 @@
-"""Errors of predictions, and what simpler models make of the same table."""
+"""Error measures of predictions, and simpler models for comparison."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tribodyn.types import Array
 
 @dataclass(frozen=True)
 class ErrorMeasures:
-    """Errors of one target over rows that no training has seen.
+    """Errors of one target over held-out rows.
 
     Parameters
     ----------
@@ -50,19 +50,21 @@ class ErrorMeasures:
         true, predicted : (n,) array
         """
         error = np.abs(predicted - true)
-        square, variance, there = float(np.mean(error**2)), float(np.var(true)), true != 0.0
-        relative = float(np.mean(error[there] / np.abs(true[there]))) if there.any() else np.nan
+        square, variance, nonzero = float(np.mean(error**2)), float(np.var(true)), true != 0.0
+        relative = (
+            float(np.mean(error[nonzero] / np.abs(true[nonzero]))) if nonzero.any() else np.nan
+        )
         share = 1.0 - square / variance if variance > 0.0 else np.nan
         return cls(true.size, square, float(error.mean()), share, relative, float(error.max()))
 
 
 #: Fits scaled training rows to one target, and returns what predicts from scaled rows.
 Fitter = Callable[[Array, Array, int], Callable[[Array], Array]]
-#: Places of the table over one feature.
+#: Bins of the table over one feature.
 _PLACES = 64
-#: Rows that a Gaussian process is fitted to at most: its cost grows with their cube.
+#: Most rows for a Gaussian process: its cost grows with their cube.
 _MOST_ROWS = 1500
-#: Length [range of a feature] and noise [variance of the target] that its fit begins with.
+#: Initial length scale [range of a feature] and noise [variance of the target] of its fit.
 _LENGTH, _NOISE = 0.3, 1e-4
 
 
@@ -76,7 +78,7 @@ def _linear(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]
 
 
 def _table(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
-    """Mean of the target over places of the first feature; where none was seen, of all."""
+    """Mean of the target in bins of the first feature; the overall mean in empty bins."""
     place = np.minimum((inputs[:, 0] * _PLACES).astype(int), _PLACES - 1)
     count = np.bincount(place, minlength=_PLACES)
     total = np.bincount(place, target, minlength=_PLACES)
@@ -89,13 +91,15 @@ def _table(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
 def _gaussian_process(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
     process = _learned("gaussian_process")
     kernels = process.kernels
-    # From a length of one the search takes a vibration for noise; without noise it needs little.
+    # Starting from a length of one, the fit mistakes a vibration for noise.
     smooth = kernels.RBF(np.full(inputs.shape[1], _LENGTH), (1e-2, 1e4))
     noise = kernels.WhiteKernel(_NOISE, (1e-12, 1.0))
     kernel = kernels.ConstantKernel(1.0, (1e-4, 1e6)) * smooth + noise
     chosen = np.random.default_rng(seed).permutation(len(inputs))[:_MOST_ROWS]
     model = process.GaussianProcessRegressor(kernel, normalize_y=True, random_state=seed)
-    with warnings.catch_warnings():  # at the bounds of the search it warns; the errors tell all
+    with (
+        warnings.catch_warnings()
+    ):  # it warns at the bounds of the search; the errors are reported anyway
         warnings.simplefilter("ignore")
         return model.fit(inputs[chosen], target[chosen]).predict  # type: ignore[no-any-return]
 
@@ -173,21 +177,21 @@ def baselines(
     1.0
     """
     ready = prepare(data, features, targets, seed=seed, groups=groups)
-    answers = {}
+    errors = {}
     for kind in kinds:
         require_one_of("kinds", kind, BASELINES)
-        own = ready
+        prepared = ready
         if kind == "table":
-            own = prepare(data, [table_over], targets, seed=seed, groups=groups)
-        answers[kind] = {
-            str(name): _errors(own, BASELINES[kind], column, seed)
+            prepared = prepare(data, [table_over], targets, seed=seed, groups=groups)
+        errors[kind] = {
+            str(name): _errors(prepared, BASELINES[kind], column, seed)
             for column, name in enumerate(targets)
         }
-    return answers
+    return errors
 
 
 def _errors(ready: Prepared, fitter: Fitter, column: int, seed: int) -> ErrorMeasures:
     inputs, target = ready.feature_scaling.scaled(ready.features), ready.targets[:, column]
-    rows, held = ready.split.training, ready.split.test
+    rows, held_out = ready.split.training, ready.split.test
     predict = fitter(inputs[rows], target[rows], seed)
-    return ErrorMeasures.of(target[held], predict(inputs[held]))
+    return ErrorMeasures.of(target[held_out], predict(inputs[held_out]))

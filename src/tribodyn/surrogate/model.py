@@ -1,4 +1,4 @@
-"""The trained model: one network for each target, with the range and the errors that it has."""
+"""Trained model: one network for each target, with its training range and its errors."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from tribodyn.surrogate.preparation import columns_of
 from tribodyn.types import Array
 from tribodyn.validated_files import read_dataset
 
-#: What a stored model calls itself.
+#: Format name of a stored model.
 _KIND = "tribodyn surrogate"
 _STORED = ("feature_range", "target_range", "true", "predicted", "band", "epochs")
 _WORDS = ("feature_unit", "target_unit", "stopped")
 _COUNTS = ("training_rows", "validation_rows", "seed")
-#: Part of the range of a feature beyond it that is no extrapolation yet.
+#: Tolerance beyond the range of a feature, as a share of it, without an extrapolation warning.
 _MARGIN = 1e-9
 #: Rows that are predicted at a time.
 _ROWS = 65536
@@ -84,7 +84,7 @@ class Surrogate(Record):
     def errors(self) -> dict[str, ErrorMeasures]:
         """Errors over the held-out rows, by target."""
         rows = zip(self.targets, self.true, self.predicted, strict=True)
-        return {str(name): ErrorMeasures.of(true, made) for name, true, made in rows}
+        return {str(name): ErrorMeasures.of(true, predicted) for name, true, predicted in rows}
 
     def predict(self, inputs: Any) -> dict[str, Array]:
         """Predict the targets.
@@ -133,7 +133,7 @@ class Surrogate(Record):
         }
 
     def predict_band(self, inputs: Any) -> dict[str, tuple[Array, Array]]:
-        """Where the targets lie with the probability ``level``.
+        """Band in which the targets lie with the probability ``level``.
 
         Parameters
         ----------
@@ -167,20 +167,20 @@ class Surrogate(Record):
                 columns_of({str(key): np.zeros(1) for key in inputs}, lacking, "inputs")
             columns = [real_numbers(Argument(name), inputs[name]) for name in names]
             try:
-                whole = np.stack(np.broadcast_arrays(*columns), axis=-1)
+                rows = np.stack(np.broadcast_arrays(*columns), axis=-1)
             except ValueError:
                 what = f"features of the shapes {[each.shape for each in columns]}"
                 remedy = "Give each one value, or arrays of one shape"
                 raise InputError(what, Argument("inputs"), "", remedy) from None
         elif hasattr(inputs, "keys"):
-            whole = columns_of(inputs, names, "inputs")
+            rows = columns_of(inputs, names, "inputs")
         else:
-            whole = real_numbers(Argument("inputs"), inputs)
-        if not whole.ndim or whole.shape[-1] != len(names) or not np.all(np.isfinite(whole)):
-            what = f"inputs of the shape {whole.shape}, or values that are not finite"
+            rows = real_numbers(Argument("inputs"), inputs)
+        if not rows.ndim or rows.shape[-1] != len(names) or not np.all(np.isfinite(rows)):
+            what = f"inputs of the shape {rows.shape}, or values that are not finite"
             why = f"Wanted: {len(names)} features, {', '.join(names)}"
             raise InputError(what, Argument("inputs"), why, "Give finite values of each")
-        return whole.reshape(-1, len(names)), whole.shape[:-1]
+        return rows.reshape(-1, len(names)), rows.shape[:-1]
 
     def _warn_of_range(self, rows: Array, beyond: Any) -> None:
         column = int(np.argmax(beyond.sum(axis=0)))
@@ -189,7 +189,7 @@ class Surrogate(Record):
         worst = values[np.argmax(np.maximum(low - values, values - high))]
         warn(
             "surrogate-range",
-            f"{np.any(beyond, axis=1).sum()} of {len(rows)} rows are outside of the training: "
+            f"{np.any(beyond, axis=1).sum()} of {len(rows)} rows are outside the training range: "
             f"{self.features[column]} = {worst:.5g}, trained from {low:.5g} to {high:.5g}. "
             "Errors and bands do not hold there; train over a wider range.",
             stacklevel=4,
@@ -228,8 +228,8 @@ def load(path: str | os.PathLike[str]) -> Surrogate:
     """
     data = read_dataset(path)
     if data.attrs.get("kind") != _KIND:
-        why = "It was not written by the save method of a surrogate"
-        raise InputError(f"{path} holds no surrogate", Argument("path"), why, "Train one")
+        why = "It was not written by Surrogate.save"
+        raise InputError(f"{path} does not contain a surrogate", Argument("path"), why, "Train one")
     try:
         fields: dict[str, Any] = {name: np.asarray(data[name].values) for name in _STORED}
         fields |= {name: int(data.attrs[name]) for name in _COUNTS}
@@ -241,7 +241,7 @@ def load(path: str | os.PathLike[str]) -> Surrogate:
             for number in range(data.sizes["target"])
         )
     except (KeyError, ValueError) as error:
-        what, why = f"{path} is no whole surrogate", f"It lacks {error}"
+        what, why = f"{path} contains an incomplete surrogate", f"It lacks {error}"
         raise InputError(what, Argument("path"), why, "Train it anew") from None
     return Surrogate(**fields)
 

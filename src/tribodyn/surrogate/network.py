@@ -13,19 +13,19 @@ from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, require_one_of
 from tribodyn.types import Array
 
-#: Rows that are worked on at a time, so that they stay in the cache of the processor.
+#: Rows per block, so that a block stays in the processor cache.
 _ROWS = 4096
-#: Most weights: the normal equations of Levenberg and Marquardt hold their square.
+#: Most weights: the memory of the normal equations grows with their square.
 _MOST_WEIGHTS = 5000
 
 
 def _relu(x: Any) -> Any:
-    """The positive part; a complex step follows the real one."""
+    """Positive part; for complex steps decided by the real part."""
     return np.where(np.real(x) > 0.0, x, 0.0)
 
 
-#: Function and its slope at the value that it gave. ``2/(1 + exp(-2 x)) - 1`` is the hyperbolic
-#: tangent; the slope of ReLU at its kink is taken as zero.
+#: Activation function, and its slope as a function of its value. ``2/(1 + exp(-2 x)) - 1`` is the
+#: hyperbolic tangent; the slope of ReLU at its kink is taken as zero.
 ACTIVATIONS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "tansig": (np.tanh, lambda y: 1.0 - y * y),
     "relu": (_relu, lambda y: (y > 0.0).astype(float)),
@@ -104,7 +104,7 @@ class Network:
             begin = end + after
 
     def start(self, random: np.random.Generator) -> Array:
-        """Weights to begin with, after Nguyen and Widrow.
+        """Initial weights, after Nguyen and Widrow.
 
         Parameters
         ----------
@@ -159,7 +159,7 @@ class Network:
         return np.concatenate(parts)
 
     def jacobian(self, weights: Array, inputs: Array) -> tuple[Array, Array]:
-        """Output of the network and its derivatives by the weights, found backwards.
+        """Output of the network and its derivatives by the weights, by backpropagation.
 
         Parameters
         ----------
@@ -196,7 +196,7 @@ _GRADIENT = 1e-9
 
 
 class Squares(NamedTuple):
-    """Mean square of the residuals at a place, with gradient and normal matrix of its half."""
+    """Mean square of the residuals, with gradient and normal matrix of half of it."""
 
     mean_square: float
     gradient: Array
@@ -204,7 +204,7 @@ class Squares(NamedTuple):
 
 
 class Fit(NamedTuple):
-    """What the search came to."""
+    """Result of the fit."""
 
     weights: Array
     epochs: int
@@ -221,7 +221,7 @@ def levenberg_marquardt(
     epochs: int = 1200,
     patience: int = 6,
 ) -> Fit:
-    """Least mean square from a start.
+    """Minimise a mean square by the method of Levenberg and Marquardt.
 
     Parameters
     ----------
@@ -269,10 +269,10 @@ def levenberg_marquardt(
         current = squares(weights)
         if validation is None:
             continue
-        told = validation(weights)
-        failures = 0 if told < least else failures + 1
-        if told < least:
-            best, least = weights, told
+        validation_error = validation(weights)
+        failures = 0 if validation_error < least else failures + 1
+        if validation_error < least:
+            best, least = weights, validation_error
         elif failures >= patience:
             stopped = "validation"
             break
@@ -282,7 +282,7 @@ def levenberg_marquardt(
 def _step(
     current: Squares, mean_square: Callable[[Array], float], weights: Array, damping: float
 ) -> tuple[Array | None, float]:
-    """A step that lowers the mean square, and the damping of the next one."""
+    """Weights after a step that lowers the mean square, and the damping of the next step."""
     from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
     diagonal = np.eye(weights.size)

@@ -1,6 +1,6 @@
-"""Columns made ready for training: gaps, outliers, smoothing, scaling, split by groups.
+"""Prepare columns for training: gaps, outliers, smoothing, scaling, split by groups.
 
-Whatever is fitted is fitted on the training rows alone.
+Scalings and limits are fitted to the training rows only.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class Prepared:
     split: Split
     feature_scaling: Scaling
     target_scaling: Scaling
-    outliers: int  #: training rows that were left out
+    outliers: int  #: training rows that were dropped as outliers
 
 
 def columns_of(data: Any, names: Sequence[str], argument: str) -> Array:
@@ -95,23 +95,23 @@ def columns_of(data: Any, names: Sequence[str], argument: str) -> Array:
     if not all(hasattr(table, name) for name in ("keys", "__getitem__")):
         why = "Wanted: arrays by name, a data set of xarray or a table of pandas"
         raise InputError(f"a {type(table).__name__}", Argument("data"), why, "Give one")
-    known = {str(key): np.shape(table[key]) for key in table}
-    rows = max((shape[0] for shape in known.values() if len(shape) == 1), default=0)
+    shapes = {str(key): np.shape(table[key]) for key in table}
+    rows = max((shape[0] for shape in shapes.values() if len(shape) == 1), default=0)
     for name in map(str, listed):
-        if name not in known:
-            remedy = did_you_mean(name, known, f"It has {', '.join(known)}")
+        if name not in shapes:
+            remedy = did_you_mean(name, shapes, f"It has {', '.join(shapes)}")
             what, why = f'no column "{name}"', "Names are those of the columns"
             raise InputError(what, Argument(argument), why, remedy)
     return np.stack([_column(table[name], str(name), rows) for name in listed], axis=1)
 
 
-def _column(given: Any, name: str, rows: int) -> Array:
+def _column(column: Any, name: str, rows: int) -> Array:
     try:
-        values = np.asarray(given, dtype=float)
+        values = np.asarray(column, dtype=float)
     except (TypeError, ValueError):
         values = np.zeros(0)
     if values.shape != (rows,) or np.any(np.isinf(values)):
-        what = f'the column "{name}" has the shape {np.shape(given)}, or holds no finite numbers'
+        what = f'the column "{name}" has the shape {np.shape(column)}, or holds no finite numbers'
         why = f"Every column has one number for each of the {rows} rows"
         raise InputError(what, Argument("data"), why, "NaN stands for what is missing")
     return values
@@ -120,7 +120,7 @@ def _column(given: Any, name: str, rows: int) -> Array:
 def split_rows(
     rows: int, shares: Sequence[float] = (8.0, 1.0, 1.0), *, seed: int, groups: Any = None
 ) -> Split:
-    """Draw which rows train, which stop the training, and which are kept to judge it.
+    """Split rows at random into training, validation (early stopping) and test rows.
 
     Parameters
     ----------
@@ -164,11 +164,11 @@ def split_rows(
         why = "Training, validation and test need one each"
         raise InputError(what, Argument("groups"), why, "Give more data")
     random = np.random.default_rng(require_whole("seed", seed, 0))
-    held = np.maximum(np.round(parts[1:] / parts.sum() * names.size), 1).astype(int)
-    drawn = random.permutation(names.size)
-    ends = np.cumsum(held)
+    counts = np.maximum(np.round(parts[1:] / parts.sum() * names.size), 1).astype(int)
+    order = random.permutation(names.size)
+    ends = np.cumsum(counts)
     place = np.zeros(names.size, dtype=int)
-    place[drawn[: ends[0]]], place[drawn[ends[0] : ends[1]]] = 1, 2
+    place[order[: ends[0]]], place[order[ends[0] : ends[1]]] = 1, 2
     return Split(*(np.flatnonzero(place[of_row] == number) for number in range(3)))
 
 
@@ -198,7 +198,7 @@ def prepare(
     outlier_limit: float | None = None,
     moving_average: int = 1,
 ) -> Prepared:
-    """Make a table ready for training.
+    """Prepare a table for training.
 
     Parameters
     ----------
@@ -248,18 +248,18 @@ def prepare(
     if labels is not None and np.any(np.isnan(labels)):
         raise InputError("a row has no group", Argument("groups"), "", "Fill the column")
     window = require_whole("moving_average", moving_average)
-    there = ~np.any(np.isnan(outputs), axis=1)
-    inputs, outputs = inputs[there], outputs[there]
-    labels = None if labels is None else labels[there]
+    complete = ~np.any(np.isnan(outputs), axis=1)
+    inputs, outputs = inputs[complete], outputs[complete]
+    labels = None if labels is None else labels[complete]
     if len(inputs) < 3 or np.any(np.all(np.isnan(inputs), axis=0)):
         what = f"{len(inputs)} rows with targets, or a feature without any value"
         raise InputError(what, Argument("data"), "", "Give more data")
     split = split_rows(len(inputs), shares, seed=seed, groups=labels)
     inputs = Scaling.of(inputs[split.training]).filled(inputs)
-    kept = _kept(np.hstack([inputs, outputs]), split, outlier_limit)
-    split = Split(*(_renumbered(rows, kept) for rows in vars(split).values()))
-    labels = None if labels is None else labels[kept]
-    inputs, outputs = (smoothed(each[kept], window, labels) for each in (inputs, outputs))
+    retained = _without_outliers(np.hstack([inputs, outputs]), split, outlier_limit)
+    split = Split(*(_renumbered(rows, retained) for rows in vars(split).values()))
+    labels = None if labels is None else labels[retained]
+    inputs, outputs = (smoothed(each[retained], window, labels) for each in (inputs, outputs))
     scaling = Scaling.of(inputs[split.training])
     still = [str(n) for n, same in zip(features, scaling.low == scaling.high, strict=True) if same]
     if still:
@@ -270,23 +270,23 @@ def prepare(
             stacklevel=3,
         )
     return Prepared(
-        inputs, outputs, split, scaling, Scaling.of(outputs[split.training]), int(np.sum(~kept))
+        inputs, outputs, split, scaling, Scaling.of(outputs[split.training]), int(np.sum(~retained))
     )
 
 
-def _kept(columns: Array, split: Split, limit: float | None) -> Mask:
-    """Rows that stay: all but outliers of the training."""
-    kept = np.ones(len(columns), dtype=bool)
+def _without_outliers(columns: Array, split: Split, limit: float | None) -> Mask:
+    """Mask of the rows without outliers among the training rows."""
+    retained = np.ones(len(columns), dtype=bool)
     if limit is not None:
         require_positive("outlier_limit", limit)
         training = columns[split.training]
-        kept[split.training] = ~Scaling.of(training).outliers(training, float(limit))
-        if np.sum(kept[split.training]) < 2:
+        retained[split.training] = ~Scaling.of(training).outliers(training, float(limit))
+        if np.sum(retained[split.training]) < 2:
             what = "fewer than two rows are left for training"
             raise InputError(what, Argument("outlier_limit"), "", "Widen the limit")
-    return kept
+    return retained
 
 
-def _renumbered(rows: Index, kept: Mask) -> Index:
-    """Those of the rows that stay, counted among all that stay."""
-    return np.asarray((np.cumsum(kept) - 1)[rows[kept[rows]]])
+def _renumbered(rows: Index, retained: Mask) -> Index:
+    """Retained rows, renumbered after the removal of the others."""
+    return np.asarray((np.cumsum(retained) - 1)[rows[retained[rows]]])

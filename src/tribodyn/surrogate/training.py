@@ -16,9 +16,9 @@ from tribodyn.surrogate.network import Fit, Network, Squares, levenberg_marquard
 from tribodyn.surrogate.preparation import Prepared, prepare
 from tribodyn.types import Array
 
-#: Rows whose derivatives are held at a time.
+#: Rows per block of the Jacobian.
 _ROWS = 1024
-#: Neurons of a hidden layer that the source of BPNN-PL searches.
+#: Sizes of a hidden layer that the source of BPNN-PL tries.
 NEURONS = tuple(range(2, 12))
 
 
@@ -200,16 +200,16 @@ def bpnn_pl(
     progress.start("Networks", len(sizes) * len(targets))
     fits, search = [], {}
     for column, name in enumerate(targets):
-        tried, told = [], []
+        tried, size_errors = [], []
         for count in sizes:
             layers = (count,) * len(training.hidden)
             network, fit, square, absolute = _fitted(
                 ready, column, seed, replace(training, hidden=layers)
             )
             tried.append((network, fit))
-            told.append((count, square, absolute))
+            size_errors.append((count, square, absolute))
             progress.advance()
-        search[str(name)] = np.array(told)
+        search[str(name)] = np.array(size_errors)
         errors = search[str(name)][:, 1:]
         fits.append(tried[int(np.argmin((errors / errors.min(axis=0)).sum(axis=1)))])
     progress.finish()
@@ -240,9 +240,9 @@ def _fitted(
     network = Network(ready.features.shape[1], tuple(training.hidden), tuple(training.activations))
     inputs = ready.feature_scaling.scaled(ready.features)
     target = ready.target_scaling.scaled(ready.targets)[:, column]
-    fitted, held = ready.split.training, ready.split.validation
+    fitted, held_out = ready.split.training, ready.split.validation
     residuals = _Residuals(network, inputs[fitted], target[fitted])
-    validation = _Residuals(network, inputs[held], target[held])
+    validation = _Residuals(network, inputs[held_out], target[held_out])
     random = np.random.default_rng([seed, column])
     # Threads would wait for each other at every small product, and change the last digits.
     with threadpool_limits(1, "blas"):
@@ -260,13 +260,13 @@ def _fitted(
         ]
     best = min(fits, key=lambda fit: validation.mean_square(fit.weights))
     span = float(ready.target_scaling.span[column])
-    error = span * (network.evaluate(best.weights, inputs[held]) - target[held])
+    error = span * (network.evaluate(best.weights, inputs[held_out]) - target[held_out])
     return network, best, float(np.mean(error**2)), float(np.mean(np.abs(error)))
 
 
 @dataclass(frozen=True)
 class _Residuals:
-    """Distance of a network from scaled targets."""
+    """Residuals of a network against scaled targets."""
 
     network: Network
     inputs: Array
@@ -297,12 +297,12 @@ def _model(
     training: Training,
     seed: int,
 ) -> Surrogate:
-    """Join the networks, and judge them by the rows that are left."""
-    held, scaling = ready.split.test, ready.target_scaling
-    inputs = ready.feature_scaling.scaled(ready.features[held])
-    made = np.array([network.evaluate(fit.weights, inputs) for network, fit in fits])
-    predicted = scaling.low[:, None] + made * scaling.span[:, None]
-    true = ready.targets[held].T.copy()
+    """Combine the networks, and compute their errors over the test rows."""
+    held_out, scaling = ready.split.test, ready.target_scaling
+    inputs = ready.feature_scaling.scaled(ready.features[held_out])
+    outputs = np.array([network.evaluate(fit.weights, inputs) for network, fit in fits])
+    predicted = scaling.low[:, None] + outputs * scaling.span[:, None]
+    true = ready.targets[held_out].T.copy()
     return Surrogate(
         features=np.array(names[0]),
         targets=np.array(names[1]),
@@ -324,16 +324,16 @@ def _model(
 
 
 def _units(data: Any, names: list[str]) -> Any:
-    """Units of columns, empty where the data do not tell."""
-    known = getattr(data, "units", None)
-    if isinstance(known, Mapping):
-        return np.array([str(known.get(name, "")) for name in names])
+    """Units of columns, empty where the data have none."""
+    units = getattr(data, "units", None)
+    if isinstance(units, Mapping):
+        return np.array([str(units.get(name, "")) for name in names])
     columns = (getattr(data[name], "attrs", {}) for name in names)
-    return np.array([str(told.get("units", "")) for told in columns])
+    return np.array([str(attributes.get("units", "")) for attributes in columns])
 
 
 def _half_width(errors: Array, level: float) -> Array:
-    """Quantile of the errors that holds one more with the level; infinite for too few of them."""
+    """Conformal quantile of the errors at a level; infinite for too few errors."""
     rows = errors.shape[1]
     place = int(np.ceil((rows + 1) * level))
     widths = np.sort(errors, axis=1)

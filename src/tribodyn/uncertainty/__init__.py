@@ -1,10 +1,10 @@
-"""What is known within bounds only: samples of inputs, bands of outputs, shares of the variance.
+"""Uncertainty: samples of inputs, confidence bands of outputs, shares of the variance.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| ``sampling`` | how a quantity is spread, and which values to compute with |
-| ``bands`` | how well a mean curve is known |
-| ``variance`` | which input the spread of an output comes from |
+| ``sampling`` | distributions of quantities, and samples of them |
+| ``bands`` | confidence band of a mean curve |
+| ``variance`` | Sobol indices of the inputs |
 """
 
 from tribodyn.arguments import guard

@@ -1,4 +1,4 @@
-"""Confidence band of a mean curve from repeated ones, by the bootstrap."""
+"""Confidence band of the mean of repeated curves, by the bootstrap."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribodyn.types import Array
 
 @record
 class Band(Record):
-    """Mean of repeated curves, and where it lies with a probability.
+    """Mean of repeated curves with its confidence band.
 
     Parameters
     ----------
@@ -88,27 +88,27 @@ def bootstrap_band(
     >>> bool(made.low < 3.0 < made.high)
     True
     """
-    given = real_numbers(Argument("samples"), samples)
+    curves = real_numbers(Argument("samples"), samples)
     require_between("level", level, 0.5, 0.9999)
     count = require_whole("resamples", resamples, 100)
-    whole = require_flag("simultaneous", simultaneous)
-    if given.ndim < 1 or given.shape[0] < 3 or not given.size or not np.all(np.isfinite(given)):
-        what = f"samples have the shape {given.shape}, or are not all finite"
+    all_points = require_flag("simultaneous", simultaneous)
+    if curves.ndim < 1 or curves.shape[0] < 3 or not curves.size or not np.all(np.isfinite(curves)):
+        what = f"samples have the shape {curves.shape}, or are not all finite"
         why = "At least three repeats of finite values are needed, the repeats first"
         remedy = "Repeat the measurement, or leave out what is missing"
         raise InputError(what, Argument("samples"), why, remedy)
-    repeats, shape = given.shape[0], given.shape[1:]
-    flat = given.reshape(repeats, -1)
+    repeats, shape = curves.shape[0], curves.shape[1:]
+    flat = curves.reshape(repeats, -1)
     mean, error = flat.mean(axis=0), flat.std(axis=0, ddof=1) / np.sqrt(repeats)
     ratio = _ratios(flat - mean, count, np.random.default_rng(require_whole("seed", seed, 0)))
-    if whole:
+    if all_points:
         reach = np.quantile(np.abs(ratio).max(axis=1), level)
         above, below = reach * error, reach * error
     else:
         ends = np.quantile(ratio, (0.5 * (1.0 - level), 0.5 * (1.0 + level)), axis=0)
         below, above = ends[1] * error, -ends[0] * error
     low, high = ((mean - below).reshape(shape), (mean + above).reshape(shape))
-    return Band(mean.reshape(shape), low, high, float(level), repeats, whole, unit)
+    return Band(mean.reshape(shape), low, high, float(level), repeats, all_points, unit)
 
 
 def _ratios(away: Array, count: int, random: np.random.Generator) -> Array:
@@ -117,7 +117,7 @@ def _ratios(away: Array, count: int, random: np.random.Generator) -> Array:
     weights = random.multinomial(repeats, np.full(repeats, 1.0 / repeats), size=count) / repeats
     means = weights @ away
     squares = weights @ away**2 - means**2
-    # A resample of one repeat alone has no spread; it says nothing about the error.
+    # A resample that repeats a single curve has no variance and is left out.
     error = np.sqrt(np.maximum(squares, 0.0) / (repeats - 1))
     least = 1e-9 * np.sqrt(np.mean(away**2, axis=0))
     return np.asarray(np.where(error > least, means / np.maximum(error, least + 1e-300), 0.0))

@@ -1,4 +1,4 @@
-"""How a quantity is spread, from a text, and the values to compute with."""
+"""Distributions of uncertain quantities, read from text, and samples of them."""
 
 from __future__ import annotations
 
@@ -73,8 +73,8 @@ def _from_text(name: str, text: str, unit: str | None) -> Any:
     from scipy import stats
 
     if unit is None:
-        known = QUANTITIES.get(name.rpartition(".")[2])
-        unit = known.unit if known is not None else ""
+        quantity = QUANTITIES.get(name.rpartition(".")[2])
+        unit = quantity.unit if quantity is not None else ""
     kind = text.lower().split()[0] if text else ""
     try:
         if match := _SPREAD.fullmatch(text):
@@ -96,16 +96,16 @@ def _from_text(name: str, text: str, unit: str | None) -> Any:
         return _Data(np.array([parse(text, unit)]))
     except UnitProblemError as error:
         bare = re.fullmatch(r"([\d.]+)\s*(?:\+-|±)\s*([\d.]+)\s*([^\s\d%].*)", text)
-        both = f'"{bare[1]} {bare[3]} +- {bare[2]} {bare[3]}", or ' if bare else ""
-        raise _wrong(name, text, str(error), both) from None
+        with_units = f'"{bare[1]} {bare[3]} +- {bare[2]} {bare[3]}", or ' if bare else ""
+        raise _wrong(name, text, str(error), with_units) from None
 
 
 def _spread(text: str, mean: float, unit: str) -> float:
     """Standard deviation in the unit, or in percent of the mean."""
     if text.endswith("%"):
-        share, rest = split(text[:-1].strip())
-        spread = abs(mean) * share / 100.0 if not rest else np.nan
-    elif unit == "K":  # a difference of temperatures has no zero of its own
+        share, unit_text = split(text[:-1].strip())
+        spread = abs(mean) * share / 100.0 if not unit_text else np.nan
+    elif unit == "K":  # a temperature difference: the offset of degC cancels
         number, written = split(text)
         spread = parse(f"{number} {written}", "K") - parse(f"0 {written}", "K")
     else:
@@ -115,13 +115,13 @@ def _spread(text: str, mean: float, unit: str) -> float:
     return float(spread)
 
 
-def _wrong(name: str, given: Any, why: str = "", meant: str = "") -> InputError:
-    what = f"{shortened(repr(given))} is no distribution"
+def _wrong(name: str, value: Any, why: str = "", meant: str = "") -> InputError:
+    what = f"{shortened(repr(value))} is not a distribution"
     remedy = (
         f'Write {meant}"0.05 +- 0.83 %", "uniform 0.4 um .. 0.6 um", "lognormal 0.05 +- 20 %", '
         "or give data or a SciPy distribution"
     )
-    return InputError(what, name, why or "It is none of the kinds that are known", remedy)
+    return InputError(what, name, why or "It is none of the supported kinds", remedy)
 
 
 class _Data:
@@ -189,22 +189,25 @@ def sample(
     (0.05, 0.0082)
     """
     if not isinstance(distributions, Mapping) or not distributions:
-        what, remedy = "no quantity is spread", 'Write {"friction.coefficient": "0.05 +- 0.83 %"}'
+        what, remedy = (
+            "no uncertain quantity is listed",
+            'Write {"friction.coefficient": "0.05 +- 0.83 %"}',
+        )
         raise InputError(what, Argument("distributions"), "Wanted: a mapping of names", remedy)
-    made = {str(name): distribution(str(name), text) for name, text in distributions.items()}
+    spread = {str(name): distribution(str(name), text) for name, text in distributions.items()}
     count = require_whole("size", size)
-    if count * len(made) > _MOST:
+    if count * len(spread) > _MOST:
         why = f"At most {_MOST:g} numbers are drawn at once"
         raise InputError(f"size = {count}", Argument("size"), why, "Draw several samples")
-    shares = uniform(count, len(made), method, require_whole("seed", seed, 0))
+    shares = uniform(count, len(spread), method, require_whole("seed", seed, 0))
     values = {
         name: np.asarray(each.ppf(column), dtype=float)
-        for (name, each), column in zip(made.items(), shares.T, strict=True)
+        for (name, each), column in zip(spread.items(), shares.T, strict=True)
     }
-    for name, drawn in values.items():
-        if not np.all(np.isfinite(drawn)):
+    for name, column in values.items():
+        if not np.all(np.isfinite(column)):
             what = "the distribution gives values that are not finite"
-            raise ComputationError(what, name, "", "Look at its parameters, or cut it")
+            raise ComputationError(what, name, "", "Check its parameters, or truncate it")
     return values
 
 
@@ -218,11 +221,14 @@ def uniform(size: int, width: int, method: str, seed: int) -> Array:
         return random.random((size, width))
     if method == "latin-hypercube":
         return np.asarray(qmc.LatinHypercube(width, seed=random).random(size))
-    whole = 1 << max(size - 1, 0).bit_length()
-    if whole != size:
+    power_of_two = 1 << max(size - 1, 0).bit_length()
+    if power_of_two != size:
         warn(
             "sobol-size",
-            f"A Sobol sequence of {size} values is not balanced; take {whole} or {whole // 2}.",
+            f"A Sobol sequence of {size} values is not balanced; "
+            f"use {power_of_two} or {power_of_two // 2}.",
             stacklevel=3,
         )
-    return np.asarray(qmc.Sobol(width, seed=random).random_base2(whole.bit_length() - 1)[:size])
+    return np.asarray(
+        qmc.Sobol(width, seed=random).random_base2(power_of_two.bit_length() - 1)[:size]
+    )

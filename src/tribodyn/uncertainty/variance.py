@@ -104,33 +104,35 @@ def sobol_indices(
         raise InputError("it cannot be called", Argument("function"), "", "Give a function")
     count = require_whole("size", size, 2)
     if count & (count - 1):
-        why = "A Sobol sequence is even in powers of two only"
-        near = 1 << (count.bit_length() - 1)
-        raise InputError(f"size = {count}", Argument("size"), why, f"Take {near}")
+        why = "A Sobol sequence is balanced for powers of two only"
+        power_of_two = 1 << (count.bit_length() - 1)
+        raise InputError(f"size = {count}", Argument("size"), why, f"Take {power_of_two}")
     if not 0.0 <= level < 1.0:
         why, remedy = "A probability below 1, or 0 for no intervals", "Take 0.95"
         raise InputError(f"level = {level}", Argument("level"), why, remedy)
-    made = {str(name): distribution(str(name), text) for name, text in distributions.items()}
+    spread = {str(name): distribution(str(name), text) for name, text in distributions.items()}
     outputs: list[Array] = []
 
     def answer(columns: Array) -> Array:
-        outputs.append(_checked(function(dict(zip(made, columns, strict=True))), columns.shape[1]))
+        outputs.append(
+            _checked(function(dict(zip(spread, columns, strict=True))), columns.shape[1])
+        )
         return outputs[-1]
 
     random = np.random.default_rng(require_whole("seed", seed, 0))
     bands: Sequence[Array | None] | Array = (None, None)
-    if len(made) == 1:  # all of the variance comes from it
-        answer(np.asarray(next(iter(made.values())).ppf(random.random((1, count)))))
-        first = whole = np.ones(1)
+    if len(spread) == 1:  # all of the variance comes from it
+        answer(np.asarray(next(iter(spread.values())).ppf(random.random((1, count)))))
+        first = totals = np.ones(1)
         bands = [np.ones((2, 1))] * 2 if level else (None, None)
     else:
-        shares = indices(func=answer, n=count, dists=list(made.values()), random_state=random)
-        first, whole = np.asarray(shares.first_order), np.asarray(shares.total_order)
-        bands = _bootstrapped(outputs, len(made), level, random) if level else (None, None)
+        shares = indices(func=answer, n=count, dists=list(spread.values()), random_state=random)
+        first, totals = np.asarray(shares.first_order), np.asarray(shares.total_order)
+        bands = _bootstrapped(outputs, len(spread), level, random) if level else (None, None)
     return SobolIndices(
-        name=np.array(list(made)),
+        name=np.array(list(spread)),
         first_order=first.reshape(-1),
-        total_order=whole.reshape(-1),
+        total_order=totals.reshape(-1),
         evaluations=sum(values.size for values in outputs),
         first_order_band=bands[0],
         total_order_band=bands[1],
@@ -143,16 +145,16 @@ def _checked(values: Any, count: int) -> Array:
     output = np.asarray(values)
     if output.shape != (count,) or output.dtype.kind not in "biuf":
         what = f"the function returns {output.dtype} values of the shape {output.shape}"
-        why = f"It was given {count} values of each input"
+        why = f"It was called with {count} values of each input"
         raise InputError(what, Argument("function"), why, "Return one number for each")
     if not np.all(np.isfinite(output)):
         raise ComputationError(
             "the function returns values that are not finite",
             why="Shares of a variance need every sample",
-            remedy="Look for the sample at which the function fails",
+            remedy="Find the sample at which the function fails",
         )
     if np.ptp(output) == 0.0:
-        why = "Shares of a variance need one above zero"
+        why = "Indices are shares of the variance, which is zero"
         raise ComputationError("the output does not vary", why=why, remedy="Widen the inputs")
     return output.astype(float)
 
@@ -164,7 +166,7 @@ def _bootstrapped(outputs: list[Array], inputs: int, level: float, random: Any) 
     first, second = outputs[0], outputs[1]
     size = first.size
     mixed = outputs[2].reshape(size, inputs)
-    drawn = np.empty((_RESAMPLES, 2, inputs))
+    resampled = np.empty((_RESAMPLES, 2, inputs))
     for number in range(_RESAMPLES):
         rows = random.integers(size, size=size)
         if np.ptp(np.concatenate((first[rows], second[rows]))) == 0.0:
@@ -175,6 +177,6 @@ def _bootstrapped(outputs: list[Array], inputs: int, level: float, random: Any) 
             "f_AB": mixed[rows].T[:, None, :],
         }
         answer = indices(func=parts, n=size)
-        drawn[number] = np.reshape(answer.first_order, -1), np.reshape(answer.total_order, -1)
-    ends = np.quantile(drawn, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
+        resampled[number] = np.reshape(answer.first_order, -1), np.reshape(answer.total_order, -1)
+    ends = np.quantile(resampled, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
     return np.asarray(np.moveaxis(ends, 1, 0))

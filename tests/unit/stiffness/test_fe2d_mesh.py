@@ -88,7 +88,7 @@ def test_cuts_are_radii_that_meet_the_next_sector(gear, mesh):
     right, left = mesh.nodes[mesh.right_cut], mesh.nodes[mesh.left_cut]
     assert np.arctan2(*right.T) == pytest.approx(math.pi / gear.teeth, abs=1e-12)
     assert right * [-1.0, 1.0] == pytest.approx(left, abs=1e-12)
-    on_bore = np.hypot(*mesh.nodes[mesh.held].T) * gear.normal_module
+    on_bore = np.hypot(*mesh.nodes[mesh.fixed].T) * gear.normal_module
     assert on_bore == pytest.approx(0.5 * gear.bore_diameter, rel=1e-12)
 
 
@@ -124,10 +124,10 @@ def test_linear_displacement_is_exact_on_the_mesh(gear, mesh):
     # patch test: constant strain, displacements given on the whole boundary
     gradient = np.array([[0.3, -0.7], [0.2, 0.9]])
     exact = mesh.nodes @ gradient.T
-    plain = SectorMesh(**{**vars(mesh), "right_cut": mesh.held[:0], "left_cut": mesh.held[:0]})
+    plain = SectorMesh(**{**vars(mesh), "right_cut": mesh.fixed[:0], "left_cut": mesh.fixed[:0]})
     matrix = sector_stiffness(plain, plane_stress(1.0, 0.3)).tocsr()
     cuts = np.concatenate([mesh.right_cut, mesh.left_cut])
-    boundary = np.unique(np.concatenate([mesh.outline, cuts, mesh.held]))
+    boundary = np.unique(np.concatenate([mesh.outline, cuts, mesh.fixed]))
     given = (2 * boundary[:, None] + np.arange(2)).ravel()
     free = np.setdiff1d(np.arange(2 * len(mesh.nodes)), given)
     moved = exact.ravel().copy()

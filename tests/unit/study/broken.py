@@ -99,7 +99,7 @@ BROKEN = (
     Broken("unquoted-decimal-comma", "= 0.8635", "= 0,8635", "profile_shift_coefficient = 0,8635",
            ("decimal sign is a point", "profile_shift_coefficient = 0.8635")),
     Broken("separated-thousands", _SPEED, 'speed = "2,500 rpm"', "speed",
-           ('speed = "2500 rpm" or speed = "2.5 rpm"', "thousands are not set apart")),
+           ('speed = "2500 rpm" or speed = "2.5 rpm"', "thousands have no separator")),
     Broken("thousands-and-decimals", _SPEED, 'speed = "1.234,5 rpm"', "speed",
            ('Write speed = "1234.5 rpm".',)),
     Broken("blank-in-a-number", _SPEED, 'speed = "2 500 rpm"', "speed",

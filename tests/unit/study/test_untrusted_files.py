@@ -131,7 +131,7 @@ def test_only_so_many_faults_are_told() -> None:
         read_case(f"{keys}\n{SOUND}", "my.toml")
     assert len(caught.value.problems) <= 51
     many = TribodynError([Problem(f"fault {number}") for number in range(80)])
-    assert str(many.problems[-1]).startswith("30 more faults")
+    assert str(many.problems[-1]).startswith("30 more problems")
 
 
 def test_a_message_repeats_little_and_no_control_characters() -> None:

@@ -60,7 +60,7 @@ def test_features_come_by_name_in_a_table_or_in_order(model):
 
 
 def test_beyond_the_training_is_told(model):
-    with pytest.warns(ModelWarning, match="1 of 2 rows are outside of the training: b = 3"):
+    with pytest.warns(ModelWarning, match="1 of 2 rows are outside the training range: b = 3"):
         model.predict({"a": 0.0, "b": [0.0, 3.0]})
 
 
@@ -75,7 +75,7 @@ def test_a_model_comes_back_as_it_was(model, tmp_path):
     at = bytes(damaged).index(model.networks[0][1][:4].tobytes())
     damaged[at] ^= 1
     path.write_bytes(damaged)
-    with pytest.raises(InputError, match="not as it was written"):
+    with pytest.raises(InputError, match="damaged or changed after"):
         surrogate.load(path)
     other = model.to_xarray()
     other.to_netcdf(tmp_path / "less.nc")

@@ -41,7 +41,9 @@ BROKEN = {
     _CASE + 'compute = "motions"\n[axes]\nforce_scale = "2..1:3"': "A range rises",
     _CASE + _DRAWN: "samples.over: nothing varies",
     _CASE + "[samples]\nsize = 3.5\nsed = 1\n": "seed is missing.*whole number.*sed: unknown key",
-    _CASE + _DRAWN + '[samples.over]\noperation.speed = "4 bar .. 5 bar"': "no distribution.*rad/s",
+    _CASE
+    + _DRAWN
+    + '[samples.over]\noperation.speed = "4 bar .. 5 bar"': "not a distribution.*rad/s",
     _CASE + _DRAWN + '[samples.over]\noperation.spee = "4 rpm .. 5 rpm"': 'Did you mean "speed"',
     _CASE + "cases = 5": "one table for each member",
     _CASE + '[[cases]]\noperation.speed = "4 rpm"\n[[cases]]\noperation.torque = "4 N*m"': (

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.arrays.products import Room, times
+from tribodyn.arrays.products import Allocator, times
 from tribodyn.arrays.workspace import Memory, new_memory
 from tribodyn.dynamics.equations.entry import Entry, entry_values, varies
 from tribodyn.dynamics.equations.grid import (
@@ -123,7 +123,11 @@ def rows_of_system(nodes: Nodes, number: int) -> Nodes:
 
 
 def _values(
-    rows: RowEvaluator, where: str, entries: Sequence[Any], size: int, allocate: Room = np.empty
+    rows: RowEvaluator,
+    where: str,
+    entries: Sequence[Any],
+    size: int,
+    allocate: Allocator = np.empty,
 ) -> Array:
     """Values (systems, steps, 3, size) of an entry of each system."""
     first, shape = entries[0], (len(entries), *rows.nodes.shape, size)
@@ -146,7 +150,9 @@ def _constants(where: str, entries: Sequence[Any], at: Array, size: int) -> Arra
     return np.stack([entry_values(where, each, at, size) for each in entries])[:, None]
 
 
-def _joined(rows: RowEvaluator, entries: Sequence[Any], size: int, allocate: Room) -> Array | None:
+def _joined(
+    rows: RowEvaluator, entries: Sequence[Any], size: int, allocate: Allocator
+) -> Array | None:
     """Values of tables on the same grid points, looked up together; None for other entries."""
     first, kind = entries[0], type(entries[0])
     if not hasattr(kind, "onto") or not all(type(each) is kind for each in entries):
@@ -188,7 +194,7 @@ def coarsen_nodes(nodes: Nodes, grid: Grid) -> Nodes:
     return Nodes(**rows)._replace(weight=step_weights(grid))
 
 
-def coarsen_rows(values: Array, steps: int, lead: int, allocate: Room = np.empty) -> Array:
+def coarsen_rows(values: Array, steps: int, lead: int, allocate: Allocator = np.empty) -> Array:
     """Values at both ends and the middle of pairs of steps, from (..., 2 steps, 3, ...)."""
     # The steps become the last axis, so that their values are taken from contiguous memory.
     last = tuple(range(lead + 2, values.ndim))

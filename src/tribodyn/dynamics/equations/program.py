@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.arrays.products import Room, times
+from tribodyn.arrays.products import Allocator, times
 from tribodyn.arrays.workspace import Memory, new_memory
 from tribodyn.dynamics.equations.entry import varies as depends_on_phase
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events, unrepeated
@@ -175,7 +175,7 @@ class _Terms:
             table[:, :, item] = columns[item]
         return table.reshape(-1)
 
-    def rows_of_halves(self, blocks: Sequence[Index], allocate: Room) -> list[LaneRows]:
+    def rows_of_halves(self, blocks: Sequence[Index], allocate: Allocator) -> list[LaneRows]:
         """Row tables of halved steps for blocks of lanes with one system per lane."""
         columns = [
             unrepeated(np.broadcast_to(values, self.shape)) for values in self.factors or [0.0]

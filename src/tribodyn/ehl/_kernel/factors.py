@@ -93,9 +93,9 @@ def _backward(n: int, a: Array, b: Array) -> None:
     for k in range(n - 1, -1, -1):
         r = a[k, HALF_BAND:]
         value = b[k] - r[14] * x14 - r[13] * x13 - r[12] * x12 - r[11] * x11
-        far = r[10] * x10 + r[9] * x9 + r[8] * x8 + r[7] * x7
-        near = r[6] * x6 + r[5] * x5 + r[4] * x4 + r[3] * x3
-        x = ((value - far) - (near + r[2] * x2) - r[1] * x1) * r[0]
+        outer_terms = r[10] * x10 + r[9] * x9 + r[8] * x8 + r[7] * x7
+        middle_terms = r[6] * x6 + r[5] * x5 + r[4] * x4 + r[3] * x3
+        x = ((value - outer_terms) - (middle_terms + r[2] * x2) - r[1] * x1) * r[0]
         b[k] = x
         x14, x13, x12, x11, x10, x9, x8 = x13, x12, x11, x10, x9, x8, x7
         x7, x6, x5, x4, x3, x2, x1 = x6, x5, x4, x3, x2, x1, x

@@ -207,15 +207,15 @@ def _multiply(half: int, z: Array, turn: Array, spectrum: Array) -> None:
     for k in range(1, half // 2 + 1):
         o = half - k
         mean = 0.5 * (spectrum[k] + spectrum[o])
-        apart = 0.5 * (spectrum[k] - spectrum[o])
+        half_difference = 0.5 * (spectrum[k] - spectrum[o])
         er, ei = 0.5 * (z[0, k] + z[0, o]), 0.5 * (z[1, k] - z[1, o])
         dr, di = 0.5 * (z[0, k] - z[0, o]), 0.5 * (z[1, k] + z[1, o])
         wr, wi = turn[0, k], turn[1, k]
         # E' = mean E - i apart w D and D' = i apart conj(w) E + mean D
         pr, pi = wr * dr - wi * di, wr * di + wi * dr
         qr, qi = wr * er + wi * ei, wr * ei - wi * er
-        fr, fi = mean * er + apart * pi, mean * ei - apart * pr
-        gr, gi = mean * dr - apart * qi, mean * di + apart * qr
+        fr, fi = mean * er + half_difference * pi, mean * ei - half_difference * pr
+        gr, gi = mean * dr - half_difference * qi, mean * di + half_difference * qr
         z[1, k], z[0, k] = fr + gr, fi + gi
         z[1, o], z[0, o] = fr - gr, gi - fi
 
@@ -244,9 +244,9 @@ def film_sum(n: int, kernel: Array, plan: Array, P: Array, work: Array, out: Arr
     if n % 2 == 1:
         x[0, n // 2] = P[n - 1]
     in_x = transform(half, x, y, table)
-    z, room = (x, y) if in_x else (y, x)
+    z, scratch = (x, y) if in_x else (y, x)
     _multiply(half, z, turn, spectrum)
-    result = z if transform(half, z, room, table) else room
+    result = z if transform(half, z, scratch, table) else scratch
     scale = 1.0 / half
     for j in range(n // 2):
         out[2 * j], out[2 * j + 1] = scale * result[1, j], scale * result[0, j]

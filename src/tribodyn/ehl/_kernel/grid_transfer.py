@@ -36,8 +36,8 @@ def outlet_position(k: int, n: int, P: Array) -> float:
     """Index, with fraction, at which the pressure ends."""
     if k < 2 or not P[k] > 0.0 or not P[k - 1] > P[k]:
         return float(min(k + 1, n))
-    near, far = np.sqrt(P[k]), np.sqrt(P[k - 1])
-    return min(k + near / (far - near), float(n))
+    root_here, root_before = np.sqrt(P[k]), np.sqrt(P[k - 1])
+    return min(k + root_here / (root_before - root_here), float(n))
 
 
 @nb.njit(**INNER)

@@ -44,9 +44,9 @@ def flooded_inlet(
     for q in range(_NODES.size):
         x = 2.0 / (edge * (1.0 + _NODES[q]))
         weight, arm = 0.5 * edge * _WEIGHTS[q], x - 1.0 / edge
-        here, by_film, by_load = _wedge(x, film, lam, curvature, s)
-        pressure += weight * here
-        load += weight * here * arm
+        wedge_pressure, by_film, by_load = _wedge(x, film, lam, curvature, s)
+        pressure += weight * wedge_pressure
+        load += weight * wedge_pressure * arm
         pressure_film += weight * by_film
         load_film += weight * by_film * arm
         pressure_load += weight * by_load
@@ -109,17 +109,17 @@ def _reduced_pressure(
 ) -> float:
     """Isoviscous pressure of the inlet wedge at X <= -1, and its value at the edge."""
     q[0] = tail
-    before = lam * dry_gap(start) / (film + dry_gap(start)) ** 3
+    gradient_before = lam * dry_gap(start) / (film + dry_gap(start)) ** 3
     last = tail
     for i in range(1, n + 1):
         x = start + i * dx
         if x > -1.0:
             break
         d = dry_gap(x)
-        here = lam * d / (film + d) ** 3
-        last += 0.5 * dx * (before + here)
+        gradient = lam * d / (film + d) ** 3
+        last += 0.5 * dx * (gradient_before + gradient)
         q[i] = last
-        before = here
+        gradient_before = gradient
     return last
 
 
@@ -129,15 +129,15 @@ def _rigid_pressure(
 ) -> None:
     """Isoviscous pressure between rigid cylinders, which ends with its gradient."""
     end = _PARTING * np.sqrt(2.0 * film)
-    leaving, last, before = film + 0.5 * end * end, tail, 0.0
+    leaving, last, gradient_before = film + 0.5 * end * end, tail, 0.0
     for i in range(n + 1):
         x = start + i * dx
         h = film + 0.5 * x * x
-        here = lam * (h - leaving) / (h * h * h)
+        gradient = lam * (h - leaving) / (h * h * h)
         if i > 0:
-            last = last + 0.5 * dx * (before + here) if x < end else 0.0
+            last = last + 0.5 * dx * (gradient_before + gradient) if x < end else 0.0
         q[i] = max(last, 0.0)
-        before = here
+        gradient_before = gradient
 
 
 @nb.njit(**INNER)

@@ -194,15 +194,20 @@ def prepare(grid: Grid, k: int, imposed: bool, work: LinearWork) -> bool:
     scale, border = work.scale, work.border
     K, w = grid.influence, HALF_BAND
     # Influence of the node in column c on the film at the node i-2+s, the same in every row.
-    near = np.empty((4, 2 * w + 1))
+    node_film = np.empty((4, 2 * w + 1))
     for s in range(4):
         for c in range(2 * w + 1):
-            near[s, c] = K[min(abs(w - c + s - 2), grid.n)]
+            node_film[s, c] = K[min(abs(w - c + s - 2), grid.n)]
     for i in range(1, k + 1):
         a = band[i - 1]
         h0, h1, h2, h3 = cH[i, 0], cH[i, 1], cH[i, 2], cH[i, 3]
         for c in range(2 * w + 1):
-            a[c] = h0 * near[0, c] + h1 * near[1, c] + h2 * near[2, c] + h3 * near[3, c]
+            a[c] = (
+                h0 * node_film[0, c]
+                + h1 * node_film[1, c]
+                + h2 * node_film[2, c]
+                + h3 * node_film[3, c]
+            )
         for s in range(4):
             a[w - 2 + s] += cP[i, s]
         largest = 0.0
@@ -314,22 +319,22 @@ def linear_solve(
     # Hessenberg columns in small[:, j]; rotations, right-hand side.
     cosine, sine, g = small[BASIS + 1], small[BASIS + 2], small[BASIS + 3]
     size = k + 1 if imposed else k
-    products, used, goal, begun = 0, 0, 0.0, False
+    products, used, goal, started = 0, 0, 0.0, False
     for _ in range(RESTARTS * (BASIS + 1)):
         # The first correction, which alone meets the load row; then the residual where a space
         # begins, or the product with its last vector.
-        v = basis[used] if begun else x
-        if begun:
+        v = basis[used] if started else x
+        if started:
             old = x if used == 0 else basis[used - 1]
             _apply(grid, k, imposed, work, old, v)
             products += 1
         if used == 0:
             for i in range(k):
-                v[i] = scale[i] * rhs[i] - (v[i] if begun else 0.0)
-        target = 0.0 if begun else rhs[k]
+                v[i] = scale[i] * rhs[i] - (v[i] if started else 0.0)
+        target = 0.0 if started else rhs[k]
         _precondition(grid, k, imposed, target, coarse, work, v)
-        if not begun:
-            begun = True
+        if not started:
+            started = True
             for i in range(size):
                 goal += x[i] * x[i]
             goal = tolerance * np.sqrt(goal)

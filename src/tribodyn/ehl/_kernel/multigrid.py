@@ -97,7 +97,7 @@ class Grids(NamedTuple):
     shape: Array
     influence: Array
     plans: Array
-    near: Array
+    near_films: Array
     free: Index  #: last free node of each grid
     load: Array  #: load that each grid carries
 
@@ -115,7 +115,7 @@ def _level(grids: Grids, g: int) -> Level:
         grids.target[a:b],
         grids.excess[a:b],
         grids.shape[a:b],
-        grids.near[g],
+        grids.near_films[g],
     )
 
 
@@ -141,7 +141,7 @@ def _make_grids(n: int, count: int, contact: SteadyContact) -> Grids:
         m, dx = level.grid.n, level.grid.dx
         level.grid.influence[:] = influence(m, dx)
         level.grid.plan[:] = film_plan(m, level.grid.influence)
-        near_influence(dx, level.near)
+        near_influence(dx, level.near_films)
         if g == 0:
             level.shape[:] = contact.profile
         else:
@@ -276,7 +276,7 @@ def _build(digest: str) -> Any:
             m = level.grid.n
             for i in range(m + 1):
                 level.excess[i] = level.target[i] = 0.0
-            work.coarsest.kept[0] = 0
+            work.coarsest.factored[0] = 0
             best, since, cycles = np.inf, nb.int64(0), nb.int64(0)
             fill_film(level, work.offset[0], work)
             while g < last:

@@ -45,7 +45,7 @@ class Level(NamedTuple):
     target: Array  #: residual to be reached
     excess: Array  #: film beyond that of the pressure, from the finer grid
     shape: Array  #: gap of the undeformed bodies
-    near: Array  #: films of a node and of a dipole, of :func:`near_influence`
+    near_films: Array  #: films of a node and of a dipole, of :func:`near_influence`
 
 
 class CoarsestWork(NamedTuple):
@@ -56,7 +56,7 @@ class CoarsestWork(NamedTuple):
     scale: Array
     delta: Array
     pressure: Array
-    kept: Index  #: free nodes for which the factors hold, zero for none
+    factored: Index  #: free nodes for which the factors hold, zero for none
 
 
 class LevelWork(NamedTuple):
@@ -165,18 +165,18 @@ def add_correction(m: int, k: int, P: Array, injected: Array, fine: Array) -> No
 
 
 @nb.njit(**INNER)
-def near_influence(dx: float, near: Array) -> None:
+def near_influence(dx: float, films: Array) -> None:
     """Film of a single node and of a dipole, up to ``NEAR`` intervals away and zero beyond."""
     K = influence(NEAR + 1, dx)
     for s in range(4):
         for c in range(_WIDTH):
             d = abs(s - 2 - c + LEFT)
-            near[0, s, c] = K[d] if d <= NEAR else 0.0
-            near[1, s, c] = K[d] - 0.5 * (K[abs(d - 1)] + K[d + 1]) if d <= NEAR else 0.0
+            films[0, s, c] = K[d] if d <= NEAR else 0.0
+            films[1, s, c] = K[d] - 0.5 * (K[abs(d - 1)] + K[d + 1]) if d <= NEAR else 0.0
 
 
 @nb.njit(**INNER)
-def assemble_band(k: int, dipole: Array, near: Array, cH: Array, cP: Array, band: Array) -> None:
+def assemble_band(k: int, dipole: Array, films: Array, cH: Array, cP: Array, band: Array) -> None:
     """Band of the tangent in the unknowns of the sweep, row ``i - 1`` for node i."""
     inside = 0.0
     for j in range(1, min(RIGHT, k) + 1):
@@ -190,13 +190,13 @@ def assemble_band(k: int, dipole: Array, near: Array, cH: Array, cP: Array, band
         row = band[i - 1]
         h0, h1, h2, h3 = cH[i, 0], cH[i, 1], cH[i, 2], cH[i, 3]
         if inside == 0.0 or inside == _WIDTH:
-            film = near[1] if inside > 0.0 else near[0]
+            film = films[1] if inside > 0.0 else films[0]
             for c in range(_WIDTH):
                 row[c] = h0 * film[0, c] + h1 * film[1, c] + h2 * film[2, c] + h3 * film[3, c]
         else:
             for c in range(_WIDTH):
                 j = i + c - LEFT
-                film = near[1] if 1 <= j <= k and dipole[j] > 0.0 else near[0]
+                film = films[1] if 1 <= j <= k and dipole[j] > 0.0 else films[0]
                 row[c] = h0 * film[0, c] + h1 * film[1, c] + h2 * film[2, c] + h3 * film[3, c]
         if inside == _WIDTH:
             # Every node of the row takes its change half from each of its neighbours.
@@ -274,10 +274,10 @@ def _substitute(k: int, band: Array, x: Array) -> None:
     x1 = x2 = x3 = x4 = x5 = x6 = 0.0
     for i in range(k - 1, -1, -1):
         r = band[i, LEFT:]
-        far = r[6] * x6 + r[5] * x5 + r[4] * x4
-        here = (((x[i] - far) - (r[3] * x3 + r[2] * x2)) - r[1] * x1) * r[0]
-        x[i] = here
-        x6, x5, x4, x3, x2, x1 = x5, x4, x3, x2, x1, here
+        outer_terms = r[6] * x6 + r[5] * x5 + r[4] * x4
+        value = (((x[i] - outer_terms) - (r[3] * x3 + r[2] * x2)) - r[1] * x1) * r[0]
+        x[i] = value
+        x6, x5, x4, x3, x2, x1 = x5, x4, x3, x2, x1, value
 
 
 @nb.njit(**INNER)
@@ -294,18 +294,18 @@ def relax(level: Level, k: int, least: float, damping: float, cap: float, work: 
     dipole, delta, band = work.dipole, work.delta, work.band
     for j in range(k + 2):
         dipole[j] = 1.0 if 2 <= j < k and eps[j] < least else 0.0
-    assemble_band(k, dipole, level.near, work.by_film, work.by_pressure, band)
+    assemble_band(k, dipole, level.near_films, work.by_film, work.by_pressure, band)
     x = delta[1:]
     for i in range(1, k + 1):
         delta[i] = right[i] - G[i]
     solve_band(k, band, x)
     largest, before = 0.0, 0.0
     for i in range(1, k + 1):
-        here = delta[i]
+        correction = delta[i]
         # Half of the dipoles on both sides; the one behind is still as solved.
         after = 0.5 * dipole[i + 1] * delta[i + 1] if i < k else 0.0
-        delta[i] = here - before - after
-        before = 0.5 * dipole[i] * here
+        delta[i] = correction - before - after
+        before = 0.5 * dipole[i] * correction
         largest = max(largest, abs(delta[i]))
     step = damping if damping * largest <= cap else cap / largest
     for i in range(1, k + 1):
@@ -323,8 +323,11 @@ def _factor(k: int, level: Level, work: LevelWork) -> bool:
         h0, h1, h2, h3 = cH[i, 0], cH[i, 1], cH[i, 2], cH[i, 3]
         for j in range(1, k + 1):
             d = i - j
-            near, far = h1 * K[abs(d - 1)] + h2 * K[abs(d)], h0 * K[abs(d - 2)] + h3 * K[abs(d + 1)]
-            row[j - 1] = near + far
+            inner_terms, outer_terms = (
+                h1 * K[abs(d - 1)] + h2 * K[abs(d)],
+                h0 * K[abs(d - 2)] + h3 * K[abs(d + 1)],
+            )
+            row[j - 1] = inner_terms + outer_terms
         for s in range(4):
             if 1 <= i - 2 + s <= k:
                 row[i - 3 + s] += cP[i, s]
@@ -348,15 +351,15 @@ def solve_coarsest(level: Level, k: int, load: float, work: LevelWork) -> int:
     """Newton's method for pressure and offset at fixed free nodes; factors kept while useful."""
     n, dx, P, H, right = level.grid.n, level.grid.dx, level.P, level.H, level.target
     dense, offset, G = work.coarsest, work.offset, work.fields.G
-    scale, delta, before, kept = dense.scale, dense.delta, dense.pressure, dense.kept
+    scale, delta, before, factored = dense.scale, dense.delta, dense.pressure, dense.factored
     first, last = -1.0, -1.0
     for _ in range(_STEPS):
-        if kept[0] != k:
+        if factored[0] != k:
             fill_level_tangent(level, work)
-            kept[0] = 0
+            factored[0] = 0
             if not _factor(k, level, work):
                 return SINGULAR
-            kept[0] = k
+            factored[0] = k
         total = 0.5 * P[0]
         for i in range(1, n):
             total += P[i]
@@ -385,13 +388,13 @@ def solve_coarsest(level: Level, k: int, load: float, work: LevelWork) -> int:
                 break
             step *= 0.5
         if not is_open:
-            kept[0] = 0
+            factored[0] = 0
             return GAP
         if first < 0.0:
             first = size
         if size <= _ENOUGH * first or size < 1e-13:
             return CONVERGED
         if step < 1.0 or (last >= 0.0 and size > _SHRINK * last):
-            kept[0] = 0
+            factored[0] = 0
         last = size
     return CONVERGED

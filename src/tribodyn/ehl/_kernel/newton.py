@@ -204,7 +204,7 @@ def newton_level(
             cavity[i] = 0.0
     # Typed: a literal would make the compiler translate the callee anew.
     streak, refills, used, status = nb.int64(0), nb.int64(0), nb.int64(0), nb.int64(STALLED)
-    moved, fresh, change, step, reached, flux_error = False, True, 1.0, 1.0, 0.0, 0.0
+    moved, fresh, change, step, last_change, flux_error = False, True, 1.0, 1.0, 0.0, 0.0
     for steps in range(limits.steps + 1):
         if work.flag[0] != 0:
             status = nb.int64(STOPPED)
@@ -230,7 +230,7 @@ def newton_level(
                     streak += 1
             if grown or (moved and not torn):
                 visits[k] += 1.0
-            reached = change
+            last_change = change
             if torn:
                 flux_error = _balance_error(k, equation.squeeze, cavity, H, f)
             else:
@@ -302,4 +302,4 @@ def newton_level(
     total = 0.5 * P[0]
     for i in range(1, k + 1):
         total += P[i]
-    return Solved(status, offset, k, dx * total, used, reached, flux_error)
+    return Solved(status, offset, k, dx * total, used, last_change, flux_error)

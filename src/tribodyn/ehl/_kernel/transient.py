@@ -205,13 +205,13 @@ def _carry(
     largest = 1.0 / max(1.0, np.ceil(furthest / np.log(ratio)))
     done, part = 0.0, largest
     while done < 1.0:
-        reached = done + part
-        if reached > 1.0 - 1e-9:
-            reached = 1.0
+        progress = done + part
+        if progress > 1.0 - 1e-9:
+            progress = 1.0
         for c in range(row.size):
-            row[c] = first[c] + reached * (last[c] - first[c])
+            row[c] = first[c] + progress * (last[c] - first[c])
             if c in (LOAD, SPEED, CURVATURE) and first[c] > 0.0:
-                row[c] = first[c] * (last[c] / first[c]) ** reached
+                row[c] = first[c] * (last[c] / first[c]) ** progress
         p[:], h[:] = P, H
         _fill_gap(contact, row, setting.shape)
         trial, film = state, central(n, start, dx, h)
@@ -231,7 +231,7 @@ def _carry(
                 return status, state
             continue
         P[:], H[:] = p, h
-        state, done, part = trial, reached, min(2.0 * part, largest)
+        state, done, part = trial, progress, min(2.0 * part, largest)
     return nb.int64(CONVERGED), state
 
 
@@ -288,13 +288,13 @@ def _follow(
     if every > 0:
         pressures[0], films[0] = P, H
     for m in range(1, time.size):
-        whole = time[m] - time[m - 1]
+        interval = time[m] - time[m - 1]
         done, part, parts, steps = 0.0, 1.0, nb.int64(0), nb.int64(0)
         while done < 1.0:
-            width = part * whole
-            reached = done + part
+            width = part * interval
+            progress = done + part
             for c in range(row.size):
-                row[c] = table[m - 1, c] + reached * (table[m, c] - table[m - 1, c])
+                row[c] = table[m - 1, c] + progress * (table[m, c] - table[m - 1, c])
             _fill_gap(contact, row, setting.shape)
             if last == 0.0:
                 squeeze, expected, expected_load = dx / width, film, load
@@ -303,9 +303,12 @@ def _follow(
             else:
                 r = width / last
                 squeeze = dx / width * (1.0 + 2.0 * r) / (1.0 + r)
-                near, far = dx / width * (1.0 + r), dx / width * r * r / (1.0 + r)
+                weight_before, weight_earlier = (
+                    dx / width * (1.0 + r),
+                    dx / width * r * r / (1.0 + r),
+                )
                 for i in range(n + 1):
-                    history[i] = near * before[i] - far * earlier[i]
+                    history[i] = weight_before * before[i] - weight_earlier * earlier[i]
                 expected = film + r * (film - film_before)
                 expected_load = load + r * (load - load_before)
             p[:], h[:], broken[:] = P, H, cavity
@@ -325,7 +328,7 @@ def _follow(
                 before[i] = rho[i] * H[i]
             film_before, film = film, central(n, start, dx, H)
             load_before, load = load, state.load
-            last, done = width, reached
+            last, done = width, progress
             parts += 1
             steps += state.steps
         _keep(contact, P, H, cavity, state, steps, parts, records[m])
@@ -345,8 +348,8 @@ def _build(digest: str) -> Any:
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         setting = _setting(contact, flag)
         if time.size == 0:
-            status, reached = _carry(contact, setting, ratio, table, P, H, state)
-            return status, nb.int64(0), reached
+            status, final_state = _carry(contact, setting, ratio, table, P, H, state)
+            return status, nb.int64(0), final_state
         return _follow(
             contact, setting, time, table, halvings, every, P, H, state, records, pressures, films
         )

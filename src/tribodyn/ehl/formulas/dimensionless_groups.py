@@ -93,11 +93,11 @@ class FilmFormula(Protocol):
 
 def full_text(text: str) -> str:
     """Docstring of a formula with what all of them share; sections that it has itself stay."""
-    first, _, rest = text.partition("\n\n")
+    first, _, sections = text.partition("\n\n")
     for title, lines in (("Raises", _RAISES), ("Returns", _RETURNS), ("Parameters", ARGUMENTS)):
-        if f"{title}\n---" not in rest:
-            rest = f"{title}\n{'-' * len(title)}\n{lines}\n\n{rest}"
-    return f"{first}\n\n{rest}"
+        if f"{title}\n---" not in sections:
+            sections = f"{title}\n{'-' * len(title)}\n{lines}\n\n{sections}"
+    return f"{first}\n\n{sections}"
 
 
 def shared_arguments(function: F) -> F:
@@ -119,8 +119,10 @@ def film_formula(law: Callable[[Groups], Array]) -> FilmFormula:
     public = FunctionType(
         formula.__code__, law.__globals__, law.__name__, None, formula.__closure__
     )
-    taken = inspect.signature(line_contact_groups, eval_str=True).replace(return_annotation="Array")
-    public.__signature__ = taken  # type: ignore[attr-defined]
+    signature_si = inspect.signature(line_contact_groups, eval_str=True).replace(
+        return_annotation="Array"
+    )
+    public.__signature__ = signature_si  # type: ignore[attr-defined]
     public.__annotations__ = {**line_contact_groups.__annotations__, "return": "Array"}
     public.__module__, public.__qualname__ = law.__module__, law.__qualname__
     public.__doc__ = law.__doc__

@@ -187,15 +187,17 @@ def choose_nodes(nodes: Any) -> tuple[int, bool]:
         remedy = 'Leave it at "auto", or give a number of this range'
         raise InputError(f"nodes = {nodes!r}", "argument nodes", why, remedy)
     count = int(float(nodes))
-    near = 2 ** min(14, max(6, round(math.log2(max(count - 1, 1))))) + 1
+    suggestion = 2 ** min(14, max(6, round(math.log2(max(count - 1, 1))))) + 1
     if not FEWEST <= count <= MOST:
         why = f"a grid has {FEWEST} to {MOST} nodes"
-        raise InputError(f"nodes = {count}", "argument nodes", why, f"Take nodes = {near}")
+        raise InputError(f"nodes = {count}", "argument nodes", why, f"Take nodes = {suggestion}")
     intervals = count - 1
     while intervals % 2 == 0 and intervals > _COARSEST:
         intervals //= 2
     if intervals > _COARSEST:
         what = f"nodes = {count}, hence {count - 1} intervals"
         why = f"halving the intervals must lead to {_COARSEST} or fewer, and ends at {intervals}"
-        raise InputError(what, "argument nodes", why, f"Take nodes = {near}, or another 2^k + 1")
+        raise InputError(
+            what, "argument nodes", why, f"Take nodes = {suggestion}, or another 2^k + 1"
+        )
     return count, False

@@ -37,9 +37,11 @@ def grid_error(problem: ContactProblem, outcome: Outcome, cut: bool) -> GridErro
     """Estimate the errors of a solution by one more grid, and by where a flooded one begins."""
     grid = outcome.grid
     assert grid is not None  # a verified outcome has a grid
-    apart = cut_error(grid.X[0], float(np.interp(0.0, grid.X, grid.H))) if cut else 0.0
+    domain_error = cut_error(grid.X[0], float(np.interp(0.0, grid.X, grid.H))) if cut else 0.0
     central, least, pressure = _of_intervals(problem, grid, outcome.films)
-    return GridError(central + apart, least + _CUT_LEAST * apart, pressure + apart)
+    return GridError(
+        central + domain_error, least + _CUT_LEAST * domain_error, pressure + domain_error
+    )
 
 
 def _of_intervals(
@@ -52,17 +54,21 @@ def _of_intervals(
     for intervals in first:
         other = _on(problem, grid, intervals)
         if other is not None:
-            here, there = _figures(grid), _figures(other)
-            apart = np.abs(there - here) / here
+            figures, other_figures = _figures(grid), _figures(other)
+            differences = np.abs(other_figures - figures) / figures
             if intervals < n:
                 slow = min(max(fall, _FOURFOLD), _SLOWEST)
                 factor = slow / (1.0 - slow)
             else:
-                fall = apart[0] / (steps[-1] / here[0]) if steps.size and steps[-1] > 0.0 else 1.0
+                fall = (
+                    differences[0] / (steps[-1] / figures[0])
+                    if steps.size and steps[-1] > 0.0
+                    else 1.0
+                )
                 factor = 1.0 / (1.0 - min(max(float(fall), _FOURFOLD), _SLOWEST))
             # The least film lies between nodes, and is never better known than the central one.
-            apart[1] = _BETWEEN * max(apart[0], apart[1])
-            central, least, pressure = (_MARGIN * factor * apart).tolist()
+            differences[1] = _BETWEEN * max(differences[0], differences[1])
+            central, least, pressure = (_MARGIN * factor * differences).tolist()
             if problem.film_tolerance > 0.0 and steps.size:
                 central = float(steps[-1]) / (3.0 * films[-1])
             return GridError(central, least, pressure)
@@ -81,9 +87,9 @@ def _on(problem: ContactProblem, grid: DiscreteContact, intervals: int) -> Discr
         return None
     profile = problem.profile
     if profile is not None:
-        here, there = (np.linspace(0.0, 1.0, count + 1) for count in (grid.n, intervals))
+        points, other_points = (np.linspace(0.0, 1.0, count + 1) for count in (grid.n, intervals))
         profile = np.ascontiguousarray(
-            np.interp(there, here, profile[:: (profile.size - 1) // grid.n])
+            np.interp(other_points, points, profile[:: (profile.size - 1) // grid.n])
         )
     outcome = newton_engine(
         replace(

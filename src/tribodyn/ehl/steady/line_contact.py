@@ -306,9 +306,11 @@ def _warn_accuracy(solution: LineContactSolution, options: SolverOptions) -> Non
     error = solution.central_film_error / solution.central_film
     least = solution.minimum_film_error / solution.minimum_film
     automatic = isinstance(options.nodes, str)
-    asked = solution.nodes if automatic else int(options.nodes)
+    requested = solution.nodes if automatic else int(options.nodes)
     raised = (
-        "" if solution.nodes == asked else f", where {asked} that were asked for have no solution,"
+        ""
+        if solution.nodes == requested
+        else f", where {requested} that were asked for have no solution,"
     )
     if automatic and error > options.film_tolerance:
         limit, remedy = f"film_tolerance = {options.film_tolerance:g}", "a greater tolerance"

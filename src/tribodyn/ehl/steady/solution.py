@@ -212,10 +212,10 @@ class LineContactSolution(Record):
 def outlet_position(grid: DiscreteContact) -> float:
     """Where the pressure ends, between the nodes."""
     k = grid.free
-    here, before = float(grid.P[k]), float(grid.P[k - 1])
-    if not before > here > 0.0:
+    pressure, pressure_before = float(grid.P[k]), float(grid.P[k - 1])
+    if not pressure_before > pressure > 0.0:
         return float(grid.X[min(k + 1, grid.n)])
-    share = math.sqrt(here) / (math.sqrt(before) - math.sqrt(here))
+    share = math.sqrt(pressure) / (math.sqrt(pressure_before) - math.sqrt(pressure))
     return float(min(grid.X[k] + share * grid.dx, grid.X[-1]))
 
 

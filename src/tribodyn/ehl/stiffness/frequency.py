@@ -40,8 +40,10 @@ def frequency_response(
     )
     inverse = (1.0 / every[:-1]).reshape(values.shape)
     limit = (1.0 / every[-1]).imag / (2.0 * np.pi * slow)
-    rest = values == 0.0
-    damping = np.where(rest, limit, inverse.imag / (2.0 * np.pi * np.where(rest, 1.0, values)))
+    is_static = values == 0.0
+    damping = np.where(
+        is_static, limit, inverse.imag / (2.0 * np.pi * np.where(is_static, 1.0, values))
+    )
     return np.asarray(inverse.real)[()], np.asarray(damping)[()]
 
 

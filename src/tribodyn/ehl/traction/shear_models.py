@@ -48,20 +48,20 @@ class ShearModel(Model):
         The Eyring stress always has a value, so that a model without it leaves it alone. Without
         a number of the limit there is none, unless the model is made of it.
         """
-        given = {name: value for name, value in numbers.items() if value is not None}
-        known = {**self.declared, **(LIMIT if given.keys() & LIMIT.keys() else {})}
-        for name in sorted(given.keys() - known.keys()):
+        supplied = {name: value for name, value in numbers.items() if value is not None}
+        parameters = {**self.declared, **(LIMIT if supplied.keys() & LIMIT.keys() else {})}
+        for name in sorted(supplied.keys() - parameters.keys()):
             what = f'{name} does not belong to shear_model = "{self.name}"'
-            why = f"Its numbers are: {', '.join({**known, **LIMIT})}"
+            why = f"Its numbers are: {', '.join({**parameters, **LIMIT})}"
             raise InputError(what, Argument(name), why, "Remove it, or choose another shear model")
         require_positive("eyring_stress", eyring_stress, "Pa", remedy="5 MPa is 5e6 Pa")
-        values = {**{n: o.default for n, o in known.items()}, "eyring_stress": eyring_stress}
-        values |= given
-        for name, option in known.items():
+        values = {**{n: o.default for n, o in parameters.items()}, "eyring_stress": eyring_stress}
+        values |= supplied
+        for name, option in parameters.items():
             require_between(name, values[name], 0.0, np.inf, option.unit)
             if option.low > 0.0:
                 require_positive(name, values[name], option.unit)
-        return {name: values[name] for name in known}
+        return {name: values[name] for name in parameters}
 
 
 #: Shear models by name.

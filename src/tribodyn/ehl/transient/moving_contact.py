@@ -59,9 +59,9 @@ def read_inputs(
     require_positive("equivalent_radius", radius, "m")
     _require_speed(speed)
     _require_impose(impose, approach)
-    given = None if approach is None else _series("approach", approach, t)
+    approach_series = None if approach is None else _series("approach", approach, t)
     travel = _travel(t, speed, surface_speeds, roughness)
-    return TransientInputs(t, load, radius, speed, given, travel, roughness)
+    return TransientInputs(t, load, radius, speed, approach_series, travel, roughness)
 
 
 def _time(time: ArrayLike) -> Array:
@@ -77,8 +77,8 @@ def _time(time: ArrayLike) -> Array:
     return t
 
 
-def _series(name: str, given: Series, t: Array) -> Array:
-    values = np.asarray(given(t) if callable(given) else given, dtype=float)
+def _series(name: str, series: Series, t: Array) -> Array:
+    values = np.asarray(series(t) if callable(series) else series, dtype=float)
     if values.ndim > 0 and values.shape != t.shape:
         what = f"{name} has the shape {values.shape}"
         remedy = "Give a number, one value per instant, or a function of time"
@@ -131,9 +131,9 @@ def _travel(
         return np.zeros((2, t.size))
     speeds = np.array([_series("surface_speeds", item, t) for item in surface_speeds])
     mean = 0.5 * (speeds[0] + speeds[1])
-    apart = np.abs(mean - speed)
-    if np.any(apart > 1e-6 * np.max(np.abs(speeds))):
-        i = int(np.argmax(apart))
+    mismatch = np.abs(mean - speed)
+    if np.any(mismatch > 1e-6 * np.max(np.abs(speeds))):
+        i = int(np.argmax(mismatch))
         raise InputError(
             f"surface speeds {speeds[0, i]:.6g} and {speeds[1, i]:.6g} m/s, "
             f"entrainment_speed {speed[i]:.6g} m/s at instant {i}",

@@ -296,8 +296,8 @@ def _follow(
     state = contact.steady() if start == "steady" else contact.unloaded()
     m, n = inputs.time.size, contact.nodes - 1
     records = np.zeros((m, RECORD))
-    kept = np.arange(0, m, keep_every) if keep_every > 0 else np.zeros(0, np.int64)
-    pressures, films = np.zeros((2, kept.size, n + 1))
+    stored_instants = np.arange(0, m, keep_every) if keep_every > 0 else np.zeros(0, np.int64)
+    pressures, films = np.zeros((2, stored_instants.size, n + 1))
     posed = contact.kernel_contact(imposed, 1.0 if imposed else contact.depth)
     status, instant, _ = stoppable(
         follow_contact, posed, 1.25, contact.time, contact.table(), step_halvings, keep_every,
@@ -305,7 +305,7 @@ def _follow(
     )  # fmt: skip
     if status != 0:
         raise _failure(contact, status, instant, step_halvings)
-    result = _result(contact, records, kept, pressures, films)
+    result = _result(contact, records, stored_instants, pressures, films)
     return result, float(np.max(records[:, 10]))
 
 
@@ -313,7 +313,7 @@ def _failure(
     contact: MovingContact, status: int, instant: int, step_halvings: int
 ) -> ComputationError:
     inputs = contact.inputs
-    given = (
+    operating_point = (
         f"load {inputs.load[instant]:.6g} N/m"
         if inputs.approach is None
         else f"approach {inputs.approach[instant]:.6g} m"
@@ -321,7 +321,7 @@ def _failure(
     return ComputationError(
         f"The contact did not converge at instant {instant} of {inputs.time.size - 1}, "
         f"t = {inputs.time[instant]:.6g} s: {REASONS[status]}",
-        where=f"{given}, radius {inputs.radius[instant]:.6g} m, entrainment speed "
+        where=f"{operating_point}, radius {inputs.radius[instant]:.6g} m, entrainment speed "
         f"{inputs.entrainment_speed[instant]:.6g} m/s",
         why=f"the step from t = {inputs.time[instant - 1]:.6g} s failed after it was halved "
         f"{step_halvings} times",
@@ -331,7 +331,7 @@ def _failure(
 
 
 def _result(
-    contact: MovingContact, records: Array, kept: Index, pressures: Array, films: Array
+    contact: MovingContact, records: Array, stored_instants: Index, pressures: Array, films: Array
 ) -> TransientLineContact:
     inputs, scale = contact.inputs, contact.scale
     offset, total, load, central, minimum, free, steps, flux, parts, highest, _, cavities = (
@@ -352,7 +352,7 @@ def _result(
         equivalent_radius=inputs.radius,
         entrainment_speed=inputs.entrainment_speed,
         position=X * scale.half_width,
-        kept=kept,
+        kept=stored_instants,
         pressure=pressures * scale.pressure,
         film=films * scale.film,
         iterations=steps.astype(int),

@@ -122,8 +122,8 @@ def iso_14179_2(
     require_positive("pitch_line_velocity", pitch_line_velocity, "m/s")
     require_positive("load_per_width", load_per_width, "N/m", remedy="1 N/mm is 1000 N/m")
     load = np.maximum(np.asarray(load_per_width, dtype=float), _LEAST_LOAD)
-    held = np.minimum(1.0, _FASTEST / np.asarray(pitch_line_velocity, dtype=float))
-    speed = np.asarray(sum_velocity, dtype=float) * held
+    speed_limit = np.minimum(1.0, _FASTEST / np.asarray(pitch_line_velocity, dtype=float))
+    speed = np.asarray(sum_velocity, dtype=float) * speed_limit
     state = (load, speed, equivalent_radius, dynamic_viscosity, roughness_ra)
     return mean_friction("iso-14179", state, lubricant_factor, lambda *_: 0.048, np.inf)
 
@@ -138,7 +138,7 @@ _PARTS = {
     "iso-14179",
     source="ISO/TR 14179-1 and -2 (2001)",
     meaning="mean friction coefficient of a mesh for the heat balance of gear units",
-    own={"part": choice("2", _PARTS, meaning="part of ISO/TR 14179")},
+    law_options={"part": choice("2", _PARTS, meaning="part of ISO/TR 14179")},
     papers=("iso-14179",),
 )
 def _law(

@@ -77,7 +77,7 @@ _LOAD_FACTOR = number(
     "iso-6336-22",
     source="ISO/TS 6336-22:2018",
     meaning="mean friction coefficient of a mesh, as the micropitting standard has it",
-    own={"load_factor": _LOAD_FACTOR},
+    law_options={"load_factor": _LOAD_FACTOR},
     papers=("iso-6336-22",),
 )
 def _law(contact: object, point: PitchPoint, state: dict[str, float], load_factor: float) -> Array:

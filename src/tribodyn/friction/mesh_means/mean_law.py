@@ -88,7 +88,7 @@ def mean_friction(
 
 
 def mean_law(
-    name: str, *, own: Mapping[str, Any] | None = None, rough: bool = True, **about: Any
+    name: str, *, law_options: Mapping[str, Any] | None = None, rough: bool = True, **about: Any
 ) -> Callable[[Callable[..., Any]], None]:
     """Register a function of contacts and their pitch point as a law with one value everywhere.
 
@@ -105,7 +105,7 @@ def mean_law(
             return np.full(np.shape(contact.load_per_width), function(contact, point, **options))
 
         shared = OPTIONS if rough else {}
-        LAWS.define(name, options={**(own or {}), **shared}, **about)(law)
+        LAWS.define(name, options={**(law_options or {}), **shared}, **about)(law)
 
     return keep
 

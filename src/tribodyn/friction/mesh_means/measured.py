@@ -106,13 +106,13 @@ def _points(*columns: tuple[float, ...]) -> Array:
         require_positive(name, np.array(column), unit)
     require_between(names[2], np.array(columns[2]), 0.0, 1.0)
     points = np.log(np.array(columns)).T
-    seen: set[tuple[float, float]] = set()
+    places: set[tuple[float, float]] = set()
     for place in zip(columns[0], columns[1], strict=True):
-        if place in seen:
+        if place in places:
             what = f"two points at {place[0]:.4g} N*m and {place[1] / RPM:.4g} rpm"
             why, remedy = "One place has one friction coefficient", "Give their mean"
             raise InputError(what, where='friction law "measured"', why=why, remedy=remedy)
-        seen.add(place)
+        places.add(place)
     return np.asarray(points)
 
 
@@ -151,10 +151,10 @@ def _nearest(points: Array, edges: Index, where: Array) -> tuple[Array, Array]:
 
 
 def _column(
-    low: float, high: float, why: str, column: int, of: str, words: str, example: str
+    low: float, high: float, why: str, column: int, of: str, quantity: str, example: str
 ) -> Any:
-    told = {"default": FZG_POINTS[column], "of": of, "example": example}
-    return numbers(low, high, why, meaning=f"{words} at each measured point", **told)
+    attributes = {"default": FZG_POINTS[column], "of": of, "example": example}
+    return numbers(low, high, why, meaning=f"{quantity} at each measured point", **attributes)
 
 
 _GUARD = "guards against a wrong unit"
@@ -166,7 +166,7 @@ _GUARD = "guards against a wrong unit"
     meaning="mean friction coefficient of a mesh between measured points of torque and speed",
     needs_oil=False,
     rough=False,
-    own={
+    law_options={
         "measured_torques": _column(
             1e-6, 1e8, _GUARD, 0, "torque", "torque on the driving gear", '["50 N*m", "150 N*m"]'
         ),

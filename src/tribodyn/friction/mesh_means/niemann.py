@@ -78,8 +78,8 @@ def niemann(
 
     def old(load: Array, speed: Array, radius: Array, viscosity: Array) -> Array:
         """Powers 0.25 of all instead of the family's 0.2 and -0.05, and no factor of the oil."""
-        rest = (load / (speed * radius)) ** 0.05 * viscosity**-0.2
-        return np.asarray(0.12 * rest / np.asarray(lubricant_factor, dtype=float))
+        powers = (load / (speed * radius)) ** 0.05 * viscosity**-0.2
+        return np.asarray(0.12 * powers / np.asarray(lubricant_factor, dtype=float))
 
     factor = old if form == "iso-tc60" else lambda *_: 0.045 * size
     return mean_friction("niemann", state, lubricant_factor, factor)
@@ -89,7 +89,7 @@ def niemann(
     "niemann",
     source="Niemann and Winter, Maschinenelemente II (2003)",
     meaning="mean friction coefficient of a mesh, as the textbook on machine elements has it",
-    own={"form": choice("winter-michaelis", FORMS, meaning="published form")},
+    law_options={"form": choice("winter-michaelis", FORMS, meaning="published form")},
     papers=("niemann-winter",),
 )
 def _law(contact: object, point: PitchPoint, state: dict[str, float], form: str) -> Array:

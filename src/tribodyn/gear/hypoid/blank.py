@@ -166,7 +166,7 @@ class HypoidBlank(Record):
         for name, labels in labels_of(type(self)).items():
             if labels.unit:
                 value = parts.attributes.pop(name)
-                parts.variables[name] = ((), value, self._told(name, labels))
+                parts.variables[name] = ((), value, self._attributes(name, labels))
         return parts
 
 
@@ -273,9 +273,11 @@ def hypoid_blank(
     hand = require_one_of("hand_pinion", arguments.pop("hand_pinion"), HANDS)
     teeth = _teeth(arguments.pop("teeth_pinion"), arguments.pop("teeth_wheel"))
     values = _checked(arguments)
-    given = PitchInput(*teeth, *(values[name] for name in PitchInput._fields if name in values))
-    _require_room(given)
-    return HypoidBlank(hand_pinion=hand, **dimensions(given, values))  # type: ignore[arg-type]
+    pitch_input = PitchInput(
+        *teeth, *(values[name] for name in PitchInput._fields if name in values)
+    )
+    _require_face_fits(pitch_input)
+    return HypoidBlank(hand_pinion=hand, **dimensions(pitch_input, values))  # type: ignore[arg-type]
 
 
 def _teeth(pinion: int, wheel: int) -> tuple[int, int]:
@@ -306,12 +308,12 @@ def _checked(arguments: dict[str, float | None]) -> dict[str, float]:
     return values
 
 
-def _require_room(given: PitchInput) -> None:
+def _require_face_fits(pitch_input: PitchInput) -> None:
     """A face that reaches the wheel's axis leaves no cone."""
-    most = 0.45 * given.outer_pitch_diameter_wheel
-    if given.face_width_wheel <= most:
+    most = 0.45 * pitch_input.outer_pitch_diameter_wheel
+    if pitch_input.face_width_wheel <= most:
         return
-    what = f"face_width_wheel = {given.face_width_wheel * 1e3:.6g} mm"
+    what = f"face_width_wheel = {pitch_input.face_width_wheel * 1e3:.6g} mm"
     why = f"A wheel of this diameter has room for {most * 1e3:.6g} mm"
     remedy = "Reduce the face width; usual is up to a third of the outer cone distance"
     raise InputError(what, Argument("face_width_wheel"), why, remedy)

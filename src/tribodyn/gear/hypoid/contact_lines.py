@@ -57,19 +57,19 @@ class ContactLines:
         """Scale of rotation and station, and polynomials of them that guess the parameters."""
         places = _places(self.flanks.blank, _WIDER, _FITTED)
         parameters = self.flanks.wheel.parameters(places.reshape(-1, 2))
-        here, _ = self._lines_at(parameters)
-        known = np.isfinite(here).all(axis=-1)
-        scale = np.abs(here[known]).max(axis=0)
-        terms = _powers(here[known] / scale)
-        return scale, np.asarray(np.linalg.lstsq(terms, parameters[known], rcond=None)[0])
+        position, _ = self._lines_at(parameters)
+        finite = np.isfinite(position).all(axis=-1)
+        scale = np.abs(position[finite]).max(axis=0)
+        terms = _powers(position[finite] / scale)
+        return scale, np.asarray(np.linalg.lstsq(terms, parameters[finite], rcond=None)[0])
 
     def _lines_at(self, parameters: Array) -> tuple[Array, Array]:
         """Rotation and station of points of the flank, with derivatives by the parameters."""
         surface = self.flanks.wheel.at(parameters)
         places, steps = self.flanks.wheel.projected(surface)
         contact = envelope(surface, self.flanks.axes)
-        here = np.stack([contact.rotation, places @ self.along], axis=-1)
-        return here, np.stack([contact.slope, self.along @ steps], axis=-2)
+        position = np.stack([contact.rotation, places @ self.along], axis=-1)
+        return position, np.stack([contact.slope, self.along @ steps], axis=-2)
 
     def parameters(self, rotation: Array, station: Array) -> Array:
         """Parameters of the flank at stations of the lines; NaN where there is none."""
@@ -77,26 +77,26 @@ class ContactLines:
         wanted = np.stack([rotation.ravel(), station.ravel()], axis=-1)
         scale, guess = self._start
         with np.errstate(all="ignore"):
-            found = _powers(wanted / scale) @ guess
-            lost = np.full(len(found), np.inf)
-            left = np.arange(len(found))
+            parameters = _powers(wanted / scale) @ guess
+            lost = np.full(len(parameters), np.inf)
+            left = np.arange(len(parameters))
             for _ in range(_NEWTON):
-                here, matrix = self._lines_at(found[left])
-                error = wanted[left] - here
+                position, matrix = self._lines_at(parameters[left])
+                error = wanted[left] - position
                 lost[left] = np.max(np.abs(error), axis=-1)
-                found[left] += solved(matrix, error)
+                parameters[left] += solved(matrix, error)
                 left = left[lost[left] > _CLOSE]
                 if not left.size:
                     break
-        found[~(lost < 1e-11)] = np.nan
-        return found.reshape(*rotation.shape, 2)
+        parameters[~(lost < 1e-11)] = np.nan
+        return parameters.reshape(*rotation.shape, 2)
 
     def touch(self, rotation: Array, station: Array) -> Touch:
         """Contact at stations of the lines."""
         surface = self.flanks.wheel.at(self.parameters(rotation, station))
         return self.flanks.touch_at(surface)
 
-    def room(self, rotation: Array, station: Array) -> Array:
+    def margin(self, rotation: Array, station: Array) -> Array:
         """Least room to an end of the active flank; minus infinity where there is no flank."""
         margin = np.min(self.flanks.margins(self.touch(rotation, station)), axis=-1)
         return np.where(np.isfinite(margin), margin, -np.inf)
@@ -120,7 +120,7 @@ class ContactLines:
         ends = []
         for sense in (-1.0, 1.0):
             best = np.argmax(np.where(inside, sense * touch.contact.rotation, -np.inf))
-            found = minimize(
+            minimum = minimize(
                 lambda x, sense=sense: -sense * float(self._at(x).contact.rotation[0]),
                 parameters[np.unravel_index(best, inside.shape)] / self._unit,
                 constraints={
@@ -130,7 +130,7 @@ class ContactLines:
                 method="SLSQP",
                 options={"ftol": 1e-13},
             )
-            ends.append(float(self._at(found.x).contact.rotation[0]))
+            ends.append(float(self._at(minimum.x).contact.rotation[0]))
         return ends[0], ends[1]
 
     def _at(self, parameters: Array) -> Touch:
@@ -142,43 +142,50 @@ class ContactLines:
         spread = 0.1 * np.ptp(reach)
         samples = np.linspace(reach.min() - spread, reach.max() + spread, _SAMPLES)
         station = np.tile(samples, (len(rotation), 1))
-        room = self.room(rotation[:, None], station)
-        # A line shorter than the distance of two samples lies beside that with the most room.
+        margins = self.margin(rotation[:, None], station)
+        # A line shorter than the sample spacing is next to the sample with the largest margin.
         for step in (samples[1] - samples[0]) * np.array([1.0, 2.0 / _SAMPLES]):
-            short = ~np.any(room > 0.0, axis=1)
-            middle = station[short, np.argmax(room[short], axis=1)]
+            short = ~np.any(margins > 0.0, axis=1)
+            middle = station[short, np.argmax(margins[short], axis=1)]
             station[short] = middle[:, None] + np.linspace(-step, step, _SAMPLES)
-            room[short] = self.room(rotation[short, None], station[short])
-        inside = room > 0.0
-        middle = np.argmax(room, axis=1)
+            margins[short] = self.margin(rotation[short, None], station[short])
+        inside = margins > 0.0
+        middle = np.argmax(margins, axis=1)
         number = np.arange(_SAMPLES)
         before = np.where(~inside & (number <= middle[:, None]), number, -1).max(axis=1)
         after = np.where(~inside & (number >= middle[:, None]), number, _SAMPLES).min(axis=1)
-        there = inside.any(axis=1) & (before >= 0) & (after < _SAMPLES)
-        before, after = np.where(there, before, 0), np.where(there, after, 1)
+        exists = inside.any(axis=1) & (before >= 0) & (after < _SAMPLES)
+        before, after = np.where(exists, before, 0), np.where(exists, after, 1)
         row = np.arange(len(rotation))
-        found = [
+        stations = [
             self._end(
-                rotation, *(np.stack([each[row, out], each[row, held]]) for each in (station, room))
+                rotation,
+                *(np.stack([each[row, out], each[row, inside_end]]) for each in (station, margins)),
             )
-            for out, held in ((before, before + 1), (after, after - 1))
+            for out, inside_end in ((before, before + 1), (after, after - 1))
         ]
-        return np.stack(found, axis=-1), there
+        return np.stack(stations, axis=-1), exists
 
-    def _end(self, rotation: Array, station: Array, room: Array) -> Array:
+    def _end(self, rotation: Array, station: Array, margins: Array) -> Array:
         """Close in on the end between a station (2, n) outside of the flank and one inside."""
-        (outside, inside), (lack, rest) = station, room
+        (outside, inside), (outside_margin, inside_margin) = station, margins
         for _ in range(_SEARCH):
             with np.errstate(invalid="ignore"):
-                share = rest / (rest - lack)
+                share = inside_margin / (inside_margin - outside_margin)
             # Far from any flank there is no room to interpolate; halves keep both ends moving.
-            share = np.where(np.isfinite(lack) & (share > 0.0), share, 0.5)
+            share = np.where(np.isfinite(outside_margin) & (share > 0.0), share, 0.5)
             middle = inside + np.clip(share, 0.01, 0.99) * (outside - inside)
-            here = self.room(rotation, middle)
-            held = here > 0.0
+            middle_margin = self.margin(rotation, middle)
+            is_inside = middle_margin > 0.0
             # The end that stays counts half the next time (Illinois).
-            rest, lack = np.where(held, here, 0.5 * rest), np.where(held, 0.5 * lack, here)
-            outside, inside = np.where(held, outside, middle), np.where(held, middle, inside)
-            if np.nanmax(np.minimum(np.abs(here), np.abs(outside - inside))) < 1e-13:
+            inside_margin, outside_margin = (
+                np.where(is_inside, middle_margin, 0.5 * inside_margin),
+                np.where(is_inside, 0.5 * outside_margin, middle_margin),
+            )
+            outside, inside = (
+                np.where(is_inside, outside, middle),
+                np.where(is_inside, middle, inside),
+            )
+            if np.nanmax(np.minimum(np.abs(middle_margin), np.abs(outside - inside))) < 1e-13:
                 break
         return np.asarray(inside)

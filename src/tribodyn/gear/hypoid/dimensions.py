@@ -20,17 +20,17 @@ class _Depths(NamedTuple):
     taper: tuple[float, float]  #: addendum and dedendum angle of the wheel
 
 
-def dimensions(given: PitchInput, values: dict[str, float]) -> dict[str, float]:
+def dimensions(pitch_input: PitchInput, values: dict[str, float]) -> dict[str, float]:
     """Dimensions of both blanks by the names of their fields."""
-    cones = pitch_cones(given)
-    return _Dimensions(given, cones, _depths(given, cones, values)).named(values)
+    cones = pitch_cones(pitch_input)
+    return _Dimensions(pitch_input, cones, _depths(pitch_input, cones, values)).named(values)
 
 
-def _depths(given: PitchInput, cones: PitchCones, values: dict[str, float]) -> _Depths:
+def _depths(pitch_input: PitchInput, cones: PitchCones, values: dict[str, float]) -> _Depths:
     """Depths from factors of data type II, clauses 7.4 to 7.6."""
     distance, pitch = cones.cone_distance[1], cones.pitch_angle[1]
     diameter = 2.0 * distance * math.sin(pitch)
-    module = diameter * math.cos(cones.spiral_angle[1]) / given.teeth_wheel
+    module = diameter * math.cos(cones.spiral_angle[1]) / pitch_input.teeth_wheel
     working = values["depth_factor"] * module
     clearance = values["clearance_factor"] * working
     wheel = values["addendum_factor_wheel"] * working
@@ -47,15 +47,15 @@ def _depths(given: PitchInput, cones: PitchCones, values: dict[str, float]) -> _
 class _Dimensions:
     """Clause 7 of ISO 23509 for a shaft angle of 90 deg; pairs are (pinion, wheel)."""
 
-    def __init__(self, given: PitchInput, cones: PitchCones, depths: _Depths) -> None:
-        self.given, self.cones, self.depths = given, cones, depths
+    def __init__(self, pitch_input: PitchInput, cones: PitchCones, depths: _Depths) -> None:
+        self.pitch_input, self.cones, self.depths = pitch_input, cones, depths
         pitch, distance = cones.pitch_angle, cones.cone_distance
         self.diameter = (
             2.0 * distance[0] * math.sin(pitch[0]),
             2.0 * distance[1] * math.sin(pitch[1]),
         )
         spread = self.diameter[0] * math.cos(pitch[1]) / math.cos(pitch[0])
-        self.axial = math.asin(2.0 * given.offset / (self.diameter[1] + spread))
+        self.axial = math.asin(2.0 * pitch_input.offset / (self.diameter[1] + spread))
         self.place = (
             0.5 * self.diameter[1] * math.cos(self.axial),
             0.5 * spread * math.tan(pitch[1]),
@@ -78,15 +78,15 @@ class _Dimensions:
         """Offset angle of the pinion in the root or the tip plane of the wheel."""
         distance = self.cones.cone_distance[1] * math.cos(angle)
         reach = distance - self.pitch_apex[1] * math.cos(cone)
-        sine = self.given.offset * math.sin(cone) / reach if reach > 0.0 else math.inf
+        sine = self.pitch_input.offset * math.sin(cone) / reach if reach > 0.0 else math.inf
         if abs(sine) < 1.0:
             return math.asin(sine)
-        what = f"offset = {self.given.offset * 1e3:.6g} mm"
+        what = f"offset = {self.pitch_input.offset * 1e3:.6g} mm"
         why = "The pinion passes the tip or root cone of the wheel"
         raise InputError(what, Argument("offset"), why, "Reduce the offset")
 
     def _apices(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        depths, offset = self.depths, self.given.offset
+        depths, offset = self.depths, self.pitch_input.offset
         distance, apex = self.cones.cone_distance[1], self.pitch_apex[1]
         up, down = depths.taper
         face = distance * math.sin(up) - depths.addendum[1] * math.cos(up)
@@ -95,8 +95,8 @@ class _Dimensions:
         root_wheel = apex + root / math.sin(self.root[1])
         face_pinion, root_pinion = (
             (offset * math.sin(angle) * math.cos(cone) - mate * math.sin(cone) - depths.clearance)
-            / math.sin(own)
-            for angle, cone, mate, own in (
+            / math.sin(cone_angle)
+            for angle, cone, mate, cone_angle in (
                 (self.at_root, self.root[1], root_wheel, self.face[0]),
                 (self.at_face, self.face[1], face_wheel, self.root[0]),
             )
@@ -105,9 +105,9 @@ class _Dimensions:
 
     def _ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Outer and inner cone distances; the pinion's face covers that of the wheel."""
-        given, depths, cones = self.given, self.depths, self.cones
-        pitch, width, ratio = cones.pitch_angle, given.face_width_wheel, given.ratio
-        outer = 0.5 * given.outer_pitch_diameter_wheel / math.sin(pitch[1])
+        pitch_input, depths, cones = self.pitch_input, self.depths, self.cones
+        pitch, width, ratio = cones.pitch_angle, pitch_input.face_width_wheel, pitch_input.ratio
+        outer = 0.5 * pitch_input.outer_pitch_diameter_wheel / math.sin(pitch[1])
         share = (outer - cones.cone_distance[1]) / width
         turn, slope = cones.offset_angle, math.cos(pitch[1])
         lean = math.atan2(
@@ -134,12 +134,12 @@ class _Dimensions:
 
     def _spirals(self, distance: tuple[float, float]) -> tuple[float, float]:
         """Spiral angles at an end, of a trace that is a circle on the crown gear, clause 7.9."""
-        cones, radius = self.cones, self.given.cutter_radius
+        cones, radius = self.cones, self.pitch_input.cutter_radius
         mean, turn = cones.cone_distance[1], cones.offset_angle
         step = distance[0] - cones.cone_distance[0]
         # The place of the pinion's end on the crown gear of the wheel.
         on_wheel = math.sqrt(mean**2 + step**2 + 2.0 * mean * step * math.cos(turn))
-        found = []
+        angles = []
         for place in (on_wheel, distance[1]):
             chord = 2.0 * mean * radius * math.sin(cones.spiral_angle[1]) - mean**2 + place**2
             sine = chord / (2.0 * place * radius)
@@ -148,8 +148,8 @@ class _Dimensions:
                 why = "The circle of the cutter does not reach both ends of the teeth"
                 remedy = "Choose a larger cutter or a smaller face width"
                 raise InputError(what, Argument("cutter_radius"), why, remedy)
-            found.append(math.asin(sine))
-        return found[0] + math.asin(mean * math.sin(turn) / on_wheel), found[1]
+            angles.append(math.asin(sine))
+        return angles[0] + math.asin(mean * math.sin(turn) / on_wheel), angles[1]
 
     def _thickness(self, values: dict[str, float], pressure: float) -> tuple[float, float]:
         """Mean normal circular thicknesses, clause 7.10."""
@@ -168,7 +168,7 @@ class _Dimensions:
 
     def named(self, values: dict[str, float]) -> dict[str, float]:
         """All dimensions by their names."""
-        given, depths, cones = self.given, self.depths, self.cones
+        pitch_input, depths, cones = self.pitch_input, self.depths, self.cones
         change = values["limit_pressure_angle_factor"] * cones.limit_pressure_angle
         drive = values["pressure_angle_drive"] + change
         coast = values["pressure_angle_coast"] - change
@@ -179,8 +179,8 @@ class _Dimensions:
             depths.addendum[1] + step[1] * math.tan(depths.taper[0]),
         ]
         pairs = {
-            "teeth": (given.teeth_pinion, given.teeth_wheel),
-            "face_width": (self.outer[0] - self.inner[0], given.face_width_wheel),
+            "teeth": (pitch_input.teeth_pinion, pitch_input.teeth_wheel),
+            "face_width": (self.outer[0] - self.inner[0], pitch_input.face_width_wheel),
             "pitch_angle": pitch,
             "face_angle": self.face,
             "root_angle": self.root,
@@ -209,12 +209,12 @@ class _Dimensions:
         }
         named = {
             f"{name}_{gear}": value
-            for name, both in pairs.items()
-            for gear, value in zip(("pinion", "wheel"), both, strict=True)
+            for name, members in pairs.items()
+            for gear, value in zip(("pinion", "wheel"), members, strict=True)
         }
         return named | {
-            "offset": given.offset,
-            "cutter_radius": given.cutter_radius,
+            "offset": pitch_input.offset,
+            "cutter_radius": pitch_input.cutter_radius,
             "offset_angle_axial": self.axial,
             "offset_angle_pitch": cones.offset_angle,
             "limit_pressure_angle": cones.limit_pressure_angle,

@@ -98,22 +98,26 @@ class EaseOff:
         object.__setattr__(self, "center", (along, across))
 
 
-def eased_gap(given: EaseOff, blank: HypoidBlank, places: Array) -> tuple[Array, Array]:
+def eased_gap(ease_off: EaseOff, blank: HypoidBlank, places: Array) -> tuple[Array, Array]:
     """Gap and its gradient at places (along, across) the wheel's pitch cone."""
     working = blank.mean_addendum_pinion + blank.mean_addendum_wheel
     middle = 0.5 * (blank.mean_addendum_wheel - blank.mean_addendum_pinion)
     half = np.array([0.5 * blank.face_width_wheel, 0.5 * working])
-    share = (places - np.asarray(given.center or (0.0, middle))) / half
+    share = (places - np.asarray(ease_off.center or (0.0, middle))) / half
     x, y = np.moveaxis(share, -1, 0)
-    gap = given.lengthwise_crowning * x**2 + given.profile_crowning * y**2 + given.bias * x * y
-    along = 2.0 * given.lengthwise_crowning * x + given.bias * y
-    across = 2.0 * given.profile_crowning * y + given.bias * x
+    gap = (
+        ease_off.lengthwise_crowning * x**2
+        + ease_off.profile_crowning * y**2
+        + ease_off.bias * x * y
+    )
+    along = 2.0 * ease_off.lengthwise_crowning * x + ease_off.bias * y
+    across = 2.0 * ease_off.profile_crowning * y + ease_off.bias * x
     slope = np.stack([along, across], axis=-1) / half
-    length = given.relief_length or _RELIEF * working
+    length = ease_off.relief_length or _RELIEF * working
     low, high = working_depth(blank, places[..., 0])
     for amount, depth, (_, turn), sense in (
-        (given.tip_relief, high[0] - places[..., 1], high, 1.0),
-        (given.root_relief, places[..., 1] - low[0], low, -1.0),
+        (ease_off.tip_relief, high[0] - places[..., 1], high, 1.0),
+        (ease_off.root_relief, places[..., 1] - low[0], low, -1.0),
     ):
         over = np.maximum(1.0 - depth / length, 0.0)
         gap = gap + amount * over**2

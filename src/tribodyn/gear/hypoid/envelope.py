@@ -53,9 +53,9 @@ class Envelope(NamedTuple):
     slope: Array  #: (..., 2) derivatives of the rotation by the parameters of the flank
 
 
-def cross(one: Array, other: Array) -> Array:
+def cross(left: Array, right: Array) -> Array:
     """Cross product of vectors in the last axis; of small arrays much faster than numpy's."""
-    (a, b, c), (x, y, z) = (tuple(each[..., i] for i in range(3)) for each in (one, other))
+    (a, b, c), (x, y, z) = (tuple(each[..., i] for i in range(3)) for each in (left, right))
     return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
 
 
@@ -70,9 +70,9 @@ def turned(vector: Array, axis: Array, angle: Array) -> Array:
 
 def turned_surface(surface: Surface, axis: Array, angle: Array) -> Surface:
     """Turn a flank with its derivatives."""
-    both = np.asarray(angle)[..., None]
+    column_angle = np.asarray(angle)[..., None]
     columns = [
-        np.swapaxes(turned(np.swapaxes(each, -1, -2), axis, both), -1, -2)
+        np.swapaxes(turned(np.swapaxes(each, -1, -2), axis, column_angle), -1, -2)
         for each in (surface.tangents, surface.turns)
     ]
     position, normal = (turned(each, axis, angle) for each in surface[:2])
@@ -181,5 +181,5 @@ def solved(matrix: Array, right: Array) -> Array:
     """Solution (..., 2) of 2 x 2 systems; not finite where one is singular."""
     (a, b), (c, d) = (np.moveaxis(row, -1, 0) for row in np.moveaxis(matrix, -2, 0))
     x, y = np.moveaxis(right, -1, 0)
-    found = np.stack([d * x - b * y, a * y - c * x], axis=-1)
-    return np.asarray(found / (a * d - b * c)[..., None])
+    numerators = np.stack([d * x - b * y, a * y - c * x], axis=-1)
+    return np.asarray(numerators / (a * d - b * c)[..., None])

@@ -243,9 +243,9 @@ def hypoid_flanks(
     (low, _), (high, _) = working_depth(blank, along)
     across = low[:, None] + np.linspace(0.0, 1.0, count) * (high - low)[:, None]
     places = np.stack(np.broadcast_arrays(along[:, None], across), axis=-1)
-    found = _grid(flanks, places)
+    surfaces = _grid(flanks, places)
     result = HypoidFlanks(
-        along=along, across=across, side=side, blank=blank, ease_off=flanks.ease_off, **found
+        along=along, across=across, side=side, blank=blank, ease_off=flanks.ease_off, **surfaces
     )
     _warn(result)
     return result
@@ -281,14 +281,14 @@ def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
 
 
 def _warn(flanks: HypoidFlanks) -> None:
-    rest = (
+    location = (
         f"of the active {flanks.side} flank; give the pinion more teeth, a larger spiral angle or "
         "a smaller working depth"
     )
     undercut, cutting = flanks.undercut_share, flanks.interference_share
     if undercut > 0.0:
-        told = f"the pinion is undercut on {undercut:.1%} {rest}"
-        warn("hypoid-undercut", told, stacklevel=3)
+        message = f"the pinion is undercut on {undercut:.1%} {location}"
+        warn("hypoid-undercut", message, stacklevel=3)
     if cutting > 0.0:
-        told = f"the flanks cut into each other on {cutting:.1%} {rest}"
-        warn("hypoid-interference", told, stacklevel=3)
+        message = f"the flanks cut into each other on {cutting:.1%} {location}"
+        warn("hypoid-interference", message, stacklevel=3)

@@ -88,13 +88,13 @@ class FormateFlank:
     def parameters(self, places: Array) -> Array:
         """Parameters of points at (along, across) the pitch cone; NaN where the flank has none."""
         _, slope = self.projected(self.at(np.zeros((1, 2))))
-        found = np.asarray(places) @ np.linalg.inv(slope[0]).T
+        parameters = np.asarray(places) @ np.linalg.inv(slope[0]).T
         with np.errstate(invalid="ignore", over="ignore"):
             for _ in range(_STEPS):
-                here, slope = self.projected(self.at(found))
-                error = np.asarray(places) - here
+                position, slope = self.projected(self.at(parameters))
+                error = np.asarray(places) - position
                 if np.nanmax(np.abs(error), initial=0.0) < _CLOSE:
                     break
-                found = found + solved(slope, error)
+                parameters = parameters + solved(slope, error)
         lost = np.max(np.abs(error), axis=-1) > 1e3 * _CLOSE
-        return np.where(lost[..., None], np.nan, found)
+        return np.where(lost[..., None], np.nan, parameters)

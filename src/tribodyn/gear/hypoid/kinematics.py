@@ -150,11 +150,11 @@ def cell_motion(
     mean = velocity + 0.5 * sliding
     mean = mean - np.einsum("...i,...i->...", mean, normal)[..., None] * normal
     fixed = entrainment == "fixed_frame"
-    drawn = np.linalg.norm(mean, axis=-1) if fixed else 0.5 * np.abs(pinion + wheel)
+    entrainment_speed = np.linalg.norm(mean, axis=-1) if fixed else 0.5 * np.abs(pinion + wheel)
     moving = amount[..., None] > 1e-12 * speed * flanks.blank.mean_pitch_diameter_pinion
     safe = np.where(moving, amount[..., None], 1.0)
     with np.errstate(divide="ignore"):
         radius = 1.0 / curvature.tensor[..., 1, 1]
-        ratio = amount / drawn
+        ratio = amount / entrainment_speed
     against = np.where(moving, -sliding / safe, 0.0)
-    return CellMotion(sliding, amount, pinion, wheel, drawn, ratio, radius, against)
+    return CellMotion(sliding, amount, pinion, wheel, entrainment_speed, ratio, radius, against)

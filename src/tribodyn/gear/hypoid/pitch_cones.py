@@ -54,33 +54,35 @@ class PitchCones(NamedTuple):
     limit_curvature: float  #: of the tooth trace; that of the cutter without offset
 
 
-def pitch_cones(given: PitchInput) -> PitchCones:
+def pitch_cones(pitch_input: PitchInput) -> PitchCones:
     """Cones whose limit curvature is that of the cutter; the spiral bevel pair without offset."""
-    if given.offset == 0.0:
-        return _spiral_bevel(given)
-    _require_reach(given)
-    sense = math.copysign(1.0, given.offset)
+    if pitch_input.offset == 0.0:
+        return _spiral_bevel(pitch_input)
+    _require_reach(pitch_input)
+    sense = math.copysign(1.0, pitch_input.offset)
     angle = sense * np.geomspace(_LEAST, _MOST, _SEARCHED)
-    cones = _cones_at(angle, given)
+    cones = _cones_at(angle, pitch_input)
     valid = _possible(cones)
-    excess = cones.limit_curvature - 1.0 / given.cutter_radius
+    excess = cones.limit_curvature - 1.0 / pitch_input.cutter_radius
     crossing = valid[1:] & valid[:-1] & (excess[1:] * excess[:-1] <= 0.0)
     if not np.any(crossing):
-        raise _no_cones(given, np.asarray(cones.limit_curvature)[valid])
+        raise _no_cones(pitch_input, np.asarray(cones.limit_curvature)[valid])
     from scipy.optimize import brentq
 
     # The smallest offset angle belongs to the cones that roll best on each other.
     first = int(np.argmax(crossing))
     root = brentq(
-        lambda x: float(_cones_at(x, given).limit_curvature) - 1.0 / given.cutter_radius,
+        lambda x: (
+            float(_cones_at(x, pitch_input).limit_curvature) - 1.0 / pitch_input.cutter_radius
+        ),
         angle[first],
         angle[first + 1],
         xtol=1e-18,
         rtol=1e-15,
     )
-    found = _cones_at(root, given)
-    pairs = [(float(one), float(other)) for one, other in found[:3]]
-    return PitchCones(pairs[0], pairs[1], pairs[2], *(float(value) for value in found[3:]))
+    solution = _cones_at(root, pitch_input)
+    pairs = [(float(pinion), float(wheel)) for pinion, wheel in solution[:3]]
+    return PitchCones(pairs[0], pairs[1], pairs[2], *(float(value) for value in solution[3:]))
 
 
 def limit_pressure_tangent(
@@ -94,11 +96,11 @@ def limit_pressure_tangent(
     )
 
 
-def _cones_at(offset_angle: ArrayLike, given: PitchInput) -> Any:
+def _cones_at(offset_angle: ArrayLike, pitch_input: PitchInput) -> Any:
     """Cones for pinion offset angles in the axial plane: clause 6.3.2; NaN where there are none."""
-    eta, ratio, offset = np.asarray(offset_angle), given.ratio, given.offset
-    radius, wanted = given.mean_radius_wheel, math.tan(given.mean_spiral_angle_pinion)
-    start = math.asin(offset * math.sin(given.first_pitch_angle) / radius)
+    eta, ratio, offset = np.asarray(offset_angle), pitch_input.ratio, pitch_input.offset
+    radius, wanted = pitch_input.mean_radius_wheel, math.tan(pitch_input.mean_spiral_angle_pinion)
+    start = math.asin(offset * math.sin(pitch_input.first_pitch_angle) / radius)
     enlargement = wanted * math.sin(start) + math.cos(start)
     pinion_radius = radius * enlargement / ratio
     with np.errstate(all="ignore"):
@@ -136,32 +138,32 @@ def _possible(cones: Any) -> Mask:
     return np.asarray(np.all([finite, *acute, *(d > 0.0 for d in cones.cone_distance)], axis=0))
 
 
-def _spiral_bevel(given: PitchInput) -> PitchCones:
+def _spiral_bevel(pitch_input: PitchInput) -> PitchCones:
     """Rolling cones with a common apex: Method 0, clause 6.2."""
-    pinion = math.atan(1.0 / given.ratio)
+    pinion = math.atan(1.0 / pitch_input.ratio)
     wheel = 0.5 * math.pi - pinion
-    distance = 0.5 * given.outer_pitch_diameter_wheel / math.sin(wheel)
-    distance -= 0.5 * given.face_width_wheel
-    spiral = given.mean_spiral_angle_pinion
-    curvature = 1.0 / given.cutter_radius
+    distance = 0.5 * pitch_input.outer_pitch_diameter_wheel / math.sin(wheel)
+    distance -= 0.5 * pitch_input.face_width_wheel
+    spiral = pitch_input.mean_spiral_angle_pinion
+    curvature = 1.0 / pitch_input.cutter_radius
     return PitchCones((pinion, wheel), (spiral,) * 2, (distance,) * 2, 0.0, 0.0, curvature)
 
 
-def _require_reach(given: PitchInput) -> None:
-    reach = given.mean_radius_wheel / math.sin(given.first_pitch_angle)
-    if abs(given.offset) < reach:
+def _require_reach(pitch_input: PitchInput) -> None:
+    reach = pitch_input.mean_radius_wheel / math.sin(pitch_input.first_pitch_angle)
+    if abs(pitch_input.offset) < reach:
         return
     raise InputError(
-        f"offset = {given.offset * 1e3:.6g} mm",
+        f"offset = {pitch_input.offset * 1e3:.6g} mm",
         Argument("offset"),
         f"The pinion passes the wheel: its axis is further off than {reach * 1e3:.6g} mm",
         "Reduce the offset or enlarge the wheel; usual are 5 to 20 % of its outer pitch diameter",
     )
 
 
-def _no_cones(given: PitchInput, curvature: Array) -> InputError:
-    spiral = math.degrees(given.mean_spiral_angle_pinion)
-    design = f"offset {given.offset * 1e3:.6g} mm and a spiral angle of {spiral:.4g} deg"
+def _no_cones(pitch_input: PitchInput, curvature: Array) -> InputError:
+    spiral = math.degrees(pitch_input.mean_spiral_angle_pinion)
+    design = f"offset {pitch_input.offset * 1e3:.6g} mm and a spiral angle of {spiral:.4g} deg"
     if not curvature.size:
         return InputError(
             f"no pitch cones touch with {design}",
@@ -173,7 +175,7 @@ def _no_cones(given: PitchInput, curvature: Array) -> InputError:
     low, high = float(np.min(curvature)), float(np.max(curvature))
     limits = f"from {1e3 / high:.4g} mm" if high > 0.0 else "no positive radius"
     limits += f" to {1e3 / low:.4g} mm" if low > 0.0 else " up" if high > 0.0 else ""
-    what = f"cutter_radius = {given.cutter_radius * 1e3:.6g} mm"
+    what = f"cutter_radius = {pitch_input.cutter_radius * 1e3:.6g} mm"
     why = f"With {design} the limit curvature of the teeth allows {limits} (ISO 23509, Method 1)"
     remedy = "Choose a cutter in this range, or change offset or spiral angle"
     return InputError(what, Argument("cutter_radius"), why, remedy)

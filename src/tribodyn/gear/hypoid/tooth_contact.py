@@ -64,18 +64,20 @@ class Misalignment:
             object.__setattr__(self, each.name, value)
 
 
-def pinion_motion(given: Misalignment, sense: float) -> tuple[Array, Array]:
+def pinion_motion(misalignment: Misalignment, sense: float) -> tuple[Array, Array]:
     """Rotation of the pinion about the crossing point and its displacement; sense of its hand."""
-    cosine, sine = math.cos(given.shaft_angle), math.sin(given.shaft_angle)
+    cosine, sine = math.cos(misalignment.shaft_angle), math.sin(misalignment.shaft_angle)
     turn = np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
-    return turn, np.array([-sense * given.offset, given.pinion_axial, 0.0])
+    return turn, np.array([-sense * misalignment.offset, misalignment.pinion_axial, 0.0])
 
 
-def displaced_gap(given: Misalignment, position: Array, normal: Array, sense: float) -> Array:
+def displaced_gap(
+    misalignment: Misalignment, position: Array, normal: Array, sense: float
+) -> Array:
     """Gap that the displacements leave where conjugate flanks would touch, to first order."""
-    turn, shift = pinion_motion(given, sense)
+    turn, shift = pinion_motion(misalignment, sense)
     pinion = position @ (turn - np.eye(3)).T + shift
-    wheel = np.array([0.0, 0.0, given.wheel_axial])
+    wheel = np.array([0.0, 0.0, misalignment.wheel_axial])
     return np.asarray(np.einsum("...i,...i->...", wheel - pinion, normal))
 
 
@@ -121,25 +123,25 @@ def exact_contact(
 
     first = bodies(guess)[3]
     helper = np.where(np.abs(first[:, :1]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
-    one = np.cross(first, helper)
-    basis = np.stack([one, np.cross(first, one)], axis=-2)
+    tangent = np.cross(first, helper)
+    basis = np.stack([tangent, np.cross(first, tangent)], axis=-2)
 
     def error(unknown: Array) -> Array:
         place, facing, mate, mate_normal = bodies(unknown)
         turns = np.einsum("nij,...nj->...ni", basis, facing - mate_normal)
         return np.concatenate([(place - mate) / _LENGTH, turns], axis=-1)
 
-    found = guess.copy()
+    unknowns = guess.copy()
     steps = _DIFFERENCE * unit * np.eye(5)
     for _ in range(_ROUNDS):
-        fault = error(found)
-        slope = error(found + steps[:, None]) - error(found - steps[:, None])
+        fault = error(unknowns)
+        slope = error(unknowns + steps[:, None]) - error(unknowns - steps[:, None])
         matrix = np.moveaxis(slope, 0, -1) / (2.0 * _DIFFERENCE)
         change = np.einsum("nij,nj->ni", np.linalg.pinv(matrix, rcond=_LINE), fault)
-        found = found - unit * change
+        unknowns = unknowns - unit * change
         if np.max(np.abs(fault), initial=0.0) < _NONE:
             break
-    left = np.max(np.abs(error(found)), axis=-1)
+    left = np.max(np.abs(error(unknowns)), axis=-1)
     if not np.all(left < _REFUSED):
         worst = int(np.argmax(np.where(np.isfinite(left), left, np.inf)))
         raise ComputationError(
@@ -148,9 +150,9 @@ def exact_contact(
             why="The misalignment or the ease-off moves the contact off the surfaces",
             remedy="Give less of it, or take the analysis by the ease-off",
         )
-    _, _, mate, normal = bodies(found)
-    places, _ = flanks.wheel.projected(flanks.wheel.at(found[:, 2:4]))
-    return ExactContact(found[:, 4], mate, normal, places, left * _LENGTH)
+    _, _, mate, normal = bodies(unknowns)
+    places, _ = flanks.wheel.projected(flanks.wheel.at(unknowns[:, 2:4]))
+    return ExactContact(unknowns[:, 4], mate, normal, places, left * _LENGTH)
 
 
 #: Golden section: its ratio, and steps that leave a nanometre.
@@ -323,8 +325,8 @@ def _analysis(
     low, high = lines.span()
     rotation: Array = step * np.arange(math.ceil(low / step), math.floor(high / step) + 1.0)
     rotation = rotation if conjugate.sense > 0.0 else rotation[::-1]
-    ends, there = lines.ends(rotation)
-    rotation, ends = rotation[there], ends[there]
+    ends, on_flank = lines.ends(rotation)
+    rotation, ends = rotation[on_flank], ends[on_flank]
     station, lag, at_end = lightest(lines, rotation, ends, misalignment)
     share = np.linspace(0.0, 1.0, counts[1])
     cells = lines.touch(rotation[:, None], ends[:, :1] + share * np.ptp(ends, axis=1)[:, None])
@@ -335,15 +337,19 @@ def _analysis(
     normal, places = touch.contact.wheel.normal, touch.places.copy()
     inner = ~at_end
     if exact and np.any(inner):
-        found = exact_contact(
+        exact_points = exact_contact(
             conjugate,
             rotation[inner] / conjugate.axes.ratio,
             start_values(lines, rotation[inner], station[inner], lag[inner]),
             misalignment,
         )
         error = error.copy()
-        error[inner] = conjugate.sense * (found.wheel_rotation - rotation[inner])
-        position[inner], normal[inner], places[inner] = found.position, found.normal, found.places
+        error[inner] = conjugate.sense * (exact_points.wheel_rotation - rotation[inner])
+        position[inner], normal[inner], places[inner] = (
+            exact_points.position,
+            exact_points.normal,
+            exact_points.places,
+        )
     return ToothContact(
         rotation=conjugate.sense * rotation,
         angular_transmission_error=error,
@@ -395,8 +401,8 @@ def lightest(
         left = lag(high - width) <= lag(low + width)
         low, high = np.where(left, low, high - width), np.where(left, low + width, high)
     station = 0.5 * (low + high)
-    near = 1e-6 * np.ptp(ends, axis=1)
-    at_start, at_stop = station - ends[:, 0] < near, ends[:, 1] - station < near
+    tolerance = 1e-6 * np.ptp(ends, axis=1)
+    at_start, at_stop = station - ends[:, 0] < tolerance, ends[:, 1] - station < tolerance
     station = np.where(at_start, ends[:, 0], np.where(at_stop, ends[:, 1], station))
     return station, lag(station), np.asarray(at_start | at_stop)
 
@@ -410,12 +416,12 @@ def start_values(lines: ContactLines, rotation: Array, station: Array, lag: Arra
 
 def _leads(number: Array, error: Array, pitch: int) -> Mask:
     """Whether a pair runs ahead of those a pitch before and after it."""
-    known = dict(zip(number.tolist(), error.tolist(), strict=True))
+    error_at = dict(zip(number.tolist(), error.tolist(), strict=True))
     shifts = range(-9 * pitch, 10 * pitch, pitch)
     return np.array(
         [
-            value >= max(known.get(place + shift, -math.inf) for shift in shifts)
-            for place, value in known.items()
+            value >= max(error_at.get(place + shift, -math.inf) for shift in shifts)
+            for place, value in error_at.items()
         ]
     )
 
@@ -428,8 +434,8 @@ def _semi_axes(
     thickness: float,
 ) -> Array:
     """Half axes of the ellipse within which the gap stays below the compound's thickness."""
-    near = station + _NEAR * np.array([[-1.0], [0.0], [1.0]])
-    touch = lines.touch(rotation, near)
+    stations = station + _NEAR * np.array([[-1.0], [0.0], [1.0]])
+    touch = lines.touch(rotation, stations)
     lag = _lag(lines.flanks, touch, misalignment)
     gap = (lag - lag[1]) * touch.lever[1]
     position = touch.contact.wheel.position

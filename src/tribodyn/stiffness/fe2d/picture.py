@@ -75,9 +75,9 @@ def deformed_gear(
     mesh = tooth_mesh(gear, held_radius(gear), _SIZE)
     ring = Ring(mesh, plane_stress(1.0, material.poissons_ratio))
     solution = ring.solve(flank_loads(gear, mesh, radii, _HALF_WIDTH, inside=True).forces)
-    shown = _shown(teeth, gear.teeth)
+    drawn_teeth = _drawn_teeth(teeth, gear.teeth)
     points, moves = [], []
-    for tooth in shown:
+    for tooth in drawn_teeth:
         moved = np.zeros((len(mesh.outline), 2))
         for case, loaded in enumerate(teeth):
             displacement_of_tooth = ring.displacement(solution, loaded - tooth)[:, case].reshape(
@@ -87,7 +87,7 @@ def deformed_gear(
         turn = 2.0 * math.pi * tooth / gear.teeth
         # a clockwise turn of rows
         matrix = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-        keep = slice(None) if tooth == shown[-1] else slice(None, -1)
+        keep = slice(None) if tooth == drawn_teeth[-1] else slice(None, -1)
         points.append((mesh.nodes[mesh.outline] @ matrix)[keep])
         moves.append((moved @ matrix)[keep])
     outline = gear.normal_module * np.concatenate(points).T
@@ -113,7 +113,7 @@ def _split(
     return teeth, radii, np.array([load for _, _, load in loads], dtype=float)
 
 
-def _shown(teeth: Sequence[int], count: int) -> list[int]:
+def _drawn_teeth(teeth: Sequence[int], count: int) -> list[int]:
     """Teeth anticlockwise, which is against their number."""
     first, last = max(teeth) + _MARGIN, min(teeth) - _MARGIN
     return list(range(first, max(last, first - count + 1) - 1, -1))

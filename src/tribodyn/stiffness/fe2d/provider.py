@@ -56,8 +56,8 @@ def held_radius(gear: SpurGear) -> float:
 def wind_up_to_take_off(gear: SpurGear, material: Material, reference: str) -> float:
     """Wind-up of the body per unit width that does not belong to the reference."""
     check_reference(reference)
-    held = 0.5 * gear.bore_diameter if reference == "bore" else held_radius(gear)
-    wind_up = wind_up_compliance(gear.base_radius, gear.root_radius, held, 1.0, material)
+    fixed_radius = 0.5 * gear.bore_diameter if reference == "bore" else held_radius(gear)
+    wind_up = wind_up_compliance(gear.base_radius, gear.root_radius, fixed_radius, 1.0, material)
     return wind_up if reference == "rim" else 0.0
 
 
@@ -69,21 +69,25 @@ def unit_compliances(
     held_at: float | None = None,
 ) -> UnitCompliances:
     """Compliances of a gear whose body is held along a circle."""
-    held = held_radius(gear) if held_at is None else held_at
+    fixed_radius = held_radius(gear) if held_at is None else held_at
     elasticity = plane_stress(1.0, poissons_ratio)
-    mesh = tooth_mesh(gear, held, size)
+    mesh = tooth_mesh(gear, fixed_radius, size)
     ring = Ring(mesh, elasticity)
     rho, support = _places(gear)
     loads = flank_loads(gear, mesh, np.concatenate([rho, support]))
-    near = np.append(rho > support[0], np.zeros(support.size, dtype=bool))
+    beyond_supports = np.append(rho > support[0], np.zeros(support.size, dtype=bool))
     forces = loads.forces.copy()
-    place, direction, depth = (rows[~near] for rows in loads[:3])
-    forces[:, ~near] = remainder_loads(mesh, place, direction, depth, elasticity)
+    place, direction, depth = (rows[~beyond_supports] for rows in loads[:3])
+    forces[:, ~beyond_supports] = remainder_loads(mesh, place, direction, depth, elasticity)
     solution = ring.solve(forces)
     # the side of larger radii is the clockwise one
-    seen = ring.seen(solution, loads.forces, [-n for n in range(neighbours + 1)])
-    self_compliance = _carried_to_tip(rho, support, np.diagonal(seen[0]), near[: rho.size])
-    return UnitCompliances(rho, self_compliance, seen[1:, : rho.size, : rho.size].copy())
+    displacements = ring.weighted_displacements(
+        solution, loads.forces, [-n for n in range(neighbours + 1)]
+    )
+    self_compliance = _carried_to_tip(
+        rho, support, np.diagonal(displacements[0]), beyond_supports[: rho.size]
+    )
+    return UnitCompliances(rho, self_compliance, displacements[1:, : rho.size, : rho.size].copy())
 
 
 def _places(gear: SpurGear) -> tuple[Array, Array]:
@@ -100,13 +104,15 @@ def _places(gear: SpurGear) -> tuple[Array, Array]:
     return rho, np.sqrt(tip * tip - 2.0 * base * module * shrink * _TIP_SUPPORT)
 
 
-def _carried_to_tip(rho: Array, support: Array, self_compliance: Array, near: Mask) -> Array:
+def _carried_to_tip(
+    rho: Array, support: Array, self_compliance: Array, beyond_supports: Mask
+) -> Array:
     """Self compliance at the nodes, beyond the supports as the parabola of the length."""
     tip = rho[-1]
     scale = tip * tip - support[-1] ** 2
     curve = np.polyfit((tip * tip - support**2) / scale, self_compliance[rho.size :], 2)
     parabola = np.polyval(curve, (tip * tip - rho * rho) / scale)
-    return np.where(near, parabola, self_compliance[: rho.size])
+    return np.where(beyond_supports, parabola, self_compliance[: rho.size])
 
 
 #: Folders, relative to this one, and modules on which the numbers depend.
@@ -171,8 +177,8 @@ def fe2d_influence(
     if neighbours < 1:
         why, remedy = "Teeth in contact at the same time move one another", "Give 1 or more"
         raise InputError(f"neighbours = {neighbours}", Argument("neighbours"), why, remedy)
-    known = max(min(neighbours, (gear.teeth - 1) // 2), 1)
-    unit = _looked_up(gear, material.poissons_ratio, known, size or MeshSize(), cache)
+    neighbour_count = max(min(neighbours, (gear.teeth - 1) // 2), 1)
+    unit = _looked_up(gear, material.poissons_ratio, neighbour_count, size or MeshSize(), cache)
     self_compliance = unit.self_compliance / material.youngs_modulus - wind_up
     if not np.all(self_compliance > 0.0):
         raise InputError(_too_thin(gear))
@@ -201,12 +207,12 @@ def _looked_up(
     name = _file_name(gear, poissons_ratio, neighbours, size)
     arrays = load_arrays(name)
     if arrays is not None and set(arrays) == set(UnitCompliances._fields):
-        kept = UnitCompliances(**arrays)
-        shapes = [rows.shape for rows in kept]
+        cached = UnitCompliances(**arrays)
+        shapes = [rows.shape for rows in cached]
         if shapes == [(NODES,), (NODES,), (neighbours, NODES, NODES)] and all(
-            np.all(np.isfinite(rows)) for rows in kept
+            np.all(np.isfinite(rows)) for rows in cached
         ):
-            return kept
+            return cached
     unit = unit_compliances(gear, poissons_ratio, neighbours, size)
     store_arrays(name, unit._asdict())
     return unit
@@ -230,8 +236,10 @@ def _file_name(gear: SpurGear, poissons_ratio: float, neighbours: int, size: Mes
 
 @remember
 def _digest() -> str:
-    here = Path(__file__).parent
-    return "".join(source_digest(here / folder, names.split()) for folder, names in _SOURCES)
+    package_folder = Path(__file__).parent
+    return "".join(
+        source_digest(package_folder / folder, names.split()) for folder, names in _SOURCES
+    )
 
 
 #: Environment variable that names another folder.
@@ -240,9 +248,9 @@ VARIABLE = "TRIBODYN_CACHE_DIR"
 
 def cache_folder() -> Path:
     """Folder of the kept arrays, which need not exist."""
-    given = os.environ.get(VARIABLE)
-    if given:
-        return Path(given)
+    override = os.environ.get(VARIABLE)
+    if override:
+        return Path(override)
     if sys.platform == "win32":
         local = os.environ.get("LOCALAPPDATA")
         return (Path(local) if local else Path.home() / "AppData" / "Local") / "tribodyn" / "Cache"

@@ -93,9 +93,9 @@ def sector_stiffness(mesh: SectorMesh, elasticity: Array) -> Any:
     rows = np.broadcast_to(freedoms[:, :, None], matrices.shape)
     columns = np.broadcast_to(freedoms[:, None, :], matrices.shape)
     size = 2 * len(mesh.nodes)
-    whole = coo_array((matrices.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
+    matrix = coo_array((matrices.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
     turn = _polar_on_cuts(mesh)
-    return (turn.T @ whole.tocsc() @ turn).tocsc()
+    return (turn.T @ matrix.tocsc() @ turn).tocsc()
 
 
 def _polar_on_cuts(mesh: SectorMesh) -> Any:
@@ -142,7 +142,7 @@ class Ring:
             mesh, plane_stress(1.0, 0.3) if elasticity is None else elasticity
         )
         boundary = np.concatenate([mesh.right_cut, mesh.left_cut])
-        inner = np.setdiff1d(np.arange(len(mesh.nodes)), np.concatenate([boundary, mesh.held]))
+        inner = np.setdiff1d(np.arange(len(mesh.nodes)), np.concatenate([boundary, mesh.fixed]))
         self._inner, self._boundary = _freedoms(inner), _freedoms(boundary)
         self._coupling = matrix[self._inner][:, self._boundary].toarray()
         self._edge = matrix[self._boundary][:, self._boundary].toarray()
@@ -194,7 +194,9 @@ class Ring:
         waves = np.linalg.solve(systems, force[right] + force[left] * np.conj(turn))
         return np.fft.irfft(waves, count, axis=0)
 
-    def seen(self, solution: RingSolution, weights: Array, sectors: Sequence[int]) -> Array:
+    def weighted_displacements(
+        self, solution: RingSolution, weights: Array, sectors: Sequence[int]
+    ) -> Array:
         """Weighted displacements of some sectors."""
         inner = weights[self._inner]
         on_cuts = (self._turn.T @ weights)[self._boundary]
@@ -208,12 +210,12 @@ class Ring:
     def displacement(self, solution: RingSolution, sector: int) -> Array:
         """Displacements of all nodes of a sector in x and y of its own frame."""
         cuts = self._both_cuts(solution, sector)
-        whole = np.zeros((2 * len(self.mesh.nodes), cuts.shape[1]))
-        whole[self._boundary] = cuts
-        whole[self._inner] = self._inside_per_cut @ cuts
+        displacements = np.zeros((2 * len(self.mesh.nodes), cuts.shape[1]))
+        displacements[self._boundary] = cuts
+        displacements[self._inner] = self._inside_per_cut @ cuts
         if sector % self.mesh.count == 0:
-            whole[self._inner] += solution.inside
-        return np.asarray(self._turn @ whole)
+            displacements[self._inner] += solution.inside
+        return np.asarray(self._turn @ displacements)
 
     def _both_cuts(self, solution: RingSolution, sector: int) -> Array:
         count = self.mesh.count

@@ -22,7 +22,7 @@ class SectorMesh:
     elements: Index  #: nodes of each element, first local direction outermost
     right_cut: Index
     left_cut: Index
-    held: Index  #: nodes that cannot move
+    fixed: Index  #: nodes that cannot move
     tooth: Index
     flank_length: Array  #: place of the nodes of the loaded flank as length along it, falling
     outline: Index  #: nodes of the free boundary from the right cut over the tip to the left cut
@@ -109,8 +109,8 @@ class ToothSide:
         angle, length, foot = self._fillet
         begin = float(self.form.trochoid.half_tooth_angle(0.5 * math.pi))
         land = max(self.root_radius * (self.pitch_angle - begin), 0.0)
-        rest = length[-1] - length[foot]
-        along = share * (land + rest)
+        fillet_length = length[-1] - length[foot]
+        along = share * (land + fillet_length)
         on_fillet = self._fillet_at(np.interp(length[-1] - (along - land), length, angle))
         turn = self.pitch_angle - np.minimum(along, land) / self.root_radius
         on_land = _cartesian(np.full_like(turn, self.root_radius), turn)
@@ -297,7 +297,7 @@ def _numbered(
         elements=np.concatenate([grid_elements(under), grid_elements(grid)]),
         right_cut=under[0, :-1],
         left_cut=under[-1, :-1],
-        held=under[:, -1],
+        fixed=under[:, -1],
         tooth=grid,
         flank_length=lengths,
         outline=outline,

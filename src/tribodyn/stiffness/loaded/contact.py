@@ -67,20 +67,20 @@ def compliance_of(
     return Compliance(structure, np.zeros(places.path.shape), 0.0)
 
 
-def _influence(*given: Any) -> GearInfluence:
+def _influence(*arguments: Any) -> GearInfluence:
     """Structure of a gear by a model, which is the same under every load."""
-    influence, told = _known_influence(*given)
-    for warning in told:
+    influence, model_warnings = _cached_influence(*arguments)
+    for warning in model_warnings:
         warn(warning.code, warning.message, stacklevel=4)
     return influence
 
 
 @lru_cache(maxsize=8)
-def _known_influence(
+def _cached_influence(
     model: Callable[..., GearInfluence], gear: SpurGear, material: Material, reference: str
 ) -> tuple[GearInfluence, list[ModelWarning]]:
-    with collected() as told:
-        return model(gear, material, reference=reference), told
+    with collected() as model_warnings:
+        return model(gear, material, reference=reference), model_warnings
 
 
 def contact_problem(
@@ -200,13 +200,13 @@ def contact_settings(
     options: Mapping[str, Any],
 ) -> dict[str, Any]:
     """Arguments of :func:`contact_problem` but for the pair and its load."""
-    known = reference is not None and "reference" in MODELS[provider].options
+    takes_reference = reference is not None and "reference" in MODELS[provider].options
     return {
         "provider": provider,
         "phase": phase,
         "extended_contact": extended_contact,
         "material": material or Material(),
-        "options": {**options, "reference": reference} if known else dict(options),
+        "options": {**options, "reference": reference} if takes_reference else dict(options),
         "slices": slices,
     }
 
@@ -296,11 +296,13 @@ def loaded_contact(
     shape = torques.shape
     places, pairs = problem.places, equilibrium.load.shape[-1]
     load = equilibrium.load.reshape(*shape, *equilibrium.load.shape[1:])
-    held = {**MODELS[provider].options, **settings["options"]}.get("reference", "as measured")
+    measured_from = {**MODELS[provider].options, **settings["options"]}.get(
+        "reference", "as measured"
+    )
     return LoadedContact(
         gear_pair=pair,
         provider=provider,
-        reference="rim" if provider == "iso6336" else held,
+        reference="rim" if provider == "iso6336" else measured_from,
         torque=torques,
         phase=places.phase,
         number=places.number,
@@ -357,12 +359,12 @@ def body_share(
     pair: SpurPair, torque: float, *, options: Mapping[str, Any], **settings: Any
 ) -> float:
     """Part of the mean deflection under a torque that lies between the rim and the bore."""
-    given = (pair, torque, tuple(settings.items()), tuple(sorted(options.items())))
+    key = (pair, torque, tuple(settings.items()), tuple(sorted(options.items())))
     try:
-        hash(given)
+        hash(key)
     except TypeError:  # an option is an array
-        return _known_share.__wrapped__(*given, MODELS.version)
-    return _known_share(*given, MODELS.version)
+        return _cached_share.__wrapped__(*key, MODELS.version)
+    return _cached_share(*key, MODELS.version)
 
 
 @lru_cache(maxsize=8)
@@ -376,14 +378,14 @@ def _even(pair: SpurPair) -> SpurPair:
 
 
 @lru_cache(maxsize=256)
-def _known_share(
+def _cached_share(
     pair: SpurPair, torque: float, settings: Any, options: Any, _version: int
 ) -> float:
     even = _even(pair)
 
     def deflection(reference: str) -> float:
-        known = {**dict(settings), "options": {**dict(options), "reference": reference}}
-        return float(loaded_contact(even, torque, phases=_PHASES, **known).deflection.mean())
+        arguments = {**dict(settings), "options": {**dict(options), "reference": reference}}
+        return float(loaded_contact(even, torque, phases=_PHASES, **arguments).deflection.mean())
 
     with collected():
         return 1.0 - deflection("rim") / deflection("bore")

@@ -140,15 +140,15 @@ def _slice(
             i = int(place[r])
             f[i] = max(f[i] + b[r], 0.1 * f[i])
             if f[i] < _FAINT * largest:
-                held = f[i]
+                previous = f[i]
                 f[i] = 0.0
                 if _residual(n, C, A, B, gaps[i], delta, f, i) < 0.0:
-                    f[i] = held
+                    f[i] = previous
     return 1
 
 
 @nb.njit(**_INNER)
-def _whole(
+def _total_force(
     n: int,
     C: Array,
     A: Array,
@@ -200,7 +200,7 @@ def _approach(
     if not delta > low:
         delta = low + total / width.sum() * (C[0, 0] + A[0])
     for _ in range(_OUTER_STEPS):
-        status = _whole(n, C, A, B, gaps, width, delta, f, a, b, place, sums)
+        status = _total_force(n, C, A, B, gaps, width, delta, f, a, b, place, sums)
         if status == 2 and delta - low > 1e-9 * (abs(delta) + abs(low)):
             # A soft pair was touched alone, and its slope led far beyond the load: come back.
             high = delta
@@ -287,7 +287,9 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
             for d in range(delta.shape[0]):
                 if flag[0] != 0:
                     return STOPPED
-                status = _whole(n, C[p], A[p], B, gaps[p], width, delta[d, p], f, a, b, place, sums)
+                status = _total_force(
+                    n, C[p], A[p], B, gaps[p], width, delta[d, p], f, a, b, place, sums
+                )
                 if status != 0:
                     return status
                 total[d, p] = sums[0]
@@ -296,7 +298,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
 
     @cached_njit(**_JIT)
     def pickups(
-        C: Array, A: Array, B: float, gaps: Array, most: Array, found: Array, flag: Index
+        C: Array, A: Array, B: float, gaps: Array, most: Array, pickup: Array, flag: Index
     ) -> Any:
         """Approach (P, n) at which each pair of a single slice begins to carry, up to ``most``."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
@@ -312,7 +314,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                     alone[j] = gaps[p, 0, j]
                 alone[i] = _APART
                 low, high = gaps[p, 0].min(), most[p]
-                found[p, i] = min(low, high)
+                pickup[p, i] = min(low, high)
                 if not low < high or low == gaps[p, 0, i]:
                     continue
                 f[:] = 0.0
@@ -327,7 +329,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                         high = middle
                     else:
                         low = middle
-                found[p, i] = high
+                pickup[p, i] = high
         return 0
 
     kernels = solve_loads, solve_deflections, pickups

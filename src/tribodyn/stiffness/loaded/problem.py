@@ -301,8 +301,8 @@ class ContactProblem:
             np.empty((count, phases, slices, pairs)),
             np.empty((count, phases)),
         )
-        given = np.asarray(totals, dtype=float).reshape(count, -1)
-        each = np.ascontiguousarray(np.broadcast_to(given, (count, phases)))
+        forces = np.asarray(totals, dtype=float).reshape(count, -1)
+        each = np.ascontiguousarray(np.broadcast_to(forces, (count, phases)))
         self._call(solve_loads, count, self.widths, each, *equilibrium)
         return equilibrium
 
@@ -328,9 +328,9 @@ class ContactProblem:
         """
         from tribodyn.stiffness.loaded.kernel import solve_deflections
 
-        asked = self._of_phases("approach", approach, 2)
-        total, tangent = np.empty(asked.shape), np.empty(asked.shape)
-        self._call(solve_deflections, asked.shape[0], self.widths, asked, total, tangent)
+        approaches = self._of_phases("approach", approach, 2)
+        total, tangent = np.empty(approaches.shape), np.empty(approaches.shape)
+        self._call(solve_deflections, approaches.shape[0], self.widths, approaches, total, tangent)
         return total, tangent
 
     def tangent_at(self, load_per_width: Array) -> Array:
@@ -349,8 +349,8 @@ class ContactProblem:
         logarithm = np.log(np.where(carries, load_per_width, 1.0))
         local = parts.local - parts.logarithm * (1.0 + logarithm)
         pairs = np.arange(carries.shape[1])
-        both = carries[:, :, None] & carries[:, None, :]
-        slope = np.where(both, parts.structure, 0.0)
+        both_carry = carries[:, :, None] & carries[:, None, :]
+        slope = np.where(both_carry, parts.structure, 0.0)
         slope[:, pairs, pairs] += np.where(carries, local, 1.0)
         rates = np.linalg.solve(slope, carries[..., None].astype(float))[..., 0]
         return np.asarray(self.widths.sum() * (rates * carries).sum(axis=1))
@@ -383,15 +383,15 @@ class ContactProblem:
 
     def _of_phases(self, name: str, values: Array, dimensions: int) -> Array:
         """Values as the kernels take them, which look at no shape: their last axis the phases."""
-        given, count = np.ascontiguousarray(values, dtype=float), len(self.gaps)
-        if given.ndim != dimensions or given.shape[-1] != count:
+        array, count = np.ascontiguousarray(values, dtype=float), len(self.gaps)
+        if array.ndim != dimensions or array.shape[-1] != count:
             why = f"It has {dimensions} dimensions, the last one the {count} phases"
-            what, remedy = f"{name} has the shape {given.shape}", "Give a value for each phase"
+            what, remedy = f"{name} has the shape {array.shape}", "Give a value for each phase"
             raise InputError(what, Argument(name), why, remedy)
-        if not np.isfinite(given).all():
-            what = f"{name} = {given[~np.isfinite(given)][0]:g} m"
+        if not np.isfinite(array).all():
+            what = f"{name} = {array[~np.isfinite(array)][0]:g} m"
             raise InputError(what, Argument(name), "An approach is finite", "Correct the value")
-        return given
+        return array
 
     def _call(self, kernel: Any, solves: int, *arguments: Array) -> None:
         """Call a kernel that solves every slice of every phase so many times."""

@@ -47,7 +47,7 @@ def root_loads(pair: SpurPair, curvature_radii: tuple[Array, Array], force: Arra
         _foot(gear, radius, force)
         for gear, radius in zip((pair.pinion, pair.wheel), curvature_radii, strict=True)
     ]
-    return RootLoads(*(load for both in zip(*feet, strict=True) for load in both))
+    return RootLoads(*(load for tooth_loads in zip(*feet, strict=True) for load in tooth_loads))
 
 
 def _foot(gear: SpurGear, curvature_radius: Array, force: Array) -> tuple[Array, Array, Array]:

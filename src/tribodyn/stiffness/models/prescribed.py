@@ -84,16 +84,16 @@ def rectangular_stiffness(
 
 
 def _check_forms(pair_stiffness: float | None, totals: dict[str, float | None]) -> None:
-    given = {name: value for name, value in totals.items() if value is not None}
-    listing = ", ".join(f"{name} = {value:g} N/m" for name, value in given.items())
-    if pair_stiffness is not None and given:
+    given_totals = {name: value for name, value in totals.items() if value is not None}
+    listing = ", ".join(f"{name} = {value:g} N/m" for name, value in given_totals.items())
+    if pair_stiffness is not None and given_totals:
         what = f"pair_stiffness = {pair_stiffness:g} N/m and {listing} are both given"
         why = "They are two ways of saying the same thing"
         remedy = "Keep pair_stiffness, or the two mesh values, not both"
         raise InputError(what, ModelOption("stiffness", "rectangular"), why, remedy)
-    if pair_stiffness is None and len(given) < len(totals):
-        missing = ", ".join(name for name in totals if name not in given)
-        what = f"{missing} not given" + (f" although {listing} is" if given else "")
+    if pair_stiffness is None and len(given_totals) < len(totals):
+        missing = ", ".join(name for name in totals if name not in given_totals)
+        what = f"{missing} not given" + (f" although {listing} is" if given_totals else "")
         why = "The model needs pair_stiffness, or both mesh values"
         remedy = 'Give for example pair_stiffness = "2e8 N/m"'
         raise InputError(what, ModelOption("stiffness", "rectangular"), why, remedy)
@@ -358,17 +358,17 @@ _TABLE = {
 )
 def _table(*mesh: Any, **options: Any) -> Array:
     state, options = MeshState(*mesh), _named_values(options)
-    given = {name for name, value in options.items() if value is not None}
-    if given == {"phase", "mesh_stiffness"}:
+    supplied = {name for name, value in options.items() if value is not None}
+    if supplied == {"phase", "mesh_stiffness"}:
         whole_cycle = np.concatenate(([0.0, 1.0], state.phase))
         total = tabulated_stiffness(
             options["phase"], options["mesh_stiffness"], whole_cycle, name="phase"
         )
         return share_equally(total[2:], state.in_contact)
-    if given == {"roll_angle", "pair_stiffness"}:
+    if supplied == {"roll_angle", "pair_stiffness"}:
         return _over_roll_angle(state, options)
     raise InputError(
-        f"given: {', '.join(sorted(given)) or 'nothing'}",
+        f"given: {', '.join(sorted(supplied)) or 'nothing'}",
         where=ModelOption("stiffness", "table"),
         why="A table is phase with mesh_stiffness, or roll_angle (of the driving gear) with "
         "pair_stiffness",

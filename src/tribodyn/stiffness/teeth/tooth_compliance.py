@@ -235,10 +235,10 @@ class ToothCompliance(NamedTuple):
         return self.bending + self.shear + self.axial + self.foundation + self.wind_up
 
 
-def check_choice(name: str, value: str, known: tuple[str, ...], why: str) -> None:
+def check_choice(name: str, value: str, choices: tuple[str, ...], why: str) -> None:
     """Refuse a word that an option of the models does not know."""
-    if value not in known:
-        remedy = "Write " + " or ".join(f'"{word}"' for word in known)
+    if value not in choices:
+        remedy = "Write " + " or ".join(f'"{choice}"' for choice in choices)
         raise InputError(f'{name} = "{value}"', ModelOption("stiffness", name=name), why, remedy)
 
 

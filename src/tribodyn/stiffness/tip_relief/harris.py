@@ -196,7 +196,7 @@ def transmission_error_over_torque(
     if phases is None:
         phases = _PHASES if work == 1 else _PHASES // 4
     orders = _orders(harmonics, phases)
-    given: dict[str, Any] = {
+    settings: dict[str, Any] = {
         "provider": provider,
         "phases": phases,
         "extended_contact": extended_contact,
@@ -209,7 +209,7 @@ def transmission_error_over_torque(
     count = min(torques.size, 1 + torques.size * size // _AT_ONCE)
     rows, ends = [], []
     for some_torques in np.array_split(torques, count):
-        contact = loaded_contact(pair, some_torques, **given)
+        contact = loaded_contact(pair, some_torques, **settings)
         secant = contact.mesh_stiffness_secant.mean(axis=1)
         tangent = contact.mesh_stiffness_tangent.mean(axis=1)
         rows.append((contact.transmission_error, secant, tangent))
@@ -219,7 +219,7 @@ def transmission_error_over_torque(
     corner_error: Array | None = None
     if work == 1:
         corners = _corners(path, np.concatenate(ends))
-        at_corners = loaded_contact(pair, torques, **{**given, "phases": corners})
+        at_corners = loaded_contact(pair, torques, **{**settings, "phases": corners})
         corner_error = at_corners.transmission_error
     return HarrisMap(
         gear_pair=pair,
@@ -260,10 +260,10 @@ def _corners(path: PathOfContact, ends: Array) -> Array:
     lowest, highest = flank_ranges(pair)[0]
     bends = []
     for gear, tip, root in ((pair.pinion, highest, lowest), (pair.wheel, lowest, highest)):
-        given = gear.modification
+        modification = gear.modification
         for amount, length, end in (
-            (given.tip_relief, given.tip_relief_length, tip),
-            (given.root_relief, given.root_relief_length, root),
+            (modification.tip_relief, modification.tip_relief_length, tip),
+            (modification.root_relief, modification.root_relief_length, root),
         ):
             if amount:
                 reach = default_relief_length(pair) if length is None else length

@@ -41,9 +41,9 @@ def least_point(
             options={"initial_simplex": simplex, **_SIMPLEX},
         )
         place = low + span * np.clip(minimum.x, 0.0, 1.0)
-        reached = value(place)
-        if reached < least:
-            best, least = place, reached
+        objective = value(place)
+        if objective < least:
+            best, least = place, objective
     if digits is None:
         return (float(best[0]), float(best[1])), least
     amount, length = (

@@ -152,19 +152,19 @@ def check_choices(grid: tuple[int, int], **chosen: str) -> None:
 
 def torques_and_weights(torque: ArrayLike, weight: ArrayLike | None) -> tuple[Array, Array]:
     """Torques of a range and their weights."""
-    (given,) = one_or_more(torque=torque)
-    torques = ordered = np.unique(given)
+    (listed,) = one_or_more(torque=torque)
+    torques = ordered = np.unique(listed)
     if ordered.size == 2:
         torques = np.linspace(ordered[0], ordered[1], _TORQUES)
     if weight is None:
         return torques, np.full(torques.size, 1.0 / torques.size)
     weights = np.atleast_1d(np.asarray(weight, dtype=float))
-    fits = weights.shape == given.shape == ordered.shape and np.all(weights >= 0.0)
+    fits = weights.shape == listed.shape == ordered.shape and np.all(weights >= 0.0)
     if not (fits and 0.0 < weights.sum() < np.inf):
         why = "There is one weight for each torque, none negative and not all zero"
-        remedy = f"Give {given.size} weights for {given.size} different torques"
+        remedy = f"Give {listed.size} weights for {listed.size} different torques"
         raise InputError(f"weight = {weights.tolist()}", Argument("weight"), why, remedy)
-    spread = np.interp(torques, ordered, weights[np.argsort(given)])
+    spread = np.interp(torques, ordered, weights[np.argsort(listed)])
     return torques, spread / spread.sum()
 
 
@@ -184,15 +184,15 @@ def relief_axes(
         length = (_LENGTHS[0] * usual, min(_LENGTHS[1] * usual, flank))
     problems = []
     if not 0.0 <= amount[0] < amount[1] <= LARGEST_AMOUNT:
-        shown = " to ".join(f"{value * 1e6:.6g}" for value in amount)
+        range_text = " to ".join(f"{value * 1e6:.6g}" for value in amount)
         why = f"Amounts increase, from zero or more to at most {LARGEST_AMOUNT * 1e6:g} um"
         where = Argument("amount")
-        problems.append(Problem(f"amount = {shown} um", where, why, "Check values and unit"))
+        problems.append(Problem(f"amount = {range_text} um", where, why, "Check values and unit"))
     if not 0.0 < length[0] < length[1] <= flank * (1.0 + 1e-9):
-        shown = " to ".join(f"{value * 1e3:.6g}" for value in length)
+        range_text = " to ".join(f"{value * 1e3:.6g}" for value in length)
         why = f"Lengths increase, above zero and up to the used flank of {flank * 1e3:.6g} mm"
         where = Argument("length")
-        problems.append(Problem(f"length = {shown} mm", where, why, "Search shorter reliefs"))
+        problems.append(Problem(f"length = {range_text} mm", where, why, "Search shorter reliefs"))
     if problems:
         raise InputError(problems)
     return [np.linspace(*ends, count) for ends, count in zip((amount, length), grid, strict=True)]
@@ -289,8 +289,8 @@ def relief_mesh(
 ) -> ReliefMesh:
     """Prepare a mesh to be asked for many tip reliefs."""
     total = torque / pair.pinion.base_radius
-    whole = MODELS[settings["provider"]].influence is not None
-    totals = [total] if whole else [total[k : k + 1] for k in range(total.size)]
+    one_problem = MODELS[settings["provider"]].influence is not None
+    totals = [total] if one_problem else [total[k : k + 1] for k in range(total.size)]
     problems = [
         contact_problem(pair, total_force=float(forces[0]), **settings) for forces in totals
     ]
