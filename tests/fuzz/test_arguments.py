@@ -167,7 +167,7 @@ def documented_film(load_per_width: ArrayLike, effective_modulus: ArrayLike) -> 
 
 
 @pytest.mark.parametrize(("value", "part"), [
-    ("1 N/mm", "not texts"), (math.nan, "NaN is none"), (True, "Wanted: numbers"),
+    ("1 N/mm", "not texts"), (math.nan, "not NaN"), (True, "Wanted: numbers"),
     ([[1.0], [1.0, 2.0]], "even rows"), (2j, "Give load_per_width in N/m"),
 ])  # fmt: skip
 def test_what_is_wrong_is_told_with_the_unit_of_the_documentation(value, part):
@@ -210,7 +210,7 @@ def test_what_a_given_function_raises_is_told_with_its_place():
     def end(_):
         raise EndedError
 
-    with pytest.raises(InputError, match="given raised ZeroDivisionError") as told:
+    with pytest.raises(InputError, match="passed raised ZeroDivisionError") as told:
         checked(calls)(lambda value: value / 0.0)
     assert "test_arguments.py:" in str(told.value)
     with pytest.raises(EndedError):  # what the user raises on purpose is left

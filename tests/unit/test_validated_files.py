@@ -117,7 +117,7 @@ def test_only_regular_files_are_read(tmp_path: Path) -> None:
     opened = socket.socket(socket.AF_UNIX)
     opened.bind(str(tmp_path / "socket"))
     for path in (tmp_path / "pipe", tmp_path / "socket", Path("/dev/zero")):
-        with pytest.raises(OSError, match="no regular file"):
+        with pytest.raises(OSError, match="not a regular file"):
             read_bytes(path, "case")
     opened.close()
     with pytest.raises(OSError, match="directory"):

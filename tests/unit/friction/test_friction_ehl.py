@@ -229,7 +229,7 @@ def test_number_of_films_and_of_contacts_must_agree():
     ("changes", "match"),
     [
         ({"index": np.array([2])}, "whole numbers from 0 to 1"),
-        ({"index": np.array([0.0])}, "integers"),
+        ({"index": np.array([0.0])}, "whole numbers"),
         ({"film_thickness": np.zeros((2, 301))}, "film_thickness"),
         ({"film_thickness": np.ones((2, 300))}, "shapes"),
         ({"pressure": -np.ones((2, 301))}, "pressure"),

@@ -33,11 +33,11 @@ def _with_map(path: Path) -> str:
 @pytest.mark.parametrize("path", ["/dev/zero", "pipe"])
 def test_special_files_are_refused_at_once(tmp_path: Path, path: str) -> None:
     special = _pipe(tmp_path) if path == "pipe" else Path(path)
-    with pytest.raises(InputError, match="no regular file"):
+    with pytest.raises(InputError, match="not a regular file"):
         load_case(special)
-    with pytest.raises(InputError, match="no regular file"):
+    with pytest.raises(InputError, match="not a regular file"):
         read_case(_with_map(special), str(tmp_path / "case.toml"))
-    with pytest.raises(InputError, match="no regular file"):
+    with pytest.raises(InputError, match="not a regular file"):
         read_table_file(special)
 
 

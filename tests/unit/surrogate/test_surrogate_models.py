@@ -81,7 +81,7 @@ def test_a_model_comes_back_as_it_was(model, tmp_path):
     other.to_netcdf(tmp_path / "less.nc")
     other.drop_vars("weights_1").to_netcdf(tmp_path / "fewer.nc")
     assert surrogate.load(tmp_path / "less.nc") == model
-    with pytest.raises(InputError, match="whole"):
+    with pytest.raises(InputError, match="incomplete"):
         surrogate.load(tmp_path / "fewer.nc")
 
 

@@ -138,7 +138,7 @@ def test_refusals() -> None:
         sample({"a": "0 .. 1"}, 0, seed=0)
     with pytest.raises(InputError, match="method"):
         sample({"a": "0 .. 1"}, 4, method="grid", seed=0)
-    with pytest.raises(InputError, match="no quantity"):
+    with pytest.raises(InputError, match="no uncertain quantity"):
         sample({}, 4, seed=0)
     with pytest.warns(ModelWarning, match="sobol-size"):
         sample({"a": "0 .. 1"}, 100, method="sobol", seed=0)

@@ -54,9 +54,9 @@ BROKEN = {
     _CASE + "x = " + "[" * 5000 + "]" * 5000: "too deeply",
     _CASE + 'title = "' + "a" * 20000 + '"\n' + _AXES: "at most 10000 characters",
     _CASE + '[axes]\noperation.speed = "' + "[" * 9000 + '"': "s.toml:3",
-    _CASE + 'table = "/dev/zero"': "no regular file",
+    _CASE + 'table = "/dev/zero"': "not a regular file",
     _CASE + 'table = "no.csv"': "there is no such file.*first line reads",
-    'case = "/dev/zero"\n' + _AXES: "no regular file",
+    'case = "/dev/zero"\n' + _AXES: "not a regular file",
     _CASE + "[set]\noperation.torque = 3\n" + _AXES: "s.toml:3: set.operation.torque.*unit",
 }
 
