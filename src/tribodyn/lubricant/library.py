@@ -142,14 +142,14 @@ def _at_temperature(name: str, record: dict[str, Any], temperature: float | None
 
 def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> Lubricant:
     """Return an oil that is known at one temperature, there or at another."""
-    data_temperature = float(record["temperature"]["value"])
-    if temperature is not None and not abs(temperature - data_temperature) <= _SAME_TEMPERATURE:
+    known_point = float(record["temperature"]["value"])
+    if temperature is not None and not abs(temperature - known_point) <= _SAME_TEMPERATURE:
         return _by_index(name, record, temperature)
     return Lubricant(
         float(record["dynamic_viscosity"]["value"]),
         float(record["density"]["value"]),
         float(record["pressure_viscosity_coefficient"]["value"]),
-        temperature=data_temperature,
+        temperature=known_point,
         temperature_viscosity_coefficient=float(
             record["temperature_viscosity_coefficient"]["value"]
         ),
@@ -159,14 +159,14 @@ def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> L
 
 def _by_index(name: str, record: dict[str, Any], temperature: float) -> Lubricant:
     """Oil away from its known point: along the line of its viscosity index through that point."""
-    data_temperature = float(record["temperature"]["value"])
+    known_point = float(record["temperature"]["value"])
     low, high = SHEET_RANGE
     if not low <= temperature <= high:
         raise InputError(
             f'"{name}" at {temperature - ZERO_CELSIUS:g} degC',
             where=Argument("temperature"),
-            why=f"the oil is known at {data_temperature - ZERO_CELSIUS:g} degC, and its viscosity index holds "
-            f"from {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC",
+            why=f"the oil is known at {known_point - ZERO_CELSIUS:g} degC, and its viscosity index "
+            f"holds from {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC",
             remedy="Give a temperature of this range, or dynamic_viscosity, density and "
             "pressure_viscosity_coefficient at yours",
         )
@@ -177,9 +177,9 @@ def _by_index(name: str, record: dict[str, Any], temperature: float) -> Lubrican
             "density_fall",
         )
     )  # fmt: skip
-    points = points_through(data_temperature, viscosity / density, index)
-    thinning = walther_viscosity(temperature, points) / walther_viscosity(data_temperature, points)
-    density_there = density - fall * (temperature - data_temperature)
+    points = points_through(known_point, viscosity / density, index)
+    thinning = walther_viscosity(temperature, points) / walther_viscosity(known_point, points)
+    density_there = density - fall * (temperature - known_point)
     viscosity_there = viscosity * thinning * density_there / density
     base_oil = record["base_oil"]["value"]
     estimates = [agma_925_coefficient(each, base_oil) for each in (viscosity_there, viscosity)]
@@ -193,8 +193,8 @@ def _by_index(name: str, record: dict[str, Any], temperature: float) -> Lubrican
             name,
             record,
             remark=f"At {temperature - ZERO_CELSIUS:g} degC: the oil is known at "
-            f"{data_temperature - ZERO_CELSIUS:g} degC; from there the viscosity follows the ASTM D341 line "
-            f"of viscosity index {index:g}, the pressure-viscosity coefficient AGMA 925-A03 for "
+            f"{known_point - ZERO_CELSIUS:g} degC; from there the viscosity follows the ASTM D341 "
+            f"line of viscosity index {index:g}, the pressure-viscosity coefficient AGMA 925-A03 for "
             f"{base_oil} oils.",
         ),
     )
