@@ -234,18 +234,20 @@ def readings(text: str) -> list[str]:
         return []
     number, unit = match.groups()
     mantissa, power, exponent = re.fullmatch(r"([^eE]*)([eE]?)(.*)", number).groups()  # type: ignore[union-attr]
-    head, *rest = re.split(r"[.,'’\s]", mantissa)
+    head, *digit_groups = re.split(r"[.,'’\s]", mantissa)
     signs = re.sub(r"[\d+-]", "", mantissa)
-    in_threes = all(len(group) == 3 for group in rest)
+    in_threes = all(len(group) == 3 for group in digit_groups)
     short_head = 0 < len(head.lstrip("+-")) <= 3 and head.lstrip("+-") != "0"
     meanings = []
     if signs and signs != "." and short_head and in_threes and len(set(signs)) == 1:
-        meanings.append(head + "".join(rest))
+        meanings.append(head + "".join(digit_groups))
     if signs == ",":
-        meanings.append(f"{head}.{rest[0].rstrip('0') or '0' if meanings else rest[0]}")
+        meanings.append(
+            f"{head}.{digit_groups[0].rstrip('0') or '0' if meanings else digit_groups[0]}"
+        )
     elif len(signs) > 1 and signs[-1] in ".," and len(set(signs[:-1])) == 1 != len(set(signs)):
-        grouped = short_head and all(len(group) == 3 for group in rest[:-1])
-        meanings += [f"{head}{''.join(rest[:-1])}.{rest[-1]}"] if grouped else []
+        grouped = short_head and all(len(group) == 3 for group in digit_groups[:-1])
+        meanings += [f"{head}{''.join(digit_groups[:-1])}.{digit_groups[-1]}"] if grouped else []
     return [f"{reading}{power}{exponent} {unit}".strip() for reading in meanings]
 
 

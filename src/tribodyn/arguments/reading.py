@@ -2,9 +2,9 @@
 
 A page of public names ends with :func:`guard`. Its functions, constructors and methods then refuse
 values of another kind than they are annotated with: texts, truth values, complex numbers, numbers
-that are NaN. What passes is computed as ever; whatever a function still stumbles over is told as an
-error of the package, with the argument at fault where one can be named. What the package itself
-calls goes past all this: it stands between the package and its user.
+that are NaN. If a function fails for accepted values, the failure is reported as an error of the
+package, with the wrong argument where one can be identified. Calls from within the package are not
+checked.
 """
 
 from __future__ import annotations

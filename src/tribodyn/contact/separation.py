@@ -1,6 +1,6 @@
 """Contact outside of the path of contact: how far the corner of a tip is from the mating flank.
 
-Before a pair enters contact, and after it has left, the corner of a tip stands near the flank of
+Before a pair enters contact, and after it has left, the corner of a tip is close to the flank of
 the mate, off the line of action. Loaded teeth bend, and the corner then touches before the path
 of contact begins and after it ends.
 """

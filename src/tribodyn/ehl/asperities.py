@@ -144,7 +144,7 @@ class Asperities:
     def from_slope(
         cls, rms_height: float, rms_slope: float, summit_density: float | None = None
     ) -> Asperities:
-        """Asperities of two flanks alike from heights, slopes and number of summits.
+        """Asperities of two equal flanks from heights, slopes and number of summits.
 
         Parameters
         ----------
@@ -183,7 +183,7 @@ class Asperities:
     def from_profiles(
         cls, pinion: RoughnessProfile, wheel: RoughnessProfile | None = None
     ) -> Asperities:
-        """Asperities from one measured profile of each flank; of one alone both are alike.
+        """Asperities from a measured profile of each flank, or from one profile for both.
 
         Parameters
         ----------

@@ -135,12 +135,12 @@ class FilmModel(Model):
         return ("none",) if self.load_exponent is None else ("none", "tangent")
 
     def why_not(self, kind: str) -> str:
-        """Tell why the film has no stiffness of some kind.
+        """Say why the film has no stiffness of some kind.
 
         Parameters
         ----------
         kind : str
-            The stiffness asked for.
+            Requested stiffness.
         """
         supported = f"Its film has: {', '.join(self.stiffness_kinds)}"
         if kind != "approach" or self.central is None:
@@ -208,7 +208,7 @@ class FilmModel(Model):
         length : float [m]
             Length of the contact line, for the film stiffness.
         progress : Progress
-            Told how many contacts are solved.
+            Receives the number of solved contacts.
         **options : object
             Options of this model; ``positions`` is for those who choose the contacts.
 

@@ -237,7 +237,7 @@ class FrictionLaw(Model):
         ``function(contact, **options)``; gives the coefficients, or :class:`FrictionParts`.
     options : mapping of str to Option or default
         Options that the law knows; afterwards their defaults, ``None`` where the user must give a
-        value. What else is known of them stands in ``declared``.
+        value. ``declared`` holds their descriptions.
     needs_film : bool
         Whether the contacts must have their solved ``film``.
     needs_oil : bool
@@ -298,7 +298,7 @@ class FrictionLaw(Model):
     def told(
         self, contact: TribologicalContact, options: Mapping[str, Any]
     ) -> Array | FrictionParts:
-        """All that the law tells: the coefficients, with their parts where it has them.
+        """Result of the law: the coefficients, with their parts if it has them.
 
         Parameters
         ----------

@@ -38,11 +38,11 @@ def exponential(
         Composite roughness.
     reference_coefficient : float
         a, the coefficient at the reference values. Default: mean of the printed table at 0.8 um
-        beside its pitch point.
+        next to its pitch point.
     slide_coefficient : float
         b in the exponential.
     roughness_exponent : float
-        c. Default: mean of the four positions of the printed table beside its pitch point.
+        c. Default: mean of the four positions of the printed table next to its pitch point.
     reference_roughness : float [m]
         S_0 that makes the power a pure number.
     reference_pressure : float [Pa]

@@ -12,7 +12,7 @@ from tribodyn.model import number
 from tribodyn.types import Array
 
 #: Sum of the maximum heights of both flanks over their composite rms roughness: Rz = 6 Ra as
-#: ISO 6336-2 has it, heights Gaussian and both flanks alike.
+#: ISO 6336-2 has it, heights Gaussian and both flanks equal.
 _HEIGHTS_OF_COMPOSITE = 12.0 / np.sqrt(np.pi)
 
 
@@ -55,7 +55,7 @@ def matsumoto(
 
     Source: Matsumoto and Morikawa, Int. Gear Conf. Lyon (2014). Their friction of the film is a
     model of its own; here any may be given. Of 0.5 log10(D) no second source was found: their
-    abstract tells a function of the maximum heights over the minimum film.
+    abstract mentions a function of the maximum heights over the minimum film.
 
     Examples
     --------

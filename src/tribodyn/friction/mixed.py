@@ -35,14 +35,14 @@ _ASPERITIES: dict[str, Option] = {
 }
 
 
-#: Relative difference of the rms heights of profile and case that is told.
+#: Relative difference of the rms heights of profile and case above which a warning is issued.
 _LIKE = 0.1
 
 
 def _asperities_of(
     roughness: float, rms_slope: float, summit_density: float | None, profile: str | None
 ) -> Asperities | None:
-    """Asperities of two flanks alike; None where they are smooth."""
+    """Asperities of two equal flanks; None where they are smooth."""
     if profile is None and not roughness:
         return None
     try:
@@ -103,7 +103,7 @@ def mixed(
         :meth:`tribodyn.ehl.Asperities.from_slope`.
     roughness_profile : str, optional
         Path of a measured profile of a flank, see :meth:`tribodyn.ehl.RoughnessProfile.read`: it
-        tells height, slope and summits in the place of all three.
+        replaces all three.
     ehl_friction_coefficient : float, optional
         Coefficient of the film alone; by default that of :func:`tribodyn.friction.xu_2007`
         for smooth flanks, because asperities are counted apart.
@@ -126,7 +126,7 @@ def mixed(
         asperities lies outside of 0.1 to 0.15; code ``roughness-differs`` where the profile has
         another height than the composite roughness.
 
-    Elastic asperities of flanks alike. Source: Johnson, Greenwood and Poon, Wear 19 (1972);
+    Elastic asperities of equal flanks. Source: Johnson, Greenwood and Poon, Wear 19 (1972);
     Greenwood and Tripp, Proc. IMechE 185 (1970); powers of f: Castro and Seabra (2007).
 
     Examples

@@ -41,7 +41,7 @@ def hunting_period(pair: SpurPair) -> int:
 
 
 def tooth_positions(gear: SpurGear) -> Array:
-    """By how much the loaded flank of each tooth stands further on than evenly spaced teeth.
+    """Position errors of the loaded flanks of a gear: distance ahead of even spacing.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def pitch_gap(pair: SpurPair, cycle: ArrayLike, pair_index: ArrayLike = 0) -> Ar
 
     Notes
     -----
-    A flank that stands further on in the order of contact comes later. The driving flank lies on
+    A flank that is ahead in the order of contact touches later. The driving flank lies on
     the front of its tooth, so that the pair then has a gap; the driven flank lies on the back, and
     the pair touches early: gap = driving - driven. Equal deviations of both gears cancel.
 

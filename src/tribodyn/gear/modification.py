@@ -252,7 +252,7 @@ class FlankModification:
         Deviation of the pitch from the flank before to each flank, one for each tooth in the order
         in which they come into contact; too long is positive. They sum to zero.
     cumulative_pitch_deviation : tuple of float [m]
-        Instead of the former: by how much each flank stands further on in that order.
+        Instead of the former: distance by which each flank is ahead in that order.
     run_out : float [m]
         Run-out F_r of the toothing: twice its eccentricity.
     run_out_phase : float [rad]

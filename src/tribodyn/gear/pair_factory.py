@@ -25,7 +25,7 @@ from tribodyn.gear.spur_pair import (
 )
 from tribodyn.gear.tooth_form import BasicRack
 
-#: Stands in for a tip diameter that is not known yet; any positive value will do.
+#: Placeholder of a tip diameter that is computed later; any positive value.
 _UNKNOWN_TIP = 1.0
 #: Arguments that both gears have in common.
 _SHARED = ("normal_module", "normal_pressure_angle")
@@ -100,7 +100,7 @@ class _Layout(NamedTuple):
         return problems
 
     def _play_problems(self) -> list[Problem]:
-        """The play may be asked for as such or through the thinning, not both."""
+        """The backlash may be given directly or by tooth thinning, not both."""
         if self.backlash is None:
             return []
         wrong = _problems_of(lambda: require_between("backlash", self.backlash, 0.0, 1.0, "m"))
@@ -258,7 +258,7 @@ def spur_pair(
     pinion_tooth_thinning, wheel_tooth_thinning : float, optional
         Reduction of the tooth thickness along the base circle [m].
     backlash : float, optional
-        Total play on the line of action [m], reached by thinning both gears alike; by default the
+        Total play on the line of action [m], by equal thinning of both gears; by default the
         play that follows from the other figures.
     pinion_rack, wheel_rack : BasicRack, optional
         Generating profiles; ISO 53 profile A by default.

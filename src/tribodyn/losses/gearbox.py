@@ -21,7 +21,7 @@ from tribodyn.lubricant import Lubricant
 from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.types import Array
 
-#: Parts of a loss in the order in which they are told, and what the figures call them.
+#: Parts of a loss in the order of display, with their labels.
 PARTS = {
     "gear": "teeth",
     "bearing_rolling": "bearings: rolling",
@@ -120,12 +120,12 @@ def ohlendorf_loss_factor(pair: SpurPair) -> float:
 
 @dataclass(frozen=True)
 class ShaftParts:
-    """What turns with a gear and loses power: its bearings, shaft seals, and its oil bath.
+    """Parts of a shaft that lose power: bearings, shaft seals, and the oil bath of its gear.
 
     Parameters
     ----------
     bearing : RollingBearing, optional
-        The bearings of the shaft, all alike; none are counted by default.
+        The bearings of the shaft, all of one type; none by default.
     bearings : int
         Number of them, which share the force of the teeth evenly.
     bearing_drag_factor : float
@@ -160,7 +160,7 @@ class ShaftParts:
     immersion: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse what is no shaft."""
+        """Check the fields."""
         require_between("bearings", self.bearings, 1, 16)
         require_between("seals", self.seals, 1, 16)
         require_between("bearing_drag_factor", self.bearing_drag_factor, 0.0, 0.01)

@@ -223,7 +223,9 @@ def _columns(file: Path, head: Sequence[str]) -> Mapping[str, tuple[int, float]]
     for place, cell in enumerate(head):
         name, _, unit = (part.strip() for part in cell.partition("["))
         if name in columns:
-            raise InputError(f"two columns {name}", f"{file}:1", "Each stands once", "Keep one")
+            raise InputError(
+                f"two columns {name}", f"{file}:1", "Each column must occur once", "Keep one"
+            )
         if name in units_of:
             written = unit.rstrip("] ") or units_of[name]
             bare += [] if unit else [name]

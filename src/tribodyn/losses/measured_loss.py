@@ -15,7 +15,7 @@ from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, Index
 from tribodyn.units import RPM
 
-#: Relative standard uncertainty up to which a value is sound, and beyond which it tells nothing.
+#: Relative standard uncertainty up to which a value is reliable, and above which it is useless.
 _SOUND, _LOST = 0.1, 0.3
 #: Coefficient above which a measurement of lubricated teeth is none.
 _MOST = 0.2
@@ -190,14 +190,14 @@ def _point(table: PowerLossTable, rows: list[int]) -> _Point:
         variance = float(readings.var(ddof=1)) / count
         return _Point(rows, float(readings.mean()), variance, count - 1.0)
     what = f"one reading at {table.torque[rows[0]]:g} N*m and {table.speed[rows[0]] / RPM:.4g} rpm"
-    why = "One reading tells no scatter"
+    why = "A single reading has no scatter"
     raise InputError(what, table.place(rows[0]), why, "Repeat it, or give torque_loss_uncertainty")
 
 
 def _matched(
     table: PowerLossTable, points: list[_Point], idles: list[_Point]
 ) -> list[tuple[_Point, _Point]]:
-    """Each point with that without load at its speed; every fault is told with its row."""
+    """Pair each point with the one without load at its speed; report all missing ones by row."""
     pairs, problems = [], []
     for point in points:
         speed = table.speed[point.rows[0]]

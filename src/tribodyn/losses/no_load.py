@@ -65,8 +65,8 @@ def churning_loss(
     ``P = rho/2 omega^3 S_m R^3 C_m``, slow with
     ``C_m = 1.366 (h/D)^0.45 (V/D^3)^0.1 Fr^-0.6 Re^-0.21``, fast with
     ``C_m = 3.644 (h/D)^0.1 (V/D^3)^-0.35 Fr^-0.88 (b/D)^0.85``. The acceleration
-    ``omega^2 sqrt(R m)`` tells them apart: slow below 750 m/s^2, fast above 1250 m/s^2, joined in
-    a line between.
+    ``omega^2 sqrt(R m)`` decides: slow below 750 m/s^2, fast above 1250 m/s^2, with a
+    linear transition.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@
 | --- | --- |
 | `model` | what a stiffness model is; models are picked by name from :data:`MODELS` |
 | `models` | the models of the literature, one in each file |
-| `teeth` | how one gear gives way under a load on a tooth, in closed formulas |
+| `teeth` | compliance of one gear under a load on a tooth, in closed form |
 | `fe2d` | the same from finite elements of the whole gear |
 | `loaded` | load sharing, transmission error and stiffness of a mesh under load |
 | `tip_relief` | transmission error over torque, and the best tip relief |

@@ -20,7 +20,7 @@ from tribodyn.types import Array, Mask
 
 
 class MeshState(NamedTuple):
-    """What a model is asked about: the positional arguments of :class:`StiffnessModel`."""
+    """Mesh states to evaluate: the positional arguments of :class:`StiffnessModel`."""
 
     pair: SpurPair
     material: Material
@@ -42,7 +42,7 @@ class StiffnessModel(Model):
         ``function(pair, material, path, in_contact, phase, normal_force, /, **options)``.
     options : mapping of str to Option or default
         Accepted options; afterwards their defaults, ``None`` where the user must give a value, or
-        one of several values. What else is known of them stands in ``declared``.
+        one of several values. ``declared`` holds their descriptions.
     influence : callable, optional
         ``influence(gear, material, *, reference)``: the structure of one gear, of models that
         know it; these carry contacts anywhere on the flank, and deviations of the flanks.
@@ -146,7 +146,7 @@ def share_equally(total: Array, in_contact: Mask) -> Array:
 
 
 def usable_stiffness(values: Array, in_contact: Mask, model: str) -> Array:
-    """Check what a stiffness model gave; models of third parties are checked here once for all."""
+    """Check the result of a stiffness model, including those of third parties."""
     stiffness = np.asarray(values)
     sound = stiffness.shape == in_contact.shape and bool(
         np.all(np.where(in_contact, np.isfinite(stiffness) & (stiffness > 0.0), stiffness == 0.0))

@@ -40,7 +40,7 @@ class Surrogate(Record):
     targets : (t,) array of str
         What is predicted.
     feature_unit, target_unit : (k,), (t,) array of str
-        Their units, where the data told.
+        Their units, if the data have them.
     feature_range : (2, k) array
         Least and greatest value of each feature over the training rows.
     target_range : (2, t) array
@@ -54,7 +54,7 @@ class Surrogate(Record):
     level : float
         That probability [-].
     epochs : (t,) array
-        Steps of the training that was kept.
+        Steps of the selected training.
     stopped : (t,) array of str
         Why it ended: "validation", "epochs", "gradient" or "damping".
     training_rows, validation_rows : int

@@ -113,7 +113,7 @@ def _column(column: Any, name: str, rows: int) -> Array:
     if values.shape != (rows,) or np.any(np.isinf(values)):
         what = f'the column "{name}" has the shape {np.shape(column)}, or holds no finite numbers'
         why = f"Every column has one number for each of the {rows} rows"
-        raise InputError(what, Argument("data"), why, "NaN stands for what is missing")
+        raise InputError(what, Argument("data"), why, "Use NaN for missing values")
     return values
 
 
@@ -209,7 +209,7 @@ def prepare(
     seed : int
         The same seed gives the same split.
     groups : str
-        Column that tells which rows stay together in the split; empty: each row by itself.
+        Column of labels; rows of one label are not split. Empty: rows are split individually.
     shares : (3,) sequence of float
         Parts of training, validation and test.
     outlier_limit : float, optional

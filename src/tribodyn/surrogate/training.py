@@ -39,7 +39,7 @@ class Training:
     patience : int
         Steps in a row without a lower validation error that end the training.
     starts : int
-        Trainings from different weights, of which the least validation error is kept.
+        Trainings from different weights; the one with the least validation error is selected.
     shares : tuple of float
         Parts of training, validation and test.
     outlier_limit : float, optional
@@ -101,11 +101,11 @@ def train(
     seed : int
         The same seed gives the same model.
     groups : str
-        Column that tells which rows stay together in the split, such as those of one trajectory.
+        Column of labels; rows of one label, such as one trajectory, are not split.
     training : Training, optional
         Layers and steps; by default two layers of twelve neurons, tansig.
     progress : Progress
-        Told about the networks; silent by default.
+        Receives the progress over the networks; silent by default.
 
     Returns
     -------
@@ -126,7 +126,7 @@ def train(
     -----
     Features and targets are scaled to 0 to 1 over the training rows. The least mean square is
     found by Levenberg and Marquardt from a start of Nguyen and Widrow; the weights with the least
-    validation error are kept, and errors are those of rows that neither has seen.
+    validation error are selected, and the errors are those of the test rows.
 
     Examples
     --------
@@ -169,13 +169,13 @@ def bpnn_pl(
     seed : int
         The same seed gives the same model.
     groups : str
-        Column that tells which rows stay together in the split.
+        Column of labels; rows of one label are not split.
     neurons : iterable of int
         Neurons of each hidden layer that are tried.
     training : Training
         The rest; by default as the source has it.
     progress : Progress
-        Told about the networks; silent by default.
+        Receives the progress over the networks; silent by default.
 
     Returns
     -------

@@ -76,7 +76,7 @@ def bootstrap_band(
     Notes
     -----
     Bootstrap-t: of every resampled mean the distance to the mean is divided by its own standard
-    error, and the quantiles of that ratio are laid off with the standard error of the samples. It
+    error, and the quantiles of that ratio are multiplied by the standard error of the samples. It
     keeps its level for few repeats and for skew distributions, where plain percentiles are too
     narrow. B. Efron and R. J. Tibshirani, An Introduction to the Bootstrap, 1993, section 12.5. A
     point at which all repeats are equal has a band of no width.

@@ -59,7 +59,7 @@ def test_a_film_that_is_far_off_is_told(M, L, nodes):
 
 
 def test_nodes_that_were_raised_are_told():
-    with pytest.warns(ModelWarning, match=r"where 65 that were asked for have no solution"):
+    with pytest.warns(ModelWarning, match=r"since 65 nodes gave no solution"):
         raised = solve_line_contact_moes(399.8, 4.16, nodes=65, **THIN)
     assert raised.nodes > 65
 

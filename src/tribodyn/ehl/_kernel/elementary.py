@@ -22,10 +22,10 @@ JIT: dict[str, Any] = {
     "error_model": "numpy",
 }
 
-#: For what only compiled functions call.
+#: Options of functions that only compiled functions call.
 INNER: dict[str, Any] = {**JIT, **INNER_OPTIONS}
 
-#: Files whose code ends up in every compiled kernel of a film, beside its own.
+#: Files whose code is part of every compiled film kernel, in addition to its own file.
 SOURCES: tuple[str, ...] = ("elementary", "reynolds", "film_sum", "factors", "linear_solver")
 SOURCES += ("grid_transfer", "inlet", "newton")
 

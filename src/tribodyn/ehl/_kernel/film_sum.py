@@ -1,7 +1,7 @@
 """Elastic deflection of the line contact: the sum of pressures with logarithmic influence.
 
-``sum_j K_|i-j| P_j`` is a product with a Toeplitz matrix. On short grids it is summed as it
-stands, on longer ones it becomes a product of Fourier transforms. A library transform would need
+``sum_j K_|i-j| P_j`` is a product with a Toeplitz matrix. On short grids it is summed
+directly, on longer ones it becomes a product of Fourier transforms. A library transform would need
 the interpreter, and with it the lock that keeps threads apart; the one here takes radix-4 passes
 of Stockham, which need no reordering, with real and imaginary parts in arrays of their own, so
 that the passes become vector instructions.

@@ -4,7 +4,7 @@ The unknowns are the changes of pressure at the nodes 1..k and, where the load i
 rigid offset H0. The influence decays away from the diagonal, so that the tangent cut to a band is
 a good preconditioner. On fine grids it is joined by the tangent on a coarse grid, dense and
 factored once, which catches what the band misses: the smooth part of the elastic deflection. The
-load row is kept exactly in both and holds after every iteration.
+load row is exact in both and holds after every iteration.
 """
 
 from __future__ import annotations

@@ -213,7 +213,7 @@ def assemble_band(k: int, dipole: Array, films: Array, cH: Array, cP: Array, ban
             c = LEFT - 2 + s
             if 1 <= j <= k:
                 row[c] += value
-            # The dipoles beside node j take half of their strength from it.
+            # The dipoles next to node j take half of their strength from it.
             if j >= 1:
                 row[c - 1] -= 0.5 * value * dipole[min(j - 1, k)]
             if 0 <= j < k:
@@ -348,7 +348,7 @@ def _factor(k: int, level: Level, work: LevelWork) -> bool:
 
 @nb.njit(**INNER)
 def solve_coarsest(level: Level, k: int, load: float, work: LevelWork) -> int:
-    """Newton's method for pressure and offset at fixed free nodes; factors kept while useful."""
+    """Newton's method for pressure and offset at fixed free nodes; factors are reused."""
     n, dx, P, H, right = level.grid.n, level.grid.dx, level.P, level.H, level.target
     dense, offset, G = work.coarsest, work.offset, work.fields.G
     scale, delta, before, factored = dense.scale, dense.delta, dense.pressure, dense.factored

@@ -1,4 +1,4 @@
-"""Newton's method for the pressure on one grid, with the free outlet and, if asked, with cavities.
+"""Newton's method for the pressure on one grid, with the free outlet and optional cavities.
 
 A steady film parts once, at the outlet. A film that is unloaded quickly also ruptures inside: the
 nodes of such a cavity have the pressure zero, and their mass balance leaves oil missing.

@@ -73,7 +73,7 @@ class TransientContact(NamedTuple):
 
 
 class Instant(NamedTuple):
-    """What one instant hands to the next beside pressure and film."""
+    """State of an instant, besides pressure and film, that the next one starts from."""
 
     offset: float
     free: int  #: last node with pressure

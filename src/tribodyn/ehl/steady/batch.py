@@ -47,7 +47,7 @@ class LineContactBatch:
     central_film, minimum_film : array [m]
         Film at position zero, and least film.
     film_stiffness : array [N/m]
-        Stiffness of the film over the length that was asked for; empty if none was.
+        Stiffness of the film over the given length; empty if no length was given.
     hertz_pressure : array [Pa]
         Maximum pressure of the dry contact.
     half_width : array [m]
@@ -59,7 +59,7 @@ class LineContactBatch:
     central_film_error : array [m]
         Estimate of the error of ``central_film`` by the grid.
     solutions : array of LineContactSolution
-        The solutions; empty if not asked for.
+        The solutions; empty unless requested.
     """
 
     central_film: Array
@@ -125,7 +125,7 @@ def solve_line_contacts(
     threads : int, optional
         Contacts solved at a time; the number of processors by default.
     progress : Progress
-        Told about every contact.
+        Receives the progress over the contacts.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A line contact on its grid: what an engine is asked, and what it answers."""
+"""Line contact on its grid: the problem and the outcome of an engine."""
 
 from __future__ import annotations
 

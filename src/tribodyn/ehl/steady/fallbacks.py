@@ -101,7 +101,7 @@ def verify(grid: DiscreteContact) -> Verification:
     )
 
 
-#: ``lam`` of the easy contact, its pressure over that asked for, and intervals of the path.
+#: ``lam`` of the easy contact, its pressure over the requested one, and intervals of the path.
 _EASY_LAM, _EASY_PRESSURE, _INTERVALS = 2.0, 0.05, 512
 #: First step of the path, and the least before giving up.
 _STEP, _LEAST_STEP = 0.125, 1e-3

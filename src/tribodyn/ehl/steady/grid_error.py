@@ -19,7 +19,7 @@ from tribodyn.types import Array
 
 #: Fall of the differences that shows that the inlet is resolved, and that of the theory.
 _RESOLVED, _FOURFOLD = 0.33, 0.25
-#: Slowest fall that is reckoned with, and margin of the estimate.
+#: Slowest assumed convergence, and safety factor of the estimate.
 _SLOWEST, _MARGIN = 0.75, 1.3
 #: Further margins of the least film: for its place, and for where the grid begins.
 _BETWEEN, _CUT_LEAST = 1.15, 1.5

@@ -25,7 +25,7 @@ from tribodyn.types import Array
 #: Heights that are added to the gap, at the nodes or over the position.
 Profile = Callable[[Array], ArrayLike]
 
-#: Error of a film on stated nodes, over the film, that is told.
+#: Relative film error on a prescribed grid above which a warning is issued.
 STATED_LIMIT = 0.02
 
 
@@ -307,11 +307,7 @@ def _warn_accuracy(solution: LineContactSolution, options: SolverOptions) -> Non
     least = solution.minimum_film_error / solution.minimum_film
     automatic = isinstance(options.nodes, str)
     requested = solution.nodes if automatic else int(options.nodes)
-    raised = (
-        ""
-        if solution.nodes == requested
-        else f", where {requested} that were asked for have no solution,"
-    )
+    raised = "" if solution.nodes == requested else f", since {requested} nodes gave no solution,"
     if automatic and error > options.film_tolerance:
         limit, remedy = f"film_tolerance = {options.film_tolerance:g}", "a greater tolerance"
     elif not automatic and (max(error, least) > STATED_LIMIT or raised):

@@ -29,7 +29,7 @@ _PASSING, _PASSING_FLUX = 1e-4, 1e-2
 
 _REASONS = {
     1: "not converged in {cycles} cycles (change of pressure {change:.2g}, flux error {flux:.2g})",
-    2: "no correction on the coarsest grid kept the gap open",
+    2: "the gap closed with every correction on the coarsest grid",
     3: "the tangent is singular",
     4: "the pressure is not finite",
     5: "rounding keeps the flux error at {flux:.2g}",

@@ -20,7 +20,7 @@ CAP = 0.3
 
 _REASONS = {
     1: "not converged in {steps} Newton steps",
-    2: "no step of Newton's method kept the gap open",
+    2: "the gap closed with every step of Newton's method",
     3: "the tangent is singular",
     4: "the pressure is not finite",
     5: "rounding keeps the flux error at {flux:.2g}",

@@ -73,7 +73,7 @@ class LineContactSolution(Record):
     moes_load, moes_viscosity : float [-]
         Numbers M and L of Moes.
     load_per_width, equivalent_radius, entrainment_speed : float [N/m], [m], [m/s]
-        What was asked for, as for :func:`tribodyn.ehl.solve_line_contact`.
+        Arguments of :func:`tribodyn.ehl.solve_line_contact`.
     effective_modulus : float [Pa]
         As there.
     lubricant : Lubricant, optional

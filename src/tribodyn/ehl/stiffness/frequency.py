@@ -20,7 +20,7 @@ from tribodyn.types import Array, ComplexArray
 
 #: Intervals of the grid of the linearized equations.
 _INTERVALS = 512
-#: A vibration this slow, in u_e/b, stands for the limit of the damping at frequency zero.
+#: Frequency, in u_e/b, at which the damping limit for zero frequency is evaluated.
 _SLOW = 1e-5
 
 

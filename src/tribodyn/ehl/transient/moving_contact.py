@@ -87,7 +87,7 @@ def _series(name: str, series: Series, t: Array) -> Array:
     if bad.size:
         what = f"{name} is {np.atleast_1d(values)[bad[0]]} at instant {bad[0]}"
         why = "all values must be finite"
-        raise InputError(what, f"argument {name}", why, "Look for the instant that has no value")
+        raise InputError(what, f"argument {name}", why, "Find the instant without a value")
     return np.ascontiguousarray(np.broadcast_to(values, t.shape))
 
 
@@ -212,7 +212,7 @@ def flooded_domain(
 #: What stopped the solver, by its status.
 REASONS = {
     1: "Newton's method used up its steps",
-    2: "no step length kept the gap open",
+    2: "the gap closed for every step length",
     3: "the linear system is singular",
     4: "a value is not finite",
     5: "rounding keeps the mass balance above its tolerance",

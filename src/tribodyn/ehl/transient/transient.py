@@ -55,7 +55,7 @@ class TransientLineContact(Record):
     position : (n,) array [m]
         Nodes of the grid: distance from the line of centres in the direction of rolling.
     kept : (k,) array of int
-        Instants whose pressure and film are kept.
+        Instants whose pressure and film are stored.
     pressure, film : (k, n) array [Pa], [m]
         Pressure and film at these instants.
     iterations, parts : (m,) array of int
@@ -105,7 +105,7 @@ class TransientLineContact(Record):
 
     @property
     def kept_time(self) -> Array:
-        """Instants whose pressure and film are kept [s]."""
+        """Instants whose pressure and film are stored [s]."""
         return np.asarray(self.time[self.kept])
 
     def __repr__(self) -> str:
@@ -193,7 +193,7 @@ def solve_transient_line_contact(
     step_halvings : int
         How often a time step that fails is halved.
     keep_every : int
-        Steps from one kept pressure and film to the next; zero to keep none.
+        Steps between stored pressures and films; zero to store none.
 
     Raises
     ------

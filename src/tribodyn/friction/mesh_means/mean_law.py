@@ -26,7 +26,7 @@ _STATE = {
 }
 
 #: Mean Ra of both flanks over their composite rms roughness, heights being Gaussian and both
-#: flanks alike: sqrt(2/pi) of the rms of one, which is composite/sqrt(2).
+#: flanks equal: sqrt(2/pi) of the rms of one, which is composite/sqrt(2).
 RA_OF_COMPOSITE = math.sqrt(1.0 / math.pi)
 
 #: Options of every law that is fitted to Ra and knows oils by a factor.
@@ -41,7 +41,7 @@ OPTIONS = {
         symbol="Ra",
         example='"0.3 um"',
         meaning="mean Ra of both flanks",
-        basis="0.564 times the composite rms roughness: Gaussian heights, both flanks alike",
+        basis="0.564 times the composite rms roughness: Gaussian heights, equal flanks",
     ),
     "lubricant_factor": number(
         1.0,

@@ -35,7 +35,7 @@ def deformed_gear(
     Parameters
     ----------
     gear : SpurGear
-        The gear; tooth 0 stands on +y and the flanks with x > 0 are loaded.
+        The gear; tooth 0 is centred on +y and the flanks with x > 0 are loaded.
     material : Material
         Its material.
     loads : sequence of tuple (int, float [m], float [N/m])

@@ -143,7 +143,7 @@ def fe2d_influence(
     neighbours : int
         Number of neighbours on each side that are known, 1 or more; no more than there are.
     cache : bool
-        Whether the result is looked up and kept in the folder of
+        Whether the result is read from and stored in the folder of
         :func:`tribodyn.stiffness.fe2d.provider.cache_folder`.
     size : MeshSize, optional
         Sizes of the elements.
@@ -152,7 +152,7 @@ def fe2d_influence(
     ------
     InputError
         If the reference is unknown or is the bore of a gear without bore, the bore leaves hardly
-        any rim, or no neighbours are asked for.
+        any rim, or ``neighbours`` is less than one.
 
     Notes
     -----
@@ -247,7 +247,7 @@ VARIABLE = "TRIBODYN_CACHE_DIR"
 
 
 def cache_folder() -> Path:
-    """Folder of the kept arrays, which need not exist."""
+    """Folder of the cached arrays, which need not exist."""
     override = os.environ.get(VARIABLE)
     if override:
         return Path(override)
@@ -261,7 +261,7 @@ def cache_folder() -> Path:
 
 
 def load_arrays(name: str) -> dict[str, Array] | None:
-    """Read kept arrays."""
+    """Read cached arrays."""
     try:
         with np.load(_path(name), allow_pickle=False) as file:
             return {key: np.asarray(file[key], dtype=float) for key in file.files}

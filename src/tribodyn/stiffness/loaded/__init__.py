@@ -1,4 +1,4 @@
-"""The loaded tooth contact: which pairs carry what, and by how much the mesh gives way.
+"""Loaded tooth contact: load sharing of the tooth pairs and deflection of the mesh.
 
 | module | what it answers |
 | --- | --- |

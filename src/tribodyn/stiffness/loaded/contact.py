@@ -1,4 +1,4 @@
-"""Loaded tooth contact analysis: who carries what, and by how much the mesh gives way."""
+"""Loaded tooth contact analysis: load sharing and deflection of the mesh."""
 
 from __future__ import annotations
 
@@ -272,7 +272,7 @@ def loaded_contact(
     -----
     ``delta = C F + local(F) + gap``, ``F >= 0``, ``sum F = T / r_b`` at every phase, with the
     local compression of Weber and Banaschek growing less than the load. Slices of the face width
-    carry by themselves: they share the approach and nothing else. Without friction. Source:
+    are independent: they share only the approach. Without friction. Source:
     Conry and Seireg (1973), J. Eng. Ind. 95, 1115-1122, for the complementarity problem.
 
     Examples

@@ -309,7 +309,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
             if flag[0] != 0:
                 return STOPPED
             for i in range(n):
-                # The pair itself is kept apart; neighbours may pull its teeth together.
+                # The pair itself stays separated; neighbours may pull its teeth together.
                 for j in range(n):
                     alone[j] = gaps[p, 0, j]
                 alone[i] = _APART

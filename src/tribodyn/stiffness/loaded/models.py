@@ -1,6 +1,6 @@
 """Models whose tooth pairs are solved together: ``fe2d``, ``analytic``, and ``weber`` by the way.
 
-Asked like any other model for the stiffness of the pairs over a mesh cycle, they answer with the
+Like any other model they return the stiffness of the pairs over a mesh cycle, as the
 secant of the loaded tooth contact on the path of contact.
 """
 

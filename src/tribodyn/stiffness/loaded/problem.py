@@ -1,4 +1,4 @@
-"""The loaded tooth contact of one mesh, ready to be asked: compliances, gaps, widths of slices."""
+"""Loaded tooth contact problem of one mesh: compliances, gaps and widths of slices."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the loaded tooth contact tells: loads, deflection, transmission error, stiffness."""
+"""Result of the loaded tooth contact: loads, deflection, transmission error, stiffness."""
 
 from __future__ import annotations
 

@@ -128,7 +128,7 @@ def _column(
 def foot_stresses(
     load_angle: Array | float, base_radius: float, root_radius: float, half_angle: float
 ) -> Array:
-    """Stresses (3, K) [1/m] per load per width by which a tooth load stands on the foot.
+    """Stresses (3, K) [1/m] per load per width at the foot of the tooth under its load.
 
     The load turns the gear counter-clockwise. Over the foot an even tangential stress carries the
     torque, an even radial stress the force along the tooth, and a radial stress that grows
@@ -181,7 +181,7 @@ def foot_compliance(ring: RingCompliance, half_angle: float, turn: float) -> Arr
     return np.asarray(work)
 
 
-#: What the loaded tooth stands on: the elastic ring itself, or the formula fitted to rings.
+#: Foundation of the loaded tooth: the elastic ring itself, or the formula fitted to rings.
 FOUNDATIONS = ("ring", "sainsot")
 #: Waves around the rim times the half angle of a foot; beyond, compliances change by 1e-4 of
 #: themselves.
@@ -216,8 +216,8 @@ def analytic_influence(
 ) -> GearInfluence:
     """Influence of one gear from closed formulas, with up to ``neighbours`` teeth on each side.
 
-    The loaded tooth is a beam with its true outline. It stands on the ring between bore and root
-    circle, which the load deforms through the foot of the tooth; the other teeth ride on the ring.
+    The loaded tooth is a beam with its true outline. Its foundation is the ring between bore and
+    root circle, which the load deforms through the foot of the tooth; the other teeth ride on the ring.
     ``foundation="sainsot"`` takes the formula fitted to such rings under the loaded tooth instead.
 
     Plane stress. The beam ends where the load crosses the tooth axis, because the local
@@ -235,7 +235,7 @@ def analytic_influence(
     GearInfluence(30 nodes from 5.312 to 29.11 mm, 2.873e-05 to 7.808e-05 mm^2/N, 3 neighbours)
     """
     check_reference(reference)
-    why = "A tooth stands on the ring, or on the formula that was fitted to rings"
+    why = "The foundation of a tooth is the ring, or the formula fitted to rings"
     check_choice("foundation", foundation, FOUNDATIONS, why)
     require_between("neighbours", neighbours, 0, 100)
     require_between("nodes", nodes, 4, 1000)

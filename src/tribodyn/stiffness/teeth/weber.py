@@ -112,7 +112,7 @@ def half_plane_compliance(
     normal of the tooth axis, the height ``u`` [m] above the foot at which the load crosses that
     axis, and the thickness ``s`` [m] of the tooth at its foot.
 
-    Plane strain. A half plane gives way without limit under a force; the last term leaves out
+    Plane strain. The deflection of a half plane under a force is unbounded; the last term omits
     what the body does far from the tooth. Weber (1949) has 5.2, 1.0, 1.4 and 0.294 for the
     coefficients at a Poisson's ratio of 0.3, here 5.73, 1.14, 1.53 and 0.292. Source: Weber and
     Banaschek (1953), Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern,
@@ -154,7 +154,7 @@ def weber_influence(
     """
     check_reference(reference)
     if reference != "rim":
-        why = "Its tooth stands on a half plane, which has no bore"
+        why = "Its foundation is a half plane, which has no bore"
         remedy = 'Choose reference = "rim", or a model with a gear body: "fe2d", "analytic"'
         raise InputError(f'reference = "{reference}"', "stiffness model weber", why, remedy)
     require_between("nodes", nodes, 4, 1000)

@@ -287,7 +287,7 @@ class ReliefMesh:
 def relief_mesh(
     pair: SpurPair, gears: str, shape: str, torque: Array, settings: dict[str, Any]
 ) -> ReliefMesh:
-    """Prepare a mesh to be asked for many tip reliefs."""
+    """Prepare a mesh for the evaluation of many tip reliefs."""
     total = torque / pair.pinion.base_radius
     one_problem = MODELS[settings["provider"]].influence is not None
     totals = [total] if one_problem else [total[k : k + 1] for k in range(total.size)]
@@ -326,7 +326,7 @@ def optimize_tip_relief(
     Parameters
     ----------
     pair : SpurPair
-        Both gears in their working position. Everything else that their flanks have is kept; a
+        Both gears in their working position. Their other modifications are retained; a
         tip relief of the gears that are searched is replaced.
     torque : float or array (t,) [N*m]
         Torques on the pinion; two are the ends of a range, in which three more are taken.
@@ -430,7 +430,7 @@ def optimize_tip_relief(
 
 
 def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> Array:
-    """Mesh phases, as many as asked for or as there is time for."""
+    """Mesh phases, as many as requested or as the time limit allows."""
     contact = path_of_contact(pair)
     cycles = mesh_period(contact)
     work = cycles * slice_widths(contact, slices).size
