@@ -17,9 +17,9 @@ from tribodyn.types import Array
 _NAYAK = 6.0 * math.pi * math.sqrt(3.0)
 #: Least ``m0 m4/m2^2`` of an isotropic random surface.
 _LEAST_BANDWIDTH = 1.5
-#: Density times radius of the summits times rms height that most engineering surfaces have.
+#: Summit density times summit radius times rms height of typical engineering surfaces.
 TYPICAL_PRODUCT = 0.05
-#: Separation over rms height at which the density of the heights is the smallest number.
+#: Separation over rms height at which the density of the heights underflows.
 _FAR = 37.0
 
 
@@ -93,7 +93,7 @@ class Asperities:
     summit_density: float
 
     def __post_init__(self) -> None:
-        """Refuse what is not positive."""
+        """Check that all fields are positive."""
         require_positive(
             "rms_height", self.rms_height, "m", remedy="Smooth flanks have no asperities"
         )

@@ -14,7 +14,7 @@ from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
 _POWERS = (0.64, 1.26)
-#: Film ratio at which the fit is greatest, 2.2576; from there on it is held.
+#: Film ratio at which the fit is greatest, 2.2576; constant beyond.
 _HELD = (_POWERS[0] / (0.37 * (_POWERS[1] - _POWERS[0]))) ** (1.0 / _POWERS[1])
 #: Lubrication regimes, and the film ratios at which mixed lubrication begins and ends.
 REGIMES = ("boundary", "mixed", "full film")
@@ -155,11 +155,11 @@ def balanced_load_share(
     return np.exp(log_share)[()], np.asarray(asperities.rms_height * np.exp(log_gap))[()]
 
 
-#: Steps of Newton, and the last one of them.
+#: Most steps of Newton's method, and step size at convergence.
 _STEPS, _LAST = 60, 1e-12
-#: Logarithm of a share that is none.
+#: Logarithm of a vanishing share.
 _NONE = -700.0
-#: Contacts balanced at a time: their arrays stay in the cache of the processor.
+#: Contacts per block, so that the arrays stay in the processor cache.
 _BLOCK = 8192
 
 
@@ -221,7 +221,7 @@ class _Table:
         return np.asarray(np.interp(hardness, -self.log_integral, places))
 
 
-#: Separations over the rms height between which asperities are known, and knots of the table.
+#: Separations over the rms height covered by the table, and its number of grid points.
 _REACH, _KNOTS = (-12.0, 36.0), 16385
 
 

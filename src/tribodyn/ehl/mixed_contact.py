@@ -17,11 +17,11 @@ from tribodyn.lubricant import Lubricant
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
-#: Least share for which a film is found; below, it keeps its slope.
+#: Least share for which a film is computed; below, it is extrapolated.
 _LEAST = 1e-3
 #: Bounds of that slope: rigid and isoviscous films have 1.
 _SLOPES = (0.02, 1.5)
-#: Rounds, and the change of the share that ends them.
+#: Most iterations, and change of the share at convergence.
 _ROUNDS, _SETTLED = 30, 1e-9
 
 
@@ -142,7 +142,7 @@ def mixed_line_contact(
     pressure = np.sqrt(load * effective_modulus / (2.0 * np.pi * radius))
 
     def films(share: Array) -> tuple[Array, Array]:
-        """Films in the centre and the least known, each under its part of the load."""
+        """Central and minimum films, each under its part of the load."""
         part = np.maximum(share, _LEAST)
         state = part * load, radius, speed, part * effective_modulus
         columns: list[Any] = [*zip(*state, strict=True)] if model.method else [state]
@@ -183,7 +183,7 @@ def _settled(
     share, gap = balance(smooth, slope)
     for _ in range(_ROUNDS):
         now = np.log(np.maximum(share, _LEAST))
-        with quiet("film-range"):  # What a formula has to say, it has said of the whole load.
+        with quiet("film-range"):  # Warnings of a formula were issued for the total load.
             new = np.log(film(share))
         moved = np.abs(now - before) > 1e-9
         fall = -(new - height)[moved] / (now - before)[moved]

@@ -27,7 +27,7 @@ from tribodyn.types import Array
 #: pressure-viscosity coefficient and effective modulus, in this order and in SI.
 FilmFormula = Callable[..., Array]
 
-#: What the stiffnesses of a film are.
+#: Meanings of the film stiffnesses.
 _KINDS = {
     "approach": "film stiffness as the slope of the load over the approach of the bodies less "
     "Hertz's; each film keeps its distance in the load sharing",
@@ -123,7 +123,7 @@ class FilmModel(Model):
     papers: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Keep options and defaults apart."""
+        """Separate options from defaults."""
         common = _SOLVED if self.method else {"stiffness": _stiffness("none")}
         self.declare({**common, **self.options})
 

@@ -16,7 +16,7 @@ from tribodyn.types import Array
 from tribodyn.units import convert
 from tribodyn.validated_files import plain_number, read_bytes
 
-#: What lies beyond the ends of a profile.
+#: Treatment of positions beyond the ends of a profile.
 BEYOND = ("refuse", "periodic", "level")
 
 
@@ -58,7 +58,7 @@ class RoughnessProfile:
     beyond: Literal["refuse", "periodic", "level"] = "refuse"
 
     def __post_init__(self) -> None:
-        """Refuse what is no profile."""
+        """Check the columns."""
         position = np.array(self.position, dtype=float).reshape(-1)
         height = np.array(self.height, dtype=float).reshape(-1)
         object.__setattr__(self, "position", position)

@@ -85,7 +85,7 @@ def exp_(x: float) -> float:
 
 @nb.njit(**STRICT)
 def log_(x: float) -> float:
-    """Natural logarithm of a positive normal number; nonsense for any other."""
+    """Natural logarithm of a positive normal number; undefined for any other."""
     bits = _bits(x)
     # Exponent such that the mantissa lies between sqrt(1/2) and sqrt(2).
     k = (bits - 4604544271217802189) >> 52

@@ -110,7 +110,7 @@ def _last_pass(stride: int, x: Array, y: Array) -> None:
 def transform(size: int, x: Array, y: Array, table: Array) -> bool:
     """Forward transform of ``x[0] + i x[1]`` for a size of 4 or more."""
     _first_pass(size, x, y, table)
-    # Typed: a literal would make the compiler translate the pass anew.
+    # Typed: a literal would make the compiler specialise the pass again.
     left, stride, in_x = size // 4, nb.int64(4), False
     while left >= 4:
         if in_x:
@@ -152,7 +152,7 @@ def influence(n: int, dx: float) -> Array:
 
 @nb.njit(**INNER)
 def _half_size(n: int) -> int:
-    """Half the length of the circular sum: the nodes 0..n-1 do not reach round it."""
+    """Half the length of the circular sum: long enough that nodes 0..n-1 do not wrap around."""
     size = 4
     while size < n:
         size *= 2
@@ -161,7 +161,7 @@ def _half_size(n: int) -> int:
 
 @nb.njit(**INNER)
 def film_work_size(n: int) -> int:
-    """Numbers of working room that :func:`film_sum` needs."""
+    """Size of the work array of :func:`film_sum`."""
     return 1 if n <= DIRECT else 4 * _half_size(n)
 
 
@@ -211,7 +211,7 @@ def _multiply(half: int, z: Array, turn: Array, spectrum: Array) -> None:
         er, ei = 0.5 * (z[0, k] + z[0, o]), 0.5 * (z[1, k] - z[1, o])
         dr, di = 0.5 * (z[0, k] - z[0, o]), 0.5 * (z[1, k] + z[1, o])
         wr, wi = turn[0, k], turn[1, k]
-        # E' = mean E - i apart w D and D' = i apart conj(w) E + mean D
+        # E' = mean E - i d w D and D' = i d conj(w) E + mean D with the half difference d
         pr, pi = wr * dr - wi * di, wr * di + wi * dr
         qr, qi = wr * er + wi * ei, wr * ei - wi * er
         fr, fi = mean * er + half_difference * pi, mean * ei - half_difference * pr

@@ -36,7 +36,7 @@ class CoarseTangent(NamedTuple):
 
     grid: Grid
     last: int  #: last free node
-    factors: Array  #: none: no coarse grid
+    factors: Array  #: empty: no coarse grid
     pivot: Index
     right: Array
     pressure: Array

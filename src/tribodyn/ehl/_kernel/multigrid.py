@@ -54,7 +54,7 @@ _PASSING_FLUX, _PASSING_CYCLES = 1e-2, 3
 _CAVITY = -1e-9
 #: Cycles without a smaller change after which the iteration has stalled.
 _PATIENCE = 12
-#: A change of the pressure that rounding alone makes.
+#: Change of the pressure within rounding.
 _ROUNDING = 1e-13
 
 

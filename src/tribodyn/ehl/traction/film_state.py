@@ -67,7 +67,7 @@ class FilmState:
     viscosity_law: str = "roelands"
 
     def __post_init__(self) -> None:
-        """Bring the arrays into shape and refuse what is no film."""
+        """Convert and check the arrays."""
         for name in ("position", "pressure", "film_thickness"):
             array = np.atleast_2d(np.asarray(getattr(self, name), dtype=float))
             object.__setattr__(self, name, array)

@@ -34,7 +34,7 @@ _POLE_TEMPERATURE = 138.0
 
 
 class ThermalOil(NamedTuple):
-    """What the temperature of a film depends on."""
+    """Thermal properties and heat source of a film."""
 
     temperature: float  #: temperature of the oil at the inlet [K]
     temperature_viscosity_coefficient: float  #: [1/K]
@@ -360,7 +360,7 @@ def inlet_heating_factor(
 
 
 def _check(factor: Array, loading: float) -> None:
-    """Refuse factors that are none, and say where the formula extrapolates."""
+    """Refuse invalid factors, and warn where the formula extrapolates."""
     if np.any(factor <= 0.0):
         raise InputError(
             f"thermal loading eta_0 beta u_e^2/k = {loading:.4g}",

@@ -15,9 +15,9 @@ from tribodyn.ehl.traction.shear_models import EYRING_STRESS, SHEAR_MODELS, Shea
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
-#: Contacts sheared at a time: their arrays stay in the cache of the processor.
+#: Contacts per block, so that the arrays stay in the processor cache.
 _BLOCK = 32
-#: The largest exponent whose exponential, times a speed, a double holds.
+#: Largest exponent whose exponential, times a speed, does not overflow.
 _LARGEST_EXPONENT = 690.0
 
 
@@ -54,7 +54,7 @@ class FilmShear:
 
     film: FilmState  #: solved films
     model: ShearModel  #: how the oil shears
-    numbers: Mapping[str, float]  #: numbers of the model, all of them
+    numbers: Mapping[str, float]  #: all parameters of the model
     film_factor: Array | None = None  #: factor on the film of each contact
 
     @cached_property
@@ -93,7 +93,7 @@ class FilmShear:
         return traction, slope
 
     def _sliding(self, block: slice, speed: Array, rise: Array | None) -> tuple[Array, Array]:
-        """Return the same of some contacts."""
+        """Sliding traction and its slope for some of the contacts."""
         film, index = self.film, self.film.contacts[block]
         rows = index if self.film_factor is None else block
         log_rate = self.log_rate[rows]

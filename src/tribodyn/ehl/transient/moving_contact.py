@@ -50,7 +50,7 @@ def read_inputs(
     surface_speeds: tuple[Series, Series] | None,
     roughness: tuple[RoughnessProfile | None, RoughnessProfile | None],
 ) -> TransientInputs:
-    """Bring all inputs to the time axis and check them."""
+    """Evaluate all inputs at the instants and check them."""
     t = _time(time)
     load = _series("load_per_width", load_per_width, t)
     radius = _series("equivalent_radius", equivalent_radius, t)
@@ -149,7 +149,7 @@ def _travel(
 class ReferenceScale:
     """Units of a transient contact: those of its widest dry contact."""
 
-    instant: int  #: where in the series the dry contact is widest
+    instant: int  #: index of the widest dry contact
     load: float  #: load there [N/m]
     radius: float  #: radius there [m]
     entrainment_speed: float  #: greatest entrainment speed [m/s]
@@ -209,7 +209,7 @@ def flooded_domain(
     return -float(np.max(first)) / scale.half_width, float(np.max(last)) / scale.half_width
 
 
-#: What stopped the solver, by its status.
+#: Reason for the failure of the solver, by its status.
 REASONS = {
     1: "Newton's method used up its steps",
     2: "the gap closed for every step length",
@@ -225,7 +225,7 @@ class State:
 
     P: Array
     H: Array
-    instant: Any  #: offset, last free node and load, as the kernel hands them on
+    instant: Any  #: offset, last free node and load, as the kernel returns them
 
 
 #: Greatest factor of load, speed or curvature from one steady state to the next of the start.

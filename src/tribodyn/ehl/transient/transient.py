@@ -109,7 +109,7 @@ class TransientLineContact(Record):
         return np.asarray(self.time[self.kept])
 
     def __repr__(self) -> str:
-        """One line with the figures that tell series apart."""
+        """One line with the main figures."""
         low, high = float(self.minimum_film.min()), float(self.central_film.max())
         return (
             f"TransientLineContact({self.time.size - 1} steps over "
@@ -119,8 +119,8 @@ class TransientLineContact(Record):
         )
 
 
-#: Share of the load near the last node up to which the grid does not cut the film off, and how
-#: often the grid is made longer for it.
+#: Share of the load near the last node above which the grid is too short, and how often it is
+#: extended.
 _LATE_LOAD, _EXTENSIONS = 1e-3, 4
 
 
@@ -254,7 +254,7 @@ def solve_transient_line_contact(
 def _extended(
     contact: MovingContact, start: str, step_halvings: int, keep_every: int, automatic: bool
 ) -> TransientLineContact:
-    """March, on a longer grid where the film turns out to reach over the end of this one."""
+    """Integrate over time, on a longer grid if the film reaches the end of this one."""
     for _ in range(_EXTENSIONS if automatic else 0):
         contact.check_roughness()
         result, late = _follow(contact, start, step_halvings, keep_every)

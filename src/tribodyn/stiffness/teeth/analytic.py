@@ -217,7 +217,7 @@ def analytic_influence(
     """Influence of one gear from closed formulas, with up to ``neighbours`` teeth on each side.
 
     The loaded tooth is a beam with its true outline. Its foundation is the ring between bore and
-    root circle, which the load deforms through the foot of the tooth; the other teeth ride on the ring.
+    root circle, which the load deforms through the foot of the tooth; the other teeth follow it.
     ``foundation="sainsot"`` takes the formula fitted to such rings under the loaded tooth instead.
 
     Plane stress. The beam ends where the load crosses the tooth axis, because the local
