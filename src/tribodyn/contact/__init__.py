@@ -1,9 +1,9 @@
-"""Where teeth touch and how they move there: path of contact, speeds, Hertz, loss factor.
+"""Kinematics and dry mechanics of the contact: path of contact, speeds, Hertz, loss factor.
 
-| module | what it answers |
+| module | content |
 | --- | --- |
-| `path` | where on the line of action tooth pairs are, and how their flanks move there |
-| `separation` | how far teeth are apart before and after the path of contact |
+| `path` | positions of tooth pairs on the line of action, and motion of their flanks |
+| `separation` | separation of the teeth before and after the path of contact |
 | `hertz` | half width and pressure of a line contact, half axes of an elliptical one |
 """
 

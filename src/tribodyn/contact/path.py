@@ -1,4 +1,4 @@
-"""The path of contact: where on the line of action tooth pairs are, and how they move there.
+"""Path of contact: positions of tooth pairs on the line of action, and motion of their flanks.
 
 Positions are called ``path``: the distance from the pinion's base tangent point, whichever gear
 drives. With the pinion driving a contact moves to larger ``path``, with the wheel driving to

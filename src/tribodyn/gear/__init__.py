@@ -1,6 +1,6 @@
-"""What was cut: involute tooth, rack-generated outline, gear, pair, mass and inertia.
+"""Gear geometry: involute tooth, rack-generated outline, gear, pair, mass and inertia.
 
-| module | what it answers |
+| module | content |
 | --- | --- |
 | `curves` | involute and fillet, the two curves of a tooth |
 | `tooth_form` | the basic rack, and the tooth that it cuts: circles, thickness, flank and fillet |

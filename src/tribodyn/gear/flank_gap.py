@@ -1,4 +1,4 @@
-"""The gap that modified flanks leave where unmodified ones would touch."""
+"""Gap between modified flanks where unmodified ones would touch."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def tooth_positions(gear: SpurGear) -> Array:
 
 
 def pitch_gap(pair: SpurPair, cycle: ArrayLike, pair_index: ArrayLike = 0) -> Array:
-    """Gap of a tooth pair that the pitch deviations of its two teeth leave.
+    """Gap of a tooth pair from the pitch deviations of its two teeth.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def pitch_gap(pair: SpurPair, cycle: ArrayLike, pair_index: ArrayLike = 0) -> Ar
 
 
 def run_out_gap(pair: SpurPair, pinion_rotation: ArrayLike) -> Array:
-    """Gap, common to all tooth pairs, that the eccentricity of both gears leaves.
+    """Gap, common to all tooth pairs, from the eccentricity of both gears.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def run_out_gap(pair: SpurPair, pinion_rotation: ArrayLike) -> Array:
 
 
 def _relief(distance: Array, amount: float, length: float, shape: str) -> Array:
-    """Relief at a distance from the end of the flank; beyond the end as at the end."""
+    """Relief at a distance from the end of the flank; constant beyond the end."""
     left = np.clip(1.0 - distance / length, 0.0, 1.0)
     return amount * (left if shape == "linear" else left**2)
 
@@ -177,7 +177,7 @@ def _worn(modification: FlankModification, place: Array) -> Array:
 def profile_gap(
     gear: SpurGear, curvature_radius: ArrayLike, flank: FlankRange, relief_length: float
 ) -> Array:
-    """Material that is missing on a flank over its profile: reliefs, crowning, slope and wear.
+    """Material removed along the profile of a flank: reliefs, crowning, slope and wear.
 
     Parameters
     ----------
@@ -242,7 +242,7 @@ def profile_gap(
 
 
 def lead_gap(gear: SpurGear, face_position: ArrayLike) -> Array:
-    """Material that is missing on a flank over its width: crowning and slope.
+    """Material removed along the face width of a flank: crowning and slope.
 
     Parameters
     ----------
@@ -282,7 +282,7 @@ def flank_gap(
     wheel_curvature_radius: ArrayLike,
     face_position: ArrayLike = 0.0,
 ) -> Array:
-    """Gap that the shapes of both flanks leave where involutes would touch.
+    """Gap from the shapes of both flanks where involutes would touch.
 
     Parameters
     ----------

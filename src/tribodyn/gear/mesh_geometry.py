@@ -1,4 +1,4 @@
-"""What follows from two tooth forms and a centre distance, before anybody asks if it can run."""
+"""Geometry of two tooth forms at a centre distance, without checks that the pair can run."""
 
 from __future__ import annotations
 
@@ -212,7 +212,7 @@ class MeshGeometry:
 
     @cached_property
     def geometric_backlash(self) -> float:
-        """Total play on the line of action as the thicknesses give it [m], rounding included."""
+        """Total play on the line of action from the tooth thicknesses [m], rounding included."""
         cosine = math.cos(self.operating_pressure_angle)
         radii = (self.pinion.base_radius / cosine, self.wheel.base_radius / cosine)
         thickness = self.pinion.tooth_thickness(radii[0]) + self.wheel.tooth_thickness(radii[1])

@@ -1,4 +1,4 @@
-"""What the flanks of a gear have that the involute has not: modifications and deviations."""
+"""Modifications and deviations of the flanks of a gear from the involute."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LARGEST_AMOUNT = 0.5e-3
 
 @dataclass(frozen=True)
 class ProfileMap:
-    """Deviation of a flank as a measuring chart has it: an excess of material is positive.
+    """Measured deviation of a flank as on a chart: excess material is positive.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class ProfileMap:
         return low, high
 
     def __len__(self) -> int:
-        """Number of places along the profile."""
+        """Number of points along the profile."""
         return len(self.position)
 
     def _curvature(self, place: float, base_radius: float) -> float:
@@ -108,7 +108,7 @@ class ProfileMap:
     def at(
         self, curvature_radius: ArrayLike, face_position: ArrayLike, *, base_radius: float
     ) -> Array:
-        """Excess of material; beyond the map the value at its edge.
+        """Excess material; beyond the map the value at its edge.
 
         Parameters
         ----------
@@ -319,34 +319,34 @@ class FlankModification:
 
     @cached_property
     def changes_profile(self) -> bool:
-        """Whether the gap depends on the place along the profile."""
+        """Whether the gap depends on the position along the profile."""
         shaped = (self.tip_relief, self.root_relief, self.profile_crowning, self.profile_slope)
         return any(shaped) or _any(self.wear_depth) or self.profile_map is not None
 
     @cached_property
     def changes_lead(self) -> bool:
-        """Whether the gap depends on the place along the face."""
+        """Whether the gap depends on the position along the face width."""
         chart = self.profile_map
         mapped = chart is not None and len(chart.face_position) > 1
         return bool(self.crowning or self.lead_slope) or mapped
 
     @cached_property
     def changes_pitch(self) -> bool:
-        """Whether the teeth differ in their places around the gear."""
+        """Whether the teeth deviate from even spacing."""
         return any(self.single_pitch_deviation) or any(self.cumulative_pitch_deviation)
 
     @cached_property
     def teeth_differ(self) -> bool:
-        """Whether one tooth of the gear meets another gap than the next."""
+        """Whether the gap differs from tooth to tooth."""
         return self.changes_pitch or self.run_out != 0.0
 
     @cached_property
     def changes_anything(self) -> bool:
-        """Whether the flanks differ at all from involutes in their places."""
+        """Whether the flanks differ from ideally placed involutes."""
         return self.changes_profile or self.changes_lead or self.teeth_differ
 
     def tooth_problems(self, teeth: int) -> list[Problem]:
-        """Find lists that do not belong to a gear of this number of teeth.
+        """Problems of lists whose length does not match the number of teeth.
 
         Parameters
         ----------
@@ -395,7 +395,7 @@ class FlankModification:
         return [Problem(what, where, why, remedy)]
 
     def __repr__(self) -> str:
-        """What was given, with units."""
+        """Modifications other than the defaults, with units."""
         values = [(field, getattr(self, field.name)) for field in fields(self)]
         texts = (
             _field_text(field.name, value) for field, value in values if value != field.default
@@ -404,7 +404,7 @@ class FlankModification:
 
 
 def amount_problems(name: str, value: object, low: float, high: float) -> list[Problem]:
-    """One problem for the first value that is no number between the limits."""
+    """Problem of the first value that is not a number within the limits."""
     for item in value if isinstance(value, tuple) else (value,):
         number = isinstance(item, (int, float))
         if number and math.isfinite(item) and low <= item <= high:

@@ -1,4 +1,4 @@
-"""From the figures of a drawing to a checked gear pair, with every fault reported at once."""
+"""Create a checked gear pair from drawing data, and report all problems at once."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ _SHARED = ("normal_module", "normal_pressure_angle")
 
 
 class _Drawing(NamedTuple):
-    """Figures of one gear as they were given, before the missing ones are found."""
+    """Drawing data of one gear before the missing values are computed."""
 
     name: str  #: ``"pinion"`` or ``"wheel"``
     figures: dict[str, Any]  #: fields of :class:`GearData`; ``None`` is what was not given
 
     def data(self, tip_diameter: float = _UNKNOWN_TIP, tooth_thinning: float = 0.0) -> GearData:
-        """Gear with the figures that were given, and these for what was not."""
+        """Gear with the drawing data, and these values for what is missing."""
         missing = {
             name: value
             for name, value in (("tip_diameter", tip_diameter), ("tooth_thinning", tooth_thinning))
@@ -56,13 +56,13 @@ class _Drawing(NamedTuple):
         ]
 
     def problems(self) -> list[Problem]:
-        """Find the given values that are out of range."""
+        """Problems of values out of range."""
         return self.named(_problems_of(self.data))
 
 
 @dataclass(frozen=True)
 class _Mesh(MeshGeometry):
-    """Both gears completed, not yet checked as gears that can be made."""
+    """Both gears with complete data, before the checks of their shape."""
 
     pinion: GearData
     wheel: GearData
@@ -83,14 +83,14 @@ def _raise_if_any(problems: Iterable[Problem]) -> None:
 
 
 class _Layout(NamedTuple):
-    """Two drawings and how they stand to each other."""
+    """Drawing data of both gears and of their arrangement."""
 
     drawings: tuple[_Drawing, _Drawing]
     center_distance: float | None
     backlash: float | None
 
     def problems(self) -> list[Problem]:
-        """Find the values that are out of range, or that say the same twice."""
+        """Problems of values out of range, and of values that are given twice."""
         problems = [problem for drawing in self.drawings for problem in drawing.problems()]
         problems += self._play_problems()
         if self.center_distance is not None:
@@ -144,13 +144,13 @@ class _Layout(NamedTuple):
 
 
 def _tip_diameter(gear: GearData, tip_shortening_coefficient: float) -> float:
-    """Tip diameter that the rack's addendum gives."""
+    """Tip diameter from the addendum of the rack."""
     addendum = gear.rack.addendum_coefficient + gear.profile_shift_coefficient
     return gear.normal_module * (gear.teeth + 2.0 * (addendum - tip_shortening_coefficient))
 
 
 def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
-    """Thinning of each gear that makes up the difference to the play of the full teeth."""
+    """Thinning of each gear for the difference to the play of unthinned teeth."""
     if fitting_center_distance(mesh) is not None:
         return 0.0  # Thinning would only hide that the full teeth interfere.
     play, module = mesh.geometric_backlash, mesh.pinion.normal_module
@@ -166,7 +166,7 @@ def _thinning_for(backlash: float, mesh: MeshGeometry) -> float:
 
 
 def _less_play(backlash: float, mesh: MeshGeometry) -> str:
-    """How to come to a smaller play: a centre distance, or that of the teeth where they reach."""
+    """Remedy for a smaller play: a centre distance, if the teeth still reach each other."""
     least = zero_backlash_center_distance(
         mesh.pinion.teeth + mesh.wheel.teeth,
         mesh.pinion.normal_module,
@@ -189,7 +189,7 @@ def _less_play(backlash: float, mesh: MeshGeometry) -> str:
 
 
 def _checked(layout: _Layout, driver: str, misalignment: float) -> SpurPair:
-    """Pair from two drawings, or one error with all that is wrong."""
+    """Pair from two drawings, or one error with all problems."""
     _raise_if_any([*layout.problems(), *misalignment_problems(misalignment)])
     mesh = layout.mesh()
     problems = match_problems(mesh.pinion, mesh.wheel, driver)
@@ -235,7 +235,7 @@ def spur_pair(
     misalignment: float = 0.0,
     driver: str = "pinion",
 ) -> SpurPair:
-    """Make a spur gear pair from the figures of a drawing.
+    """Create a spur gear pair from drawing data.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A spur gear: the figures of one gear, each in its range, of a tooth that can be made."""
+"""Spur gear with checked data and a tooth that can be cut."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ THIN_TIP = 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class GearData(ToothForm):
-    """Tooth form with a body, each value in its range, whether or not the tooth can be made."""
+    """Tooth form with a body, each value in its range; the tooth shape is not checked."""
 
     face_width: float
     bore_diameter: float = 0.0
@@ -103,7 +103,7 @@ class SpurGear(GearData):
 
 
 def shape_problems(gear: GearData) -> list[Problem]:
-    """Find the faults that make a gear impossible."""
+    """Problems of a tooth shape that cannot be cut."""
     problems = [*_tip_problems(gear), *_waist_problems(gear)]
     if gear.bore_diameter >= 2.0 * gear.root_radius:
         what = f"bore diameter {gear.bore_diameter * 1e3:.6g} mm"
@@ -134,7 +134,7 @@ def _tip_problems(form: ToothForm) -> list[Problem]:
 
 
 def _waist_problems(form: ToothForm) -> list[Problem]:
-    """Extreme undercut from both sides meets in the middle and cuts the tooth off."""
+    """Problem of an undercut from both sides that cuts the tooth off."""
     along = np.linspace(form.form_normal_angle, math.pi / 2.0, 129)
     if float(form.trochoid.half_tooth_angle(along).min()) > 0.0:
         return []
@@ -145,7 +145,7 @@ def _waist_problems(form: ToothForm) -> list[Problem]:
 
 
 def _warn_of_limits(form: ToothForm) -> None:
-    """Tell what is possible but near a limit."""
+    """Warn of values close to a limit."""
     who = f"gear with {form.teeth} teeth"
     thickness = form.tip_thickness / form.normal_module
     if thickness < THIN_TIP:

@@ -1,4 +1,4 @@
-"""Two spur gears in mesh: can they run together, and do their modifications fit the used flanks."""
+"""Two spur gears in mesh, with checks that they can run and that modifications fit the flanks."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _SLACK = 1e-6
 
 @dataclass(frozen=True)
 class SpurPair(MeshGeometry):
-    """External spur gear pair: two gears, the distance of their axes, and which one drives.
+    """External spur gear pair: two gears, their centre distance, and the driver.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class SpurPair(MeshGeometry):
 
     @cached_property
     def has_pitch_deviation(self) -> bool:
-        """Whether tooth pairs differ by the places of their teeth."""
+        """Whether tooth pairs differ by pitch deviations."""
         return any(gear.modification.changes_pitch for gear in (self.pinion, self.wheel))
 
     @cached_property
@@ -141,13 +141,13 @@ class SpurPair(MeshGeometry):
 
     @cached_property
     def has_modification(self) -> bool:
-        """Whether anything makes the flanks differ from involutes in their places."""
+        """Whether the flanks differ from ideally placed involutes."""
         shape = self.has_profile_modification or self.has_lead_modification
         return shape or self.teeth_differ
 
 
 def match_problems(pinion: ToothForm, wheel: ToothForm, driver: str) -> list[Problem]:
-    """Find what makes two gears no pair at all."""
+    """Problems of two gears that cannot form a pair."""
     problems = []
     if pinion.teeth > wheel.teeth:
         what = f"the pinion has {pinion.teeth} teeth, the wheel {wheel.teeth}"
@@ -258,7 +258,7 @@ def fitting_center_distance(mesh: MeshGeometry) -> float | None:
 
 
 def too_close(mesh: MeshGeometry, fitting: float) -> Problem:
-    """Say that the flanks interfere and which centre distance fits."""
+    """Problem of interfering flanks, with the centre distance that fits."""
     return Problem(
         what=f"the centre distance must be at least {fitting * 1e3:.6g} mm for these tooth "
         f"thicknesses; {mesh.center_distance * 1e3:.6g} mm is given and the flanks interfere",
@@ -269,7 +269,7 @@ def too_close(mesh: MeshGeometry, fitting: float) -> Problem:
 
 
 def mesh_problems(mesh: MeshGeometry) -> list[Problem]:
-    """Find the reasons why two gears cannot run together."""
+    """Problems of two gears that cannot run together."""
     fitting = fitting_center_distance(mesh)
     if fitting is not None:
         # All else that is wrong follows from it.
@@ -285,7 +285,7 @@ def mesh_problems(mesh: MeshGeometry) -> list[Problem]:
 
 
 def misalignment_problems(misalignment: float) -> list[Problem]:
-    """Find whether a misalignment is out of range."""
+    """Problem of a misalignment out of range."""
     return amount_problems("misalignment", misalignment, -LARGEST_AMOUNT, LARGEST_AMOUNT)
 
 
@@ -337,7 +337,7 @@ def _map_problems(
 
 
 def _fit_problems(pair: SpurPair) -> list[Problem]:
-    """Find modifications that do not fit the flanks that a pair uses."""
+    """Problems of modifications that do not fit the used flanks."""
     problems = []
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}
     for (name, gear), flank in zip(gears.items(), flank_ranges(pair), strict=True):
@@ -349,7 +349,7 @@ def _fit_problems(pair: SpurPair) -> list[Problem]:
 
 
 def _warn_of_limits(mesh: MeshGeometry) -> None:
-    """Tell what runs but is near a limit."""
+    """Warn of a pair close to a limit."""
     module, play = mesh.pinion.normal_module, mesh.geometric_backlash
     if play < -ROUNDING_WARNING * module:
         warn(

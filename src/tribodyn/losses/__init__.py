@@ -1,6 +1,6 @@
 """Power losses of gears, bearings, seals and oil, and friction from measured losses.
 
-| module | what it answers |
+| module | content |
 | --- | --- |
 | `bearings` | frictional moment of rolling bearings by the model of SKF; bearings of an FZG rig |
 | `no_load` | radial shaft seals, churning in an oil bath, windage |

@@ -76,7 +76,7 @@ class RollingBearing:
     source: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse what is no bearing."""
+        """Check the fields."""
         if self.family not in FAMILIES:
             what, remedy = f'no bearing series is called "{self.family}"', "Choose one of these"
             raise InputError(what, "RollingBearing", f"Known: {', '.join(FAMILIES)}", remedy)

@@ -200,10 +200,13 @@ class Gearbox:
     windage: bool = True
 
     def __post_init__(self) -> None:
-        """Refuse an oil bath of no volume."""
+        """Check that an oil bath has a volume."""
         require_between("oil_volume", self.oil_volume, 0.0, 100.0, "m^3")
         if (self.pinion.immersion or self.wheel.immersion) and not self.oil_volume:
-            why, remedy = "Churning asks for the oil in the sump", "1.2 litres are 1.2e-3 m^3"
+            why, remedy = (
+                "Churning depends on the oil volume in the sump",
+                "1.2 litres are 1.2e-3 m^3",
+            )
             raise InputError("oil_volume is missing", Argument("oil_volume"), why, remedy)
 
 

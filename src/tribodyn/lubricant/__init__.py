@@ -1,6 +1,6 @@
 """The oil: viscosity and density over pressure and temperature, and a library of named oils.
 
-| module | what it answers |
+| module | content |
 | --- | --- |
 | `oil` | a lubricating oil at its working temperature |
 | `library` | named oils, each number with its source |

@@ -13,7 +13,7 @@ from tribodyn.lubricant.pressure_viscosity import agma_925_coefficient
 from tribodyn.model import Registry
 from tribodyn.units import ZERO_CELSIUS
 
-#: Temperatures closer than this [K] are the same.
+#: Temperature difference [K] below which temperatures are equal.
 _SAME_TEMPERATURE = 0.01
 #: Entries of an oil known at one temperature that only other temperatures need.
 _OF_OTHER_TEMPERATURES = ("viscosity_index", "density_fall", "base_oil")
@@ -111,7 +111,7 @@ def temperature_range(name: str) -> tuple[float, float]:
 def _common(
     name: str, record: dict[str, Any], unused: tuple[str, ...] = (), remark: str = ""
 ) -> dict[str, Any]:
-    """Return the arguments that every oil of the library has; unused entries name no source."""
+    """Arguments common to all oils of the library; sources of unused entries are left out."""
     quantities_of: dict[str, list[str]] = {}
     for key, value in record.items():
         for entry in value if isinstance(value, list) else [value]:
@@ -126,7 +126,7 @@ def _common(
 
 
 def _at_temperature(name: str, record: dict[str, Any], temperature: float | None) -> Lubricant:
-    """Return an oil that is known at two temperatures."""
+    """Oil with data at two temperatures."""
     cold, warm = (
         (float(point["temperature"]), float(point["value"]))
         for point in record["kinematic_viscosity"]
@@ -141,7 +141,7 @@ def _at_temperature(name: str, record: dict[str, Any], temperature: float | None
 
 
 def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> Lubricant:
-    """Return an oil that is known at one temperature, there or at another."""
+    """Oil with data at one temperature, at that temperature or at another one."""
     known_point = float(record["temperature"]["value"])
     if temperature is not None and not abs(temperature - known_point) <= _SAME_TEMPERATURE:
         return _by_index(name, record, temperature)
@@ -194,7 +194,7 @@ def _by_index(name: str, record: dict[str, Any], temperature: float) -> Lubrican
             record,
             remark=f"At {temperature - ZERO_CELSIUS:g} degC: the oil is known at "
             f"{known_point - ZERO_CELSIUS:g} degC; from there the viscosity follows the ASTM D341 "
-            f"line of viscosity index {index:g}, the pressure-viscosity coefficient AGMA 925-A03 for "
-            f"{base_oil} oils.",
+            f"line of viscosity index {index:g}, the pressure-viscosity coefficient AGMA 925-A03 "
+            f"for {base_oil} oils.",
         ),
     )

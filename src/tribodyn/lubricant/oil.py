@@ -1,4 +1,4 @@
-"""The lubricant at its working temperature: what the contact needs to know of the oil."""
+"""Lubricant at its working temperature, with the properties that a contact needs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ VISCOSITY_LAWS.register("roelands")(roelands_viscosity)
 VISCOSITY_LAWS.register("barus")(barus_viscosity)
 
 
-#: Limits of the properties of liquids, and what helps beyond them.
+#: Limits of the properties of liquids, with remedies.
 _LIMITS = {
     "dynamic_viscosity": (6.4e-5, 1e3, "82 mPa*s (cP) is 0.082 Pa*s"),
     "density": (100.0, 3000.0, "0.88 g/cm^3 is 880 kg/m^3"),
@@ -96,7 +96,7 @@ class Lubricant:
     assumptions: tuple[str, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
-        """Refuse properties that no oil has."""
+        """Check the properties."""
         for name, (low, high, remedy) in _LIMITS.items():
             value = getattr(self, name)
             if value is not None or name not in _MAY_BE_UNKNOWN:

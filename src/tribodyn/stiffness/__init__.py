@@ -1,8 +1,8 @@
-"""How stiff a tooth pair is, and who carries what in a mesh under load.
+"""Stiffness of tooth pairs, and load sharing of a mesh under load.
 
-| module | what it answers |
+| module | content |
 | --- | --- |
-| `model` | what a stiffness model is; models are picked by name from :data:`MODELS` |
+| `model` | interface of stiffness models, and their selection by name from :data:`MODELS` |
 | `models` | the models of the literature, one in each file |
 | `teeth` | compliance of one gear under a load on a tooth, in closed form |
 | `fe2d` | the same from finite elements of the whole gear |

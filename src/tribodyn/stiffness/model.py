@@ -1,7 +1,7 @@
-"""What a stiffness model is, and the registry in which models are found by name.
+"""Interface of stiffness models, and the registry that selects them by name.
 
-A model tells how stiff each tooth pair is over one mesh cycle. All models answer the same
-question in the same form, so the mesh table does not know which one it asks.
+A model returns the stiffness of each tooth pair over one mesh cycle. All models have the same
+interface, so the mesh table does not know which one it asks.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ def reference_option(default: str) -> Any:
 
 
 def share_equally(total: Array, in_contact: Mask) -> Array:
-    """Spread the stiffness of the whole mesh evenly over the pairs in contact."""
+    """Distribute the mesh stiffness evenly over the pairs in contact."""
     return np.where(in_contact, (total / in_contact.sum(axis=1))[:, None], 0.0)
 
 

@@ -1,4 +1,4 @@
-"""What the laws of one mean value share: their formula, its range, and how a case names them."""
+"""Common part of the laws of a mean coefficient: formula, range, and options."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def mean_friction(
     factor: Callable[[Array, Array, Array, Array], Any],
     fastest: float = _FASTEST,
 ) -> Array:
-    """The formula that all of this family share, times a factor of load, speed, radius, viscosity.
+    """Formula of this family, times a factor of load, speed, radius and viscosity.
 
     ``state`` is that of ``_STATE`` in SI; the formula and the factor have engineers' units.
     """
@@ -92,8 +92,7 @@ def mean_law(
 ) -> Callable[[Callable[..., Any]], None]:
     """Register a function of contacts and their pitch point as a law with one value everywhere.
 
-    It is given what the formula above asks for as ``state``, where it is ``rough``, and its own
-    options.
+    With ``rough`` it receives the arguments of the formula above as ``state``, and its own options.
     """
 
     def keep(function: Callable[..., Any]) -> None:

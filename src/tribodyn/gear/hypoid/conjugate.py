@@ -36,7 +36,7 @@ class Touch(NamedTuple):
         return relative_curvature(self.contact)
 
     def at(self, chosen: tuple[slice, ...]) -> Touch:
-        """Some of the places."""
+        """Contact at some of the positions."""
         contact = self.contact
         wheel, pinion = (
             Surface(*(values[chosen] for values in each))
@@ -73,7 +73,7 @@ class ConjugateFlanks:
         )
 
     def margins(self, touch: Touch) -> Array:
-        """Room (..., 4) to tip of wheel and pinion, to toe and heel; negative outside."""
+        """Distances (..., 4) to tip of wheel and pinion, to toe and heel; negative outside."""
         blank = self.blank
         along, across = np.moveaxis(touch.places, -1, 0)
         up = math.tan(blank.face_angle_wheel - blank.pitch_angle_wheel)

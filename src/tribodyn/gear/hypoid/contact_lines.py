@@ -97,7 +97,7 @@ class ContactLines:
         return self.flanks.touch_at(surface)
 
     def margin(self, rotation: Array, station: Array) -> Array:
-        """Least room to an end of the active flank; minus infinity where there is no flank."""
+        """Least distance to an edge of the active flank; minus infinity where there is no flank."""
         margin = np.min(self.flanks.margins(self.touch(rotation, station)), axis=-1)
         return np.where(np.isfinite(margin), margin, -np.inf)
 
@@ -137,7 +137,7 @@ class ContactLines:
         return self.flanks.touch_at(self.flanks.wheel.at(self._unit * parameters[None]))
 
     def ends(self, rotation: Array) -> tuple[Array, Mask]:
-        """First and last station (n, 2) of the lines on the active flank, and whether they are."""
+        """First and last station (n, 2) of the lines on the active flank, and if they exist."""
         reach = _places(self.flanks.blank, 0.0, 2) @ self.along
         spread = 0.1 * np.ptp(reach)
         samples = np.linspace(reach.min() - spread, reach.max() + spread, _SAMPLES)

@@ -1,4 +1,4 @@
-"""Ease-off: what the pinion's flank has less than the conjugate one."""
+"""Ease-off: material removed from the pinion flank relative to the conjugate one."""
 
 from __future__ import annotations
 

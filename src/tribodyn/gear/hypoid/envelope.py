@@ -138,7 +138,7 @@ def envelope(surface: Surface, axes: Axes) -> Envelope:
 
 
 class Curvature(NamedTuple):
-    """How conjugate flanks part from each other about their contact."""
+    """Separation of conjugate flanks around their contact."""
 
     line: Array  #: (..., 3) unit direction of the contact line
     across: Array  #: (..., 3) unit direction across it

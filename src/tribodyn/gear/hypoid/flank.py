@@ -1,4 +1,4 @@
-"""Both flanks of one side as grids of points: what is cut, where it is undercut, for export."""
+"""Flanks of one side as grids of points, with undercut and interference, for export."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the flanks of a hypoid pair roll and slide in every cell of their contact lines."""
+"""Rolling and sliding of the flanks of a hypoid pair along their contact lines."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ _LEAST, _MOST, _SEARCHED = 1e-7, 1.5, 2000
 
 
 class PitchInput(NamedTuple):
-    """What the pitch cones follow from, in SI."""
+    """Input data of the pitch cones, in SI."""
 
     teeth_pinion: int
     teeth_wheel: int

@@ -1,6 +1,6 @@
-"""Finite elements of a whole gear: what a load on one tooth does there and at the others.
+"""Finite elements of a complete gear: influence of a load on its tooth and on the others.
 
-| module | what it answers |
+| module | content |
 | --- | --- |
 | `provider` | influence of one gear, looked up on disk or computed |
 | `tooth_mesh` | mesh of the sector of one tooth |

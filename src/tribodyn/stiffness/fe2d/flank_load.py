@@ -1,4 +1,4 @@
-"""Loads on the flank: nodal forces, and what is left of them without the singular part.
+"""Loads on the flank: nodal forces, and their remainder without the singular part.
 
 Within the tooth the displacement is that of a point load on a half plane plus a smooth remainder.
 The elements carry the remainder only: their loads are the tractions by which the half plane misses

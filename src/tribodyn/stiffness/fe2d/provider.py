@@ -1,4 +1,4 @@
-"""Influence of one gear from finite elements of its whole ring."""
+"""Influence of one gear from finite elements of its complete ring."""
 
 from __future__ import annotations
 
