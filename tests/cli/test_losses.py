@@ -164,7 +164,7 @@ _KNOWN = ("--set", "gear_loss_factor=0.3", "--set", "torque_loss_uncertainty=0.0
             _KNOWN,
             "losses.csv:4: no run without load at 800 rpm.*400 rpm",
         ),
-        (["400, 5, 2", "400, x, 3"], _KNOWN, 'losses.csv:4: "x" is no number'),
+        (["400, 5, 2", "400, x, 3"], _KNOWN, 'losses.csv:4: "x" is not a number'),
         (["400, 5, 2", "400, 50"], _KNOWN, "losses.csv:4: a number is missing"),
         (["400, 5, 2", "400, 50, -3"], _KNOWN, "losses.csv:4: torque_loss = -3"),
         ([], _KNOWN, "the table has no rows"),

@@ -134,8 +134,8 @@ class Asperities:
             raise InputError(
                 f"m0 m4/m2^2 = {m0 * m4 / m2**2:.4g} of the roughness",
                 where="Asperities",
-                why=f"no isotropic random surface lies below {_LEAST_BANDWIDTH:g}: heights, slopes "
-                "and summits do not belong together",
+                why=f"no isotropic random surface has less than {_LEAST_BANDWIDTH:g}: heights, "
+                "slopes and summits do not belong together",
                 remedy="Give a smaller slope, more summits or higher ones, or a measured profile",
             )
         return cls(math.sqrt(2.0 * m0), 0.375 * math.sqrt(math.pi / m4), m4 / (_NAYAK * m2))

@@ -215,7 +215,7 @@ class _Table:
                 where="asperities",
                 why=f"even if the flanks overlap by {-_REACH[0]:g} times their rms height: they "
                 "are so few and blunt that their contact is not the elastic one of summits",
-                remedy="Give a greater slope or more summits",
+                remedy="Give a larger slope or more summits",
             )
         places = self.first + self.step * np.arange(self.log_integral.size)
         return np.asarray(np.interp(hardness, -self.log_integral, places))

@@ -136,8 +136,8 @@ def mixed_line_contact(
         raise InputError(
             f'film_model = "{film_model}"' if load.ndim == 1 else f"arrays of {load.ndim} axes",
             "mixed_line_contact",
-            "It takes a film and lists of contacts",
-            'Take film_model = "moes" and arrays of one axis',
+            "It needs a film model and arrays of contacts",
+            'Use film_model = "moes" and arrays of one axis',
         )
     pressure = np.sqrt(load * effective_modulus / (2.0 * np.pi * radius))
 
@@ -196,5 +196,5 @@ def _settled(
         f"the load share still moves by {np.max(np.abs(share - last)):.2g} after {_ROUNDS} rounds",
         where="mixed_line_contact",
         why="The film does not fall with its load as films do",
-        remedy="Take another film model",
+        remedy="Use another film model",
     )

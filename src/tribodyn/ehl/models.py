@@ -145,7 +145,7 @@ class FilmModel(Model):
         supported = f"Its film has: {', '.join(self.stiffness_kinds)}"
         if kind != "approach" or self.central is None:
             return supported
-        return f"{supported}. A formula gives the film and not how near the bodies come"
+        return f"{supported}. A formula gives the film but not the approach of the bodies"
 
     def complete(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options with the defaults filled in.

@@ -149,7 +149,7 @@ class RoughnessProfile:
         try:
             text = read_bytes(path, "profile map").decode("utf-8-sig")
         except (OSError, UnicodeDecodeError) as error:
-            reason = getattr(error, "strerror", None) or "it is no text in UTF-8"
+            reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
             raise _fault(path, 0, f"the file cannot be read: {reason}") from None
         lines = [(n, line.strip()) for n, line in enumerate(text.splitlines(), 1) if line.strip()]
         rows = [(n, re.split(r"[;,\t]", line)) for n, line in lines if not line.startswith("#")]
@@ -349,7 +349,7 @@ def warn_if_unresolved(profile: RoughnessProfile, spacing: float, stacklevel: in
             "roughness-resolution",
             f"{share:.1%} of the mean square roughness lies in waves shorter than "
             f"{shortest * 1e6:.3g} um, which have fewer than {_POINTS} nodes a wavelength at a "
-            f"spacing of {spacing * 1e6:.3g} um. Take more nodes, or profile.filtered("
+            f"spacing of {spacing * 1e6:.3g} um. Use more nodes, or profile.filtered("
             f"{shortest:.2g})",
             stacklevel=stacklevel + 1,
         )

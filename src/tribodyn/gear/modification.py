@@ -187,7 +187,9 @@ def _value_problems(chart: ProfileMap) -> list[Problem]:
         places = np.asarray(getattr(chart, name))
         if not np.all(np.isfinite(places)) or np.any(np.diff(places) <= 0.0):
             what = f"{name} of profile_map is not finite and increasing"
-            problems.append(_problem(what, "Every place comes once, in order", "Sort the places"))
+            problems.append(
+                _problem(what, "Positions must be distinct and in order", "Sort the places")
+            )
     values = np.asarray(chart.deviation)
     bad = ~np.isfinite(values) | (np.abs(values) > LARGEST_AMOUNT)
     if np.any(bad):
@@ -385,7 +387,7 @@ class FlankModification:
         single, where = self.single_pitch_deviation, Argument("single_pitch_deviation")
         if single and self.cumulative_pitch_deviation:
             what = "single_pitch_deviation and cumulative_pitch_deviation are both given"
-            why, remedy = "They are two ways of saying the same thing", "Keep one of them"
+            why, remedy = "Both define the same quantity", "Keep one of them"
         elif abs(sum(single)) > _CLOSURE:
             what = f"the single pitch deviations sum to {sum(single) * 1e6:.6g} um"
             why = "Round the gear all pitches together make one turn, so that they sum to zero"

@@ -183,9 +183,9 @@ def _less_play(backlash: float, mesh: MeshGeometry) -> str:
     shorten = f"Reduce the centre distance to {distance:.7g} mm"
     if mesh.center_distance >= reach - mesh.pinion.normal_module:
         return (
-            f"{shorten}: at {mesh.center_distance * 1e3:.6g} mm the teeth hardly reach each other"
+            f"{shorten}: at {mesh.center_distance * 1e3:.6g} mm the teeth barely reach each other"
         )
-    return f"{shorten}, or leave the backlash out, which gives that play"
+    return f"{shorten}, or omit the backlash, which gives that play"
 
 
 def _checked(layout: _Layout, driver: str, misalignment: float) -> SpurPair:

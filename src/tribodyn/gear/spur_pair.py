@@ -355,7 +355,7 @@ def _warn_of_limits(mesh: MeshGeometry) -> None:
         warn(
             "flank-interference-rounding",
             f"the play on the line of action is {play * 1e6:.4g} um; down to "
-            f"{-ROUNDING_TOLERANCE * module * 1e6:.4g} um it is taken as rounding of the shift "
+            f"{-ROUNDING_TOLERANCE * module * 1e6:.4g} um it counts as rounding of the shift "
             "coefficients and counts as zero. Give the shifts with more digits",
             stacklevel=4,
         )

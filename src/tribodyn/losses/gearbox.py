@@ -111,7 +111,7 @@ def ohlendorf_loss_factor(pair: SpurPair) -> float:
             "loss-factor",
             f"ohlendorf: the pitch point lies {approach:.3f} base pitches after the entry, and "
             f"a single pair carries the load from {path.contact_ratio - 1.0:.3f} to 1.000 of a "
-            f"contact ratio{zone}: the closed form does not hold there. Take gear_loss_factor, "
+            f"contact ratio{zone}: the closed form does not hold there. Use gear_loss_factor, "
             "which integrates.",
         )
     ratio = pair.ratio

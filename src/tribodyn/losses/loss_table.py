@@ -279,7 +279,7 @@ def _column(
         text = cells[column[0]].strip() if column[0] < len(cells) else ""
         value = plain_number(text)
         if value is None:
-            what = f'"{text}" is no number' if text else "a number is missing"
+            what = f'"{text}" is not a number' if text else "a number is missing"
             why = f"Column {column[0] + 1} holds a number, with a point as decimal sign"
             problems.append(Problem(what, f"{file}:{number}", why, remedy="Correct this line"))
         values.append(value or 0.0)

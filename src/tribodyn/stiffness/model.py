@@ -152,7 +152,7 @@ def usable_stiffness(values: Array, in_contact: Mask, model: str) -> Array:
         np.all(np.where(in_contact, np.isfinite(stiffness) & (stiffness > 0.0), stiffness == 0.0))
     )
     if not sound:
-        what = f'the stiffness model "{model}" gave no usable pair stiffness'
+        what = f'the stiffness model "{model}" returned an unusable pair stiffness'
         why = "It must be finite and positive where a pair is in contact, zero elsewhere"
         remedy = "Check the options of the model, or choose another"
         raise ComputationError(what, "stiffness of the tooth pairs", why, remedy)

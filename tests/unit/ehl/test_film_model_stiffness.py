@@ -70,7 +70,7 @@ def test_what_a_formula_does_not_know_is_none():
         ("moes", {"nodes": 513}, ("nodes", "stiffness", "moes")),
         ("newton", {"node": 513}, ('"node"', 'Did you mean "nodes"?')),
         ("moes", {"stiffness": "secant"}, ("secant", "none, tangent", '"newton"')),
-        ("moes", {"stiffness": "approach"}, ("none, tangent", "how near the bodies come")),
+        ("moes", {"stiffness": "approach"}, ("none, tangent", "not the approach of the bodies")),
         ("none", {"stiffness": "tangent"}, ('stiffness = "tangent"', '"none"')),
         ("newton", {"stiffness": "chord"}, ("chord", "approach, none, tangent, secant, seed")),
     ],

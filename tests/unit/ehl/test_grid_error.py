@@ -52,7 +52,7 @@ def test_the_estimate_bounds_the_error(draws):
     ("M", "L", "nodes"), [(860.0, 9.0, 513), (860.0, 9.0, 2049), (399.8, 4.16, 513)]
 )
 def test_a_film_that_is_far_off_is_told(M, L, nodes):
-    with pytest.warns(ModelWarning, match=r"\[film-resolution\].*Take nodes = \"auto\""):
+    with pytest.warns(ModelWarning, match=r"\[film-resolution\].*Use nodes = \"auto\""):
         coarse = solve_line_contact_moes(M, L, nodes=nodes, **THIN)
     fine = _figures(_solved(M, L, nodes=16385, **THIN))
     assert np.all(np.abs(_figures(coarse) - fine) <= _errors(coarse))

@@ -218,8 +218,8 @@ _HEAD = "speed [rpm], torque [N*m], torque_loss [N*m]"
         ("speed [m], torque [N*m], torque_loss [N*m]\n1, 2, 3\n", r'column "speed \[m\]"'),
         ("# nothing\n", "the table is empty"),
         (f"{_HEAD}\n1400,5,1,0\n1400,50,1.4\n", r"losses.csv:2: 4 cells below 3 columns"),
-        (f"{_HEAD}\n1400; 5; 1\n", r'losses.csv:2: "1400; 5; 1" is no number'),
-        (_HEAD.replace(",", ";") + "\n1400;5;1,0\n", r'losses.csv:2: "1,0" is no number'),
+        (f"{_HEAD}\n1400; 5; 1\n", r'losses.csv:2: "1400; 5; 1" is not a number'),
+        (_HEAD.replace(",", ";") + "\n1400;5;1,0\n", r'losses.csv:2: "1,0" is not a number'),
     ],
 )
 def test_bad_files_name_their_line(tmp_path, text, message):

@@ -265,7 +265,7 @@ def test_an_unknown_column_is_named(fzg):
 def test_a_model_that_gives_no_stiffness_is_refused(fzg, monkeypatch):
     nothing = StiffnessModel("nothing", lambda p, m, path, *rest: np.zeros(path.shape), {})
     monkeypatch.setitem(MODELS._items, "nothing", nothing)
-    with pytest.raises(ComputationError, match='"nothing" gave no usable'):
+    with pytest.raises(ComputationError, match='"nothing" returned an unusable'):
         table(fzg(), stiffness_model="nothing")
 
 

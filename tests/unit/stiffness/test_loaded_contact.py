@@ -282,5 +282,5 @@ def test_a_model_without_a_usable_stiffness_is_refused(flaw, monkeypatch):
         return stiffness
 
     monkeypatch.setitem(MODELS._items, "poor", StiffnessModel("poor", poor, {}))
-    with pytest.raises(ComputationError, match='"poor" gave no usable pair stiffness'):
+    with pytest.raises(ComputationError, match='"poor" returned an unusable pair stiffness'):
         loaded_contact(pair_of(), 90.0, provider="poor")

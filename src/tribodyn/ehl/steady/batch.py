@@ -237,7 +237,7 @@ def warn_coarse(error: Array, nodes: str | int) -> None:
         "film-resolution",
         f"With nodes = {nodes} the central film of {np.sum(error > STATED_LIMIT)} of "
         f"{error.size} contacts has an estimated error above {STATED_LIMIT:g} of it; the worst is "
-        f'contact [{place}] with {error[worst]:.2g}. Take nodes = "auto" or more nodes',
+        f'contact [{place}] with {error[worst]:.2g}. Use nodes = "auto" or more nodes',
         stacklevel=4,
     )
 
@@ -346,7 +346,7 @@ def solved_films(
             "seed-film-stiffness",
             "the film stiffness is the sum as one source prints it: a length, which doubles when "
             f"the {nodes} nodes are doubled. It is shown, and is no spring. "
-            'Take film.stiffness = "approach", or "secant" for a sum that is sound',
+            'Use film.stiffness = "approach", or "secant" for a consistent sum',
             stacklevel=4,
         )
     return Films(

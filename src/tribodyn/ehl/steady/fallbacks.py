@@ -225,9 +225,9 @@ def _failure(problem: ContactProblem, log: list[str]) -> Problem:
     tried = "; ".join(f"({number}) {entry}" for number, entry in enumerate(log, 1))
     start, end = problem.domain
     if any("rounding" in entry for entry in log):
-        remedy = "Take a greater flux_tolerance or fewer nodes"
+        remedy = "Use a larger flux_tolerance or fewer nodes"
     else:
-        remedy = "Take more nodes; check load, radius, speed, viscosity and their units"
+        remedy = "Use more nodes; check load, radius, speed, viscosity and their units"
     return Problem(
         what=f"the contact with M = {problem.moes_load:.4g}, film about {problem.film:.3g} b^2/R, "
         f"{problem.nodes} nodes from X = {start:.4g} to {end:.4g} was not solved",

@@ -161,7 +161,7 @@ def _too_short(start: float, end: float, film: float) -> InputError:
         where="argument domain",
         why=f"the film is thicker than the inlet of the domain is high "
         f"({0.5 * start * start:.3g} b^2/R)",
-        remedy='Take domain = "auto", or check load (N/m), radius (m) and speed (m/s)',
+        remedy='Use domain = "auto", or check load (N/m), radius (m) and speed (m/s)',
     )
 
 
@@ -190,7 +190,7 @@ def choose_nodes(nodes: Any) -> tuple[int, bool]:
     suggestion = 2 ** min(14, max(6, round(math.log2(max(count - 1, 1))))) + 1
     if not FEWEST <= count <= MOST:
         why = f"a grid has {FEWEST} to {MOST} nodes"
-        raise InputError(f"nodes = {count}", "argument nodes", why, f"Take nodes = {suggestion}")
+        raise InputError(f"nodes = {count}", "argument nodes", why, f"Use nodes = {suggestion}")
     intervals = count - 1
     while intervals % 2 == 0 and intervals > _COARSEST:
         intervals //= 2
@@ -198,6 +198,6 @@ def choose_nodes(nodes: Any) -> tuple[int, bool]:
         what = f"nodes = {count}, hence {count - 1} intervals"
         why = f"halving the intervals must lead to {_COARSEST} or fewer, and ends at {intervals}"
         raise InputError(
-            what, "argument nodes", why, f"Take nodes = {suggestion}, or another 2^k + 1"
+            what, "argument nodes", why, f"Use nodes = {suggestion}, or another 2^k + 1"
         )
     return count, False

@@ -297,7 +297,7 @@ def _warn_starved(solution: LineContactSolution) -> None:
         "starved-inlet",
         f"The oil begins at X = {edge:g} half widths ({edge * solution.half_width * 1e3:.3g} mm): "
         f"the central film of {solution.central_film * 1e6:.4g} um is that of a starved contact. "
-        'Take inlet="flooded" for a contact with oil everywhere before it',
+        'Use inlet="flooded" for a contact with oil everywhere before it',
         stacklevel=3,
     )
 
@@ -309,7 +309,7 @@ def _warn_accuracy(solution: LineContactSolution, options: SolverOptions) -> Non
     requested = solution.nodes if automatic else int(options.nodes)
     raised = "" if solution.nodes == requested else f", since {requested} nodes gave no solution,"
     if automatic and error > options.film_tolerance:
-        limit, remedy = f"film_tolerance = {options.film_tolerance:g}", "a greater tolerance"
+        limit, remedy = f"film_tolerance = {options.film_tolerance:g}", "a larger tolerance"
     elif not automatic and (max(error, least) > STATED_LIMIT or raised):
         limit, remedy = f"{STATED_LIMIT:g}" if error > STATED_LIMIT else "", 'nodes = "auto"'
     else:
@@ -318,7 +318,7 @@ def _warn_accuracy(solution: LineContactSolution, options: SolverOptions) -> Non
         "film-resolution",
         f"With {solution.nodes} nodes{raised} the central film has an estimated error of "
         f"{error:.2g} of it, the least one of {least:.2g}; the limit is "
-        f"{limit or format(STATED_LIMIT, 'g')}. Take "
+        f"{limit or format(STATED_LIMIT, 'g')}. Use "
         + (f"the extrapolated value, or {remedy}" if automatic else f"{remedy} or more nodes"),
         stacklevel=3,
     )

@@ -72,9 +72,9 @@ def count_grids(intervals: int, levels: int | None = None) -> int:
             where="argument levels",
             why=f"every grid has half the intervals of the next, the coarsest {_FEWEST} to "
             f"{_MOST} of them",
-            remedy=f"Take levels = {fits}"
+            remedy=f"Use levels = {fits}"
             if possible
-            else "Take nodes = 2^k + 1, such as 1025 with levels = 5",
+            else "Use nodes = 2^k + 1, such as 1025 with levels = 5",
         )
     return int(levels)
 

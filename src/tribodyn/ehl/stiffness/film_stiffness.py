@@ -87,7 +87,7 @@ def film_slopes(solution: SolvedContact) -> FilmSlopes:
         raise ComputationError(
             f"The tangent of the film was not found in {-products} steps of GMRES",
             why=f"the solution has {grid.n + 1} nodes and M = {solution.moes_load:.4g}",
-            remedy="Take another number of nodes, or two solutions at 0.1 % more and less load",
+            remedy="Use another number of nodes, or two solutions at 0.1 % more and less load",
         )
     unit = solution.film_unit
     change = float(offset) - _DRY_SLOPE + _by_inlet(solution, inlet.load)
@@ -140,8 +140,8 @@ def _reason(solution: SolvedContact, other: str) -> str:
     if solution.inlet == "flooded":
         return (
             f"With M = {solution.moes_load:.3g} and L = {solution.moes_viscosity:.3g} the contact "
-            "turns from rigid to elastic: there the film hardly depends on the load, and counts "
-            f'as rigid among springs. Take kind = "{other}" there'
+            "turns from rigid to elastic: there the film barely depends on the load, and counts "
+            f'as rigid among springs. Use kind = "{other}" there'
         )
     return (
         f"The inlet at X = {solution._grid.X[0]:.3g} starves it: take the flooded inlet or an "
@@ -169,7 +169,7 @@ def seed_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
         "seed-film-stiffness",
         f"The sum as printed gives {value:.4g} m, which is a length and doubles when the "
         f"{grid.n + 1} nodes are doubled: it counts the nodes twice and has no pressure in "
-        'it. Take kind = "approach", or "secant" for a sum that is sound',
+        'it. Use kind = "approach", or "secant" for a consistent sum',
     )
     return value
 

@@ -373,6 +373,6 @@ def _check(factor: Array, loading: float) -> None:
         warn(
             "film-range",
             f"inlet heating: thermal loading eta_0 beta u_e^2/k up to {loading:.4g}, fitted to "
-            f"about {_GREATEST_LOADING:g}. Take the film as a lower estimate.",
+            f"about {_GREATEST_LOADING:g}. The film is a lower estimate.",
             stacklevel=3,
         )

@@ -371,7 +371,7 @@ class MovingContact:
 
         if self.inputs.approach is None:
             what = 'start = "unloaded" with an imposed load'
-            remedy = 'Take start = "steady", or impose the approach'
+            remedy = 'Use start = "steady", or impose the approach'
             raise InputError(what, "argument start", "an unloaded film carries no load", remedy)
         n, row = self.nodes - 1, self.table()[0]
         X = np.linspace(*self.domain, n + 1)

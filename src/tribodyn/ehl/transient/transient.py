@@ -325,7 +325,7 @@ def _failure(
         f"{inputs.entrainment_speed[instant]:.6g} m/s",
         why=f"the step from t = {inputs.time[instant - 1]:.6g} s failed after it was halved "
         f"{step_halvings} times",
-        remedy="Take more time steps, smoother inputs, or a longer ramp from and to 1 to 2 % "
+        remedy="Use more time steps, smoother inputs, or a longer ramp from and to 1 to 2 % "
         "of the load",
     )
 

@@ -68,7 +68,7 @@ def iso_14179_1(
             Range("pitch_line_velocity", speed, 2.0, 25.0, "m/s"),
             Range("load_intensity", intensity, 1.4, 14.0, "N/mm^2"),
         ),
-        "Part 1 asks for experience there: compare with another friction law.",
+        "Part 1 requires experience there: compare with another friction law.",
     )
     return np.asarray(viscosity**-0.223 * intensity**-0.4 / (3.239 * speed**0.7))[()]
 

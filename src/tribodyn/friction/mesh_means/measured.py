@@ -86,9 +86,9 @@ def measured(
         first = where[outside][0]
         warn(
             "friction-range",
-            f"measured: {first[0]:.4g} N*m at {first[1] / RPM:.4g} rpm lies outside of the points "
-            f"measured, {low[0]:.4g} to {high[0]:.4g} N*m and {low[1] / RPM:.4g} to "
-            f"{high[1] / RPM:.4g} rpm: the nearest value between them is held. Measure there, or "
+            f"measured: {first[0]:.4g} N*m at {first[1] / RPM:.4g} rpm is outside the measured "
+            f"points ({low[0]:.4g} to {high[0]:.4g} N*m and {low[1] / RPM:.4g} to "
+            f"{high[1] / RPM:.4g} rpm): the nearest value inside is used. Measure there, or "
             "choose another friction law.",
         )
     return np.exp(logarithm).reshape(shape)[()]

@@ -314,6 +314,6 @@ def _require_face_fits(pitch_input: PitchInput) -> None:
     if pitch_input.face_width_wheel <= most:
         return
     what = f"face_width_wheel = {pitch_input.face_width_wheel * 1e3:.6g} mm"
-    why = f"A wheel of this diameter has room for {most * 1e3:.6g} mm"
+    why = f"A wheel of this diameter allows at most {most * 1e3:.6g} mm"
     remedy = "Reduce the face width; usual is up to a third of the outer cone distance"
     raise InputError(what, Argument("face_width_wheel"), why, remedy)

@@ -116,7 +116,7 @@ def slice_widths(contact: PathOfContact, slices: int | None) -> Array:
     count = (_SLICES if pair.has_lead_modification else 1) if slices is None else slices
     if not 1 <= count <= _MOST_SLICES:
         why = f"The face width is cut into 1 to {_MOST_SLICES} slices"
-        remedy = "Leave it out: 21 are taken where flanks vary over the face width"
+        remedy = "Omit it: the default is 21 where flanks vary over the face width"
         raise InputError(f"slices = {count}", Argument("slices"), why, remedy)
     return np.full(count, pair.common_face_width / count)
 

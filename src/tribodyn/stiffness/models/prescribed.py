@@ -88,7 +88,7 @@ def _check_forms(pair_stiffness: float | None, totals: dict[str, float | None]) 
     listing = ", ".join(f"{name} = {value:g} N/m" for name, value in given_totals.items())
     if pair_stiffness is not None and given_totals:
         what = f"pair_stiffness = {pair_stiffness:g} N/m and {listing} are both given"
-        why = "They are two ways of saying the same thing"
+        why = "Both define the same stiffness"
         remedy = "Keep pair_stiffness, or the two mesh values, not both"
         raise InputError(what, ModelOption("stiffness", "rectangular"), why, remedy)
     if pair_stiffness is None and len(given_totals) < len(totals):
