@@ -209,7 +209,7 @@ BAD = [
     ({"offset": float("nan")}, "offset", "finite"),
     ({"offset": "31 mm"}, "offset", "number"),
     ({"cutter_radius": 10e-3}, "cutter_radius", "limit curvature"),
-    ({"face_width_wheel": 0.16}, "face_width_wheel", "room"),
+    ({"face_width_wheel": 0.16}, "face_width_wheel", "at most"),
     ({"teeth_wheel": 9}, "teeth_wheel", "as many teeth"),
     ({"teeth_pinion": 10.5}, "teeth_pinion", "whole"),
     ({"mean_spiral_angle_pinion": 46.0}, "mean_spiral_angle_pinion", "radians"),
