@@ -168,7 +168,7 @@ _KNOWN = ("--set", "gear_loss_factor=0.3", "--set", "torque_loss_uncertainty=0.0
         (["400, 5, 2", "400, 50"], _KNOWN, "losses.csv:4: a number is missing"),
         (["400, 5, 2", "400, 50, -3"], _KNOWN, "losses.csv:4: torque_loss = -3"),
         ([], _KNOWN, "the table has no rows"),
-        (["400, 5, 2", "400, 50, 3"], (), "the gear loss factor is not known.*--case"),
+        (["400, 5, 2", "400, 50, 3"], (), "the gear loss factor is missing.*--case"),
         (
             ["400, 5, 2", "400, 50, 3"],
             ("--case", "fzg-roughness"),

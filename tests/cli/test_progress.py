@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from tribodyn.analysis import bifurcation
-from tribodyn.cli.bar import Bar, counted, left
+from tribodyn.cli.progress_bar import Bar, counted, left
 from tribodyn.compiled import announcing_to
 from tribodyn.dynamics import System
 

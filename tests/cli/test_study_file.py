@@ -45,7 +45,7 @@ def test_a_study_is_computed_and_told(
     assert call(["study", "s.toml"]) == 130
     told = capsys.readouterr()
     assert "2 of 4 members are done (50 %)" in told.out
-    assert "the same command goes on from there" in told.err
+    assert "the same command continues from there" in told.err
     monkeypatch.setattr(study_command, "_BETWEEN", 0.0)
     assert call(["study", "s.toml"]) == 0
     told = capsys.readouterr()

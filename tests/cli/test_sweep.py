@@ -196,7 +196,7 @@ module._figures = figures
 """,
     "bifurcation": """
 import contextlib, pathlib, time
-import tribodyn.cli.bar as bar
+import tribodyn.cli.progress_bar as bar
 mark = pathlib.Path(__file__).with_name("done")
 class Slow:
     marching = False
@@ -245,7 +245,7 @@ def test_ctrl_c_keeps_what_is_done(folder: Path, command: str) -> None:
             done = int(np.isfinite(data.rms.values).sum())
         assert 1 <= done < 60
         assert f"{done} of 60 motions are done" in err
-    assert "the same command with --force goes on" in err
+    assert "the same command with --force continues" in err
     assert sorted(os.listdir(folder)) == [".part.members", "part"]
 
 

@@ -12,7 +12,7 @@ WELCOME = """\
 tribodyn: from gear and lubricant data to tooth contact, friction and vibration.
 
   tribodyn new my.toml      write a case file to start from, and fill in your gears
-  tribodyn check my.toml    see the geometry, and every fault at once
+  tribodyn check my.toml    see the geometry, and every error at once
   tribodyn run my.toml      compute it, and write the report
 
 tribodyn --help shows all commands."""
@@ -56,12 +56,12 @@ COMMANDS = (
     (
         "study",
         "study_command:study",
-        "Compute many members of a case into a store, here or on a cluster.",
+        "Compute many runs of a case into a store, here or on a cluster.",
     ),
     ("modes", "study_commands:modes", "Find natural frequencies and critical speeds of a case."),
     ("harris", "study_commands:harris", "Find the static transmission error over the torque."),
     ("relief", "study_commands:relief", "Find the best tip relief of a case."),
-    ("run-up", "study_commands:run_up", "March a case while its speed rises."),
+    ("run-up", "study_commands:run_up", "Integrate a case in time while its speed rises."),
     (
         "losses",
         "losses_commands:losses",
@@ -85,7 +85,7 @@ COMMANDS = (
     (
         "paper",
         "experiment_command:paper",
-        "Lay the printed tables of a source beside what is computed.",
+        "Compare the printed tables of a source with computed figures.",
     ),
     ("compare", "compare_command:compare", "Show what differs between two results."),
     (
@@ -125,7 +125,7 @@ def _welcome(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
     json : bool
         Write one JSON object to stdout.
     """
-    from tribodyn.cli.screen import say, say_json
+    from tribodyn.cli.console import say, say_json
 
     steps = [line.split("  ")[1].strip() for line in WELCOME.splitlines() if line[:2] == "  "]
     if json:
@@ -135,7 +135,7 @@ def _welcome(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
 
 
 class _Help:
-    """Help as cyclopts draws it, but lines of a docstring run on: the screen breaks them."""
+    """Help as cyclopts draws it, with the lines of a docstring joined and wrapped by the screen."""
 
     def __call__(self, console: Any, options: Any, panel: Any) -> None:
         from cyclopts.help import DefaultFormatter

@@ -1,6 +1,6 @@
-"""Where the command line begins and ends: run a command, turn every failure into a message.
+"""Run a command of the command line and turn every failure into a message.
 
-Nothing heavy is imported up here, so that even an interruption of the first moment is caught.
+Nothing heavy is imported at the top, so that even an early interruption is caught.
 """
 
 from __future__ import annotations
@@ -21,27 +21,27 @@ if TYPE_CHECKING:
     from tribodyn.errors import Problem
 
 
-#: Time to get out of the callback before the interruption is repeated [s].
-_MOMENT = 0.05
-#: Signals so soon after an interruption are the same one [s].
-_SAME = 0.5
+#: Delay before an interruption that a callback dropped is repeated [s].
+_RETRY_DELAY = 0.05
+#: Signals within this time after an interruption count as the same one [s].
+_REPEAT_INTERVAL = 0.5
 
 
-class _Ear:
-    """Hears Ctrl-C: a repeated one must not cut off what the first one leads to."""
+class _InterruptHandler:
+    """Handle Ctrl-C: a repeated one must not cut off the reaction to the first."""
 
     def __init__(self) -> None:
-        self.last = -_SAME
+        self.last = -_REPEAT_INTERVAL
 
     def __call__(self, *_: object) -> None:
-        """Interrupt, unless that was done just now."""
+        """Interrupt, unless that was done a moment ago."""
         now = time.monotonic()
-        if now - self.last >= _SAME:
+        if now - self.last >= _REPEAT_INTERVAL:
             self.last = now
             raise KeyboardInterrupt
 
 
-_ear = _Ear()
+_interrupt_handler = _InterruptHandler()
 
 
 @contextmanager
@@ -50,16 +50,16 @@ def interruptible() -> Iterator[None]:
     previous = sys.unraisablehook
     timers: list[threading.Timer] = []
 
-    def again(dropped: sys.UnraisableHookArgs) -> None:
+    def repeat_interruption(dropped: sys.UnraisableHookArgs) -> None:
         if issubclass(dropped.exc_type, KeyboardInterrupt):
-            _ear.last = -_SAME
-            timers.append(threading.Timer(_MOMENT, _interrupt))
+            _interrupt_handler.last = -_REPEAT_INTERVAL
+            timers.append(threading.Timer(_RETRY_DELAY, _interrupt))
             timers[-1].daemon = True
             timers[-1].start()
         else:
             previous(dropped)
 
-    sys.unraisablehook = again
+    sys.unraisablehook = repeat_interruption
     try:
         yield
     finally:
@@ -69,15 +69,15 @@ def interruptible() -> Iterator[None]:
 
 
 @contextmanager
-def _deaf() -> Iterator[None]:
-    """Let no interruption cut off the message of the first one."""
-    here = threading.current_thread() is threading.main_thread()
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN) if here else None
+def _interrupts_ignored() -> Iterator[None]:
+    """Ignore interruptions while the message of the first one is written."""
+    in_main_thread = threading.current_thread() is threading.main_thread()
+    previous_handler = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main_thread else None
     try:
         yield
     finally:
-        if here:
-            signal.signal(signal.SIGINT, before)
+        if in_main_thread:
+            signal.signal(signal.SIGINT, previous_handler)
 
 
 def _interrupt() -> None:
@@ -134,26 +134,26 @@ def main(arguments: Sequence[str] | None = None) -> None:
     Parameters
     ----------
     arguments : sequence of str, optional
-        Words after the program's name; those of the process by default.
+        Arguments after the program's name; those of the process by default.
     """
     _open_streams()
-    here = threading.current_thread() is threading.main_thread()
-    before = signal.getsignal(signal.SIGINT)
-    heard = here and before is signal.default_int_handler
-    if heard:
-        signal.signal(signal.SIGINT, _ear)
+    in_main_thread = threading.current_thread() is threading.main_thread()
+    previous_handler = signal.getsignal(signal.SIGINT)
+    handles_interrupts = in_main_thread and previous_handler is signal.default_int_handler
+    if handles_interrupts:
+        signal.signal(signal.SIGINT, _interrupt_handler)
     code = call(sys.argv[1:] if arguments is None else arguments)
-    if here and arguments is None:
-        # All is said: a repeated Ctrl-C no longer meets Python while it ends.
+    if in_main_thread and arguments is None:
+        # The output is complete: a repeated Ctrl-C must not disturb the end of Python.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-    elif heard:
-        # Called by a program, which goes on and listens to Ctrl-C as before.
-        signal.signal(signal.SIGINT, before)
+    elif handles_interrupts:
+        # Called by a program, which continues with its own handler of Ctrl-C.
+        signal.signal(signal.SIGINT, previous_handler)
     sys.exit(code)
 
 
 def _open_streams() -> None:
-    """Have streams that take every text: where there is none, and where letters are missing."""
+    """Replace closed streams, and letters that a stream cannot encode."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:  # Python began with it closed.
@@ -176,7 +176,7 @@ def call(arguments: Sequence[str]) -> int:
         0 done, 1 computation failed, 2 bad input, 130 interrupted.
     """
     try:
-        with interruptible(), _worded_warnings():
+        with interruptible(), _plain_warnings():
             code = _dispatch(list(arguments))
             sys.stdout.flush()
             return code
@@ -184,29 +184,29 @@ def call(arguments: Sequence[str]) -> int:
         _redirect_to_null(sys.stdout)
         return 0
     except (Exception, KeyboardInterrupt) as error:
-        with _deaf():
+        with _interrupts_ignored():
             return _failed(error, "--json" in arguments)
 
 
 @contextmanager
-def _worded_warnings() -> Iterator[None]:
-    """Show model warnings without the line of the program that they come from."""
-    before = warnings.showwarning
+def _plain_warnings() -> Iterator[None]:
+    """Show model warnings without the source line that they come from."""
+    show_default = warnings.showwarning
 
     def show(message: Warning | str, *place: Any, **more: Any) -> None:
-        from tribodyn.cli.screen import show_warnings
+        from tribodyn.cli.console import show_warnings
         from tribodyn.errors import ModelWarning
 
         if isinstance(message, ModelWarning):
             show_warnings([message])
         else:
-            before(message, *place, **more)
+            show_default(message, *place, **more)
 
     warnings.showwarning = show
     try:
         yield
     finally:
-        warnings.showwarning = before
+        warnings.showwarning = show_default
 
 
 def _redirect_to_null(stream: TextIO) -> None:
@@ -230,21 +230,21 @@ def _dispatch(arguments: list[str]) -> int:
         with reserved_outputs:
             result: Any = make_app()(words, exit_on_error=False, print_error=False)
     except CycloptsError as error:
-        what = re.sub(r"^Unused Tokens: \[(.*)\]", r"too many words: \1", str(error).strip())
-        why = "Commands take the words and options that their help lists"
+        what = re.sub(r"^Unused Tokens: \[(.*)\]", r"too many arguments: \1", str(error).strip())
+        why = "Commands take the arguments and options that their help lists"
         raise InputError(what, why=why, remedy=_remedy(arguments, what)) from None
     return result if isinstance(result, int) else 0
 
 
 def _remedy(arguments: list[str], what: str) -> str:
-    """What to write instead of words that make no command."""
+    """Return what to write instead of an invalid command."""
     settings = [word for word in arguments if "=" in word and not word.startswith("-")]
     if len(settings) > arguments.count("--set") and arguments[0] not in ("sweep", "bifurcation"):
         return "Repeat --set before every KEY=VALUE"
     if arguments[0] in _EXAMPLES and "requires an argument" in what:
         return f"Write for example: tribodyn {arguments[0]} {_EXAMPLES[arguments[0]]}"
-    named = arguments and arguments[0] in _EXAMPLES
-    return f"See: tribodyn {arguments[0]} --help" if named else "See: tribodyn --help"
+    is_command = arguments and arguments[0] in _EXAMPLES
+    return f"See: tribodyn {arguments[0]} --help" if is_command else "See: tribodyn --help"
 
 
 def _no_command(word: str, names: list[str]) -> Problem:
@@ -255,8 +255,8 @@ def _no_command(word: str, names: list[str]) -> Problem:
 
 
 def _failed(error: BaseException, as_json: bool) -> int:
-    """Tell a failure on stderr and, if asked for, as one JSON object on stdout."""
-    from tribodyn.cli.screen import say_json, show_problems
+    """Report a failure on stderr and, with --json, as one JSON object on stdout."""
+    from tribodyn.cli.console import say_json, show_problems
     from tribodyn.errors import Problem, TribodynError
     from tribodyn.files import LOCATION_ERRNOS, cannot_write
 

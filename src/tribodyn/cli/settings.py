@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import show_warnings
+from tribodyn.cli.console import show_warnings
 from tribodyn.errors import InputError, OutputExistsError, Problem, collected
 from tribodyn.study.studies.range_words import UnreadError, read_range, read_values, toml_value
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Output = Path | None
 Flag = Annotated[bool, Parameter(negative="")]
 Words = Annotated[list[str] | None, Parameter(name="--set", negative="")]
-# What these mean is the same in every command, and is told here instead of in its text.
+# These mean the same in every command, so their help texts are defined here once.
 CaseName = Annotated[str, Parameter(help="Built-in case or path of a case file.")]
 Force = Annotated[bool, Parameter(negative="", help="Replace an earlier result in that directory.")]
 Settings = Annotated[
@@ -37,22 +37,22 @@ reserved_outputs = ExitStack()
 def check_place(target: Path, force: bool) -> None:
     """Reserve the directory of a result until the command ends; refuse it before any work is done.
 
-    What killed runs left next to it is removed.
+    Leftovers of killed runs next to it are removed.
     """
     from tribodyn.files import clear_leftovers, reserved
     from tribodyn.study.pipeline.save import check_parent, check_target
 
     check_parent(target)
     reserved_outputs.enter_context(reserved(target))
-    with collected() as told:
+    with collected() as leftovers:
         clear_leftovers(target)
-    show_warnings(told)
+    show_warnings(leftovers)
     remedy = "Choose another directory with --out, or replace it with --force"
     check_target(target, force, remedy=remedy)
 
 
 def check_file(path: Path, force: bool) -> None:
-    """Refuse a file that is there and is not to be replaced, or that has no directory."""
+    """Refuse a file that exists and must not be replaced, or that has no directory."""
     if path.exists() and (path.is_dir() or not force):
         remedy = "Choose another name" + ("" if path.is_dir() else ", or add --force to replace it")
         raise OutputExistsError("this exists already", str(path), "", remedy)
@@ -94,28 +94,28 @@ RANGE = 'Write "operation.speed=400..3500 rpm:60"'
 GRAMMAR = f'{RANGE} or "operation.torque=50,150,300 N*m"'
 
 
-def read_ranges(words: Sequence[str], *, lists: bool = True) -> dict[str, Any]:
+def read_ranges(texts: Sequence[str], *, lists: bool = True) -> dict[str, Any]:
     """Read what varies: a range with its number of points, or a list of values."""
-    found: dict[str, Any] = {}
+    ranges: dict[str, Any] = {}
     problems = []
     grammar = GRAMMAR if lists else RANGE
-    if not words:
+    if not texts:
         problems.append(Problem("nothing varies", "", "", grammar))
-    for word in words:
-        key, equals, text = (part.strip() for part in word.partition("="))
+    for item in texts:
+        key, equals, text = (part.strip() for part in item.partition("="))
         try:
             if not (key and equals and text):
                 raise UnreadError("It is not KEY=VALUES")
-            if key in found:
+            if key in ranges:
                 raise UnreadError(f"{key} varies twice: give all its values at once")
             if ".." not in text and not lists:
                 raise UnreadError("A diagram goes over a range LOW..HIGH with a number of points")
-            found[key] = read_values(text)
+            ranges[key] = read_values(text)
         except UnreadError as fault:
-            problems.append(Problem(f'cannot read "{word}"', "", str(fault), grammar))
+            problems.append(Problem(f'cannot read "{item}"', "", str(fault), grammar))
     if problems:
         raise InputError(problems)
-    return found
+    return ranges
 
 
 def read_ends(text: str, example: str = "400..3500 rpm") -> tuple[Any, Any]:

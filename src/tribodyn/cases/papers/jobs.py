@@ -36,8 +36,8 @@ def requests_of(row: PrintedRow) -> list[Request]:
         if "." in key:
             return [_request(row, {**row.set, **change}, row.given) for change in changes]
         return [_request(row, row.set, {**row.given, **change}) for change in changes]
-    changes = [row.set] if row.against is None else [row.set, {**row.set, **row.against}]
-    return [_request(row, change, row.given) for change in changes]
+    others = [] if row.against is None else [{**row.set, **row.against}]
+    return [_request(row, change, row.given) for change in (row.set, *others)]
 
 
 def _request(row: PrintedRow, changes: Mapping[str, Any], arguments: Mapping[str, Any]) -> Request:

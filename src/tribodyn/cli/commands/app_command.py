@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from pathlib import Path
 
-from tribodyn.cli.screen import tell
+from tribodyn.cli.console import tell
 from tribodyn.cli.settings import Flag
 from tribodyn.errors import InputError
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import figures, say, say_json, show_warnings, table, tell
+from tribodyn.cli.console import figures, say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import CaseName, Flag, Settings, changed_case, check_file
 
 
@@ -21,11 +21,11 @@ def cases(*, json: Flag = False) -> None:
     """
     from tribodyn.cases.catalogue import cases as all_cases
 
-    found = all_cases()
+    titles = all_cases()
     if json:
-        say_json([{"name": name, "title": title} for name, title in found.items()])
+        say_json([{"name": name, "title": title} for name, title in titles.items()])
     else:
-        say(table([[name, title] for name, title in found.items()], indent=""))
+        say(table([[name, title] for name, title in titles.items()], indent=""))
 
 
 def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> None:
@@ -42,15 +42,15 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     from tribodyn.study.pipeline.first_look import operating_figures
     from tribodyn.study.pipeline.run import rehearse
 
-    checked = changed_case(case, set_ or [])
-    told = rehearse(checked)
-    values = {n: float(v) for n, v in (geometry(checked) | operating_figures(checked)).items()}
+    ready = changed_case(case, set_ or [])
+    warnings = rehearse(ready)
+    values = {n: float(v) for n, v in (geometry(ready) | operating_figures(ready)).items()}
     if json:
         say_json(values)
     else:
-        say(f"{checked.title}\n{figures(values)}")
-    show_warnings([*case_cautions(checked), *told])
-    kinds = [assumption.kind for assumption in assumptions(checked)]
+        say(f"{ready.title}\n{figures(values)}")
+    show_warnings([*case_cautions(ready), *warnings])
+    kinds = [assumption.kind for assumption in assumptions(ready)]
     tell(
         f"The case is in order; {kinds.count('assumed')} values are assumed, "
         f"{kinds.count('default')} are defaults."

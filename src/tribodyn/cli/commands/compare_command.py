@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json, table
+from tribodyn.cli.console import say, say_json, table
 from tribodyn.cli.settings import Flag, check_place
 from tribodyn.errors import InputError
 from tribodyn.validated_files import plain_number
@@ -114,14 +114,17 @@ def compare(
     say(table(rows) if len(rows) > 1 else "Both results are equal.")
 
 
-def _pairs(words: list[str] | None) -> tuple[dict[str, str], dict[str, str]]:
+def _pairs(texts: list[str] | None) -> tuple[dict[str, str], dict[str, str]]:
     """Computed signals and sensitivities by measured channel."""
     signals, sensitivity = {}, {}
-    for word in words or []:
-        name, sign, value = word.partition("=")
+    for text in texts or []:
+        name, sign, value = text.partition("=")
         signal, comma, sensor = value.partition(",")
         if not sign or not name.strip() or not signal.strip() or (comma and not sensor.strip()):
-            what, why = f'"{word}" names no pair', "A sign of equality parts channel and signal"
+            what, why = (
+                f'"{text}" names no pair',
+                "Channel and signal are separated by an equals sign",
+            )
             remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g"'
             raise InputError(what, "--channel", why, remedy)
         signals[name.strip()] = signal.strip()
@@ -165,15 +168,17 @@ def _with_recording(
     head = ("channel", "figure", "computed", "measured", f"error, of the {comparison.base} value")
     rows = [_cells(*row) for row in _rows(comparison)]
     how = "fitted" if comparison.fitted else "given"
-    told = [comparison.speed_text]
-    told += [f"Gain of {name}, {how}: {value:.6g}" for name, value in comparison.gains.items()]
+    statements = [comparison.speed_text]
+    statements += [
+        f"Gain of {name}, {how}: {value:.6g}" for name, value in comparison.gains.items()
+    ]
     facts = _facts(comparison)
     if out is None:
-        say("\n".join([*told, table([head, *rows])])) if not json else say_json(facts)
+        say("\n".join([*statements, table([head, *rows])])) if not json else say_json(facts)
         return
     caption = "Spectra of the measured channels with the computed mesh harmonics on them."
     figures = [("Computed and measured", comparison.plot(), caption)]
-    answer = Answer(comparison, figures, told, head, rows, facts)
+    answer = Answer(comparison, figures, statements, head, rows, facts)
     finish("comparison", result.case, out, answer, force, json)
 
 

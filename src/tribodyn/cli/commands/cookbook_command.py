@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tribodyn.cli.screen import say, say_json, table, tell
+from tribodyn.cli.console import say, say_json, table, tell
 from tribodyn.cli.settings import Flag
 from tribodyn.cookbook import TOPICS, Recipe, find_recipe, recipes, write_skill
 from tribodyn.errors import InputError, OutputExistsError

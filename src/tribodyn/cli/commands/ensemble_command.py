@@ -6,10 +6,10 @@ from typing import Literal
 
 import numpy as np
 
-from tribodyn.cli.commands.study_commands import begun, finish
+from tribodyn.cli.commands.study_commands import finish, prepare_study
 from tribodyn.cli.settings import CaseName, Flag, Force, Output, Words
 
-#: Part of the variants between the ends that are told.
+#: Share of the variants between the reported ends.
 _SHARE = 0.95
 
 
@@ -46,7 +46,7 @@ def ensemble(
     json : bool
         Write figures in SI as one JSON object to stdout.
     """
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.errors import InputError
     from tribodyn.plot import ensemble as spread
     from tribodyn.plot.signals.bands import banded
@@ -56,14 +56,14 @@ def ensemble(
     from tribodyn.study import ensemble as compute
     from tribodyn.uncertainty import bootstrap_band
 
-    ready, target = begun("ensemble", case, out, set_, force)
+    ready, target = prepare_study("ensemble", case, out, set_, force)
     if not ready.uncertain:
         remedy = 'Give a value its spread, as in --set "operation.torque=90 N*m +- 2 %"'
         raise InputError("no value of the case is spread", case, "All variants were alike", remedy)
     with progress_bar() as progress:
-        found = compute(ready, size=size, method=method, seed=seed, progress=progress)
+        result = compute(ready, size=size, method=method, seed=seed, progress=progress)
     rows, facts = [], {}
-    for name, values in found.figures().items():
+    for name, values in result.figures().items():
         middle, variants = values[0], values[1:]
         band = bootstrap_band(variants, seed=seed)
         low, high = np.quantile(variants, (0.5 - 0.5 * _SHARE, 0.5 + 0.5 * _SHARE))
@@ -72,13 +72,20 @@ def ensemble(
         facts[name] = dict(zip(names, map(float, ends), strict=True))
         if high > low:
             rows.append([name, *(SUMMARY[name].show(float(end)) for end in ends)])
-    told = [f"{len(found.value)} variants over {', '.join(map(str, found.input))}"]
-    told += [f"{key} = {text}" for key, text in ready.uncertain.items()]
-    figures = [pictured(spread, found)]
-    figures += banded(found, sections_of(ready))
+    statements = [f"{len(result.value)} variants over {', '.join(map(str, result.input))}"]
+    statements += [f"{key} = {text}" for key, text in ready.uncertain.items()]
+    figures = [pictured(spread, result)]
+    figures += banded(result, sections_of(ready))
     share = f"{_SHARE:.0%} of the variants"
     head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")
-    finish("ensemble", ready, target, Answer(found, figures, told, head, rows, facts), force, json)
+    finish(
+        "ensemble",
+        ready,
+        target,
+        Answer(result, figures, statements, head, rows, facts),
+        force,
+        json,
+    )
 
 
 def sobol(
@@ -110,11 +117,11 @@ def sobol(
     json : bool
         Write the shares of the variance as one JSON object to stdout.
     """
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.errors import InputError
     from tribodyn.report.nonlinear_answers import sobol_answer
 
-    ready, target = begun("sobol", case, out, set_, force)
+    ready, target = prepare_study("sobol", case, out, set_, force)
     if not ready.uncertain:
         remedy = 'Give values their tolerances, as in --set "operation.torque=90 N*m +- 5 %"'
         why = "Shares of a variance need keys with tolerances"

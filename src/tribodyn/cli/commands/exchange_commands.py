@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json, table, tell
+from tribodyn.cli.console import say, say_json, table, tell
 from tribodyn.cli.settings import Flag, changed_case, check_file, read_changes
 from tribodyn.errors import InputError
 
@@ -57,7 +57,7 @@ def import_(
             say_json(_listed(model))
         else:
             say(_tables(model))
-            _tell_remarks(model)
+            _show_remarks(model)
             tell(f"To compute a stage: tribodyn import {file} --stage NUMBER --out case.toml")
         return
     check_file(out, force)
@@ -67,7 +67,7 @@ def import_(
         say_json({"path": str(out)})
     else:
         say(str(out))
-    _tell_remarks(model)
+    _show_remarks(model)
     tell(f"Look at what is marked as assumed, then: tribodyn check {out}")
 
 
@@ -116,7 +116,7 @@ def export(
         say(str(rexs or tables))
 
 
-def _tell_remarks(model: GearboxModel) -> None:
+def _show_remarks(model: GearboxModel) -> None:
     for remark in model.remarks:
         tell(f"note: {remark}")
 
@@ -132,17 +132,17 @@ def _tables(model: GearboxModel) -> str:
     if model.stages:
         parts.append(table([head, *(_stage_row(stage) for stage in model.stages)], indent=""))
     rows = [_load_row(model, load, stage) for load in model.loads for stage in model.stages]
-    known = [row for row in rows if any(row[3:])]
-    if known:
+    load_rows = [row for row in rows if any(row[3:])]
+    if load_rows:
         head = ["load case", "share", "stage", "n_1 [rpm]", "T_1 [N m]", "mesh [Hz]", "n_2 [rpm]"]
-        parts.append(table([head, *known], indent=""))
+        parts.append(table([head, *load_rows], indent=""))
     return "\n\n".join(parts)
 
 
 def _stage_row(stage: Stage) -> list[str]:
     gears = (stage.gear_1, stage.gear_2)
 
-    def both(values: list[float], form: str) -> str:
+    def pair_text(values: list[float], form: str) -> str:
         texts = [format(value, form) for value in values]
         return texts[0] if texts[0] == texts[1] else " / ".join(texts)
 
@@ -150,20 +150,20 @@ def _stage_row(stage: Stage) -> list[str]:
     return [
         str(stage.id),
         " / ".join(str(g.teeth) for g in gears),
-        both([g.normal_module * 1e3 for g in gears], "g"),
-        both([g.helix_angle * _TO_DEG + 0.0 for g in gears], ".6g"),
+        pair_text([g.normal_module * 1e3 for g in gears], "g"),
+        pair_text([g.helix_angle * _TO_DEG + 0.0 for g in gears], ".6g"),
         f"{stage.center_distance * 1e3:g}",
-        both(widths, "g"),
-        both([g.profile_shift_coefficient for g in gears], "g"),
+        pair_text(widths, "g"),
+        pair_text([g.profile_shift_coefficient for g in gears], "g"),
         f"{stage.operating_pressure_angle * _TO_DEG:.4f}",
         f"{stage.shift_sum + 0.0:.5f}",
     ]
 
 
 def _load_row(model: GearboxModel, load: Load, stage: Stage) -> list[str]:
-    one, two = (model.shaft_of(g.id) for g in (stage.gear_1, stage.gear_2))
-    speeds = [load.speeds.get(s) if s is not None else None for s in (one, two)]
-    torque = load.torques.get(one) if one is not None else None
+    first_shaft, second_shaft = (model.shaft_of(g.id) for g in (stage.gear_1, stage.gear_2))
+    speeds = [load.speeds.get(s) if s is not None else None for s in (first_shaft, second_shaft)]
+    torque = load.torques.get(first_shaft) if first_shaft is not None else None
     mesh = (
         None
         if speeds[0] is None or stage.planetary

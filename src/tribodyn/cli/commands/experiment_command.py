@@ -1,4 +1,4 @@
-"""``tribodyn experiment`` and ``tribodyn paper``: what is published, judged by computation."""
+"""``tribodyn experiment`` and ``tribodyn paper``: published claims checked by computation."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from tribodyn.cli.commands.sweep_command import INTERRUPTED, ended, kept_study
-from tribodyn.cli.screen import say, say_json, table, tell
+from tribodyn.cli.commands.sweep_command import INTERRUPTED, report_exit_code, run_checkpointed
+from tribodyn.cli.console import say, say_json, table, tell
 from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case, read_ranges
 from tribodyn.errors import InputError
 
@@ -52,47 +52,47 @@ def experiment(
     target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
     ready, options = changed_case(case, set_ or []), _options(roughness, laws)
 
-    def compute(**kept: Any) -> FrictionExperiment:
+    def compute(**checkpointing: Any) -> FrictionExperiment:
         from tribodyn.study.studies.friction_experiment import friction_experiment
 
-        return friction_experiment(ready, **options, partial=True, **kept)
+        return friction_experiment(ready, **options, partial=True, **checkpointing)
 
-    found: Any = kept_study(target, force, compute)
-    claims = [dict(zip(_keys(found), row, strict=True)) for row in found.claim_rows()]
+    result: Any = run_checkpointed(target, force, compute)
+    claims = [dict(zip(_keys(result), row, strict=True)) for row in result.claim_rows()]
     if json:
-        say_json({"complete": found.complete, "claims": claims, "rows": list(found.rows())})
+        say_json({"complete": result.complete, "claims": claims, "rows": list(result.rows())})
     else:
         names = ("claim", "verdict", "holds_where")
         rows = [["Claim", "Verdict", "Holds where"], *([c[n] for n in names] for c in claims)]
-        say(f"{found.case.title}\n{found.lead}\n\n{table(rows)}")
-        if effects := list(found.effect_rows()):
-            driver, held = found.case.gears.driver, found.case.operation.torque_balance
-            say(f"\nThe {driver} drives, torque held: {held}\n")
-            say(table([found.EFFECT_HEAD, *effects]))
+        say(f"{result.case.title}\n{result.lead}\n\n{table(rows)}")
+        if effects := list(result.effect_rows()):
+            driver, held_torque = result.case.gears.driver, result.case.operation.torque_balance
+            say(f"\nThe {driver} drives, torque held: {held_torque}\n")
+            say(table([result.EFFECT_HEAD, *effects]))
         for claim in claims:
             say(
                 f"\n{claim['claim']} ({claim['source_of']})\n  printed:  {claim['printed']}\n"
                 f"  computed: {claim['computed']}\n  {claim['why']}."
             )
-    for failed in dict.fromkeys(point.failed for point in found.points if point.failed):
+    for failed in dict.fromkeys(point.failed for point in result.points if point.failed):
         tell(f"failed: {failed}")
-    return ended(found, target)
+    return report_exit_code(result, target)
 
 
-def _keys(found: FrictionExperiment) -> list[str]:
-    return [name.lower().replace(" ", "_") for name in found.CLAIM_HEAD]
+def _keys(result: FrictionExperiment) -> list[str]:
+    return [name.lower().replace(" ", "_") for name in result.CLAIM_HEAD]
 
 
 def _options(roughness: str, laws: str) -> dict[str, Any]:
-    """Words of the command line as arguments; what is left out stays at its default."""
+    """Return the options of the command line as arguments."""
     options: dict[str, Any] = {}
     if roughness:
-        given = read_ranges([f"roughness={roughness}"])["roughness"]
-        if isinstance(given, tuple) or not all(isinstance(value, str) for value in given):
+        values = read_ranges([f"roughness={roughness}"])["roughness"]
+        if isinstance(values, tuple) or not all(isinstance(value, str) for value in values):
             remedy = 'Write --roughness "0.325,0.53,0.991 um"'
             what = f'cannot read "{roughness}"'
             raise InputError(what, "--roughness", "It is a list of lengths with a unit", remedy)
-        options["roughness"] = given
+        options["roughness"] = values
     if laws:
         options["laws"] = [name.strip() for name in laws.split(",")]
     return options
@@ -107,7 +107,7 @@ def paper(
     force: Force = False,
     json: Flag = False,
 ) -> int:
-    """Lay the printed tables of a source beside what is computed, with a verdict for each figure.
+    """Compare the printed tables of a source with computed figures, with a verdict for each figure.
 
     Parameters
     ----------
@@ -130,16 +130,16 @@ def paper(
     for name in names:
         printed_rows(name)
 
-    def compute(**kept: Any) -> PaperComparison:
+    def compute(**checkpointing: Any) -> PaperComparison:
         from tribodyn.cases.papers.comparison import compare_with_paper
 
-        return compare_with_paper(*names, partial=True, **kept)
+        return compare_with_paper(*names, partial=True, **checkpointing)
 
     target = out if out is not None else Path(f"{case}-paper" if case else "papers")
-    found: Any = kept_study(target, force, compute)
+    comparison: Any = run_checkpointed(target, force, compute)
     if json:
-        say_json(list(found.rows))
+        say_json(list(comparison.rows))
     else:
-        say(f"{found.lead}\n{table([found.HEAD, *found.table()])}")
+        say(f"{comparison.lead}\n{table([comparison.HEAD, *comparison.table()])}")
     tell(f"Report: {target / 'report.html'}")
-    return 0 if found.complete else INTERRUPTED
+    return 0 if comparison.complete else INTERRUPTED

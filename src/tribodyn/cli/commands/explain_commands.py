@@ -8,13 +8,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from tribodyn.cli.screen import say, say_json, table
+from tribodyn.cli.console import say, say_json, table
 from tribodyn.cli.settings import Flag
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.values import Word, listed, word
 
-#: Entries beyond this are named, not told.
-_MOST = 8
+#: Entries beyond this number are only named.
+_MAX_ENTRIES = 8
 
 Entries = list[dict[str, Any]]
 
@@ -32,24 +32,24 @@ def explain(symbol: str, /, *more: str, json: Flag = False) -> None:
     json : bool
         Write one JSON array to stdout.
     """
-    asked = " ".join((symbol, *more)).strip().strip("[]")
-    if not asked:
+    query = " ".join((symbol, *more)).strip().strip("[]")
+    if not query:
         remedy = "Give a name, for example: tribodyn explain backlash"
         raise InputError("there is nothing to explain", "", "", remedy)
-    if asked.lower() == "friction":
+    if query.lower() == "friction":
         _friction_laws(json)
         return
-    found = _named(asked) or _holding(asked)
-    if not found:
-        raise InputError(_unknown(asked))
+    entries = _entries_by_name(query) or _entries_with_words(query)
+    if not entries:
+        raise InputError(_unknown(query))
     if json:
-        say_json(found)
+        say_json(entries)
         return
-    for entry in found[:_MOST]:
+    for entry in entries[:_MAX_ENTRIES]:
         say("\n".join(f"{label + ':':<10} {text}" for label, text in entry.items() if text) + "\n")
-    if len(found) > _MOST:
-        names = ", ".join(str(next(iter(entry.values()))) for entry in found[_MOST:])
-        say(f"{len(found) - _MOST} more have these words: {names}")
+    if len(entries) > _MAX_ENTRIES:
+        names = ", ".join(str(next(iter(entry.values()))) for entry in entries[_MAX_ENTRIES:])
+        say(f"{len(entries) - _MAX_ENTRIES} more match: {names}")
 
 
 def _friction_laws(json: bool) -> None:
@@ -73,37 +73,37 @@ def _friction_laws(json: bool) -> None:
     say(table(rows))
 
 
-def _plainly(name: str) -> str:
-    """A name without its case and what joins its words."""
+def _plain_form(name: str) -> str:
+    """Return a name in lower case with blanks between its words."""
     return name.lower().replace("_", " ").replace("-", " ")
 
 
-def _all() -> list[tuple[tuple[str, ...], dict[str, Any]]]:
-    """Everything that can be explained, with its names; those of most weight first."""
+def _all_entries() -> list[tuple[tuple[str, ...], dict[str, Any]]]:
+    """Return everything that can be explained with its names, the most important first."""
     return [*_choices(), *_warnings(), *_quantities(), *_keys(), *_figures()]
 
 
-def _named(asked: str) -> Entries:
-    """What is called so: as written, or else in any case and joined in any way."""
-    known = _all()
-    said = [_of_word(meant)] if (meant := word(asked)) else []
-    exact = [entry for names, entry in known if asked in names]
-    wanted = _plainly(asked)
-    found = exact or [e for names, e in known if wanted in map(_plainly, names)]
-    return [*said, *found]
+def _entries_by_name(query: str) -> Entries:
+    """Return entries with this name: as written, or else ignoring case, hyphens and underscores."""
+    candidates = _all_entries()
+    words = [_of_word(meant)] if (meant := word(query)) else []
+    exact = [entry for names, entry in candidates if query in names]
+    plain_query = _plain_form(query)
+    matches = exact or [e for names, e in candidates if plain_query in map(_plain_form, names)]
+    return [*words, *matches]
 
 
-def _holding(asked: str) -> Entries:
-    """What has the words in its name, as whole words before parts of words; or in its meaning."""
-    known, wanted = _all(), _plainly(asked)
+def _entries_with_words(query: str) -> Entries:
+    """Return entries with the words in their names (full words first), or else in their meaning."""
+    candidates, plain_query = _all_entries(), _plain_form(query)
     ranks: list[Entries] = [[], [], []]
-    for names, entry in known:
-        plain = [_plainly(name) for name in names if len(name) > 1]
-        if any(f" {wanted} " in f" {name} " for name in plain):
+    for names, entry in candidates:
+        plain = [_plain_form(name) for name in names if len(name) > 1]
+        if any(f" {plain_query} " in f" {name} " for name in plain):
             ranks[0].append(entry)
-        elif len(wanted) > 2 and any(wanted in name for name in plain):
+        elif len(plain_query) > 2 and any(plain_query in name for name in plain):
             ranks[1].append(entry)
-        elif f" {wanted} " in f" {_plainly(entry['meaning'])} ":
+        elif f" {plain_query} " in f" {_plain_form(entry['meaning'])} ":
             ranks[2].append(entry)
     return [*ranks[0], *ranks[1]] or ranks[2]
 
@@ -157,18 +157,18 @@ def _choices() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     from tribodyn.study.case.reference import case_keys, choice_meanings, explanations, page_of
     from tribodyn.study.pipeline.citations import sources_of
 
-    told = explanations()
-    named = [(key, spec.names()) for key, spec, _ in case_keys() if spec.names]
+    texts = explanations()
+    choices = [(key, spec.names()) for key, spec, _ in case_keys() if spec.names]
     for name, meaning in choice_meanings().items():
-        keys = [key for key, names in named if name in names]
+        keys = [key for key, names in choices if name in names]
         yield (
             (name,),
             {
                 "choice": name,
                 "of": ", ".join(keys),
                 "meaning": meaning,
-                "equation": told["equations"].get(name, ""),
-                "use": told["ranges"].get(name, ""),
+                "equation": texts["equations"].get(name, ""),
+                "use": texts["ranges"].get(name, ""),
                 "source": " ".join(sources_of(keys[0].partition(".")[0], name)),
                 "page": page_of(keys[0]),
             },
@@ -210,15 +210,15 @@ def _unknown(symbol: str) -> Problem:
 
     symbols = [quantity.symbol for quantity in QUANTITIES.values() if quantity.symbol]
     names = [*choice_meanings(), *warning_meanings(), *(key for key, _, _ in case_keys())]
-    known = dict.fromkeys([*QUANTITIES, *symbols, *SUMMARY, *names, *listed()])
-    near = difflib.get_close_matches(symbol, known, n=3)
-    remedy = f"Did you mean {' or '.join(near)}?" if near else "See: tribodyn units"
-    what = f'nothing is known of "{symbol}"'
+    names_and_symbols = dict.fromkeys([*QUANTITIES, *symbols, *SUMMARY, *names, *listed()])
+    similar = difflib.get_close_matches(symbol, names_and_symbols, n=3)
+    remedy = f"Did you mean {' or '.join(similar)}?" if similar else "See: tribodyn units"
+    what = f'there is no entry "{symbol}"'
     return Problem(what, why="No quantity, law or key has this name", remedy=remedy)
 
 
 def units(*, json: Flag = False) -> None:
-    """List the units of all quantities and the spellings that are understood besides.
+    """List the units of all quantities and the other spellings that are accepted.
 
     Parameters
     ----------
@@ -233,13 +233,21 @@ def units(*, json: Flag = False) -> None:
         if quantity.unit:
             kinds.setdefault((quantity.unit, quantity.display_unit), []).append(quantity.name)
     if json:
-        listed = [{"si": si, "shown": shown, "for": n} for (si, shown), n in kinds.items()]
-        say_json({"units": listed, "spellings": SPELLINGS})
+        rows = [
+            {"si": si, "shown": display_unit, "for": n} for (si, display_unit), n in kinds.items()
+        ]
+        say_json({"units": rows, "spellings": SPELLINGS})
         return
-    say("Shown as, in SI, and what for (any unit of the same kind is understood):")
-    say(table([[shown, si, ", ".join(names)] for (si, shown), names in kinds.items()]))
-    say("\nSpellings understood besides the usual ones:")
-    say(table([[spelling, meant] for spelling, meant in SPELLINGS.items() if spelling != meant]))
+    say("Display unit, SI unit, and quantities (any unit of the same kind is accepted):")
+    say(
+        table([[display_unit, si, ", ".join(names)] for (si, display_unit), names in kinds.items()])
+    )
+    say("\nOther accepted spellings:")
+    say(
+        table(
+            [[spelling, meaning] for spelling, meaning in SPELLINGS.items() if spelling != meaning]
+        )
+    )
 
 
 def cite(result: Path, /, *, bibtex: Flag = False, json: Flag = False) -> None:

@@ -8,8 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.cli.commands.study_commands import begun, finish
-from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.commands.study_commands import finish, prepare_study
+from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import (
     CaseName,
     Flag,
@@ -63,10 +63,10 @@ def losses(
         Write losses and efficiency in SI as one JSON object to stdout.
     """
     from tribodyn import plot
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.answers import losses_answer, pictured
 
-    ready, target = begun("losses", case, out, set_, force)
+    ready, target = prepare_study("losses", case, out, set_, force)
     slave = _slave(ready, rig)
     points = {
         name: _values(ready, name, text) for name, text in (("torque", torque), ("speed", speed))
@@ -75,27 +75,27 @@ def losses(
         with progress_bar() as progress:
             answer = losses_answer(ready, **points, progress=progress)
         if slave is not None:
-            shown = pictured(plot.power_flow, _rig(ready, slave, answer.facts))
-            told = [*answer.told, f"{shown[1].layout.title.text}."]
-            answer = answer._replace(figures=[*answer.figures, shown], told=told)
+            rig_figure = pictured(plot.power_flow, _rig(ready, slave, answer.facts))
+            statements = [*answer.told, f"{rig_figure[1].layout.title.text}."]
+            answer = answer._replace(figures=[*answer.figures, rig_figure], told=statements)
     finish("losses", ready, target, answer, force, json)
     show_warnings(warnings)
 
 
 def _values(case: Case, name: str, text: Text) -> list[float] | None:
-    """Torques or speeds of an option, checked like the key of the case."""
+    """Return torques or speeds of an option, checked like the key of the case."""
     from tribodyn.study.studies.axes import points_of
 
     if text is None:
         return None
     key, by = f"operation.{name}", f"--{name}"
-    given = read_ranges([f"{key}={text}"])[key]
+    values = read_ranges([f"{key}={text}"])[key]
     try:
-        return points_of(case, key, given, by=by)
+        return points_of(case, key, values, by=by)
     except InputError as error:
         remedy = f'Write --{name} "{_EXAMPLES[name]}"'
-        told = [replace(each, where=by, remedy=remedy) for each in error.problems]
-        raise InputError(told) from None
+        problems = [replace(p, where=by, remedy=remedy) for p in error.problems]
+        raise InputError(problems) from None
 
 
 def _slave(case: Case, rig: Text) -> Case | None:
@@ -123,15 +123,15 @@ _GUARD = "guards against a wrong unit"
 
 
 def _torque(default: float | None, meaning: str) -> Any:
-    shown = {"unit": "N*m", "display_unit": "N*m", "example": '"0.1 N*m"'}
-    return number(default, 0.0, 1e6, _GUARD, meaning=meaning, **shown)
+    format_options = {"unit": "N*m", "display_unit": "N*m", "example": '"0.1 N*m"'}
+    return number(default, 0.0, 1e6, _GUARD, meaning=meaning, **format_options)
 
 
-#: What --set may say of a measurement.
+#: Keys of a measurement that --set accepts.
 _KEYS: dict[str, Option] = {
     "gear_loss_factor": number(None, 1e-3, 2.0, "gears lie between 0.05 and 0.5", meaning="H_V"),
     "gear_loss_factor_uncertainty": number(0.0, 0.0, 1.0, _GUARD, meaning="of H_V"),
-    "gear_sets": number(1.0, 1.0, 2.0, "test gears alone, or slave gears alike", meaning="k"),
+    "gear_sets": number(1.0, 1.0, 2.0, "test gears alone, or equal slave gears too", meaning="k"),
     "no_load_torque": _torque(5.0, "rows up to it are without load"),
     "other_loss": _torque(0.0, "what bearings and seals lose more under load"),
     "torque_loss_uncertainty": _torque(None, "of one reading"),
@@ -160,7 +160,7 @@ def friction_from_loss(
     case : str
         Case with the gears that were tested: their gear loss factor is taken.
     set_ : list of str
-        What else is known: gear_loss_factor, gear_sets (2: slave gears alike), no_load_torque,
+        Further data: gear_loss_factor, gear_sets (2: equal slave gears), no_load_torque,
         other_loss, and the standard uncertainties torque_loss_uncertainty, torque_uncertainty,
         other_loss_uncertainty and gear_loss_factor_uncertainty, as in "no_load_torque=5 N*m".
     out : Path
@@ -178,38 +178,38 @@ def friction_from_loss(
     target = out if out is not None else Path(f"{Path(file).stem}-friction")
     check_place(target, force)
     with collected() as warnings:
-        measured = _measured(file, case, _options(set_ or []))
-        found = friction_from_power_loss(measured)
-    head, rows = _friction_rows(found)
-    figure = pictured(plot.friction_from_loss, found)
-    told = [
+        loss_table = _measured(file, case, _options(set_ or []))
+        friction = friction_from_power_loss(loss_table)
+    head, rows = _friction_rows(friction)
+    figure = pictured(plot.friction_from_loss, friction)
+    statements = [
         f"{figure[1].layout.title.text}.",
-        f"H_V = {measured.gear_loss_factor:.5g}. Source: {measured.source}.",
+        f"H_V = {loss_table.gear_loss_factor:.5g}. Source: {loss_table.source}.",
         *(warning.message for warning in warnings),
     ]
     with new_directory(target, force=force) as place:
-        write_dataset(found.to_xarray(), place / "study.nc")
+        write_dataset(friction.to_xarray(), place / "study.nc")
         (place / "friction.csv").write_text(csv_text([head, *rows]), encoding="utf-8")
         write_study_report(
             None,
             place / "report.html",
             kind="friction from losses",
-            told=told,
+            told=statements,
             figures=[figure],
             head=head,
             rows=rows,
         )
     if json:
-        say_json(_friction_facts(found, measured))
+        say_json(_friction_facts(friction, loss_table))
     else:
-        say("\n".join([*told[:2], table([head, *rows])]))
+        say("\n".join([*statements[:2], table([head, *rows])]))
     show_warnings(warnings)
     tell(f"Report: {target / 'report.html'}")
 
 
 def _options(settings: Sequence[str]) -> dict[str, Any]:
-    """Values of --set, each checked by itself."""
-    found: dict[str, Any] = {}
+    """Return the checked values of --set."""
+    options: dict[str, Any] = {}
     problems = []
     for key, value in read_changes(settings).items():
         if key not in _KEYS:
@@ -218,16 +218,16 @@ def _options(settings: Sequence[str]) -> dict[str, Any]:
             problems.append(Problem(f'unknown key "{key}"', "--set", why, remedy))
             continue
         try:
-            found[key] = float(read_value(_KEYS[key], key, value))
+            options[key] = float(read_value(_KEYS[key], key, value))
         except FaultError as fault:
             problems.append(replace(fault.problem, where="--set"))
     if problems:
         raise InputError(problems)
-    return found
+    return options
 
 
 def _measured(file: str, case: Text, options: dict[str, Any]) -> PowerLossTable:
-    """The table of the file, or that of the package with this name."""
+    """Return the table of the file, or the built-in table with this name."""
     from tribodyn.losses import gear_loss_factor, power_loss_table, read_power_loss_table
     from tribodyn.losses.loss_table import TABLES
 
@@ -240,12 +240,12 @@ def _measured(file: str, case: Text, options: dict[str, Any]) -> PowerLossTable:
 
         factor = gear_loss_factor(load_case(case).gear_pair)
     if file in TABLES and not Path(file).exists():
-        known: dict[str, Any] = {} if factor is None else {"gear_loss_factor": factor}
-        return replace(power_loss_table(file), **known, **options)
+        changes: dict[str, Any] = {} if factor is None else {"gear_loss_factor": factor}
+        return replace(power_loss_table(file), **changes, **options)
     if factor is None:
         why = "Friction is the loss over the torque and the gear loss factor H_V"
         remedy = 'Name the gears with --case, or write --set "gear_loss_factor=0.30"'
-        raise InputError("the gear loss factor is not known", "", why, remedy)
+        raise InputError("the gear loss factor is missing", "", why, remedy)
     return read_power_loss_table(file, factor, **options)
 
 
@@ -262,16 +262,16 @@ _COLUMNS = (
 )
 
 
-def _friction_facts(found: FrictionFromLoss, measured: PowerLossTable) -> dict[str, Any]:
-    """Columns in SI; endless degrees of freedom, which JSON has no number for, are null."""
-    columns = {name: getattr(found, name).tolist() for name in _COLUMNS}
+def _friction_facts(friction: FrictionFromLoss, loss_table: PowerLossTable) -> dict[str, Any]:
+    """Return columns in SI; infinite degrees of freedom, which JSON cannot express, are null."""
+    columns = {name: getattr(friction, name).tolist() for name in _COLUMNS}
     freedom = columns["degrees_of_freedom"]
     columns["degrees_of_freedom"] = [None if math.isinf(value) else value for value in freedom]
-    facts = {"gear_loss_factor": measured.gear_loss_factor, "source": measured.source}
-    return {**facts, **columns, "verdict": list(found.verdict)}
+    facts = {"gear_loss_factor": loss_table.gear_loss_factor, "source": loss_table.source}
+    return {**facts, **columns, "verdict": list(friction.verdict)}
 
 
-def _friction_rows(found: FrictionFromLoss) -> tuple[list[str], list[list[str]]]:
+def _friction_rows(friction: FrictionFromLoss) -> tuple[list[str], list[list[str]]]:
     from tribodyn.units import convert
 
     head = [
@@ -286,14 +286,14 @@ def _friction_rows(found: FrictionFromLoss) -> tuple[list[str], list[list[str]]]
         "verdict",
     ]
     columns = (
-        found.speed * convert(1.0, "rad/s", "rpm"),
-        found.torque,
-        found.friction_coefficient,
-        found.standard_uncertainty,
-        found.monte_carlo_uncertainty,
-        found.low,
-        found.high,
-        0.1 * found.sensitivity,
+        friction.speed * convert(1.0, "rad/s", "rpm"),
+        friction.torque,
+        friction.friction_coefficient,
+        friction.standard_uncertainty,
+        friction.monte_carlo_uncertainty,
+        friction.low,
+        friction.high,
+        0.1 * friction.sensitivity,
     )
     rows = [[f"{value:.4g}" for value in row] for row in zip(*columns, strict=True)]
-    return head, [[*row, verdict] for row, verdict in zip(rows, found.verdict, strict=True)]
+    return head, [[*row, verdict] for row, verdict in zip(rows, friction.verdict, strict=True)]

@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from tribodyn.cli.commands.study_commands import begun, finish
+from tribodyn.cli.commands.study_commands import finish, prepare_study
 from tribodyn.cli.commands.sweep_command import INTERRUPTED
-from tribodyn.cli.screen import say, say_json, show_resumed, tell
+from tribodyn.cli.console import say, say_json, show_resumed, tell
 from tribodyn.cli.settings import (
     RANGE,
     CaseName,
@@ -39,15 +39,15 @@ def bifurcation(
     force: Force = False,
     json: Flag = False,
 ) -> int:
-    """Follow the motion of a case over one value; tell periods, jumps and step errors.
+    """Follow the motion of a case over one value; report periods, jumps and step errors.
 
     Parameters
     ----------
     over : str
         What varies: "operation.speed=400..3500 rpm:300".
     sweep : str
-        Each value from the end of the one before (up), the other way (down), both ways, or each
-        by itself (independent).
+        Start each value from the end of the previous one, upwards (up), downwards (down) or both,
+        or from the same start (independent).
     cycles : int
         Mesh cycles of the statistics at each value.
     transient : int
@@ -57,14 +57,14 @@ def bifurcation(
     out : Path
         Directory to write; by default that of the case with "-bifurcation".
     json : bool
-        Write what was found in SI as one JSON object to stdout.
+        Write the findings in SI as one JSON object to stdout.
     """
     from tribodyn.checkpoints import Members
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
 
-    key, (first, last, points) = _one(over)
+    key, (first, last, points) = _single_range(over)
     _check_lengths(cycles, transient)
-    ready, target = begun("bifurcation", case, out, set_, force)
+    ready, target = prepare_study("bifurcation", case, out, set_, force)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
     with Members(target, force) as members:
         with progress_bar() as progress:
@@ -73,27 +73,27 @@ def bifurcation(
             from tribodyn.study.studies.bifurcation import bifurcation as compute
 
             read_axes(ready, {key: (first, last, points)}, by="bifurcation")
-            found = compute(
+            diagram = compute(
                 ready, key, (first, last), points, steps=steps, sweep=sweep, by="bifurcation",
                 keep_partial=True, progress=progress, members=members, **options,
             )  # fmt: skip
         show_resumed(members)
-        if not found.finished.any():
+        if not diagram.finished.any():
             raise KeyboardInterrupt
-        judged = int((found.finished & (found.verdict != "")).sum())
-        complete = judged == found.finished.size
+        judged = int((diagram.finished & (diagram.verdict != "")).sum())
+        complete = judged == diagram.finished.size
         if not complete:
             tell(
-                f"interrupted: {int(found.finished.sum())} of {found.finished.size} motions are "
-                f"done, {judged} of them judged, and being written; the same command with --force "
-                "goes on from there; Ctrl-C again stops at once"
+                f"interrupted: {int(diagram.finished.sum())} of {diagram.finished.size} motions "
+                f"are done, {judged} of them judged, and being written; the same command with "
+                "--force continues from there; Ctrl-C again stops at once"
             )
-        findings = Findings(ready, found)
+        findings = Findings(ready, diagram)
         with progress_bar() as progress:
             progress.start("Report")
             from tribodyn.report.answers import save_bifurcation
 
-            save_bifurcation(found, ready, findings, target, force)
+            save_bifurcation(diagram, ready, findings, target, force)
             progress.finish()
         members.close_after(complete)
     if json:
@@ -116,7 +116,7 @@ def continuation(
     force: Force = False,
     json: Flag = False,
 ) -> None:
-    """Follow the periodic motion of a case over one value, stable or not; tell where it turns back.
+    """Follow the periodic motion of a case over one value, stable or not, and report its folds.
 
     Parameters
     ----------
@@ -131,10 +131,10 @@ def continuation(
     json : bool
         Write the branch in SI as one JSON object to stdout.
     """
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
 
     key, ends = _branch_range(over)
-    ready, target = begun("continuation", case, out, set_, force)
+    ready, target = prepare_study("continuation", case, out, set_, force)
     with progress_bar() as progress:
         from tribodyn.report.nonlinear_answers import continuation_answer
 
@@ -172,11 +172,11 @@ def basins(
     json : bool
         Write the motions with their shares in SI as one JSON object to stdout.
     """
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
 
     error = None if transmission_error is None else read_ends(transmission_error, "-20..40 um")
     speed = None if rate is None else read_ends(rate, "-400000..400000 um/s")
-    ready, target = begun("basins", case, out, set_, force)
+    ready, target = prepare_study("basins", case, out, set_, force)
     with progress_bar() as progress:
         from tribodyn.report.nonlinear_answers import basins_answer
 
@@ -209,10 +209,10 @@ def lyapunov(
     json : bool
         Write the exponents in SI as one JSON object to stdout.
     """
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
 
     _check_lengths(cycles, transient)
-    ready, target = begun("lyapunov", case, out, set_, force)
+    ready, target = prepare_study("lyapunov", case, out, set_, force)
     with progress_bar() as progress:
         from tribodyn.report.nonlinear_answers import lyapunov_answer
 
@@ -234,8 +234,8 @@ def _branch_range(over: str) -> tuple[str, tuple[Any, Any]]:
     return key, read_ends(text, _BRANCH.removeprefix('Write "').removesuffix('"'))
 
 
-def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
-    """The one key that varies."""
+def _single_range(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
+    """Return the single key that varies, with its range."""
     ranges = read_ranges(over, lists=False)
     if len(ranges) > 1:
         what = f"{len(ranges)} keys vary: {', '.join(ranges)}"
@@ -244,7 +244,7 @@ def _one(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
 
 
 def _check_lengths(cycles: int, transient: int) -> None:
-    """Refuse mesh cycles that make no diagram."""
+    """Refuse too few mesh cycles."""
     for name, value, least in (("cycles", cycles, 2), ("transient", transient, 0)):
         if value < least:
             why = f"At least {least} are needed" if least else "It is a count"

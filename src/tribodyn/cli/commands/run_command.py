@@ -8,7 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import figures, say, say_json, show_warnings, tell
+from tribodyn.cli.console import figures, say, say_json, show_warnings, tell
 from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case, check_place
 
 
@@ -31,7 +31,7 @@ def run(
     out : Path
         Directory to write; by default it is called like the case.
     quiet : bool
-        Leave the table of values out; warnings and the place of the report are still told.
+        Omit the table of values; warnings and the location of the report are still printed.
     open_ : bool
         Show the report in the web browser.
     csv : bool
@@ -39,7 +39,7 @@ def run(
     json : bool
         Write the summary as one flat JSON object in SI to stdout.
     """
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.errors import ModelWarning
 
     target = out if out is not None else Path(Path(case).stem)
@@ -74,28 +74,28 @@ def warm_up(
     jobs: int | None = None,
     json: Flag = False,
 ) -> None:
-    """Compile what a case needs into the disk cache, by a run that nothing is kept of.
+    """Compile what a case needs into the disk cache, by a run whose result is discarded.
 
     Parameters
     ----------
     case : str
         Built-in case or path of a case file; all built-in cases by default.
     jobs : int
-        Processes side by side; as many as there are processors by default, at most four.
+        Parallel processes; by default one per processor, at most four.
     json : bool
         Write kernels and seconds as one JSON object to stdout.
     """
     from tribodyn.cases.compile_ahead import warm_up as compute
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
 
     with progress_bar() as progress:
-        found = compute(case, jobs, progress)
+        report = compute(case, jobs, progress)
     if json:
-        say_json(found)
+        say_json(report)
         return
-    for name, seconds in found["compiled"].items():
+    for name, seconds in report["compiled"].items():
         say(f"compiled in {seconds:.0f} s: {name}")
-    for name in found["there_already"]:
-        say(f"there already: {name}")
+    for name in report["there_already"]:
+        say(f"already cached: {name}")
     what = "runs of the built-in cases compile" if case is None else "a run of this case compiles"
-    say(f"Done in {found['seconds']:.0f} s; {what} nothing more")
+    say(f"Done in {report['seconds']:.0f} s; {what} nothing more")

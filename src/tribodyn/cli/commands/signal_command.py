@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import Output, check_place
 from tribodyn.errors import Argument, InputError, Problem, TribodynError, collected, did_you_mean
 
@@ -279,7 +279,7 @@ def _known_channel(recording: Recording, name: str, option: str) -> None:
     if name not in recording.channels:
         names = list(recording.channels)
         why = f"The recording has {', '.join(names[:20])}"
-        remedy = did_you_mean(name, names, "Write the name as it stands there")
+        remedy = did_you_mean(name, names, "Write the name exactly as listed")
         raise InputError(f'there is no channel "{name}"', option, why, remedy)
 
 

@@ -1,4 +1,4 @@
-"""``tribodyn study``: many members of a case, into a store that is gone on with."""
+"""``tribodyn study``: many runs of a case, in a store that can be continued."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribodyn.cli.bar import counted, left, progress_bar
 from tribodyn.cli.commands.sweep_command import INTERRUPTED
-from tribodyn.cli.screen import say, say_json, tell
+from tribodyn.cli.console import say, say_json, tell
+from tribodyn.cli.progress_bar import counted, left, progress_bar
 from tribodyn.cli.settings import Flag, Output
 from tribodyn.errors import quiet
 
@@ -35,7 +35,7 @@ def study(
     force: Flag = False,
     json: Flag = False,
 ) -> int:
-    """Compute the members of a study file into a store; the same command goes on with it.
+    """Compute the members of a study file into a store; the same command continues it.
 
     Parameters
     ----------
@@ -47,11 +47,11 @@ def study(
         Address of a Dask scheduler whose workers compute, such as "tcp://127.0.0.1:8786"; by
         default this machine does.
     status : bool
-        Say how far the study has come, which may run elsewhere, and compute nothing.
+        Report the progress of the study, which may run elsewhere, and compute nothing.
     force : bool
         Replace another study in that place.
     json : bool
-        Write how far it has come as one JSON object to stdout.
+        Write the progress as one JSON object to stdout.
     """
     from tribodyn.variants import run_study, study_state
 
@@ -66,12 +66,12 @@ def study(
         with quiet("leftover"), _progress() as progress:
             state = run_study(study, place, scheduler=scheduler, force=force, progress=progress)
     except KeyboardInterrupt:
-        tell("interrupted: what is finished is stored; the same command goes on from there")
+        tell("interrupted: finished chunks are stored; the same command continues from there")
         _show(study_state(place), json)
         return INTERRUPTED
     _show(state, json)
     for name in state.damaged:
-        tell(f"Chunk {name} was damaged or gone and was computed anew.")
+        tell(f"Chunk {name} was damaged or missing and was computed again.")
     for name, why in state.missing.items():
         tell(f"Chunk {name} could not be computed; the same command tries again. {why}")
     tell(f"Store: {place}")
@@ -79,7 +79,7 @@ def study(
 
 
 def _silence_dask() -> None:
-    """Keep the log of Dask off the screen: what counts of it is told in our words."""
+    """Keep the log of Dask off the screen; our own messages report what matters."""
     with suppress(ImportError):
         import distributed  # noqa: F401  # which sets levels of its own when it is imported
     for name in list(logging.root.manager.loggerDict):
@@ -117,17 +117,17 @@ class _Lines:
     def start(self, task: str, total: int | None = None) -> None:
         """Begin the study."""
         self._done, self._total, self._first = 0, total or 0, -1
-        self._begun = self._told = time.monotonic()
+        self._start_time = self._last_report = time.monotonic()
 
     def advance(self, steps: int = 1) -> None:
-        """Tell how far it has come, if that was not done just now."""
+        """Report the progress, unless that was done a moment ago."""
         self._done += steps
         if self._first < 0:  # what was stored already, which took no time
             self._first = self._done
         now = time.monotonic()
-        if now - self._told >= _BETWEEN and self._done > self._first:
-            self._told = now
-            each = (now - self._begun) / (self._done - self._first)
+        if now - self._last_report >= _BETWEEN and self._done > self._first:
+            self._last_report = now
+            each = (now - self._start_time) / (self._done - self._first)
             rest = left(each * (self._total - self._done))
             tell(", ".join(filter(None, [f"{counted(self._done, self._total)} members", rest])))
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribodyn.cli.screen import say, say_json, table, tell
+from tribodyn.cli.console import say, say_json, table, tell
 from tribodyn.cli.settings import (
     CaseName,
     Flag,
@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
-def begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tuple[Case, Path]:
+def prepare_study(
+    kind: str, case: str, out: Output, settings: Words, force: bool
+) -> tuple[Case, Path]:
     """The case of a study with its changes, and the directory to write."""
     target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
     ready = changed_case(case, settings or [])
@@ -32,20 +34,20 @@ def begun(kind: str, case: str, out: Output, settings: Words, force: bool) -> tu
     return ready, target
 
 
-def stripped(words: Sequence[str]) -> list[str]:
+def stripped(texts: Sequence[str]) -> list[str]:
     """Words of the command line without spaces around them."""
-    return [word.strip() for word in words]
+    return [text.strip() for text in texts]
 
 
-def finish(kind: str, case: Case, target: Path, found: Answer, force: bool, json: bool) -> None:
-    """Write the directory of a study and tell what was found."""
+def finish(kind: str, case: Case, target: Path, answer: Answer, force: bool, json: bool) -> None:
+    """Write the directory of a study and print its results."""
     from tribodyn.report.answers import save_answer
 
-    save_answer(kind, case, target, found, force)
+    save_answer(kind, case, target, answer, force)
     if json:
-        say_json(found.facts)
+        say_json(answer.facts)
     else:
-        say("\n".join([case.title, *found.told, table([found.head, *found.rows])]))
+        say("\n".join([case.title, *answer.told, table([answer.head, *answer.rows])]))
     tell(f"Report: {target / 'report.html'}")
 
 
@@ -70,10 +72,10 @@ def modes(
     json : bool
         Write the modes in SI as one JSON object to stdout.
     """
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.answers import modes_answer
 
-    ready, target = begun("modes", case, out, set_, force)
+    ready, target = prepare_study("modes", case, out, set_, force)
     with progress_bar() as progress:
         answer = modes_answer(ready, None if between is None else read_ends(between), progress)
     finish("modes", ready, target, answer, force, json)
@@ -103,7 +105,7 @@ def harris(
     """
     from tribodyn.report.answers import harris_answer
 
-    ready, target = begun("harris", case, out, set_, force)
+    ready, target = prepare_study("harris", case, out, set_, force)
     answer = harris_answer(ready, stripped(torque) or None)
     finish("harris", ready, target, answer, force, json)
 
@@ -135,7 +137,7 @@ def relief(
     """
     from tribodyn.report.answers import relief_answer
 
-    ready, target = begun("relief", case, out, set_, force)
+    ready, target = prepare_study("relief", case, out, set_, force)
     answer = relief_answer(ready, stripped(torque) or None, gears)
     finish("relief", ready, target, answer, force, json)
 
@@ -152,7 +154,7 @@ def run_up(
     force: Force = False,
     json: Flag = False,
 ) -> None:
-    """March a case while its speed rises; tell where it vibrates most.
+    """Integrate a case in time while its speed rises; report where it vibrates most.
 
     Parameters
     ----------
@@ -167,10 +169,10 @@ def run_up(
     json : bool
         Write levels over the speed in SI to stdout.
     """
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.answers import run_up_answer
 
-    ready, target = begun("run-up", case, out, set_, force)
+    ready, target = prepare_study("run-up", case, out, set_, force)
     with progress_bar() as progress:
         answer = run_up_answer(ready, read_ends(between), duration, down, progress)
     finish("run-up", ready, target, answer, force, json)

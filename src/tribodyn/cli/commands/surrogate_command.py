@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from tribodyn.cli.screen import say, say_json, show_warnings, table, tell
+from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import Flag, Output, Words, changed_case, read_changes
 from tribodyn.errors import InputError, Problem, collected
 from tribodyn.files import check_new
@@ -64,7 +64,7 @@ def _train(
     places: tuple[Path | None, list[str]],
     json: bool,
 ) -> None:
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.study.uncertain.operating_data import RESPONSE, operating_data
     from tribodyn.surrogate import Training, train
 
@@ -73,7 +73,7 @@ def _train(
     path = check_new(place, "--out")
     over = {key: str(value) for key, value in read_changes(values).items()} or None
     case = changed_case(source, settings)
-    with collected() as told, progress_bar() as progress:
+    with collected() as warnings, progress_bar() as progress:
         data = operating_data(case, over, size, seed=seed, progress=progress)
         inputs = [name for name in data.columns if name not in RESPONSE]
         varied = [name for name in RESPONSE if np.ptp(data[name]) > 1e-9 * abs(data[name]).max()]
@@ -81,33 +81,33 @@ def _train(
         model = train(
             data, features=inputs, targets=varied, seed=seed, training=shares, progress=progress
         )
-    show_warnings(told)
+    show_warnings(warnings)
     model.save(path)
     if json:
         facts = {
-            name: {**vars(each), "band": _finite(float(half)), "unit": str(unit)}
-            for (name, each), half, unit in zip(
+            name: {**vars(error_of), "band": _finite(float(half)), "unit": str(unit)}
+            for (name, error_of), half, unit in zip(
                 model.errors.items(), model.band, model.target_unit, strict=True
             )
         }
         say_json({"model": str(path), "features": inputs, "level": model.level, "errors": facts})
     else:
-        say("\n".join([case.title, *_told(model)]))
+        say("\n".join([case.title, *_error_lines(model)]))
     tell(f"Model: {path}")
 
 
-def _told(model: Surrogate) -> list[str]:
+def _error_lines(model: Surrogate) -> list[str]:
     """Errors over the held-out points, one line for each target."""
     head = ["target", "R^2", "mean relative error", "largest error", f"{model.level:.0%} band"]
     rows = [
         [
             name,
-            f"{each.determination:.5f}",
-            f"{100.0 * each.mean_absolute_relative:.3g} %",
-            f"{each.largest:.3g} {_unit(unit)}",
+            f"{error_of.determination:.5f}",
+            f"{100.0 * error_of.mean_absolute_relative:.3g} %",
+            f"{error_of.largest:.3g} {_unit(unit)}",
             f"+- {half:.3g} {_unit(unit)}" if math.isfinite(half) else "open",
         ]
-        for (name, each), half, unit in zip(
+        for (name, error_of), half, unit in zip(
             model.errors.items(), model.band, model.target_unit, strict=True
         )
     ]
@@ -122,12 +122,12 @@ def _told(model: Surrogate) -> list[str]:
 
 
 def _unit(text: str) -> str:
-    """Unit as it is read; none for a pure number."""
+    """Return the unit for display; none for a pure number."""
     return "" if text == "1" else str(text)
 
 
 def _finite(value: float) -> float | None:
-    """None for the end of a band that too few held-out points leave open."""
+    """Return None for an end of a band that too few held-out points leave open."""
     return value if math.isfinite(value) else None
 
 
@@ -136,9 +136,9 @@ def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
 
     model = load(source)
     inputs = _inputs(model, read_changes(values))
-    with collected() as told:
+    with collected() as warnings:
         answers, bands = model.predict(inputs), model.predict_band(inputs)
-    show_warnings(told)
+    show_warnings(warnings)
     rows, facts = [["target", "prediction", f"{model.level:.0%} band"]], {}
     for name, unit in zip(model.targets, model.target_unit, strict=True):
         value, (low, high) = float(answers[name]), map(float, bands[name])
@@ -153,23 +153,23 @@ def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
     say_json(facts) if json else say(table(rows))
 
 
-def _inputs(model: Surrogate, given: dict[str, Any]) -> dict[str, float]:
+def _inputs(model: Surrogate, values: dict[str, Any]) -> dict[str, float]:
     """Values of the features in SI."""
     from tribodyn.units import UnitProblemError, parse
 
     units = dict(zip(map(str, model.features), map(str, model.feature_unit), strict=True))
     problems = [
         Problem(f"{name} is no input of this model", name, f"It has {', '.join(units)}", "Use one")
-        for name in given
+        for name in values
         if name not in units
     ]
     problems += [
         Problem(f"{name} is missing", name, "", f'Write "{name}=VALUE {_unit(unit)}'.strip() + '"')
         for name, unit in units.items()
-        if name not in given
+        if name not in values
     ]
     inputs = {}
-    for name, value in given.items():
+    for name, value in values.items():
         try:
             inputs[name] = parse(str(value), units.get(name, "1").removeprefix("1"))
         except UnitProblemError as error:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from tribodyn.cli.screen import say, say_json, show_resumed, table, tell
+from tribodyn.cli.console import say, say_json, show_resumed, table, tell
 from tribodyn.cli.settings import (
     CaseName,
     Flag,
@@ -20,11 +20,11 @@ from tribodyn.cli.settings import (
 if TYPE_CHECKING:
     from tribodyn.study.studies.sweep_result import Sweep
 
-#: A sweep, or what says like one how many of its ``points`` are done.
-Study = TypeVar("Study", bound=Any)
+#: A sweep, or another study with ``points``, ``complete`` and ``save``.
+StudyType = TypeVar("StudyType", bound=Any)
 
 
-#: Exit code of a sweep that was stopped by Ctrl-C; what was done is kept.
+#: Exit code of a sweep that was stopped by Ctrl-C; finished values are saved.
 INTERRUPTED = 130
 
 
@@ -55,55 +55,57 @@ def sweep(
     target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)
     ready = changed_case(case, set_ or [])
-    names = _asked(show)
+    names = _summary_names(show)
 
-    def compute(**kept: Any) -> Sweep:
+    def compute(**checkpointing: Any) -> Sweep:
         from tribodyn.study.studies.sweep import sweep as over_keys
 
-        return over_keys(ready, ranges, partial=True, by="sweep", **kept)
+        return over_keys(ready, ranges, partial=True, by="sweep", **checkpointing)
 
-    found = kept_study(target, force, compute)
-    _show(found, found.shown(names), json)
-    failed = sum(bool(point.failed) for point in found.points)
+    result = run_checkpointed(target, force, compute)
+    _show(result, result.shown(names), json)
+    failed = sum(bool(point.failed) for point in result.points)
     if failed:
-        tell(f"{failed} of {len(found.points)} values failed; the column failed tells why.")
-    return ended(found, target)
+        tell(
+            f"{failed} of {len(result.points)} values failed; the column failed states the reason."
+        )
+    return report_exit_code(result, target)
 
 
-def kept_study(target: Path, force: bool, compute: Callable[..., Study]) -> Study:
-    """Compute a study whose parts are kept as they are finished, and save what is done."""
+def run_checkpointed(target: Path, force: bool, compute: Callable[..., StudyType]) -> StudyType:
+    """Compute a study with checkpoints of its finished parts, and save what is done."""
     from tribodyn.checkpoints import Members
-    from tribodyn.cli.bar import progress_bar
+    from tribodyn.cli.progress_bar import progress_bar
 
     check_place(target, force)
     with Members(target, force) as members:
         with progress_bar() as progress:
-            found = compute(progress=progress, members=members)
+            study = compute(progress=progress, members=members)
         show_resumed(members)
-        if not found.complete:
+        if not study.complete:
             tell(
-                f"interrupted: {len(found.points)} of {found.asked} values are done and "
-                "being written; the same command with --force goes on from there; "
+                f"interrupted: {len(study.points)} of {study.asked} values are done and "
+                "being written; the same command with --force continues from there; "
                 "Ctrl-C again stops at once"
             )
         with progress_bar() as progress:
             progress.start("Report")
-            found.save(target, force=force)
+            study.save(target, force=force)
             progress.finish()
-        members.close_after(found.complete)
-    return found
+        members.close_after(study.complete)
+    return study
 
 
-def ended(found: Sweep, target: Path) -> int:
-    """Tell where the report is; exit code of the study."""
+def report_exit_code(study: Sweep, target: Path) -> int:
+    """Print the location of the report and return the exit code of the study."""
     tell(f"Report: {target / 'report.html'}")
-    if not found.complete:
+    if not study.complete:
         return INTERRUPTED
-    return 1 if all(point.failed for point in found.points) else 0
+    return 1 if all(point.failed for point in study.points) else 0
 
 
-def _asked(show: str) -> list[str]:
-    """Names of figures that are asked for; unknown ones are told before anything is computed."""
+def _summary_names(show: str) -> list[str]:
+    """Return the requested summary figures; refuse unknown ones before anything is computed."""
     from tribodyn.errors import InputError, did_you_mean
     from tribodyn.study.pipeline.summary import SUMMARY
 
@@ -115,16 +117,16 @@ def _asked(show: str) -> list[str]:
     return names
 
 
-def _show(found: Sweep, names: Sequence[str], as_json: bool) -> None:
+def _show(result: Sweep, names: Sequence[str], as_json: bool) -> None:
     from tribodyn.study.pipeline.summary import SUMMARY
 
     if as_json:
-        units = {axis.key: axis.unit for axis in found.axes}
-        say_json({"keys": units, "complete": found.complete, "rows": list(found.rows())})
+        units = {axis.key: axis.unit for axis in result.axes}
+        say_json({"keys": units, "complete": result.complete, "rows": list(result.rows())})
         return
-    rows: list[list[str]] = [[*(axis.name for axis in found.axes), *names, ""]]
-    for point in found.points:
-        keys: list[Any] = [a.show(v) for a, v in zip(found.axes, point.values, strict=True)]
+    rows: list[list[str]] = [[*(axis.name for axis in result.axes), *names, ""]]
+    for point in result.points:
+        keys: list[Any] = [a.show(v) for a, v in zip(result.axes, point.values, strict=True)]
         figures = [SUMMARY[n].show(point.figures[n]) if n in point.figures else "-" for n in names]
         rows.append([*keys, *figures, f"failed: {point.failed}" if point.failed else ""])
-    say(f"{found.case.title}\n{table(rows)}")
+    say(f"{result.case.title}\n{table(rows)}")

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
-from tribodyn.cli.screen import tell
+from tribodyn.cli.console import tell
 from tribodyn.compiled import announcing_to
 from tribodyn.progress import SILENT, Progress
 
 
 def _columns() -> list[Any]:
-    """Spinner, what is done, how many of how many, a bar, and the time that is gone and left."""
+    """Spinner, task, count, bar, elapsed time and remaining time."""
     from rich.progress import (
         BarColumn,
         ProgressColumn,
@@ -38,12 +38,12 @@ def _columns() -> list[Any]:
 
 
 def counted(done: float, total: float | None) -> str:
-    """How many of how many; empty where nobody knows."""
+    """Return "12 of 40"; empty where the total is unknown."""
     return "" if total is None else f"{done:.0f} of {total:.0f}"
 
 
 def left(seconds: float | None) -> str:
-    """Time that is left, to two digits; empty where nobody knows."""
+    """Return the remaining time; empty where it is unknown."""
     if not seconds:
         return ""
     minutes, rest = divmod(round(seconds), 60)
@@ -54,7 +54,7 @@ def left(seconds: float | None) -> str:
 
 
 class Bar:
-    """Progress drawn by rich while the block runs; nothing of it stays on the screen."""
+    """Progress bar drawn by rich while the block runs and erased after it."""
 
     def __init__(self) -> None:
         from rich.console import Console
@@ -62,18 +62,18 @@ class Bar:
 
         self._screen = Rich(*_columns(), console=Console(stderr=True), transient=True)
         self._task: Any = None
-        self._telling = announcing_to(lambda text: self._screen.console.print(f"{text} ..."))
+        self._announcing = announcing_to(lambda text: self._screen.console.print(f"{text} ..."))
 
     def __enter__(self) -> Progress:
         """Start drawing."""
-        self._telling.__enter__()
+        self._announcing.__enter__()
         self._screen.start()
         return self
 
     def __exit__(self, *_: object) -> None:
         """Clear the bar."""
         self._screen.stop()
-        self._telling.__exit__(None, None, None)
+        self._announcing.__exit__(None, None, None)
 
     def start(self, task: str, total: int | None = None) -> None:
         """Begin a task of ``total`` steps."""
@@ -94,11 +94,11 @@ class Bar:
 
 @contextmanager
 def _no_bar() -> Iterator[Progress]:
-    """Where stderr is no terminal: only what is compiled is told, for that takes minutes."""
+    """Report only compilations, which take minutes, where stderr is not a terminal."""
     with announcing_to(tell):
         yield SILENT
 
 
 def progress_bar() -> AbstractContextManager[Progress]:
-    """Return a bar if stderr is a terminal, else something that draws none."""
+    """Return a progress bar if stderr is a terminal, else a silent one."""
     return Bar() if sys.stderr.isatty() else _no_bar()
