@@ -99,7 +99,7 @@ def test_a_case_is_changed_run_laid_over_and_saved(visit: Visit, folder: Path) -
     tab.click("[aria-label='Overlay Run 2']")
     visit.wait("[aria-label='Overlay Run 2'][aria-pressed=true]")
     tab.click("text=Lay over each other")
-    visit.wait("#bench h3", "Results beside each other")
+    visit.wait("#bench h3", "Comparison of results")
     tab.wait_for_selector("#bench .main-svg")
     tab.click("text=What differs")
     visit.wait("#bench td", "operation.torque")

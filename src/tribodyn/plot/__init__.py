@@ -1,4 +1,4 @@
-"""Figures: each answers one question about a result, as an interactive plotly figure.
+"""Interactive plotly figures of results, one question about a result per figure.
 
 Figures are looked up by name in :data:`FIGURES`. Plotly is loaded when the first one is drawn.
 """
@@ -30,7 +30,13 @@ from tribodyn.plot.mesh.table import (
     static_stiffness,
     static_transmission_error,
 )
-from tribodyn.plot.motion.courses import (
+from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
+from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
+from tribodyn.plot.motion.motion import result_comparison
+from tribodyn.plot.motion.response import adaptive_solution, response
+from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
+from tribodyn.plot.motion.sweeps import speed_sweep, sweep
+from tribodyn.plot.motion.time_histories import (
     acceleration,
     bearing_force,
     friction_force,
@@ -38,12 +44,6 @@ from tribodyn.plot.motion.courses import (
     tooth_force,
     transmission_error,
 )
-from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
-from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
-from tribodyn.plot.motion.motion import result_comparison
-from tribodyn.plot.motion.response import adaptive_solution, response
-from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
-from tribodyn.plot.motion.sweeps import speed_sweep, sweep
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map

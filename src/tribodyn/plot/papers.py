@@ -1,4 +1,4 @@
-"""Printed figures of sources, and how far what is computed is from them."""
+"""Deviation of computed values from the printed values of published papers."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import MUTED, PINION, WHEEL, Trace
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import MUTED, PINION, WHEEL, Trace
 
 if TYPE_CHECKING:
     from tribodyn.cases import PaperComparison
 
-#: Deviations below it [%] are drawn at it.
+#: Smallest deviation on the logarithmic axis [%]; smaller ones are plotted there.
 _LEAST = 1e-3
 _COLORS = {"value": PINION, "trend": MUTED, "cannot-reproduce": WHEEL}
 
@@ -21,7 +21,7 @@ _COLORS = {"value": PINION, "trend": MUTED, "cannot-reproduce": WHEEL}
 def _no_numbers(comparison: PaperComparison) -> str:
     if any(row["deviation"] is not None for row in comparison.rows):
         return ""
-    return "No row of these tables has both a printed and a computed number."
+    return "No row of these tables has both a printed and a computed value."
 
 
 def _symbol(percent: float) -> str:
@@ -32,10 +32,10 @@ def _symbol(percent: float) -> str:
 
 @drawing(
     "paper_comparison",
-    heading="Printed and computed",
-    caption="Amount of the deviation of every printed number, in the order of the tables; "
-    "triangles point up where the computed one is greater. Rows whose print is a word or a range "
-    "have none. The table of the report holds the numbers and the reasons.",
+    heading="Printed and computed values",
+    caption="Absolute deviation from every printed value, in the order of the tables; "
+    "triangles point up where the computed value is larger. Rows that print a word or a range "
+    "have no mark. The table of the report lists the numbers and the reasons.",
     of="PaperComparison",
     made_by="Call tribodyn.cases.compare_with_paper(name) and its plot method.",
     missing=_no_numbers,
@@ -73,8 +73,8 @@ def paper_comparison(comparison: PaperComparison) -> Any:
         )
     inside = sum(abs(row["deviation"]) <= 0.01 for row in rows)
     return stack(
-        f"{inside} of {len(rows)} printed numbers are met within 1 %",
-        "Printed number, in the order of the tables",
+        f"{inside} of {len(rows)} printed values agree within 1 %",
+        "Printed value, in the order of the tables",
         [Panel("Deviation [%]", traces, {"type": "log", "dtick": 1}, 1.6)],
         {"hovermode": "closest"},
     )

@@ -9,7 +9,7 @@ from typing import Any
 from tribodyn.drawing import Sketch
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
-from tribodyn.plot.look.style import TOP
+from tribodyn.plot.theme.style import TOP
 
 #: Figures of the report in their order, by what they are about.
 TOPICS = {

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tribodyn.plot.look.labels import display_unit, displayed, engineering, readable, significant
+from tribodyn.plot.theme.labels import display_unit, displayed, engineering, readable, significant
 from tribodyn.study.pipeline.summary import SUMMARY, by_topic
 from tribodyn.study.pipeline.words import in_words
 from tribodyn.study.studies.modes import ORDERS, Mode, mode_rows

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from importlib.metadata import version as installed
 from typing import Any
 
-from tribodyn.plot.look.labels import display_unit, displayed
+from tribodyn.plot.theme.labels import display_unit, displayed
 
 #: Packages whose version may change a figure.
 _PACKAGES = ("numpy", "scipy", "numba")

@@ -12,8 +12,8 @@ import numpy as np
 from tribodyn import plot
 from tribodyn.drawing import report_of
 from tribodyn.measurement.signal_analysis import MATE, SHAFT
-from tribodyn.plot.look.labels import readable, significant
 from tribodyn.plot.signals.analysed import seen_frequency
+from tribodyn.plot.theme.labels import readable, significant
 from tribodyn.report.answers import Answer, Picture
 from tribodyn.report.study import write_study_report
 

@@ -40,7 +40,7 @@ def test_a_stable_branch_has_one_curve():
     calm = continuation(lambda p: linear, 1.0, parameter="p", between=(0.0, 1.0), steps=64)
     figure = FIGURES["continuation"](calm)
     assert [trace.name for trace in figure.data] == ["stable", "stable", "limit"]
-    assert figure.layout.title.text == "The motion is stable from p 0 to p 1.000"
+    assert figure.layout.title.text == "The orbit is stable from p 0 to p 1.000"
     with pytest.raises(InputError, match="continuation"):
         FIGURES["continuation"](object())
 

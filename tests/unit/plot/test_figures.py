@@ -45,7 +45,7 @@ UNITLESS = {
     "Friction coefficient",
     "Film ratio",
     "Load share of a pair",
-    "Part of the load",
+    "Share of the load",
 }
 
 
@@ -224,7 +224,7 @@ def test_figures_without_meaning_say_why(drawable: Any) -> None:
         figure = FIGURES[name]
         assert isinstance(figure, Drawing)
         assert "centres" in figure.missing(plain)
-        with pytest.raises(InputError, match="centres stay in place"):
+        with pytest.raises(InputError, match="centres are fixed"):
             figure(plain)
     assert len(FIGURES["spectrum"](plain).data) == 1
     with pytest.raises(InputError) as refused:
@@ -302,7 +302,7 @@ def test_negative_force_is_explained(drawable: Any) -> None:
     assert "negative" not in caption("mesh_force", result)
     fine = result.response.fine
     fine.contact_force[5] = -1.0
-    assert "damping of the contact pulls" in caption("mesh_force", result)
+    assert "contact damping pulls" in caption("mesh_force", result)
     fine.deflection[5] = -2e-6
     assert "back flanks touch" in caption("mesh_force", result)
     result.half_backlash = 0.0

@@ -30,7 +30,7 @@ def test_the_film_ratio_has_a_panel_of_its_own(result: Any) -> None:
     ratio = curve(figure, "film ratio", "y2")
     least = result.mesh.minimum_film[result.mesh.in_contact].min()
     assert min(ratio.y) == pytest.approx(least / 0.5e-6)
-    assert set(curve(figure, "mixed below", "y2").y) == {1.0}
+    assert set(curve(figure, "asperity contact below", "y2").y) == {1.0}
     assert (
         figure.layout.title.text
         == f"The oil film at its thinnest is never below {least * 1e6:.3f} µm"
@@ -64,7 +64,7 @@ def test_film_stiffness_stands_against_the_teeth(result: Any) -> None:
 def test_a_film_that_does_not_yield_has_one_panel(result: Any) -> None:
     result.mesh = replace(result.mesh, film_stiffness_kind="none")
     assert {trace.yaxis for trace in FIGURES["film_stiffness"](result).data} == {"y"}
-    assert "does not yield" in caption("film_stiffness", result)
+    assert "adds no compliance" in caption("film_stiffness", result)
 
 
 def test_what_a_model_does_not_know_is_told(drawable: Any, result: Any) -> None:

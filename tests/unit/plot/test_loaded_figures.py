@@ -146,7 +146,7 @@ def test_deformation_is_drawn_with_its_factor_and_its_loads(contact: Any) -> Non
     drawn = figure(contact, phase=0.125, torque=0)
     assert "90 N·m" in drawn.layout.title.text
     assert len(drawn.frames) == 0
-    factor = float(drawn.layout.title.text.split(", ")[1].split()[0])
+    factor = float(drawn.layout.title.text.split("magnified ")[1].split()[0])
     bent = next(trace for trace in drawn.data if trace.name == "wheel, loaded")
     rest = [trace for trace in drawn.data if trace.name == "without load"][1]
     moved = np.hypot(bent.x[: len(rest.x)] - rest.x, bent.y[: len(rest.x)] - rest.y)
@@ -275,8 +275,8 @@ def test_tip_relief_map_has_amount_across_and_length_upwards() -> None:
 def test_an_optimum_at_the_edge_is_told() -> None:
     figure = FIGURES["tip_relief_map"]
     assert isinstance(figure, Drawing)
-    assert "widen it" in figure.caption_of(relief(on_edge=True))
-    assert "widen it" not in figure.caption_of(relief())
+    assert "widen the range" in figure.caption_of(relief(on_edge=True))
+    assert "widen the range" not in figure.caption_of(relief())
 
 
 @pytest.mark.parametrize(

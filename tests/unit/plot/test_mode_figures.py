@@ -91,7 +91,7 @@ def test_response_shows_amplitudes_in_display_units() -> None:
     np.testing.assert_allclose(curve(figure, "mesh force").y, np.abs(response.mesh_force))
     approach = 1e6 * np.abs(response.transmission_error[:, 0])
     np.testing.assert_allclose(curve(figure, "approach", "y2").y, approach)
-    assert figure.layout.title.text.startswith("An error of 2.00 µm makes ")
+    assert figure.layout.title.text.startswith("An error of 2.00 µm causes up to ")
 
 
 @pytest.mark.parametrize("name", ["campbell", "mode_shapes", "forced_response"])

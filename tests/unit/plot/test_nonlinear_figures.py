@@ -28,7 +28,7 @@ def test_plane_of_starts_has_one_colour_for_each_attractor():
     assert small.x[0] == pytest.approx(found.attractors[1].position[0, 0])
     assert figure.layout.xaxis.title.text == "Q0 [m]"
     assert figure.layout.yaxis.title.text == "Q0 velocity [m/s]"
-    assert figure.layout.title.text.startswith("2 motions are possible")
+    assert figure.layout.title.text.startswith("2 attractors coexist")
     assert found.to_xarray()["share"].values.sum() == pytest.approx(1.0)
 
 
@@ -52,7 +52,7 @@ def test_section_of_an_orbit_is_one_point():
     assert Record.plot(section, "q0") == figure
     (points,) = figure.data
     assert len(points.x) == 1
-    assert figure.layout.title.text == "The motion repeats with the mesh: one point"
+    assert figure.layout.title.text == "Period of one mesh cycle: one point"
     low, high = figure.layout.xaxis.range
     assert low < points.x[0] < high
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, readable, rounded
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, readable, rounded
 
 
 def test_units_are_printed_with_their_signs() -> None:

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tribodyn.drawing import Sketch
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import INK, line
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import INK, line
 
 
 def curves(count: int) -> list[dict[str, object]]:

@@ -140,7 +140,7 @@ def test_orders_and_levels_are_drawn_over_the_speed_in_rpm() -> None:
     cut = OrderCut(29.0, speed, size, "m/s^2").plot()
     level = OverallLevel(np.arange(3.0), speed, size, "N").plot()
     assert cut.layout.title.text == "Order 29 reaches 4.00 m/s² at 600.0 rpm"
-    assert level.layout.title.text == "Loudest at 600.0 rpm: 4.00 N rms"
+    assert level.layout.title.text == "Highest level at 600.0 rpm: 4.00 N rms"
     for figure in (cut, level):
         assert list(figure.data[0].x) == pytest.approx([300.0, 600.0, 900.0])
         assert axes(figure)[0] == "Speed [rpm]"
@@ -290,9 +290,9 @@ def test_heat_is_balanced_where_the_line_meets_the_loss() -> None:
     balance = HeatBalance(np.arange(1.0, 4.0), 293.15 + np.array([10.0, 30.0, 20.0]), loss,
                           5.0 * np.array([10.0, 30.0, 20.0]), 5.0, 293.15)  # fmt: skip
     figure = balance.plot()
-    assert figure.layout.title.text == "Gears and oil come to 40.00 °C, where 100 W are lost"
+    assert figure.layout.title.text == "Gears and oil settle at 40.00 °C with a loss of 100 W"
     assert axes(figure) == ["Temperature of gears and oil [°C]", "Power [W]"]
-    given_off = curve(figure, "given off")
+    given_off = curve(figure, "dissipated heat")
     assert np.interp(40.0, given_off.x, given_off.y) == pytest.approx(100.0)
     assert list(curve(figure, "loss of the gearbox").x) == pytest.approx([30.0, 40.0, 50.0])
 
@@ -305,7 +305,7 @@ def test_printed_numbers_are_drawn_by_their_deviation() -> None:
     )
     none = {**row, "computed": "rises", "printed": "falls", "deviation": None, "verdict": "trend"}
     figure = PaperComparison(("a",), (*rows, none), (), 0).plot()
-    assert figure.layout.title.text == "2 of 3 printed numbers are met within 1 %"
+    assert figure.layout.title.text == "2 of 3 printed values agree within 1 %"
     value, other = figure.data
     assert list(value.y) == pytest.approx([1e-3, 0.5])
     assert list(value.marker.symbol) == ["circle", "triangle-up"]

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tribodyn.plot.gear.path import further_changes, sharing_words
+from tribodyn.plot.gear.path import further_changes, sharing_sentence
 
 RATIOS = pytest.mark.parametrize("ratio", [1.33, 1.9, 2.0, 2.214, 2.75, 3.4])
 
@@ -35,7 +35,7 @@ def test_every_change_is_marked_and_nothing_else(ratio: float) -> None:
 def test_words_name_the_numbers_of_pairs(ratio: float) -> None:
     words = ("no", "one", "two", "three", "four")
     counts = {pairs(ratio, age) for age in np.linspace(1e-6, ratio - 1e-6, 997)}
-    said = sharing_words(ratio).lower()
+    said = sharing_sentence(ratio).lower()
     for count in counts:
         assert words[count] in said or str(count) in said
     assert ("alone" in said) == (1 in counts)

@@ -14,7 +14,7 @@ from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, SpurPair, spur_pair
 from tribodyn.plot import FIGURES, Drawing, flank_modification
 from tribodyn.plot.mesh.loaded_contact import pair_letters, roll_angle_of
-from tribodyn.plot.mesh.table import whole_life
+from tribodyn.plot.mesh.table import life_with_corners
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,7 @@ def test_tip_corners_extend_the_life_of_a_pair(result: Any) -> None:
     corner[mesh.phase > 0.95, 0] = 0.1
     corner[(mesh.phase > ratio - 1.0) & (mesh.phase < ratio - 0.9), 1] = 0.2
     changed = replace(mesh, corner_share=corner)
-    age, share = whole_life(changed)
+    age, share = life_with_corners(changed)
     assert np.all(np.diff(age) >= 0.0)
     assert -0.05 < age[0] < -0.03
     assert ratio + 0.08 < age[-1] < ratio + 0.1
@@ -168,4 +168,4 @@ def test_titles_without_a_gap_tell_what_there_is() -> None:
     assert "5.00 µm" in figure.layout.title.text
     run_out = FlankModification(run_out=8e-6)
     figure = flank_modification(pair_with(wheel_modification=run_out))
-    assert figure.layout.title.text == "The toothing runs out by 8.00 µm"
+    assert figure.layout.title.text == "Run-out of the toothing of 8.00 µm"

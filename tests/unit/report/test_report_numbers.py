@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from tribodyn.plot.look.labels import engineering
+from tribodyn.plot.theme.labels import engineering
 from tribodyn.report.numbers import HEADLINES, describe, headlines, table
 from tribodyn.study import SUMMARY
 from tribodyn.study.pipeline.words import in_a_sentence, in_words

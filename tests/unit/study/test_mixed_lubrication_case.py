@@ -242,7 +242,7 @@ def test_friction_force_of_the_motion_is_that_of_film_and_asperities(
         rms = float(np.sqrt(np.sum(fine.weight * signal**2) / fine.weight.sum()))
         assert figures[f"rms_{name}_friction_force"] == pytest.approx(rms, rel=1e-6)
     assert [trace.name for trace in result.plot_friction_force().data] == [
-        "whole", "oil films", "asperities"
+        "total", "oil films", "asperities"
     ]  # fmt: skip
     if load == "dynamic":
         again = td.load_result(result.save(tmp_path / "r"))

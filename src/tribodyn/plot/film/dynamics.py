@@ -1,4 +1,4 @@
-"""Oil films in motion: over time, and against small vibrations of any frequency."""
+"""Oil films over time, and their frequency response to small vibration."""
 
 from __future__ import annotations
 
@@ -9,48 +9,48 @@ from numpy.typing import ArrayLike
 
 from tribodyn.drawing import drawing
 from tribodyn.errors import InputError
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, Trace, line
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, Trace, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.ehl import LineContactSolution, TransientLineContact
 
-#: Default frequencies, in transit frequencies, and their number.
+#: Range and number of the default frequencies, in multiples of the transit frequency.
 _LOWEST, _HIGHEST, _POINTS = 0.01, 1.0, 81
-#: Change of the stiffness that counts.
+#: Relative change of the stiffness that counts as significant.
 _CHANGE = 0.1
 
 
 def transit_frequency(solution: LineContactSolution) -> float:
-    """Frequency ``u_e/(2 b)`` at which the oil crosses the contact once in a period."""
+    """Frequency ``u_e/(2 b)`` at which the oil passes the contact once per period."""
     return float(solution.entrainment_speed / (2.0 * solution.half_width))
 
 
-def _frequencies(solution: LineContactSolution, asked: ArrayLike | None) -> Array:
+def _frequencies(solution: LineContactSolution, frequencies: ArrayLike | None) -> Array:
     if solution.lubricant is None:
-        what = "a contact without units has no frequencies"
-        why = "The numbers of Moes leave speed and size open"
+        what = "the contact is dimensionless and has no frequencies"
+        why = "The Moes parameters do not determine speed and size"
         remedy = "Solve the contact with solve_line_contact"
         raise InputError(what, "argument solution", why, remedy)
-    if asked is None:
+    if frequencies is None:
         spread = np.geomspace(_LOWEST, _HIGHEST, _POINTS)
         return np.asarray(transit_frequency(solution) * spread)
-    return np.atleast_1d(np.asarray(asked, dtype=float))
+    return np.atleast_1d(np.asarray(frequencies, dtype=float))
 
 
-def _steadfast(frequencies: Array, stiffness: Array, rest: float) -> str:
-    """Say up to which frequency the stiffness is that at rest."""
-    gone = np.flatnonzero(np.abs(stiffness / rest - 1.0) > _CHANGE)
-    words = f"as stiff as at rest within {100 * _CHANGE:.0f} %"
-    if gone.size == 0:
-        return f"The film is {words} up to {_kilohertz(frequencies[-1])} at least"
-    if gone[0] == 0:
-        return f"The film is no more {words} at {_kilohertz(frequencies[0])}"
-    change = np.abs(stiffness[: gone[0] + 1] / rest - 1.0)
-    limit = np.interp(_CHANGE, change[-2:], frequencies[gone[0] - 1 : gone[0] + 1])
-    return f"The film is {words} up to {_kilohertz(limit)}"
+def _response_title(frequencies: Array, stiffness: Array, static: float) -> str:
+    """Title: frequency up to which the stiffness equals the static stiffness."""
+    deviating = np.flatnonzero(np.abs(stiffness / static - 1.0) > _CHANGE)
+    phrase = f"within {100 * _CHANGE:.0f} % of its static value"
+    if deviating.size == 0:
+        return f"The film stiffness is {phrase} up to at least {_kilohertz(frequencies[-1])}"
+    if deviating[0] == 0:
+        return f"The film stiffness is not {phrase} at {_kilohertz(frequencies[0])}"
+    change = np.abs(stiffness[: deviating[0] + 1] / static - 1.0)
+    limit = np.interp(_CHANGE, change[-2:], frequencies[deviating[0] - 1 : deviating[0] + 1])
+    return f"The film stiffness is {phrase} up to {_kilohertz(limit)}"
 
 
 def _kilohertz(frequency: float) -> str:
@@ -75,7 +75,7 @@ def film_response(
     -------
     plotly.graph_objects.Figure
         A dotted line marks the transit frequency ``u_e/(2 b)``. Where the stiffness is negative
-        the film moves against the load: its compliance tells more there.
+        the film moves against the load; consider its compliance there.
 
     Raises
     ------
@@ -83,12 +83,12 @@ def film_response(
         If the contact has no units.
     """
     at = np.sort(_frequencies(solution, frequencies))
-    everywhere, damped = solution.frequency_response(np.concatenate(([0.0], at)), length)
-    rest, stiffness, damping = float(everywhere[0]), everywhere[1:], damped[1:]
+    response, dampings = solution.frequency_response(np.concatenate(([0.0], at)), length)
+    static, stiffness, damping = float(response[0]), response[1:], dampings[1:]
     compliance = 1.0 / np.abs(stiffness + 2j * np.pi * at * damping)
     transit = transit_frequency(solution)
     inside = int(at[0] <= transit <= at[-1])
-    # On a logarithmic axis annotations stand at the logarithm, shapes at the value.
+    # On a logarithmic axis annotations take the logarithm, shapes the value.
     marks = event_lines([("transit", float(displayed("frequency", transit)))] * inside)
     for note in marks["annotations"]:
         note["x"] = float(np.log10(note["x"]))
@@ -101,16 +101,16 @@ def film_response(
     )
     x = displayed("frequency", at)
     return stack(
-        _steadfast(at, stiffness, rest),
+        _response_title(at, stiffness, static),
         axis_label("frequency"),
         [
             Panel(
-                axis_label(name, words),
-                [line(x, displayed(name, values), words.lower(), TOTAL, unit=display_unit(name))],
+                axis_label(name, label),
+                [line(x, displayed(name, values), label.lower(), TOTAL, unit=display_unit(name))],
                 axis,
                 height=0.8,
             )
-            for name, words, values, axis in rows
+            for name, label, values, axis in rows
         ],
         {"xaxis": logarithmic, **marks},
     ).figure()
@@ -139,21 +139,21 @@ def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None)
 @drawing(
     "film_transient",
     heading="Film over time",
-    caption="Load, film and greatest pressure of a contact whose load, radius and speed change. "
-    "Squeezing keeps the film thick for a moment where the load rises.",
+    caption="Load, film and maximum pressure of a contact whose load, radius and speed change. "
+    "The squeeze effect delays the thinning of the film where the load rises.",
     of="TransientLineContact",
     made_by="Call tribodyn.ehl.solve_transient_line_contact and its plot method.",
 )
 def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None = None) -> Any:
-    """Draw load, central and minimum film and the greatest pressure over time.
+    """Draw load, central and minimum film and the maximum pressure over time.
 
     Parameters
     ----------
     transient : TransientLineContact
         What :func:`tribodyn.ehl.solve_transient_line_contact` returns.
     steady : array, optional [m]
-        Central films of steady contacts under the load, radius and speed of every instant: what
-        the squeeze of the film changes is the distance to them.
+        Central films of steady contacts under the load, radius and speed of every instant; the
+        distance to them is the squeeze effect.
 
     Returns
     -------
@@ -167,11 +167,11 @@ def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None 
     time = displayed("time", transient.time)
     films = _films(transient, time, steady)
 
-    def panel(name: str, words: str, values: Any) -> Panel:
-        curve = line(time, displayed(name, values), words, TOTAL, unit=display_unit(name))
-        return Panel(axis_label(name, words), [curve], {"rangemode": "tozero"}, height=0.6)
+    def panel(name: str, label: str, values: Any) -> Panel:
+        curve = line(time, displayed(name, values), label, TOTAL, unit=display_unit(name))
+        return Panel(axis_label(name, label), [curve], {"rangemode": "tozero"}, height=0.6)
 
-    # The thick film of a contact that is hardly loaded is found by zooming out.
+    # The thick film of a lightly loaded contact is outside the initial view.
     thick = displayed("film_thickness", transient.central_film)
     view = {"range": [0.0, float(min(1.05 * np.max(thick), 4.0 * np.median(thick)))]}
     at = int(np.argmin(transient.minimum_film))
@@ -182,6 +182,6 @@ def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None 
         [
             panel("load_per_width", "Load", transient.load_per_width),
             Panel(axis_label("film_thickness", "Film"), films, view),
-            panel("hertz_pressure", "Greatest pressure", transient.maximum_pressure),
+            panel("hertz_pressure", "Maximum pressure", transient.maximum_pressure),
         ],
     )

@@ -1,4 +1,4 @@
-"""Pressure and film of lubricated line contacts, against the dry pressure."""
+"""Pressure and film of lubricated line contacts, compared with the dry pressure."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from numpy.typing import NDArray
 
 from tribodyn.drawing import drawing
 from tribodyn.errors import InputError
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, line, marked
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, line, marked
 from tribodyn.types import Array
 
-#: Films are drawn up to this many times the thickest central film: beyond lies the open gap.
+#: Upper limit of the film axis in multiples of the thickest central film.
 _FILMS = 3.0
-#: Pressure, relative to the greatest, from which on a contact is drawn.
+#: Pressure relative to the maximum at which the plotted part of a contact begins.
 _NOTHING = 0.02
-#: Nodes beyond this number are not seen on a screen.
+#: Most nodes of a curve, for a single contact and for each of several.
 _MOST = 2000
 _FEWER = 1000
 _COLORS = (*PAIR_COLORS, INK)
-#: Short gaps, so that none swallows a spike [px].
+#: Dashes with short gaps, so that no gap hides a pressure spike [px].
 _DASHES = ("solid", "9px,3px", "9px,3px,2px,3px", "16px,3px", "3px,2px", "16px,3px,3px,3px")
 
 
 @dataclass(frozen=True)
 class Scales:
-    """How the curves of one contact become numbers on the axes."""
+    """Factors and labels that turn the results of a contact into axis values."""
 
     position: float
     pressure: float
@@ -110,7 +110,7 @@ def place_of_minimum(solution: Any) -> float:
 
 
 def window(solution: Any) -> tuple[float, float]:
-    """Part of the axis in which something happens."""
+    """Range of the position axis that shows the loaded part of the contact."""
     position, pressure, half = solution.position, solution.pressure, solution.half_width
     loaded = position[pressure > _NOTHING * pressure.max()]
     left = max(float(loaded[0]) - 0.1 * half, float(position[0]))
@@ -119,20 +119,22 @@ def window(solution: Any) -> tuple[float, float]:
 
 
 def film_height(solutions: Sequence[Any], scales: Sequence[Scales]) -> float:
-    """Upper end of an axis for the films of some contacts, in its display unit."""
-    thickest = (s.film * one.central_film for one, s in zip(solutions, scales, strict=True))
+    """Upper end of the film axis for several contacts, in its display unit."""
+    thickest = (
+        s.film * solution.central_film for solution, s in zip(solutions, scales, strict=True)
+    )
     return float(_FILMS * max(thickest))
 
 
 def thinned(solution: Any, points: int) -> NDArray[np.intp]:
-    """Choose nodes that keep the shape of both curves, among them every extremum."""
+    """Indices of nodes that preserve the shape and the extrema of pressure and film."""
     n = len(solution.position)
     if n <= points:
         return np.arange(n)
     curves = np.stack(
         (
             solution.pressure / solution.pressure.max(),
-            # the open gap beside the film is not in the picture
+            # the open gap outside the film is not plotted
             np.minimum(solution.film / solution.central_film, _FILMS) / _FILMS,
         )
     )
@@ -150,7 +152,7 @@ def thinned(solution: Any, points: int) -> NDArray[np.intp]:
 
 
 def curve(x: Any, y: Any, name: str, color: str, **more: Any) -> dict[str, Any]:
-    """Describe a curve that is drawn through all of its points, for a spike is few of them."""
+    """Describe a curve with all its points: a pressure spike has few of them."""
     described = line(x, y, name, color, **more)
     described["line"]["simplify"] = False
     return described
@@ -167,10 +169,10 @@ def point(
 def _profile(
     solution: Any, quantity: str, scales: Scales, points: int, name: str, color: str, **more: Any
 ) -> Trace:
-    """Pressure or film over the place, at so many nodes."""
-    kept = thinned(solution, points)
-    x = scales.position * solution.position[kept]
-    y = getattr(scales, quantity) * getattr(solution, quantity)[kept]
+    """Curve of pressure or film over the position, thinned to ``points`` nodes."""
+    nodes = thinned(solution, points)
+    x = scales.position * solution.position[nodes]
+    y = getattr(scales, quantity) * getattr(solution, quantity)[nodes]
     return curve(x, y, name, color, unit=getattr(scales, f"{quantity}_unit"), **more)
 
 
@@ -221,8 +223,8 @@ def _film(solution: Any, scales: Scales) -> list[Trace]:
 @drawing(
     "line_contact",
     heading="Pressure and film of a line contact",
-    caption="Pressure and film over the place, the inlet on the left. The film narrows before its "
-    "outlet; the dashed curve is the pressure of the dry contact under the same load.",
+    caption="Pressure and film over the position, the inlet on the left. The film narrows before "
+    "its outlet; the dashed curve is the pressure of the dry contact under the same load.",
     of="LineContactSolution",
     made_by="Call tribodyn.ehl.solve_line_contact and its plot method.",
 )
@@ -241,8 +243,8 @@ def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
     -------
     plotly.graph_objects.Figure
         Both curves with the pressure of the dry contact, the central and the minimum film, and
-        the outlet, where the oil parts. The view is the loaded part; the wider domain is found
-        by zooming out.
+        the outlet, where the oil film ruptures. The view is the loaded part; zoom out for the
+        entire domain.
     """
     (scales,) = contact_scales([solution], dimensionless)
     center, least = (
@@ -261,8 +263,8 @@ def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
     )
 
 
-def _look(number: int) -> dict[str, Any]:
-    """Colour and dash of a contact: thirty contacts differ in at least one of them."""
+def _style(number: int) -> dict[str, Any]:
+    """Colour and dash of a contact; the first thirty combinations are unique."""
     return {"color": _COLORS[number % len(_COLORS)], "dash": _DASHES[number % len(_DASHES)]}
 
 
@@ -281,24 +283,24 @@ def _pressures(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
         x, y = dry_pressure(solution)
         dry = curve(scales.position * x, scales.pressure * y, "dry", MUTED, dash="dot", width=1.2)
         first = {"name": "dry (Hertz)", "legendgroup": "dry", "showlegend": number == 0}
-        # Where all are drawn in their own half widths, the dry pressure is the same for all.
+        # In dimensionless axes the dry pressure is the same for all contacts.
         if number == 0 or scales.pressure == rows[0][1].pressure:
             traces.append({**dry, **first, "hoverinfo": "skip", "hovertemplate": None})
-        traces.append(_profile(solution, "pressure", scales, _FEWER, name, **_look(number)))
+        traces.append(_profile(solution, "pressure", scales, _FEWER, name, **_style(number)))
     return traces
 
 
 def _films(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
     traces, marks = [], []
     for number, (solution, scales, name) in enumerate(rows):
-        look = _look(number)
+        style = _style(number)
         least = f"{name}: at least {scales.film_text(solution.minimum_film)}"
-        traces.append(_profile(solution, "film", scales, _FEWER, least, **look))
+        traces.append(_profile(solution, "film", scales, _FEWER, least, **style))
         mark = point(
             scales.position * place_of_minimum(solution),
             scales.film * solution.minimum_film,
             name,
-            look["color"],
+            style["color"],
         )
         marks.append({**mark, "showlegend": False, "hoverinfo": "skip", "hovertemplate": None})
     return traces + marks
@@ -307,7 +309,7 @@ def _films(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
 def compare_line_contacts(
     solutions: Iterable[Any], labels: Iterable[str], *, dimensionless: bool = False
 ) -> Any:
-    """Draw pressure and film of several line contacts over each other.
+    """Draw pressure and film of several line contacts in the same axes.
 
     Parameters
     ----------
@@ -316,7 +318,7 @@ def compare_line_contacts(
     labels : iterable of str
         Name of each contact in the legend.
     dimensionless : bool
-        Whether every contact is drawn in its own half widths, Hertz pressures and ``b^2/R``: then
+        Whether every contact is scaled with its half width, Hertz pressure and ``b^2/R``: then
         shapes are compared, and the place of a spike relative to the contact.
 
     Returns
@@ -334,7 +336,9 @@ def compare_line_contacts(
     scales = contact_scales(contacts, dimensionless)
     rows = list(zip(contacts, scales, names, strict=True))
     thinnest, units, name = min(rows, key=lambda row: row[1].film * row[0].minimum_film)
-    ends = np.array([[used.position * end for end in window(one)] for one, used, _ in rows])
+    ends = np.array(
+        [[scale.position * end for end in window(contact)] for contact, scale, _ in rows]
+    )
     height = {"range": [0.0, film_height(contacts, scales)]}
     return stack(
         f"The thinnest film, {units.film_text(thinnest.minimum_film)}, is that of {name}",

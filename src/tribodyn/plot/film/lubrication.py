@@ -1,4 +1,4 @@
-"""Lubrication regime of a tooth pair along the path and over the operation; least film."""
+"""Lubrication regime of a tooth pair along the path and over speed and torque."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 
 from tribodyn.drawing import Need, drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
-from tribodyn.plot.film.path import Path, gaps_in_words
+from tribodyn.plot.film.path import Path, gaps_sentence
 from tribodyn.plot.gear.path import roll_label
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, figure, line
 from tribodyn.plot.mesh.cycle import TABLE, roll_angle_positions, sharing_under_load
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, figure, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 _OIL, _METAL = PAIR_COLORS[2], WHEEL
 #: Fills of the regimes, from boundary to full film.
 FILLS = ("#f9dfcc", "#fdf5e5", "#e1f1fb")
-#: Film ratios that the axis shows at least.
-_SHOWN = (0.1, 4.0)
+#: Least range of the axis of the film ratio.
+_RATIO_RANGE = (0.1, 4.0)
 RATIO_TICKS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]
 has_ratio = Need(
     "film_ratio",
     "There is no film ratio: it needs an oil film and rough flanks. Choose film.model, for example "
     '"dowson-higginson", and give gears.pinion.roughness_ra and gears.wheel.roughness_ra.',
 )
-LIMITS_IN_WORDS = (
+REGIME_SENTENCE = (
     f"Below a film ratio of {REGIME_LIMITS[0]:g} asperities carry most of the load (boundary "
     f"lubrication), from {REGIME_LIMITS[1]:g} on hardly any of it (full film), in between both "
     "(mixed)."
@@ -40,20 +40,20 @@ LIMITS_IN_WORDS = (
 
 def _caption(mesh: MeshTable) -> str:
     whose = (
-        f'as the friction law "{mesh.friction_law}" has it'
+        f'that of the friction law "{mesh.friction_law}"'
         if mesh.asperity_friction_coefficient is not None
-        else f'by the film ratio, because the friction law "{mesh.friction_law}" has none'
+        else f'estimated from the film ratio: the friction law "{mesh.friction_law}" has none'
     )
     return (
-        f"The least film of one tooth pair over the composite roughness. {LIMITS_IN_WORDS} The "
-        f"load share of the film is {whose}. {sharing_under_load(mesh)}{gaps_in_words(mesh)}"
+        f"The minimum film of a tooth pair over the composite roughness. {REGIME_SENTENCE} The "
+        f"load share of the film is {whose}. {sharing_under_load(mesh)}{gaps_sentence(mesh)}"
     )
 
 
 def _missing(mesh: MeshTable) -> str:
     if mesh.film_ratio is None or mesh.film_load_share is not None:
         return has_ratio(mesh)
-    return "The program that made this table tells no load share of the film (film_load_share)."
+    return "This mesh table has no load share of the film (column film_load_share)."
 
 
 @drawing(
@@ -68,7 +68,10 @@ def lubrication(mesh: MeshTable) -> Any:
     """Draw film ratio, load share and the parts of the friction force over the roll angle."""
     path = Path(mesh)
     ratio, share = path.under_load("film_ratio"), path.under_load("film_load_share")
-    low, high = min(_SHOWN[0], 0.8 * np.nanmin(ratio)), max(_SHOWN[1], 1.2 * np.nanmax(ratio))
+    low, high = (
+        min(_RATIO_RANGE[0], 0.8 * np.nanmin(ratio)),
+        max(_RATIO_RANGE[1], 1.2 * np.nanmax(ratio)),
+    )
     axis = {
         "type": "log",
         "range": [float(np.log10(low)), float(np.log10(high))],
@@ -80,7 +83,7 @@ def lubrication(mesh: MeshTable) -> Any:
     ]
     panels = [
         Panel(axis_label("film_ratio"), [line(path.angle, ratio, "film ratio", TOTAL)], axis),
-        Panel("Part of the load", shares, {"range": [0.0, 1.02]}),
+        Panel("Share of the load", shares, {"range": [0.0, 1.02]}),
     ]
     if mesh.asperity_friction_coefficient is not None:
         panels.append(_friction(path))
@@ -91,32 +94,32 @@ def lubrication(mesh: MeshTable) -> Any:
 
 
 def _title(mesh: MeshTable, share: Array) -> str:
-    """Regimes that the pair meets, and the least share of its film."""
+    """Lubrication regimes of the pair, and the least load share of its film."""
     regime = np.asarray(mesh.lubrication_regime)
-    met = [REGIMES[int(number)] for number in np.unique(regime[np.isfinite(regime)])]
-    words = " and ".join(met)
+    regimes = [REGIMES[int(number)] for number in np.unique(regime[np.isfinite(regime)])]
+    names = " and ".join(regimes)
     least = significant(100.0 * float(np.nanmin(share)))
-    return f"{words[0].upper()}{words[1:]} lubrication: the oil film carries at least {least} %"
+    return f"{names[0].upper()}{names[1:]} lubrication: the oil film carries at least {least} %"
 
 
 def _friction(path: Path) -> Panel:
-    """Friction force of a pair, and the part of it that asperities cause."""
+    """Friction force of a pair with its film and asperity parts."""
     unit = display_unit("friction_force")
     force = path.life("normal_force") * path.life("sliding_direction")
-    whole, metal = (
+    total, asperities = (
         displayed("friction_force", path.under_load(name) * force)
         for name in ("friction_coefficient", "asperity_friction_coefficient")
     )
     curves = [
-        line(path.angle, whole, "both", TOTAL, unit=unit),
-        line(path.angle, whole - metal, "oil film", _OIL, unit=unit),
-        line(path.angle, metal, "asperities", _METAL, unit=unit, dash="dash"),
+        line(path.angle, total, "total", TOTAL, unit=unit),
+        line(path.angle, total - asperities, "oil film", _OIL, unit=unit),
+        line(path.angle, asperities, "asperities", _METAL, unit=unit, dash="dash"),
     ]
     return Panel(axis_label("friction_force"), curves, {"zeroline": True})
 
 
 def _edges(low: float, high: float) -> list[tuple[float, float]]:
-    """Film ratios between which each regime is shown."""
+    """Lower and upper film ratio of each regime within the axis."""
     inner = np.clip(REGIME_LIMITS, low, high).tolist()
     return [(low, inner[0]), (inner[0], inner[1]), (inner[1], high)]
 
@@ -131,7 +134,7 @@ def _bands(low: float, high: float) -> list[dict[str, Any]]:
 
 
 def _names(low: float, high: float) -> list[dict[str, Any]]:
-    """Name the regimes at the end of the first panel, where narrow screens show them too."""
+    """Label the regimes at the right end of the first panel."""
     common = {"xref": "paper", "x": 0.995, "xanchor": "right", "yref": "y", "showarrow": False}
     return [
         {**common, "y": 0.5 * float(np.log10(bottom) + np.log10(top)), "text": name}
@@ -149,77 +152,77 @@ _has_film = Need("central_film minimum_film", "The film model gives no film thic
 @drawing(
     "film_over_operation",
     heading="Oil film over speed and torque",
-    caption="The least film that a tooth pair meets on its way, over the speed for each torque. "
-    "Below, its ratio to the composite roughness: below one asperities touch.",
+    caption="The minimum film along the path of contact, over the speed for each torque. "
+    "Below, its ratio to the composite roughness: asperities touch below a ratio of 1.",
     missing=_has_film,
     of="FilmOverOperation",
     made_by="Call tribodyn.film_over_operation(case, torque=..., speed=...) and its plot method.",
 )
-def film_over_operation(found: FilmOverOperation) -> Any:
-    """Draw the least film over the speed, a curve for each torque."""
-    known = found.minimum_film if found.minimum_film is not None else found.central_film
-    film = np.nanmin(np.asarray(known), axis=2)
+def film_over_operation(films: FilmOverOperation) -> Any:
+    """Draw the minimum film over the speed, one curve per torque."""
+    least_films = films.minimum_film if films.minimum_film is not None else films.central_film
+    film = np.nanmin(np.asarray(least_films), axis=2)
     row, column = np.unravel_index(int(np.argmin(film)), film.shape)
     title = (
         f"The oil film is thinnest with {rounded('film_thickness', float(film.min()))} at "
-        f"{rounded('torque', float(found.pinion_torque[row]))} and "
-        f"{rounded('pinion_speed', float(found.pinion_speed[column]))} of the pinion"
+        f"{rounded('torque', float(films.pinion_torque[row]))} and "
+        f"{rounded('pinion_speed', float(films.pinion_speed[column]))} of the pinion"
     )
     panels = [
         Panel(
             axis_label("film_thickness"),
-            _curves(found, film, "film_thickness"),
+            _curves(films, film, "film_thickness"),
             {"rangemode": "tozero"},
             height=1.4,
         )
     ]
-    if found.film_ratio is not None:
-        ratio = np.nanmin(found.film_ratio, axis=2)
-        curves = _curves(found, ratio, "film_ratio")
+    if films.film_ratio is not None:
+        ratio = np.nanmin(films.film_ratio, axis=2)
+        curves = _curves(films, ratio, "film_ratio")
         panels.append(Panel(axis_label("film_ratio"), curves, {"rangemode": "tozero"}))
     return stack(title, axis_label("pinion_speed"), panels)
 
 
-def _curves(found: FilmOverOperation, values: Any, quantity: str) -> list[Trace]:
-    speed, unit = displayed("pinion_speed", found.pinion_speed), display_unit(quantity)
-    drawn = []
-    for number, torque in enumerate(found.pinion_torque):
+def _curves(films: FilmOverOperation, values: Any, quantity: str) -> list[Trace]:
+    speed, unit = displayed("pinion_speed", films.pinion_speed), display_unit(quantity)
+    traces = []
+    for number, torque in enumerate(films.pinion_torque):
         color, dash = _COLORS[number % len(_COLORS)], _DASHES[number // len(_COLORS) % 3]
         name = rounded("torque", float(torque))
         curve = line(speed, displayed(quantity, values[number]), name, color, unit=unit, dash=dash)
-        drawn.append({**curve, "mode": "lines+markers"})
-    return drawn
+        traces.append({**curve, "mode": "lines+markers"})
+    return traces
 
 
-def _no_map(found: FilmOverOperation) -> str:
-    several = min(found.pinion_torque.size, found.pinion_speed.size) > 1
-    return has_ratio(found) or ("" if several else "A map needs several torques and speeds.")
+def _no_map(films: FilmOverOperation) -> str:
+    several = min(films.pinion_torque.size, films.pinion_speed.size) > 1
+    return has_ratio(films) or ("" if several else "A map needs several torques and speeds.")
 
 
 @drawing(
     "lubrication_map",
     heading="Lubrication regime over speed and torque",
-    caption="The least film ratio that a tooth pair meets on its way, over speed and torque of the "
-    f"pinion. {LIMITS_IN_WORDS}",
+    caption="The least film ratio along the path of contact, over speed and torque of the "
+    f"pinion. {REGIME_SENTENCE}",
     of="FilmOverOperation",
     made_by="Call tribodyn.film_over_operation(case, torque=..., speed=...) with several of both.",
     missing=_no_map,
 )
-def lubrication_map(found: FilmOverOperation) -> Any:
+def lubrication_map(films: FilmOverOperation) -> Any:
     """Draw the lubrication regime over speed and torque."""
-    ratio = np.nanmin(np.asarray(found.film_ratio), axis=2)
+    ratio = np.nanmin(np.asarray(films.film_ratio), axis=2)
     turn, pull = display_unit("pinion_speed"), display_unit("torque")
     low, high = REGIME_LIMITS
     common = {
         "type": "contour",
-        "x": displayed("pinion_speed", found.pinion_speed),
-        "y": displayed("torque", found.pinion_torque),
+        "x": displayed("pinion_speed", films.pinion_speed),
+        "y": displayed("torque", films.pinion_torque),
         "z": ratio,
         "showscale": False,
         "hovertemplate": f"%{{x:.4g}} {turn}, %{{y:.4g}} {pull}: film ratio %{{z:.3g}}"
         "<extra></extra>",
     }
-    # What a constraint excludes is filled.
+    # Plotly fills the region that a constraint excludes.
     regimes: list[tuple[str, Any, str]] = [
         (">", low, f"below {low:g}"),
         ("][", [low, high], f"{low:g} to {high:g}"),
@@ -231,10 +234,10 @@ def lubrication_map(found: FilmOverOperation) -> Any:
             "contours": {"type": "constraint", "operation": sign, "value": limit},
             "fillcolor": fill,
             "line": {"width": 1.5, "color": TOTAL},
-            "name": f"{name}, {words}",
+            "name": f"{name}, {range_text}",
             "showlegend": True,
         }
-        for name, fill, (sign, limit, words) in zip(REGIMES, FILLS, regimes, strict=True)
+        for name, fill, (sign, limit, range_text) in zip(REGIMES, FILLS, regimes, strict=True)
     ]
     levels = {
         **common,

@@ -1,4 +1,4 @@
-"""Rough line contacts in which film and asperities share the load."""
+"""Rough line contacts in mixed lubrication: film and asperities share the load."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.film.lubrication import LIMITS_IN_WORDS, RATIO_TICKS
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.film.lubrication import RATIO_TICKS, REGIME_SENTENCE
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, WHEEL, Trace, line
 
 if TYPE_CHECKING:
     from tribodyn.ehl import MixedLineContact
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 @drawing(
     "mixed_line_contact",
     heading="Film and asperities",
-    caption=f"Every contact over its film ratio. {LIMITS_IN_WORDS} The gap is the mean distance "
-    "of the rough flanks; where asperities carry, it is wider than the film of smooth flanks "
-    "under the same load, because less of the load presses on the oil.",
+    caption=f"Contacts over their film ratio. {REGIME_SENTENCE} The gap is the mean distance "
+    "of the rough flanks; where asperities carry load, it is wider than the film of smooth flanks "
+    "under the same load, because the oil carries less load.",
     of="MixedLineContact",
     made_by="Call tribodyn.ehl.mixed_line_contact(...) and its plot method.",
 )
@@ -39,7 +39,7 @@ def mixed_line_contact(contact: MixedLineContact) -> Any:
     film, pressure = display_unit("film_thickness"), display_unit("hertz_pressure")
     panels = [
         Panel(
-            "Part of the load [%]",
+            "Share of the load [%]",
             [
                 curve(100.0 * share, "oil film", PAIR_COLORS[2], "%"),
                 curve(100.0 * (1.0 - share), "asperities", WHEEL, "%", "dash"),
@@ -65,7 +65,7 @@ def mixed_line_contact(contact: MixedLineContact) -> Any:
             [
                 curve(
                     displayed("hertz_pressure", contact.hertz_pressure),
-                    "greatest, dry smooth contact",
+                    "maximum, dry smooth contact",
                     MUTED,
                     pressure,
                     "dash",

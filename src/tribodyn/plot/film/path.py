@@ -9,9 +9,6 @@ import numpy as np
 
 from tribodyn.drawing import Need
 from tribodyn.plot.gear.path import roll_label
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.plot.mesh.cycle import (
     driving_roll_angle,
     pair_life,
@@ -19,6 +16,9 @@ from tribodyn.plot.mesh.cycle import (
     sharing_under_load,
     table_drawing,
 )
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
@@ -51,12 +51,12 @@ _QUANTITIES = {"stiffness": "pair_stiffness"}
 #: Axes that begin at zero, and that mark their zero.
 _FROM_ZERO, _ZERO = {"rangemode": "tozero"}, {"zeroline": True}
 _LOGARITHMIC = {"type": "log", "dtick": 1}
-#: Film over the usual one above which both are not seen on one linear scale.
+#: Ratio of the thickest to the usual film from which the scale is logarithmic.
 _VERY_THICK = 10.0
 
 
 class Path:
-    """The way of one tooth pair over the roll angle of the driving gear."""
+    """Values of one tooth pair over the roll angle of the driving gear."""
 
     def __init__(self, mesh: MeshTable) -> None:
         self.mesh = mesh
@@ -68,7 +68,7 @@ class Path:
 
     @cached_property
     def loaded(self) -> Mask:
-        """Where the pair carries load: elsewhere it has neither film nor friction."""
+        """Mask of the samples where the pair carries load and has film and friction."""
         from tribodyn.mesh.sharing import LEAST_SHARE
 
         return np.asarray(self.life("load_share") > LEAST_SHARE)
@@ -78,13 +78,13 @@ class Path:
         return np.where(self.loaded, self.life(column), np.nan)
 
     def curves(self, rows: Rows, quantity: str = "", *, loaded: bool = True) -> list[Trace]:
-        """Columns of the mesh table in their display units, or in that of one quantity."""
+        """Curves of columns of the mesh table in their display units or in that of ``quantity``."""
         traces = []
         for column, name, color, dash in rows:
-            known = quantity or _QUANTITIES.get(column, column)
+            quantity_name = quantity or _QUANTITIES.get(column, column)
             values = self.under_load(column) if loaded else self.life(column)
-            shown, unit = displayed(known, values), display_unit(known)
-            traces.append(line(self.angle, shown, name, color, unit=unit, dash=dash))
+            displayed_values, unit = displayed(quantity_name, values), display_unit(quantity_name)
+            traces.append(line(self.angle, displayed_values, name, color, unit=unit, dash=dash))
         return traces
 
     def figure(self, title: str, panels: list[Panel]) -> Any:
@@ -93,12 +93,12 @@ class Path:
         return stack(title, roll_label(self.mesh.gear_pair), panels, marks)
 
     def level(self, value: float, name: str, unit: str = "") -> Trace:
-        """A dotted line at one value."""
+        """Dotted horizontal line."""
         return line(self.angle, np.full_like(self.angle, value), name, MUTED, unit=unit, dash="dot")
 
 
 def _reversal(mesh: MeshTable, what: str) -> str:
-    """Where sliding and what follows it change their sign."""
+    """Sentence on where the sliding speed and ``what`` change their sign."""
     if mesh.gears is not None and mesh.gears.pitch_point_age is None:
         return f"The pitch point C lies beyond A or E: {what} has the same sign everywhere."
     return f"At the pitch point C the surfaces roll without sliding: {what} changes its sign there."
@@ -106,7 +106,7 @@ def _reversal(mesh: MeshTable, what: str) -> str:
 
 def _path_caption(mesh: MeshTable) -> str:
     return (
-        "What one tooth pair meets from A to E, the ends of the path of contact of perfect rigid "
+        "Kinematics of a tooth pair from A to E, the ends of the path of contact of perfect rigid "
         f"flanks. {_reversal(mesh, 'the sliding speed')} {sharing_under_load(mesh)}"
     )
 
@@ -125,7 +125,7 @@ def path_of_contact(mesh: MeshTable) -> Any:
         Panel(axis_label("slide_to_roll_ratio"), [ratio], _ZERO, height=0.8),
     ]
     return path.figure(
-        f"The flanks slide on each other at up to {rounded('sliding_speed', float(fastest))}",
+        f"The flanks slide at up to {rounded('sliding_speed', float(fastest))}",
         panels,
     )
 
@@ -133,17 +133,15 @@ def path_of_contact(mesh: MeshTable) -> Any:
 def _friction_caption(mesh: MeshTable) -> str:
     return (
         "The friction coefficient of one tooth pair from its entry to its exit, and the friction "
-        f"force that it causes under the static load. {_reversal(mesh, 'the force')} Its other "
-        f"changes come from the load. {sharing_under_load(mesh)}{gaps_in_words(mesh)}"
+        f"force under the static load. {_reversal(mesh, 'the force')} Its other "
+        f"changes follow the load. {sharing_under_load(mesh)}{gaps_sentence(mesh)}"
     )
 
 
-def gaps_in_words(mesh: MeshTable) -> str:
-    """Say why curves have gaps; empty where a pair carries load all the way."""
-    words = (
-        " Where curves are interrupted, the pair carries no load and has neither friction nor film."
-    )
-    return "" if np.all(Path(mesh).loaded) else words
+def gaps_sentence(mesh: MeshTable) -> str:
+    """Explain gaps of the curves; empty if the pair carries load along the entire path."""
+    gaps = " Where curves are interrupted, the pair carries no load, friction or film."
+    return "" if np.all(Path(mesh).loaded) else gaps
 
 
 def _frictionless(mesh: MeshTable) -> str:
@@ -167,7 +165,7 @@ def friction(mesh: MeshTable) -> Any:
     pressed = line(path.angle, displayed("normal_force", load), "normal force", TOTAL, unit=unit)
     mean = rounded("friction_coefficient", mesh.mean_friction_coefficient)
     title = (
-        f"The friction coefficient is {mean} as the mean over the mesh cycle, weighted with the "
+        f"The mean friction coefficient is {mean} over the mesh cycle, weighted with the "
         "load shares"
     )
     panels = [
@@ -185,7 +183,7 @@ _has_film = Need(
 
 
 def _film_axis(films: list[Array]) -> dict[str, Any]:
-    """From zero, or logarithmic where a pair that hardly carries has a very thick film."""
+    """Axis from zero, or logarithmic if a lightly loaded pair has a very thick film."""
     thickest = max(float(np.nanmax(film)) for film in films)
     return _LOGARITHMIC if thickest > _VERY_THICK * float(np.nanmedian(films[0])) else _FROM_ZERO
 
@@ -193,7 +191,7 @@ def _film_axis(films: list[Array]) -> dict[str, Any]:
 def _film_caption(mesh: MeshTable) -> str:
     return (
         "Thickness of the oil film between the flanks, and its ratio to the composite roughness. "
-        "Where the ratio comes near one, the highest asperities touch." + gaps_in_words(mesh)
+        "Where the ratio approaches 1, the highest asperities touch." + gaps_sentence(mesh)
     )
 
 
@@ -202,17 +200,17 @@ def film(mesh: MeshTable) -> Any:
     """Draw the film thickness of one tooth pair over the roll angle of the driving gear."""
     path = Path(mesh)
     unit = display_unit("film_thickness")
-    known = tuple(row for row in _FILMS if getattr(mesh, row[0]) is not None)
-    column, place = known[-1][:2]
+    columns = tuple(row for row in _FILMS if getattr(mesh, row[0]) is not None)
+    column, place = columns[-1][:2]
     least = rounded("film_thickness", float(np.nanmin(path.under_load(column))))
     roughness = float(displayed("film_thickness", mesh.composite_roughness))
-    curves = [*path.curves(known, "film_thickness"), path.level(roughness, "roughness", unit)]
-    axis = _film_axis([path.under_load(row[0]) for row in known])
+    curves = [*path.curves(columns, "film_thickness"), path.level(roughness, "roughness", unit)]
+    axis = _film_axis([path.under_load(row[0]) for row in columns])
     panels = [Panel(axis_label("film_thickness"), curves, axis, height=1.3)]
-    if mesh.film_ratio is not None:  # there is none for ideal flanks
+    if mesh.film_ratio is not None:  # ideal flanks have no film ratio
         values = path.under_load("film_ratio")
         ratio = line(path.angle, values, "film ratio", TOTAL)
-        curves = [ratio, path.level(1.0, "mixed below")]
+        curves = [ratio, path.level(1.0, "asperity contact below")]
         axis = _film_axis([values])
         panels.append(Panel(axis_label("film_ratio"), curves, axis, height=0.8))
     return path.figure(f"The oil film {place} is never below {least}", panels)
@@ -220,9 +218,9 @@ def film(mesh: MeshTable) -> Any:
 
 def _pressure_caption(mesh: MeshTable) -> str:
     return (
-        "The greatest pressure in the oil film of one tooth pair from its entry to its exit, and "
+        "Maximum pressure in the oil film of a tooth pair from its entry to its exit, and "
         "the pressure of the dry contact under the same load. The film exceeds it where a spike "
-        "stands at its outlet, and stays below it where a thick film spreads the load. A spike is "
+        "forms at its outlet, and is below it where a thick film spreads the load. A spike is "
         "narrower than the grid: its height is a lower bound, and uneven by some percent. "
         + sharing_under_load(mesh)
     )
@@ -232,7 +230,7 @@ def _no_pressure(mesh: MeshTable) -> str:
     if mesh.film_pressure is not None:
         return ""
     return _has_film(mesh) or (
-        f'The film model "{mesh.film_model}" is a formula for the thickness: it knows no '
+        f'The film model "{mesh.film_model}" is a formula for the thickness: it has no '
         'pressure. Choose film.model = "newton".'
     )
 
@@ -263,16 +261,16 @@ def _in_series(mesh: MeshTable) -> bool:
 def _stiffness_caption(mesh: MeshTable) -> str:
     kind = mesh.film_stiffness_kind
     if not _in_series(mesh):
-        sum_of_source = "The film stiffness is the sum as one source prints it. "
+        sum_of_source = "The film stiffness is the sum printed in the source. "
         return (
-            "Stiffness of the oil film of one tooth pair and of its teeth, on a logarithmic scale. "
+            "Stiffness of the oil film of a tooth pair and of its teeth, on a logarithmic scale. "
             + (sum_of_source if kind == "seed" else "")
-            + "In this case the film does not yield: the mesh has the stiffness of the teeth "
+            + "In this case the film adds no compliance: the mesh has the stiffness of the teeth "
             'alone. Choose film.stiffness = "approach" to put both in series.'
         )
     return (
         f"Stiffness of the oil film of one tooth pair ({kind}) and of its teeth, on a logarithmic "
-        "scale. Both are springs in series: the softer one decides. Below, the teeth alone and "
+        "scale. They are springs in series: the softer one dominates. Below, the teeth alone and "
         "the pair with its film."
     )
 
@@ -299,7 +297,7 @@ def film_stiffness(mesh: MeshTable) -> Any:
     if _in_series(mesh):
         panels.append(Panel(axis_label("pair_stiffness"), path.curves((*_TEETH, *_BOTH))))
     oil, teeth = path.life("film_stiffness"), path.life("tooth_stiffness")
-    # Relieved flanks leave a pair without load where it comes in and where it leaves.
+    # Pairs with relieved flanks carry no load where they enter and leave.
     loaded = (teeth > 0.0) & np.isfinite(oil)
     ratio = oil[loaded] / teeth[loaded]
     least, greatest = (significant(float(at(ratio))) for at in (np.min, np.max))

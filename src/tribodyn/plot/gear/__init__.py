@@ -1,15 +1,15 @@
-"""The gears themselves.
+"""Gear geometry, tooth deformation and losses.
 
 ======================  ===============================================================
 module                  what it draws
 ======================  ===============================================================
 ``gear_pair``           both gears to scale, and the mesh zone enlarged
-``flank_modification``  what flanks have that involutes have not
-``heat``                loss and heat given off over the temperature of gears and oil
+``flank_modification``  modifications and deviations of the flanks
+``heat``                power loss and dissipated heat over the temperature
 ``hypoid``              a hypoid pair: blanks, in space, ease-off, contact pattern
-``hypoid_motion``       how the flanks of a hypoid pair move along their contact lines
-``mesh_deformation``    teeth in mesh, bent by their loads
-``outlines``            outlines of both gears in one plane, at rest and bent
-``path``                positions A to E of a tooth pair, how many pairs share the load
+``hypoid_motion``       kinematics of hypoid flanks along their contact lines
+``mesh_deformation``    deformation of the teeth under load
+``outlines``            outlines of both gears, unloaded and deformed
+``path``                positions A to E of a tooth pair, number of pairs in contact
 ======================  ===============================================================
 """

@@ -1,4 +1,4 @@
-"""What the flanks of both gears have that involutes have not: profile, lead, pitch, run-out."""
+"""Modifications and deviations of the flanks: profile, lead, pitch, run-out."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from tribodyn.gear import (
     tooth_positions,
 )
 from tribodyn.plot.gear.path import pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.look.panels import Panel, Row, stack_rows
-from tribodyn.plot.look.style import PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.plot.mesh.cycle import RUN
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.panels import Panel, Row, stack_rows
+from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.gear import SpurPair
 
-#: Places along the profile and along the face.
+#: Points along the profile and along the face.
 _POINTS = 201
-#: Where a pair is found.
+#: Classes and attributes with a gear pair.
 _HOLDERS = (
     "SpurPair",
     "Result.case.gear_pair",
@@ -45,8 +45,8 @@ def _perfect(pair: SpurPair) -> str:
     )
 
 
-def _own_gap(pair: SpurPair, name: str, radius: Array, face: Array) -> Array:
-    """Material missing on the flank of one gear, at radii of curvature and face positions."""
+def _flank_gap_of_gear(pair: SpurPair, name: str, radius: Array, face: Array) -> Array:
+    """Material removed from the flank of a gear at radii of curvature and face positions [m]."""
     gear = getattr(pair, name)
     flank = flank_ranges(pair)[0 if name == "pinion" else 1]
     gap = profile_gap(gear, radius, flank, default_relief_length(pair)) + lead_gap(gear, face)
@@ -57,10 +57,10 @@ def _own_gap(pair: SpurPair, name: str, radius: Array, face: Array) -> Array:
 
 
 def _curves(x: Array, parts: dict[str, Array]) -> list[Trace]:
-    looks = {"pinion": (PINION, "solid"), "wheel": (WHEEL, "solid"), "both": (TOTAL, "dot")}
+    styles = {"pinion": (PINION, "solid"), "wheel": (WHEEL, "solid"), "both": (TOTAL, "dot")}
     unit = display_unit("flank_gap")
     return [
-        line(x, displayed("flank_gap", gap), name, looks[name][0], unit=unit, dash=looks[name][1])
+        line(x, displayed("flank_gap", gap), name, styles[name][0], unit=unit, dash=styles[name][1])
         for name, gap in parts.items()
     ]
 
@@ -73,7 +73,7 @@ def _profile(pair: SpurPair) -> Row:
     radii = (driving, driven) if pair.driver == "pinion" else (driven, driving)
     face = np.zeros(1)
     parts = {
-        name: _own_gap(pair, name, radius, face)
+        name: _flank_gap_of_gear(pair, name, radius, face)
         for name, radius in zip(("pinion", "wheel"), radii, strict=True)
     }
     parts["both"] = flank_gap(pair, *radii)
@@ -90,14 +90,14 @@ def _lead(pair: SpurPair) -> Row:
     face = np.linspace(-half, half, _POINTS)
     middle = np.array([0.5 * (flank.lowest + flank.highest) for flank in flank_ranges(pair)])
     parts = {
-        name: _own_gap(pair, name, middle[number : number + 1], face)
+        name: _flank_gap_of_gear(pair, name, middle[number : number + 1], face)
         for number, name in enumerate(("pinion", "wheel"))
     }
-    both = flank_gap(pair, middle[0], middle[1], face)
-    parts = {name: gap - gap[_POINTS // 2] for name, gap in {**parts, "both": both}.items()}
+    total = flank_gap(pair, middle[0], middle[1], face)
+    parts = {name: gap - gap[_POINTS // 2] for name, gap in {**parts, "both": total}.items()}
     x = displayed("face_position", face)
     return Row(
-        axis_label("face_position", "Place along the face from its middle"),
+        axis_label("face_position", "Position along the face from its middle"),
         Panel(axis_label("flank_gap", "Gap over the face"), _curves(x, parts), height=0.8),
     )
 
@@ -126,9 +126,11 @@ def _pitch(pair: SpurPair) -> Row:
 def _run_out(pair: SpurPair) -> Row:
     turn, traces = np.linspace(0.0, 2.0 * np.pi, _POINTS), []
     for name, color in (("pinion", PINION), ("wheel", WHEEL)):
-        given = getattr(pair, name).modification
-        if given.run_out:
-            gap = displayed("flank_gap", -0.5 * given.run_out * np.cos(turn - given.run_out_phase))
+        modification = getattr(pair, name).modification
+        if modification.run_out:
+            gap = displayed(
+                "flank_gap", -0.5 * modification.run_out * np.cos(turn - modification.run_out_phase)
+            )
             trace = line(displayed("angle", turn), gap, name, color, unit=display_unit("flank_gap"))
             traces.append({**trace, "showlegend": True})
     return Row(
@@ -141,9 +143,9 @@ def _run_out(pair: SpurPair) -> Row:
 @drawing(
     "flank_modification",
     heading="Flank modifications",
-    caption="How far the flanks stand apart where perfect involutes would touch: material is "
-    "missing where the curves are above zero. The profile is drawn at the middle of the face, the "
-    "face in the middle of the profile against its own middle.",
+    caption="Gap of the flanks where perfect involutes would touch: material is "
+    "removed where the curves are above zero. The profile is shown at the middle of the face, the "
+    "lead at the middle of the profile, relative to the middle of the face.",
     missing=_perfect,
     of=_HOLDERS,
     made_by=RUN,
@@ -152,30 +154,28 @@ def flank_modification(pair: SpurPair) -> Any:
     """Draw the modifications and deviations of both flanks."""
     rows = [
         make(pair)
-        for there, make in (
+        for deviates, make in (
             (pair.has_profile_modification, _profile),
             (pair.has_lead_modification, _lead),
             (pair.has_pitch_deviation, _pitch),
             (pair.has_run_out, _run_out),
         )
-        if there
+        if deviates
     ]
     return stack_rows(_title(pair), rows)
 
 
 def _title(pair: SpurPair) -> str:
-    """Answer: the largest gap over profile and face, or what there is besides."""
+    """Title: the largest gap over profile and face, else the pitch deviation or run-out."""
     low, high = pair.path_limits
     path = np.linspace(low, high, _POINTS)[:, None]
     half = 0.5 * pair.common_face_width
     gap = flank_gap(pair, path, pair.line_of_action_length - path, np.linspace(-half, half, 41))
     if np.any(gap):
         most = float(np.max(gap))
-        return f"The flanks stand apart by up to {rounded('flank_gap', most)} without load"
+        return f"Gap of the unloaded flanks of up to {rounded('flank_gap', most)}"
     swing = max(float(np.ptp(tooth_positions(gear))) for gear in (pair.pinion, pair.wheel))
     if swing:
-        return (
-            f"The teeth of one gear differ in their places by up to {rounded('flank_gap', swing)}"
-        )
+        return f"Cumulative pitch deviation of up to {rounded('flank_gap', swing)}"
     run_out = max(gear.modification.run_out for gear in (pair.pinion, pair.wheel))
-    return f"The toothing runs out by {rounded('run_out', run_out)}"
+    return f"Run-out of the toothing of {rounded('run_out', run_out)}"

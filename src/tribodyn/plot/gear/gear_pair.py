@@ -1,4 +1,4 @@
-"""Drawing of the gear pair: the whole pair, and the mesh zone enlarged beside it."""
+"""Drawing of the gear pair to scale, with the mesh zone enlarged."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from tribodyn.plot.gear.outlines import (
     rotation_arc,
     tooth_angles,
 )
-from tribodyn.plot.gear.path import further_changes, sharing_words
-from tribodyn.plot.look.labels import axis_label, displayed
-from tribodyn.plot.look.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure
+from tribodyn.plot.gear.path import further_changes, sharing_sentence
 from tribodyn.plot.mesh.cycle import RUN
+from tribodyn.plot.theme.labels import axis_label, displayed
+from tribodyn.plot.theme.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 #: Circles of each gear: name and dash.
 _CIRCLES = (("tip", "dot"), ("pitch", "dashdot"), ("base", "dash"))
-#: Distance of the letters from the line of action, and from one another [px].
-_ASIDE, _APART = 34, 17
+#: Distance of the letters from the line of action, and between letters [px].
+_OFFSET, _SPACING = 34, 17
 
 
 def _curve(points: Array, name: str, color: str, **more: Any) -> dict[str, Any]:
@@ -45,8 +45,8 @@ def _curve(points: Array, name: str, color: str, **more: Any) -> dict[str, Any]:
     }
 
 
-def _placed(pair: SpurPair) -> tuple[tuple[SpurGear, str, float, str], ...]:
-    """Each gear with its name, the place of its axis, and its colour."""
+def _gears_and_centers(pair: SpurPair) -> tuple[tuple[SpurGear, str, float, str], ...]:
+    """Both gears with name, centre position and colour."""
     wheel = (pair.wheel, "wheel", pair.center_distance, WHEEL)
     return (pair.pinion, "pinion", 0.0, PINION), wheel
 
@@ -54,7 +54,7 @@ def _placed(pair: SpurPair) -> tuple[tuple[SpurGear, str, float, str], ...]:
 def _gears(pair: SpurPair, touching: float) -> list[Trace]:
     angles = tooth_angles(pair, touching)
     traces = []
-    for (gear, name, center, color), angle in zip(_placed(pair), angles, strict=True):
+    for (gear, name, center, color), angle in zip(_gears_and_centers(pair), angles, strict=True):
         role = "drives" if pair.driver == name else "is driven"
         label = f"{name}, {gear.teeth} teeth, {role}"
         outline = placed_outline(gear, center, angle)
@@ -69,7 +69,7 @@ def _gears(pair: SpurPair, touching: float) -> list[Trace]:
 def _circles(pair: SpurPair) -> list[Trace]:
     cosine = np.cos(pair.operating_pressure_angle)
     traces = []
-    for gear, _, center, color in _placed(pair):
+    for gear, _, center, color in _gears_and_centers(pair):
         radii = (gear.tip_radius, gear.base_radius / cosine, gear.base_radius)
         for (name, dash), radius in zip(_CIRCLES, radii, strict=True):
             traces.append(
@@ -86,9 +86,9 @@ def _circles(pair: SpurPair) -> list[Trace]:
 
 
 def _arrows(pair: SpurPair) -> list[Trace]:
-    """Arcs with an arrow head in the sense in which each gear turns."""
+    """Arcs with an arrow head in the sense of rotation of each gear."""
     traces = []
-    for gear, name, center, color in _placed(pair):
+    for gear, name, center, color in _gears_and_centers(pair):
         arc = rotation_arc(center, 0.8 * gear.root_radius, 1 if pair.driver == name else -1)
         head = [0] * (arc.shape[1] - 1) + [15]
         marker = {"symbol": "arrow", "angleref": "previous", "size": head, "opacity": 1}
@@ -99,7 +99,7 @@ def _arrows(pair: SpurPair) -> list[Trace]:
 
 
 def _roles(pair: SpurPair) -> list[Trace]:
-    """Words below each gear."""
+    """Labels below the gears: drives or driven."""
     return [
         {
             "x": 1e3 * center,
@@ -109,12 +109,12 @@ def _roles(pair: SpurPair) -> list[Trace]:
             "showarrow": False,
             "font": {"size": 12, "color": color},
         }
-        for gear, name, center, color in _placed(pair)
+        for gear, name, center, color in _gears_and_centers(pair)
     ]
 
 
 def _letters(pair: SpurPair, path: PathOfContact) -> dict[str, float]:
-    """Positions to be marked on the line of action, in the order along it."""
+    """Marked positions on the line of action, in ascending order."""
     letters = {name: getattr(path, name) for name in "ABCDE"}
     for name, age in further_changes(path.contact_ratio).items():
         letters[name] = path.A + path.direction * age * pair.base_pitch
@@ -122,7 +122,7 @@ def _letters(pair: SpurPair, path: PathOfContact) -> dict[str, float]:
 
 
 def _names(pair: SpurPair, path: PathOfContact, axes: tuple[str, str]) -> list[Trace]:
-    """Letters in a column beside the line of action, each led to its position."""
+    """Letters in a column next to the line of action, each with a leader to its position."""
     letters = _letters(pair, path)
     x, y = displayed("center_distance", on_line_of_action(pair, np.array(list(letters.values()))))
     middle = 0.5 * (len(letters) - 1)
@@ -133,9 +133,9 @@ def _names(pair: SpurPair, path: PathOfContact, axes: tuple[str, str]) -> list[T
             "xref": axes[0],
             "yref": axes[1],
             "text": name,
-            "ax": _ASIDE,
-            # The points rise along the line as well, so neighbours are at least this far apart.
-            "ay": _APART * (middle - number),
+            "ax": _OFFSET,
+            # The points rise along the line too, so this is the least spacing.
+            "ay": _SPACING * (middle - number),
             "arrowhead": 0,
             "arrowwidth": 1,
             "arrowcolor": INK,
@@ -169,7 +169,7 @@ def _contact_line(pair: SpurPair, path: PathOfContact) -> list[Trace]:
 
 
 def _window(pair: SpurPair, path: PathOfContact) -> dict[str, Any]:
-    """Axes: the whole pair on the left, the surroundings of the path of contact on the right."""
+    """Axes: the entire pair on the left, the path of contact enlarged on the right."""
     ends = displayed("center_distance", on_line_of_action(pair, np.array([path.A, path.E])))
     middle = ends.mean(axis=1)
     half = 0.75 * float(np.hypot(*(ends[:, 1] - ends[:, 0])))
@@ -202,9 +202,10 @@ def _window(pair: SpurPair, path: PathOfContact) -> dict[str, Any]:
 def _caption(pair: SpurPair) -> str:
     ratio = path_of_contact(pair).contact_ratio
     return (
-        "Both gears to scale, with two flanks touching. On the right the mesh zone enlarged: a "
-        f"tooth pair of perfect rigid flanks enters at A and leaves at E. {sharing_words(ratio)} C "
-        "is the pitch point, where flanks roll without sliding. The arrows show how the gears turn."
+        "Both gears to scale, with a pair of flanks in contact. Right: the mesh zone enlarged. A "
+        "tooth pair of perfect rigid flanks enters at A and leaves at E. "
+        f"{sharing_sentence(ratio)} C is the pitch point, where flanks roll without sliding. The "
+        "arrows show how the gears turn."
     )
 
 

@@ -1,4 +1,4 @@
-"""The temperature at which the surroundings take up what the gearbox loses."""
+"""Heat balance of a gearbox: power loss and dissipated heat over the temperature."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import axis_label, engineering, significant
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import PINION, TOTAL, WHEEL, line, marked
+from tribodyn.plot.theme.labels import axis_label, engineering, significant
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, line, marked
 from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 @drawing(
     "heat_balance",
     heading="Heat balance",
-    caption="The loss at every temperature that was computed, and the straight line of the heat "
-    "that the surroundings take up. Gears and oil take on the temperature at which both meet.",
+    caption="The loss at every computed temperature, and the straight line of the heat dissipated "
+    "to the surroundings. Gears and oil settle at the temperature at which they intersect.",
     of="HeatBalance",
-    made_by="Result.heat of a case with lubricant.heat_transfer holds one.",
+    made_by="Use Result.heat of a case with lubricant.heat_transfer.",
 )
 def heat_balance(balance: HeatBalance) -> Any:
     """Draw power loss and dissipated heat over the temperature of gears and oil."""
@@ -39,15 +39,15 @@ def heat_balance(balance: HeatBalance) -> Any:
     )  # fmt: skip
     number, unit = engineering(float(balance.power_loss[-1]), "W", 4)
     return stack(
-        f"Gears and oil come to {significant(float(celsius[-1]), 4)} °C, where "
-        f"{number} {unit} are lost",
+        f"Gears and oil settle at {significant(float(celsius[-1]), 4)} °C with a loss of "
+        f"{number} {unit}",
         axis_label("temperature", "Temperature of gears and oil"),
         [
             Panel(
                 axis_label("power", "Power"),
                 [
                     {**loss, "mode": "lines+markers"},
-                    line(ends, given_off, "given off", PINION, unit="W", dash="dash"),
+                    line(ends, given_off, "dissipated heat", PINION, unit="W", dash="dash"),
                     state,
                 ],
                 {"rangemode": "tozero"},

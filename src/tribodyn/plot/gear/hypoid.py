@@ -1,4 +1,4 @@
-"""A hypoid pair: sections of its blanks, the pair in space, its ease-off, contact pattern."""
+"""A hypoid pair: blank sections, the pair in space, ease-off and contact pattern."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.errors import quiet
 from tribodyn.gear import hypoid_flanks
-from tribodyn.plot.look.panels import Panel, Row, stack_rows
-from tribodyn.plot.look.style import (
+from tribodyn.plot.theme.panels import Panel, Row, stack_rows
+from tribodyn.plot.theme.style import (
     FILLS,
     INK,
     MUTED,
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def _section(blank: HypoidBlank, gear: str, cone: str) -> Array:
-    """Places along the axis and radii of toe and heel on a cone, cut across the pitch cone."""
+    """Axial positions and radii of toe and heel on a cone, normal to the pitch cone [mm]."""
     pitch = getattr(blank, f"pitch_angle_{gear}")
     angle, apex = getattr(blank, f"{cone}_angle_{gear}"), getattr(blank, f"{cone}_apex_{gear}")
     points = []
@@ -58,7 +58,7 @@ def _panel(blank: HypoidBlank, gear: str, color: str) -> Row:
         line(pitch[0], pitch[1], "pitch cone", MUTED, unit="mm", dash="dash"),
         line([place], [mean], "calculation point", color, unit="mm") | {"mode": "markers"},
     ]
-    label = f"Place along the axis of the {gear} from the crossing point [mm]"
+    label = f"Position along the axis of the {gear} from the crossing point [mm]"
     return Row(label, Panel("Radius [mm]", traces), {"scaleanchor": "y"})
 
 
@@ -66,9 +66,9 @@ def _panel(blank: HypoidBlank, gear: str, color: str) -> Row:
     "hypoid_blank",
     heading="Blanks",
     caption="Sections of the teeth in the axial plane of each gear: tip, root and pitch cone from "
-    "toe to heel, to scale. The tip of one gear keeps its clearance from the root of the other.",
+    "toe to heel, to scale, with the clearance between the tip and the root of the mating gear.",
     of="HypoidBlank",
-    made_by="tribodyn.gear.hypoid_blank makes one.",
+    made_by="Call tribodyn.gear.hypoid_blank.",
 )
 def hypoid_blank(blank: HypoidBlank) -> Any:
     """Draw the sections of both blanks."""
@@ -83,19 +83,19 @@ def hypoid_blank(blank: HypoidBlank) -> Any:
     return stack_rows(title, rows, {"hovermode": "closest"})
 
 
-#: Contact lines that are drawn, at most.
+#: Most contact lines in the plot.
 _LINES = 24
-#: Tooth pairs before and after the one that is followed.
+#: Preceding, current and following tooth pair.
 _PAIRS = (-1, 0, 1)
 
 
 def _outline(contact: ToothContact) -> Trace:
-    """Ends of all contact lines: the flank that both gears share."""
+    """Ends of all contact lines: the common flank of both gears."""
     ends = [
         np.concatenate([cells[:, 0], cells[::-1, -1], cells[:1, 0]]) * 1e3
         for cells in (contact.cell_along, contact.cell_across)
     ]
-    return line(ends[0], ends[1], "flank of both gears", MUTED, unit="mm", dash="dash")
+    return line(ends[0], ends[1], "common flank", MUTED, unit="mm", dash="dash")
 
 
 def _lines(contact: ToothContact) -> Trace:
@@ -109,7 +109,7 @@ def _lines(contact: ToothContact) -> Trace:
 
 
 def _pattern(contact: ToothContact) -> Trace:
-    """Marked part of every line, joined from line to line."""
+    """Outline of the marked parts of all contact lines."""
     inside = contact.marked & contact.leads[:, None]
     rows = np.flatnonzero(inside.any(axis=1))
     first = inside[rows].argmax(axis=1)
@@ -119,8 +119,8 @@ def _pattern(contact: ToothContact) -> Trace:
         * np.concatenate([cells[rows, first], cells[rows, last][::-1], cells[rows[:1], first[:1]]])
         for cells in (contact.cell_along, contact.cell_across)
     ]
-    words = f"marked at {contact.marking_thickness * 1e6:.3g} µm"
-    area = line(edge[0], edge[1], words, PINION, unit="mm", width=1.0)
+    label = f"marked at {contact.marking_thickness * 1e6:.3g} µm"
+    area = line(edge[0], edge[1], label, PINION, unit="mm", width=1.0)
     return area | {"fill": "toself", "fillcolor": FILLS[PINION]}
 
 
@@ -135,7 +135,7 @@ def _path(contact: ToothContact) -> list[Trace]:
 
 
 def _error(contact: ToothContact) -> Panel:
-    """Transmission error of neighbouring pairs, each a pitch after the one before."""
+    """Transmission error of neighbouring pairs, shifted by a pitch each."""
     pitch = 360.0 / contact.flanks.blank.teeth_wheel
     turn, error = np.degrees(contact.rotation), 1e6 * contact.angular_transmission_error
     inner = ~contact.on_edge if np.any(~contact.on_edge) else np.ones(len(turn), bool)
@@ -158,11 +158,11 @@ def _error(contact: ToothContact) -> Panel:
 @drawing(
     "hypoid_contact",
     heading="Contact pattern",
-    caption="The flank of the wheel: where the marking compound is squeezed away, the path of the "
-    "contact over it, and the contact lines of the conjugate flanks. Below, how far each pair lets "
-    "the wheel run ahead; the pair whose curve is on top touches. Curves end where edges touch.",
+    caption="Flank of the wheel with the contact pattern of the marking compound, the path of "
+    "contact and the contact lines of the conjugate flanks. Below, the lead of the wheel for each "
+    "pair; the pair with the uppermost curve is in contact. Curves end at edge contact.",
     of=("ToothContact", "Result.hypoid_contact"),
-    made_by="tribodyn.gear.tooth_contact makes one.",
+    made_by="Call tribodyn.gear.tooth_contact.",
 )
 def hypoid_contact(contact: ToothContact) -> Any:
     """Draw contact pattern, path of contact and transmission error."""
@@ -181,25 +181,25 @@ def hypoid_contact(contact: ToothContact) -> Any:
     return stack_rows(title, rows, {"hovermode": "closest"})
 
 
-#: Points of a flank along the face and over the depth; points round a blank.
+#: Points of a flank along face and depth; points around a blank.
 _POINTS, _ROUND = 11, 121
-_MADE_BY = "tribodyn.gear.hypoid_flanks makes one."
+_MADE_BY = "Call tribodyn.gear.hypoid_flanks."
 #: Axis of each gear in the frame of its points.
 _AXES = {"pinion": 1, "wheel": 2}
 
 
-def _spun(points: Array, axis: int, angle: Array) -> Array:
-    """Points (..., 3) turned about a coordinate axis."""
-    one, other = (axis + 1) % 3, (axis + 2) % 3
+def _rotated(points: Array, axis: int, angle: Array) -> Array:
+    """Rotate points (..., 3) about a coordinate axis."""
+    first, second = (axis + 1) % 3, (axis + 2) % 3
     cosine, sine = np.cos(angle), np.sin(angle)
-    found = np.array(np.broadcast_to(points, (*np.broadcast(cosine, points[..., 0]).shape, 3)))
-    found[..., one] = cosine * points[..., one] - sine * points[..., other]
-    found[..., other] = sine * points[..., one] + cosine * points[..., other]
-    return found
+    rotated = np.array(np.broadcast_to(points, (*np.broadcast(cosine, points[..., 0]).shape, 3)))
+    rotated[..., first] = cosine * points[..., first] - sine * points[..., second]
+    rotated[..., second] = sine * points[..., first] + cosine * points[..., second]
+    return rotated
 
 
 def _tooth(sides: list[HypoidFlanks], gear: str) -> Array:
-    """Skin (length, points, 3) of one tooth from root to root over its tip."""
+    """Surface (length, points, 3) of a tooth from root to root over its tip."""
     blank, axis = sides[0].blank, _AXES[gear]
     middle = len(sides[0].along) // 2
     position, outward = (each[middle, middle] for each in sides[0].points(gear))
@@ -208,11 +208,11 @@ def _tooth(sides: list[HypoidFlanks], gear: str) -> Array:
         getattr(blank, f"{name}_{gear}") for name in ("mean_spiral_angle", "mean_pitch_diameter")
     )
     angle = 2.0 * thickness / (math.cos(spiral) * diameter)
-    # The other side of the tooth lies against the outward normal of this one.
+    # The opposite flank lies against the outward normal of this flank.
     turning = np.cross(np.eye(3)[axis], position) @ outward
-    back = _spun(sides[1].points(gear)[0], axis, np.array(-math.copysign(angle, turning)))
+    back = _rotated(sides[1].points(gear)[0], axis, np.array(-math.copysign(angle, turning)))
     front = sides[0].points(gear)[0]
-    if gear == "pinion":  # It has its tip where the wheel has its root.
+    if gear == "pinion":  # the tip of the pinion is at the root of the wheel
         front, back = front[:, ::-1], back[:, ::-1]
     return np.concatenate([front, back[:, ::-1]], axis=1)
 
@@ -221,7 +221,7 @@ def _teeth(sides: list[HypoidFlanks], gear: str, color: str) -> Trace:
     """All teeth of a gear as one mesh of triangles, in mm."""
     skin, count = _tooth(sides, gear), getattr(sides[0].blank, f"teeth_{gear}")
     angles = 2.0 * np.pi / count * np.arange(count)
-    points = 1e3 * _spun(skin[None], _AXES[gear], angles[:, None, None])
+    points = 1e3 * _rotated(skin[None], _AXES[gear], angles[:, None, None])
     numbers = np.arange(points[..., 0].size).reshape(points.shape[:-1])
     a, b = numbers[:, :-1, :-1].ravel(), numbers[:, 1:, :-1].ravel()
     c, d = numbers[:, 1:, 1:].ravel(), numbers[:, :-1, 1:].ravel()
@@ -241,7 +241,7 @@ def _teeth(sides: list[HypoidFlanks], gear: str, color: str) -> Trace:
 
 
 def _faces_inwards(skin: Array) -> bool:
-    """Whether the triangles of a tooth face the gear: lamps shine on outer faces only."""
+    """Whether the triangles of a tooth face inwards; plotly lights outer faces only."""
     middle = skin.shape[0] // 2
     top = skin[middle : middle + 2, skin.shape[1] // 2 - 1 : skin.shape[1] // 2 + 1]
     facing = np.cross(top[1, 0] - top[0, 0], top[1, 1] - top[0, 0])
@@ -250,12 +250,12 @@ def _faces_inwards(skin: Array) -> bool:
 
 
 def _origin(flanks: HypoidFlanks, gear: str) -> float:
-    """Place of the gear's axis along the common perpendicular [mm]."""
+    """Position of the gear's axis along the common perpendicular [mm]."""
     return 1e3 * float(flanks.conjugate.axes.origin[0]) if gear == "pinion" else 0.0
 
 
 def _body(flanks: HypoidFlanks, gear: str) -> Trace:
-    """Body of a gear within its root cone."""
+    """Gear body within the root cone."""
     blank, axis = flanks.blank, _AXES[gear]
     angle, apex = (getattr(blank, f"root_{name}_{gear}") for name in ("angle", "apex"))
     # The pinion is solid, the wheel a ring.
@@ -265,7 +265,7 @@ def _body(flanks: HypoidFlanks, gear: str) -> Trace:
         along = getattr(blank, f"{end}_cone_distance_{gear}") * math.cos(angle)
         place = np.zeros(3)
         place[axis], place[(axis + 1) % 3] = along - apex, share * along * math.tan(angle)
-        rows.append(_spun(place, axis, np.linspace(0.0, 2.0 * np.pi, _ROUND)))
+        rows.append(_rotated(place, axis, np.linspace(0.0, 2.0 * np.pi, _ROUND)))
     x, y, z = 1e3 * np.moveaxis(np.array(rows), -1, 0)
     return {
         "type": "surface",
@@ -286,8 +286,8 @@ def _scene(eye: tuple[float, float, float], **axes: str) -> dict[str, Any]:
 @drawing(
     "hypoid_pair",
     heading="The pair in space",
-    caption="Both gears in mesh at the calculation point, to scale, on their root cones. Turn it "
-    "with the mouse.",
+    caption="Both gears in mesh at the calculation point, to scale, on their root cones. Rotate "
+    "the view with the mouse.",
     of=("HypoidFlanks", "Result.case.hypoid_flanks"),
     made_by=_MADE_BY,
 )
@@ -306,7 +306,7 @@ def hypoid_pair(flanks: HypoidFlanks) -> Any:
         f"{blank.teeth_pinion} teeth against {blank.teeth_wheel}, "
         f"offset {blank.offset * 1e3:g} mm, pinion {blank.hand_pinion}-handed"
     )
-    # The teeth of the wheel face against its axis: they are seen from below.
+    # The teeth of the wheel point against its axis: view from below.
     scene = _scene((-1.75, 1.4, -1.55), x="x [mm]", y="y [mm]", z="z [mm]")
     scene["camera"] |= {"up": {"x": 0.0, "y": 0.0, "z": -1.0}}
     layout = {"scene": {**scene, "aspectmode": "data"}, "height": 680, "hovermode": "closest"}
@@ -316,9 +316,9 @@ def hypoid_pair(flanks: HypoidFlanks) -> Any:
 @drawing(
     "ease_off",
     heading="Ease-off",
-    caption="What the pinion's flank has less than the one that would touch everywhere, over the "
+    caption="Gap between the pinion flank and the conjugate flank, over the "
     "flank of the wheel: along its pitch cone towards the heel, across it towards the tip. Dots "
-    "lie on both flanks; zero is where the flanks touch first.",
+    "lie on both flanks; the flanks first touch where the gap is zero.",
     of=("HypoidFlanks", "Result.case.hypoid_flanks"),
     made_by=_MADE_BY,
 )
@@ -350,7 +350,7 @@ def ease_off(flanks: HypoidFlanks) -> Any:
         "hoverinfo": "skip",
     }
     most = float(np.max(gap[inside], initial=0.0))
-    title = f"The pinion lacks up to {most:.3g} µm on the {flanks.side} flank"
+    title = f"Ease-off of up to {most:.3g} µm on the {flanks.side} flank"
     scene = _scene((-1.65, -1.9, 1.15), x="Along [mm]", y="Across [mm]", z="Gap [µm]")
     scene |= {"aspectmode": "manual", "aspectratio": {"x": 1.5, "y": 0.9, "z": 0.6}}
     return figure(title, [surface, dots], {"scene": scene, "height": 620, "hovermode": "closest"})

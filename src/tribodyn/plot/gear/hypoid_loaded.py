@@ -1,4 +1,4 @@
-"""A hypoid pair under load: pressure, friction and film on the flank, its load over the cycle."""
+"""A hypoid pair under load: pressure, friction and film on the flank, load sharing."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS
-from tribodyn.plot.look.panels import Panel, Row, stack, stack_rows
-from tribodyn.plot.look.style import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
 
 #: Points of a map along and across the flank.
 _GRID = (90, 45)
-#: Interpolated part of carrying cells (1 or 0) above which a place belongs to the contact pattern.
+#: Interpolated fraction of loaded cells above which a point belongs to the contact pattern.
 _PATTERN = 0.5
 _COLORS = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
 _ALONG = "Along the pitch cone of the wheel, towards the heel [mm]"
-_MADE_BY = "tribodyn.mesh.hypoid_loaded_contact makes one."
+_MADE_BY = "Call tribodyn.mesh.hypoid_loaded_contact."
 
 
 def _outline(loaded: HypoidLoadedContact) -> Trace:
-    """Ends of all contact lines in the order of contact: the flank that both gears share."""
+    """Ends of all contact lines in the order of contact: the common flank of both gears."""
     touch = loaded.cells.in_contact.T
     ends = [
         1e3 * np.concatenate([first, last[::-1], first[:1]])
@@ -34,14 +34,14 @@ def _outline(loaded: HypoidLoadedContact) -> Trace:
             for cells in (np.swapaxes(each, 0, 1) for each in (loaded.along, loaded.across))
         )
     ]
-    outline = line(ends[0], ends[1], "flank of both gears", MUTED, unit="mm", dash="dash")
+    outline = line(ends[0], ends[1], "common flank", MUTED, unit="mm", dash="dash")
     return outline | {"showlegend": False, "hoverinfo": "skip", "hovertemplate": None}
 
 
 def _flank(
     loaded: HypoidLoadedContact, values: Array, name: str, unit: str, bar: tuple[float, float]
 ) -> list[Trace]:
-    """Map of values of the cells that carry; ``bar`` is centre and length of its colour bar."""
+    """Map of values of the loaded cells; ``bar`` is centre and length of the colour bar."""
     from scipy.interpolate import griddata
 
     touch = loaded.cells.in_contact
@@ -53,15 +53,15 @@ def _flank(
         for low, high, count in zip(pattern.min(0), pattern.max(0), _GRID, strict=True)
     )
     grid = tuple(np.meshgrid(x, y))
-    shown = griddata(pattern, values[touch].ravel()[carries], grid)
-    if not carries.all():  # no values between cells that carry across those that do not
+    field = griddata(pattern, values[touch].ravel()[carries], grid)
+    if not carries.all():  # no interpolation across unloaded cells
         part = griddata(places, carries.astype(float), grid)
-        shown = np.where(part > _PATTERN, shown, np.nan)
+        field = np.where(part > _PATTERN, field, np.nan)
     heat: Trace = {
         "type": "heatmap",
         "x": x,
         "y": y,
-        "z": shown,
+        "z": field,
         "colorscale": _COLORS,
         "name": name,
         "colorbar": {"title": {"text": unit}, "thickness": 14, "y": bar[0], "len": bar[1]},
@@ -96,8 +96,8 @@ def _across() -> dict[str, Any]:
 @drawing(
     "hypoid_pressure",
     heading="Pressure on the flank",
-    caption="The flank of the wheel: greatest Hertzian pressure of every cell while its pair runs "
-    "through the mesh. What is blank never carries; the dashed line is the flank of both gears.",
+    caption="Flank of the wheel: maximum Hertzian pressure of every cell while its pair passes "
+    "through the mesh. Blank areas never carry load; the dashed line is the common flank.",
     of=("HypoidLoadedContact", "Result.hypoid_friction.loaded"),
     made_by=_MADE_BY,
 )
@@ -115,8 +115,8 @@ def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
 @drawing(
     "hypoid_load",
     heading="Load sharing and transmission error",
-    caption="Over one mesh cycle: the part of the torque on each pair, by how much the wheel lags "
-    "without load and under it, and the mesh stiffness on the line of action.",
+    caption="Over one mesh cycle: the share of the torque of each pair, the lag of the wheel "
+    "with and without load, and the mesh stiffness on the line of action.",
     of=("HypoidLoadedContact", "Result.hypoid_friction.loaded"),
     made_by=_MADE_BY,
 )
@@ -134,8 +134,8 @@ def hypoid_load(loaded: HypoidLoadedContact) -> Any:
     ]
     stiffness = line(phase, 1e-6 * loaded.mesh_stiffness, "mesh", TOTAL, unit="N/µm")
     panels = [
-        Panel("Part of the torque [%]", shares, {"rangemode": "tozero"}),
-        Panel("Lag less its mean [µm]", errors),
+        Panel("Share of the torque [%]", shares, {"rangemode": "tozero"}),
+        Panel("Lag about its mean [µm]", errors),
         Panel("Stiffness [N/µm]", [stiffness], {"rangemode": "tozero"}),
     ]
     title = (
@@ -145,24 +145,24 @@ def hypoid_load(loaded: HypoidLoadedContact) -> Any:
     return stack(title, "Mesh cycle", panels)
 
 
-def _friction_caption(rubbed: HypoidFriction) -> str:
-    flank = "The flank of the wheel: friction coefficient of every cell, and"
-    blank = "Cells that never carry load are blank: they have neither film nor friction."
-    if rubbed.composite_roughness == 0.0:
+def _friction_caption(friction: HypoidFriction) -> str:
+    flank = "Flank of the wheel: friction coefficient of every cell, and"
+    blank = "Cells that never carry load are blank."
+    if friction.composite_roughness == 0.0:
         return f"{flank} the film. {blank}"
     low, high = REGIME_LIMITS
-    ratio = rubbed.film_ratio[rubbed.loaded.cell_force > 0.0]
+    ratio = friction.film_ratio[friction.loaded.cell_force > 0.0]
     least, most = float(ratio.min()), float(ratio.max())
-    drawn = [f"{limit:g}" for limit in (low, high) if least < limit < most]
-    if drawn:
-        words = (
-            f"lines at {' and '.join(drawn)} separate lubrication regimes (boundary below {low:g}, "
-            f"full film from {high:g}, mixed in between)."
+    limits = [f"{limit:g}" for limit in (low, high) if least < limit < most]
+    if limits:
+        regimes = (
+            f"lines at {' and '.join(limits)} separate lubrication regimes (boundary below "
+            f"{low:g}, full film from {high:g}, mixed in between)."
         )
     else:
         regime = "boundary" if most < low else "mixed" if most < high else "full film"
-        words = f"its values of {least:.3g} to {most:.3g} are {regime} lubrication everywhere."
-    return f"{flank} the film over the composite roughness; {words} {blank}"
+        regimes = f"its values of {least:.3g} to {most:.3g} are {regime} lubrication everywhere."
+    return f"{flank} the film over the composite roughness; {regimes} {blank}"
 
 
 @drawing(
@@ -170,27 +170,27 @@ def _friction_caption(rubbed: HypoidFriction) -> str:
     heading="Friction and film on the flank",
     caption=_friction_caption,
     of=("HypoidFriction", "Result.hypoid_friction"),
-    made_by="tribodyn.mesh.hypoid_friction makes one.",
+    made_by="Call tribodyn.mesh.hypoid_friction.",
 )
-def hypoid_friction(rubbed: HypoidFriction) -> Any:
+def hypoid_friction(friction: HypoidFriction) -> Any:
     """Draw friction coefficient and film ratio over the flank."""
-    loaded, ratio = rubbed.loaded, np.minimum(rubbed.film_ratio, 1e3)
+    loaded, ratio = friction.loaded, np.minimum(friction.film_ratio, 1e3)
     maps = [
-        ("friction coefficient", "", rubbed.friction_coefficient, (0.79, 0.42)),
+        ("friction coefficient", "", friction.friction_coefficient, (0.79, 0.42)),
         ("film ratio", "", ratio, (0.21, 0.42)),
     ]
-    if rubbed.composite_roughness == 0.0:  # Over smooth flanks the ratio has no bounds.
-        maps[1] = ("film", "µm", 1e6 * rubbed.minimum_film, maps[1][3])
+    if friction.composite_roughness == 0.0:  # the film ratio of smooth flanks is infinite
+        maps[1] = ("film", "µm", 1e6 * friction.minimum_film, maps[1][3])
     traces = [_flank(loaded, values, name, unit, bar) for name, unit, values, bar in maps]
-    if rubbed.composite_roughness > 0.0:
+    if friction.composite_roughness > 0.0:
         traces[1].append(_regimes(traces[1][0]))
     rows = [
-        Row(_ALONG, Panel(f"Across [mm], {each[0]}", shown, {}, height=1.4))
-        for each, shown in zip(maps, traces, strict=True)
+        Row(_ALONG, Panel(f"Across [mm], {each[0]}", flank_traces, {}, height=1.4))
+        for each, flank_traces in zip(maps, traces, strict=True)
     ]
     title = (
-        f"Mean friction coefficient {rubbed.mean_friction_coefficient:.3g} at "
-        f"{rubbed.pinion_speed * 30.0 / np.pi:.4g} rpm, "
-        f"film ratio from {rubbed.minimum_film_ratio:.3g}"
+        f"Mean friction coefficient {friction.mean_friction_coefficient:.3g} at "
+        f"{friction.pinion_speed * 30.0 / np.pi:.4g} rpm, "
+        f"film ratio from {friction.minimum_film_ratio:.3g}"
     )
     return stack_rows(title, rows, {"hovermode": "closest"})

@@ -1,4 +1,4 @@
-"""How the flanks of a hypoid pair move along their contact lines."""
+"""Kinematics of the flanks of a hypoid pair along their contact lines."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import FILLS, PINION, TOTAL, WHEEL, Trace, line, translucent
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import FILLS, PINION, TOTAL, WHEEL, Trace, line, translucent
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _over_line(place: Array, values: Array, name: str, color: str, unit: str) -> list[Trace]:
-    """Mean over every contact line, within the least and the greatest on it."""
+    """Mean over each contact line with a band from minimum to maximum."""
     edge = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
     fill = FILLS.get(color, translucent(color, 0.12))
     return [
@@ -30,10 +30,10 @@ def _over_line(place: Array, values: Array, name: str, color: str, unit: str) ->
 
 @drawing(
     "hypoid_kinematics",
-    heading="Motion of the flanks",
-    caption="Over the rotation of the wheel: mean over the contact line, within the least and the "
-    "greatest on it. The flanks of a hypoid pair slide along the tooth too, so that the sliding "
-    "speed never reaches zero.",
+    heading="Kinematics of the flanks",
+    caption="Mean over the contact line with a band from minimum to maximum, over the rotation of "
+    "the wheel. The flanks of a hypoid pair also slide along the tooth, so that the sliding speed "
+    "never reaches zero.",
     of="HypoidKinematics",
     made_by="Call tribodyn.gear.hypoid_kinematics(contact, pinion_speed) and its plot method.",
 )

@@ -1,4 +1,4 @@
-"""Losses of a gearbox, the power flow of a rig, and friction from measured losses."""
+"""Losses of a gearbox, power flow of a test rig, and friction from measured losses."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.losses.gearbox import PARTS
-from tribodyn.plot.look.labels import axis_label, displayed, engineering, significant
-from tribodyn.plot.look.panels import Panel, Row, stack, stack_rows
-from tribodyn.plot.look.style import (
+from tribodyn.plot.theme.labels import axis_label, displayed, engineering, significant
+from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.theme.style import (
     FONT,
     GRID,
     INK,
@@ -28,7 +28,7 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.losses import FrictionFromLoss, GearboxLosses, RigPowerFlow
 
-#: From little to much efficiency.
+#: Colours from low to high efficiency.
 _SCALE = [[0.0, "#fde0c5"], [0.5, "#f7fbff"], [1.0, "#6baed6"]]
 #: Colours of the parts, in the order of PARTS: teeth, bearings, seals, oil.
 _COLORS = (PINION, "#E69F00", "#F0C55C", "#F5DB9D", "#C98A00", "#CC79A7", "#009E73", "#56B4E9")
@@ -44,14 +44,14 @@ def _percent(share: float) -> str:
     return f"{significant(100.0 * share, 3)} %"
 
 
-def _efficiency(found: GearboxLosses) -> Row:
-    """Efficiency over torque and speed, or over the one of them that varies."""
-    speed, torque = (displayed(n, getattr(found, f"pinion_{n}")) for n in ("speed", "torque"))
-    over, along = (
+def _efficiency(gearbox: GearboxLosses) -> Row:
+    """Efficiency over torque and speed, or over the quantity that varies."""
+    speed, torque = (displayed(n, getattr(gearbox, f"pinion_{n}")) for n in ("speed", "torque"))
+    speed_label, torque_label = (
         axis_label("speed", "Speed of the pinion"),
         axis_label("torque", "Torque on the pinion"),
     )
-    values = 100.0 * found.efficiency
+    values = 100.0 * gearbox.efficiency
     if torque.size > 1 and speed.size > 1:
         surface = {
             "type": "contour",
@@ -74,39 +74,39 @@ def _efficiency(found: GearboxLosses) -> Row:
             },
             "hovertemplate": "%{x:.4g} rpm, %{y:.4g} N·m: %{z:.5g} %<extra></extra>",
         }
-        return Row(over, Panel(along, [surface], height=1.4))
-    x, label = (torque, along) if torque.size > 1 else (speed, over)
+        return Row(speed_label, Panel(torque_label, [surface], height=1.4))
+    x, label = (torque, torque_label) if torque.size > 1 else (speed, speed_label)
     curve = {**line(x, values.ravel(), "efficiency", INK, unit="%"), "mode": "lines+markers"}
     return Row(label, Panel("Efficiency [%]", [curve]))
 
 
-def _stacked(found: GearboxLosses) -> Row:
-    """Parts of the loss upon each other: over the speed under the greatest torque, or over it."""
-    fast = found.pinion_speed.size > 1
-    name = "speed" if fast else "torque"
-    x = displayed(name, getattr(found, f"pinion_{name}"))
+def _loss_parts(gearbox: GearboxLosses) -> Row:
+    """Stacked parts of the loss over the speed at the largest torque, or over the torque."""
+    over_speed = gearbox.pinion_speed.size > 1
+    name = "speed" if over_speed else "torque"
+    x = displayed(name, getattr(gearbox, f"pinion_{name}"))
     traces: list[Trace] = []
     for (part, words), color in zip(PARTS.items(), _COLORS, strict=True):
-        power: Array = getattr(found, part)
-        values = power[-1] if fast else power[:, -1]
+        power: Array = getattr(gearbox, part)
+        values = power[-1] if over_speed else power[:, -1]
         if np.any(values):
             curve = line(x, values, words, color, unit="W", width=1.0)
             traces.append({**curve, "stackgroup": "loss", "fillcolor": color})
-    held = f"{displayed('torque', found.pinion_torque)[-1]:.4g} N·m"
-    label = axis_label(name, "Speed of the pinion" if fast else "Torque on the pinion")
-    words = f"Loss under {held} [W]" if fast else "Loss [W]"
+    torque = f"{displayed('torque', gearbox.pinion_torque)[-1]:.4g} N·m"
+    label = axis_label(name, "Speed of the pinion" if over_speed else "Torque on the pinion")
+    words = f"Loss under {torque} [W]" if over_speed else "Loss [W]"
     return Row(
         label, Panel(words, traces, {"rangemode": "tozero"}, 1.2), {"range": [x.min(), x.max()]}
     )
 
 
-def _bars(found: GearboxLosses) -> Any:
-    """The parts at one point."""
-    shown = {part: float(getattr(found, part).item()) for part in PARTS}
+def _bars(gearbox: GearboxLosses) -> Any:
+    """Bars of the loss parts at a single operating point."""
+    powers = {part: float(getattr(gearbox, part).item()) for part in PARTS}
     rows = [
-        (words, shown[part], color)
-        for (part, words), color in zip(PARTS.items(), _COLORS, strict=True)
-        if shown[part]
+        (label, powers[part], color)
+        for (part, label), color in zip(PARTS.items(), _COLORS, strict=True)
+        if powers[part]
     ]
     names, power, colors = zip(*rows[::-1], strict=True) if rows else ((), (), ())
     bar = {
@@ -118,7 +118,7 @@ def _bars(found: GearboxLosses) -> Any:
         "text": [_watts(value) for value in power],
         "hoverinfo": "skip",
     }
-    title = f"Efficiency {_percent(found.efficiency.item())}, loss {_watts(found.total.item())}"
+    title = f"Efficiency {_percent(gearbox.efficiency.item())}, loss {_watts(gearbox.total.item())}"
     x_axis = {"title": {"text": axis_label("power", "Loss")}, "rangemode": "tozero"}
     return figure(
         title, [bar], {"height": 160 + 40 * len(rows), "hovermode": False, "xaxis": x_axis}
@@ -128,25 +128,25 @@ def _bars(found: GearboxLosses) -> Any:
 @drawing(
     "losses",
     heading="Losses and efficiency",
-    caption="Above, the efficiency with all parts that the case counts; below, the parts of the "
-    "loss upon each other. Friction of the teeth grows with torque and speed, seals and oil with "
-    "the speed alone: a gearbox under little load loses mostly by them.",
+    caption="Above, the efficiency with all losses of the case; below, the stacked parts of the "
+    "loss. Tooth friction grows with torque and speed, losses of seals and oil grow with "
+    "the speed alone and dominate at low load.",
     of="GearboxLosses",
     made_by="Call tribodyn.loss_map(case) and its plot method.",
 )
-def losses(found: GearboxLosses) -> Any:
+def losses(gearbox: GearboxLosses) -> Any:
     """Draw the efficiency over torque and speed, and the parts of the loss."""
-    if found.total.size == 1:
-        return _bars(found)
-    counted = [words for part, words in PARTS.items() if np.any(getattr(found, part))]
+    if gearbox.total.size == 1:
+        return _bars(gearbox)
+    counted = [label for part, label in PARTS.items() if np.any(getattr(gearbox, part))]
     of = "teeth alone" if counted == ["teeth"] else "gearbox"
-    least, most = _percent(found.efficiency.min()), _percent(found.efficiency.max())
+    least, most = _percent(gearbox.efficiency.min()), _percent(gearbox.efficiency.max())
     return stack_rows(
-        f"Efficiency of the {of}: {least} to {most}", [_efficiency(found), _stacked(found)]
+        f"Efficiency of the {of}: {least} to {most}", [_efficiency(gearbox), _loss_parts(gearbox)]
     )
 
 
-#: Where power goes in the end: name, parts of it, colour.
+#: Sinks of the power flow: name, loss parts, colour.
 _SINKS = (
     ("Teeth", ("gear",), PINION),
     ("Bearings", tuple(part for part in PARTS if part.startswith("bearing")), "#E69F00"),
@@ -158,20 +158,19 @@ _SINKS = (
 @drawing(
     "power_flow",
     heading="Power flow of the rig",
-    caption="What the motor brings up, from the left to the right: first to the two gearboxes, "
-    "then to what loses it. The power that goes round in the loop is many times as much and is not "
-    "drawn.",
+    caption="Power of the motor from left to right: first to the two gearboxes, then to the loss "
+    "mechanisms. The power that circulates in the loop is many times larger and is not shown.",
     of="RigPowerFlow",
     made_by="Call tribodyn.rig_power_flow(case) and its plot method.",
 )
-def power_flow(found: RigPowerFlow) -> Any:
-    """Draw where the power of the motor goes, as bands as wide as it."""
-    place = {part: number for number, part in enumerate(found.part)}
+def power_flow(rig: RigPowerFlow) -> Any:
+    """Draw the power of the motor as a Sankey diagram."""
+    place = {part: number for number, part in enumerate(rig.part)}
     lost = np.array(
-        [found.loss[:, [place[part] for part in parts]].sum(axis=1) for _, parts, _ in _SINKS]
+        [rig.loss[:, [place[part] for part in parts]].sum(axis=1) for _, parts, _ in _SINKS]
     )
     names = ["Motor", "Test gearbox", "Slave gearbox", *(name for name, _, _ in _SINKS)]
-    power = [found.motor_power, *found.loss.sum(axis=1), *lost.sum(axis=1)]
+    power = [rig.motor_power, *rig.loss.sum(axis=1), *lost.sum(axis=1)]
     colors = [INK, MUTED, MUTED, *(color for _, _, color in _SINKS)]
     links = [(0, 1 + box, power[1 + box], GRID) for box in (0, 1)]
     links += [
@@ -181,19 +180,19 @@ def power_flow(found: RigPowerFlow) -> Any:
         if lost[sink, box] > 0.0
     ]
     source, target, value, shades = zip(*links, strict=True)
-    told = [
-        f"{name}<br>{_watts(p)} ({_percent(p / found.motor_power)})"
+    labels = [
+        f"{name}<br>{_watts(p)} ({_percent(p / rig.motor_power)})"
         for name, p in zip(names, power, strict=True)
     ]
-    drawn = sorted({*source, *target})
-    number = {node: place for place, node in enumerate(drawn)}
+    nodes = sorted({*source, *target})
+    number = {node: place for place, node in enumerate(nodes)}
     trace = {
         "type": "sankey",
         "arrangement": "snap",
         "textfont": {"size": 13, "color": INK, "family": FONT},
         "node": {
-            "label": [told[k] for k in drawn],
-            "color": [colors[k] for k in drawn],
+            "label": [labels[k] for k in nodes],
+            "color": [colors[k] for k in nodes],
             "pad": 34,
             "thickness": 16,
             "line": {"width": 0},
@@ -208,8 +207,8 @@ def power_flow(found: RigPowerFlow) -> Any:
         },
     }
     title = (
-        f"The motor brings up {_watts(found.motor_power)}; "
-        f"{_watts(found.circulating_power)} go round in the loop"
+        f"The motor supplies {_watts(rig.motor_power)}; "
+        f"{_watts(rig.circulating_power)} circulate in the loop"
     )
     return figure(title, [trace], {"height": 460, "margin": {"l": 24, "r": 24, "t": 74, "b": 24}})
 
@@ -217,30 +216,30 @@ def power_flow(found: RigPowerFlow) -> Any:
 @drawing(
     "friction_from_loss",
     heading="Friction from measured losses",
-    caption="Each point with the band that holds it with 95 %. The small difference of two losses "
-    "makes it wide under little torque; open marks are points that are not sound.",
+    caption="Friction coefficients with their 95 % confidence intervals. The small difference of "
+    "two losses makes them wide at low torque; open markers are points that are not sound.",
     of="FrictionFromLoss",
     made_by="Call tribodyn.losses.friction_from_power_loss(table) and its plot method.",
 )
-def friction_from_loss(found: FrictionFromLoss) -> Any:
-    """Draw friction coefficients with their bands over the torque, one curve for each speed."""
-    turns = np.round(displayed("speed", found.speed), 1)
-    torque, traces = displayed("torque", found.torque), []
-    sound = np.array([verdict == "sound" for verdict in found.verdict])
+def friction_from_loss(measured: FrictionFromLoss) -> Any:
+    """Draw friction coefficients with error bars over the torque, one curve per speed."""
+    turns = np.round(displayed("speed", measured.speed), 1)
+    torque, traces = displayed("torque", measured.torque), []
+    sound = np.array([verdict == "sound" for verdict in measured.verdict])
     speeds = np.unique(turns)
     for number, speed in enumerate(speeds):
         rows = np.flatnonzero(turns == speed)
         rows = rows[np.argsort(torque[rows], kind="stable")]
         color = (PINION, WHEEL, *PAIR_COLORS)[number % 6]
-        mu, symbol = found.friction_coefficient[rows], _SYMBOLS[number % len(_SYMBOLS)]
+        mu, symbol = measured.friction_coefficient[rows], _SYMBOLS[number % len(_SYMBOLS)]
         curve = line(torque[rows], mu, f"{speed:g} rpm", color, width=1.2)
         shapes = [symbol if good else f"{symbol}-open" for good in sound[rows]]
-        reach = found.high[rows] - mu
+        reach = measured.high[rows] - mu
         traces.append(
             {
                 **curve,
                 "mode": "lines+markers",
-                "customdata": [found.verdict[row] for row in rows],
+                "customdata": [measured.verdict[row] for row in rows],
                 "marker": {"size": 9, "symbol": shapes, "color": color},
                 "error_y": {
                     "type": "data",

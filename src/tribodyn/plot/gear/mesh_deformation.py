@@ -1,4 +1,4 @@
-"""Teeth in mesh, bent by their loads: the deformation exaggerated, the loads as arrows."""
+"""Deformation of the teeth in mesh, exaggerated, with the loads as arrows."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.gear.outlines import BentMesh, bent_mesh, on_line_of_action
-from tribodyn.plot.look.labels import axis_label, displayed, rounded, significant
-from tribodyn.plot.look.style import FILLS, INK, MUTED, PINION, WHEEL, Trace, figure, player
 from tribodyn.plot.mesh.loaded_contact import several_cycles, torque_names
+from tribodyn.plot.theme.labels import axis_label, displayed, rounded, significant
+from tribodyn.plot.theme.style import FILLS, INK, MUTED, PINION, WHEEL, Trace, figure, player
 from tribodyn.types import ComplexArray
 
 if TYPE_CHECKING:
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
 
 #: Mesh phases of the slider.
 _FRAMES = 8
-#: Largest displacement drawn, and length of the arrow of the greatest force [modules].
-_DRAWN, _ARROW = 0.25, 1.3
+#: Plotted size of the largest displacement, and length of the longest force arrow [modules].
+_LARGEST_DISPLACEMENT, _ARROW = 0.25, 1.3
 #: Half width and half height of the window [modules], height [px], time of a phase [ms].
 _WINDOW, _HEIGHT, _FRAME = (3.6, 2.9), 760, 500
 _GEARS = (("pinion", PINION), ("wheel", WHEEL))
 
 
 def _exaggeration(meshes: Sequence[BentMesh], module: float) -> float:
-    """Factor with a first digit of 1, 2 or 5 that makes the displacements well seen."""
+    """Round magnification (1, 2 or 5 times a power of ten) that makes displacements visible."""
     largest = max(
         float(np.abs(mesh.displacement[name]).max()) for mesh in meshes for name, _ in _GEARS
     )
-    wanted = _DRAWN * module / largest
+    wanted = _LARGEST_DISPLACEMENT * module / largest
     power = 10.0 ** math.floor(math.log10(wanted))
     return power * max(digit for digit in (1.0, 2.0, 5.0) if digit * power <= wanted)
 
@@ -42,7 +42,7 @@ def _trace(points: ComplexArray, name: str, **more: Any) -> dict[str, Any]:
     return {
         "type": "scatter",
         "mode": "lines",
-        # Half the bytes; a screen shows four digits.
+        # Single precision halves the size of the figure.
         "x": x.astype(np.float32),
         "y": y.astype(np.float32),
         "name": name,
@@ -52,7 +52,7 @@ def _trace(points: ComplexArray, name: str, **more: Any) -> dict[str, Any]:
 
 
 def _gears(center_distance: float, mesh: BentMesh, factor: float) -> list[Trace]:
-    """Thin grey outlines without load, coloured and filled ones with it."""
+    """Grey outlines without load and filled, coloured outlines under load."""
     traces = []
     for name, color in _GEARS:
         outline = mesh.outline[name]
@@ -86,33 +86,33 @@ def _arrows(contact: LoadedContact, mesh: BentMesh, factor: float, greatest: flo
     sense = 1.0 if pair.driver == "pinion" else -1.0
     direction = sense * complex(*along)
     heads = mesh.contact + factor * mesh.shift
-    points, sizes, tails, words = [], [], [], []
+    points, sizes, tails, force_labels = [], [], [], []
     for head, load in zip(heads, mesh.loads, strict=True):
         tail = head - direction * _ARROW * pair.pinion.normal_module * load.force / greatest
         points += [tail, head, complex(math.nan, math.nan)]
         sizes += [0, 13, 0]
         tails.append(tail)
-        words.append(f"<b>{rounded('normal_force', load.force)}</b>")
+        force_labels.append(f"<b>{rounded('normal_force', load.force)}</b>")
     marker = {"symbol": "arrow", "angleref": "previous", "size": sizes, "opacity": 1, "color": INK}
-    look = {"mode": "lines+markers", "marker": marker, "line": {"color": INK, "width": 2.5}}
+    style = {"mode": "lines+markers", "marker": marker, "line": {"color": INK, "width": 2.5}}
     side = "bottom center" if direction.imag > 0.0 else "top center"
-    label = {"mode": "text", "text": words, "textposition": side, "textfont": {"color": INK}}
+    label = {"mode": "text", "text": force_labels, "textposition": side, "textfont": {"color": INK}}
     return [
-        _trace(np.array(points), "force on the driven gear", **look),
+        _trace(np.array(points), "force on the driven gear", **style),
         _trace(np.array(tails), "values", showlegend=False, **label),
     ]
 
 
-def _player(words: Sequence[str]) -> dict[str, Any]:
+def _player(labels: Sequence[str]) -> dict[str, Any]:
     slider = {"x": 0.16, "len": 0.84, "y": -0.1}
-    return player(words, _FRAME, redraw=True, slider=slider, buttons=-0.12)
+    return player(labels, _FRAME, redraw=True, slider=slider, buttons=-0.12)
 
 
 def _window(contact: LoadedContact) -> dict[str, Any]:
     """Axes of equal scale around the middle of the path of contact."""
     pair = contact.gear_pair
     ends = on_line_of_action(pair, np.array(pair.path_limits))
-    # As high as the path of contact and the arrows need.
+    # High enough for the path of contact and the arrows.
     wanted = 0.5 * abs(ends[1, 1] - ends[1, 0]) + _ARROW * pair.pinion.normal_module
     scale = max(1.0, wanted / (_WINDOW[1] * pair.pinion.normal_module))
     middle = displayed("center_distance", ends.mean(axis=1))
@@ -137,11 +137,11 @@ def _window(contact: LoadedContact) -> dict[str, Any]:
 
 
 def _chosen(contact: LoadedContact, phase: float | None) -> list[int]:
-    """Indices of the phases that are drawn."""
+    """Indices of the plotted phases."""
     if phase is not None:
         period = contact.mesh_cycles if several_cycles(contact) else 1
-        apart = np.abs((contact.phase - phase + 0.5 * period) % period - 0.5 * period)
-        return [int(np.argmin(apart))]
+        distance = np.abs((contact.phase - phase + 0.5 * period) % period - 0.5 * period)
+        return [int(np.argmin(distance))]
     first = np.flatnonzero(contact.phase < 1.0)
     places = np.linspace(0, first.size, min(_FRAMES, first.size), endpoint=False)
     return [int(place) for place in places]
@@ -150,26 +150,26 @@ def _chosen(contact: LoadedContact, phase: float | None) -> list[int]:
 @drawing(
     "mesh_deformation",
     heading="Deformation of the teeth",
-    caption="Teeth in mesh, bent by their loads: grey without load, coloured with the deformation "
-    "exaggerated. The arrows are the forces on the driven gear. The bores keep their places, and "
-    "the driving gear turns until the flanks touch.",
+    caption="Teeth in mesh: grey without load, coloured with the deformation under load, "
+    "exaggerated. The arrows are the forces on the driven gear. The bores are fixed, and "
+    "the driving gear is rotated until the flanks touch.",
     of="LoadedContact",
     made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )
 def mesh_deformation(
     contact: LoadedContact, *, phase: float | None = None, torque: int = -1
 ) -> Any:
-    """Draw the teeth in mesh with their deformation exaggerated, and their loads.
+    """Draw the teeth in mesh with exaggerated deformation, and their loads.
 
     Parameters
     ----------
     contact : LoadedContact
-        What :func:`tribodyn.stiffness.loaded_contact` returns. Gears are bent by finite elements,
-        whatever provider the loads come from.
+        What :func:`tribodyn.stiffness.loaded_contact` returns. Finite elements compute
+        the deformation, whatever model the loads come from.
     phase : float, optional
-        Mesh phase; a slider over a mesh cycle where absent.
+        Mesh phase; by default a slider over the mesh cycle.
     torque : int
-        Which of several torques.
+        Index of the torque.
 
     Returns
     -------
@@ -185,18 +185,18 @@ def mesh_deformation(
         for mesh in meshes
     ]
     errors = np.reshape(contact.transmission_error, (-1, contact.phase.size))[torque]
-    words = [
+    labels = [
         f"Mesh phase {significant(float(contact.phase[at]), 2)}: transmission error "
         f"{rounded('static_transmission_error', float(errors[at]))}"
         for at in chosen
     ]
     several, load = len(frames) > 1, torque_names(contact.torque)[torque]
-    made = figure(
-        f"Under {load} the teeth bend as drawn, {factor:g} times enlarged",
+    sketch = figure(
+        f"Deformation under {load}, magnified {factor:g} times",
         frames[0],
         {
             **_window(contact),
-            **(_player(words) if several else {}),
+            **(_player(labels) if several else {}),
             "height": _HEIGHT,
             "hovermode": False,
             "margin": {"l": 70, "r": 24, "t": 74, "b": 150 if several else 58},
@@ -204,5 +204,5 @@ def mesh_deformation(
         },
     )
     if several:
-        made.frames = [{"name": str(k), "data": data} for k, data in enumerate(frames)]
-    return made
+        sketch.frames = [{"name": str(k), "data": data} for k, data in enumerate(frames)]
+    return sketch

@@ -1,6 +1,6 @@
-"""Outlines of both gears near the contact, bent by their loads, in the common frame of the pair.
+"""Outlines of both gears near the contact, unloaded and deformed, in the frame of the pair.
 
-The frame is that of :mod:`tribodyn.plot.gear_drawing`: the pinion's axis is the origin, the
+The origin of the frame is the pinion's axis, the
 wheel's axis lies on the horizontal axis, and points are complex numbers.
 
 """
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from tribodyn.gear.mesh_geometry import MeshGeometry
     from tribodyn.stiffness import LoadedContact
 
-#: Array of each tooth: enough for a smooth trochoid on the screen.
+#: Points of each tooth, enough for a smooth trochoid.
 _TOOTH_POINTS = 60
-#: Part of the total force from which a load is drawn, and teeth drawn on each side of the middle.
+#: Least fraction of the total force that is plotted; teeth on each side of the middle tooth.
 _LOADED, _TEETH = 1e-3, 2
 
 
 def on_line_of_action(pair: MeshGeometry, path: Any) -> Array:
-    """Place positions on the line of action in the plane."""
+    """Coordinates in the plane of positions on the line of action [m]."""
     angle, radius = pair.operating_pressure_angle, pair.pinion.base_radius
     along = np.asarray(path, dtype=float)
     x = radius * math.cos(angle) + along * math.sin(angle)
@@ -39,7 +39,7 @@ def on_line_of_action(pair: MeshGeometry, path: Any) -> Array:
 
 
 def tooth_angles(pair: MeshGeometry, path: float) -> tuple[float, float]:
-    """Directions of the two teeth that touch at a position."""
+    """Angles of the pinion tooth and the wheel tooth that touch at a position [rad]."""
     x, y = on_line_of_action(pair, path)
     places = ((pair.pinion, x, y), (pair.wheel, x - pair.center_distance, y))
     first, second = (
@@ -51,20 +51,20 @@ def tooth_angles(pair: MeshGeometry, path: float) -> tuple[float, float]:
 def placed_outline(
     gear: SpurGear, center: float, angle: float, points: int = _TOOTH_POINTS
 ) -> Array:
-    """Outline of a whole gear at its place."""
+    """Outline of an entire gear about its centre."""
     x, y = gear_outline(gear, points)
     turned = (x + 1j * y) * cmath.exp(1j * (angle - math.pi / 2.0))
     return np.array([center + turned.real, turned.imag])
 
 
 def circle(center: float, radius: float) -> Array:
-    """Array of a circle around a point of the horizontal axis."""
+    """Points of a circle about a point of the horizontal axis."""
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
     return np.array([center + radius * np.cos(angle), radius * np.sin(angle)])
 
 
 def rotation_arc(center: float, radius: float, sense: int) -> Array:
-    """Array of an arc above a gear's axis, in the order in which the gear turns."""
+    """Points of an arc above a gear's axis, in the sense of rotation."""
     angle = 0.5 * np.pi + sense * np.linspace(-0.25 * np.pi, 0.25 * np.pi, 25)
     return np.array([center + radius * np.cos(angle), radius * np.sin(angle)])
 
@@ -73,7 +73,7 @@ def rotation_arc(center: float, radius: float, sense: int) -> Array:
 class Load:
     """Load on one tooth pair."""
 
-    path: float  #: place on the line of action where involutes would touch [m]
+    path: float  #: position on the line of action where perfect involutes touch [m]
     pinion_curvature_radius: float  #: [m]
     wheel_curvature_radius: float  #: [m]
     force: float  #: normal force [N]
@@ -81,17 +81,17 @@ class Load:
 
 @dataclass(frozen=True, eq=False)
 class BentMesh:
-    """Both gears near the contact at one phase."""
+    """Outlines and displacements of both gears near the contact at a mesh phase."""
 
     outline: dict[str, ComplexArray]  #: of ``"pinion"`` and ``"wheel"`` without load [m]
     displacement: dict[str, ComplexArray]  #: [m]
-    contact: ComplexArray  #: where the loaded pairs touch without load [m]
-    shift: ComplexArray  #: displacement of these places [m]
+    contact: ComplexArray  #: contact points of the loaded pairs, undeformed [m]
+    shift: ComplexArray  #: displacement of these points [m]
     loads: list[Load]  #: on these pairs
 
 
 def loads_at(contact: LoadedContact, phase: int, torque: int = 0) -> list[Load]:
-    """Pairs that carry load at one phase."""
+    """Loads of the tooth pairs that carry load at a mesh phase."""
     shape = contact.normal_force.shape
     force = contact.normal_force.reshape(-1, *shape[-2:])[torque, phase]
     return [
@@ -105,37 +105,39 @@ def loads_at(contact: LoadedContact, phase: int, torque: int = 0) -> list[Load]:
     ]
 
 
-def _bent(
+def _bent_outline(
     gear: SpurGear,
     center: float,
     angle: float,
-    given: list[tuple[int, float, float]],
+    loads: list[tuple[int, float, float]],
     reference: str,
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Outline and displacement of one gear, whose tooth 0 points into a direction."""
+    """Outline and displacement of a gear whose tooth 0 points in the direction ``angle``."""
     from tribodyn.stiffness.fe2d import deformed_gear
 
-    # Models of the literature that know no reference are drawn as held at the bore.
-    held = "rim" if reference == "rim" or gear.bore_diameter == 0.0 else "bore"
+    # Models without a reference are plotted as if fixed at the bore.
+    support = "rim" if reference == "rim" or gear.bore_diameter == 0.0 else "bore"
     middle = gear.base_radius * gear.roll_angle(0.5 * (gear.form_radius + gear.tip_radius))
-    # Unloaded teeth are named as well, so that the same ones are drawn at every phase.
-    loaded = {tooth for tooth, _, _ in given}
-    rest = [(k, middle, 0.0) for k in range(1 - _TEETH, _TEETH) if k not in loaded]
-    outline, moved = deformed_gear(gear, Material(), [*given, *rest], reference=held)
-    # There the right flank is loaded, here the left one.
+    # Unloaded teeth are included, so that every phase shows the same teeth.
+    loaded_teeth = {tooth for tooth, _, _ in loads}
+    unloaded = [(k, middle, 0.0) for k in range(1 - _TEETH, _TEETH) if k not in loaded_teeth]
+    outline, moved = deformed_gear(gear, Material(), [*loads, *unloaded], reference=support)
+    # deformed_gear loads the right flank, this frame the left flank.
     turn = cmath.exp(1j * (angle - 0.5 * math.pi))
     return center + turn * (-outline[0] + 1j * outline[1]), turn * (-moved[0] + 1j * moved[1])
 
 
-def _touched(gear: SpurGear, center: float, angle: float, tooth: int, radius: float) -> complex:
-    """Place on the loaded flank of one gear with a radius of curvature."""
+def _contact_point(
+    gear: SpurGear, center: float, angle: float, tooth: int, radius: float
+) -> complex:
+    """Point on the loaded flank of a gear with a radius of curvature."""
     distance = min(math.hypot(gear.base_radius, radius), gear.tip_radius)
     direction = angle + 2.0 * math.pi * tooth / gear.teeth
     return center + cmath.rect(distance, direction + float(gear.half_tooth_angle(distance)))
 
 
 def bent_mesh(contact: LoadedContact, phase: int, torque: int = 0) -> BentMesh:
-    """Bend both gears by the loads of one phase."""
+    """Deform both gears by the loads of a mesh phase."""
     pair, loads = contact.gear_pair, loads_at(contact, phase, torque)
     path = path_of_contact(pair)
     middle = 0.5 * (path.A + path.E)
@@ -151,20 +153,20 @@ def bent_mesh(contact: LoadedContact, phase: int, torque: int = 0) -> BentMesh:
     shifts: dict[str, list[complex]] = {}
     for name, sense in (("pinion", 1), ("wheel", -1)):
         radii = [float(getattr(load, f"{name}_curvature_radius")) for load in loads]
-        # Teeth count to the side of larger radii of curvature of this gear.
-        given = [
+        # Teeth are numbered towards larger radii of curvature of this gear.
+        tooth_loads = [
             (sense * step, radius, load.force / width)
             for step, radius, load in zip(steps, radii, loads, strict=True)
         ]
-        placed = getattr(pair, name), centers[name], angles[name]
-        outline[name], moved[name] = _bent(*placed, given, contact.reference)
-        places[name] = [_touched(*placed, *each[:2]) for each in given]
+        placement = getattr(pair, name), centers[name], angles[name]
+        outline[name], moved[name] = _bent_outline(*placement, tooth_loads, contact.reference)
+        places[name] = [_contact_point(*placement, *tooth_load[:2]) for tooth_load in tooth_loads]
         nearest = [int(np.argmin(np.abs(outline[name] - place))) for place in places[name]]
         shifts[name] = [complex(moved[name][at]) for at in nearest]
     normal = cmath.rect(1.0, 0.5 * math.pi - pair.operating_pressure_angle)
     forces = np.array([load.force for load in loads])
-    apart = (np.array(shifts["wheel"]) - np.array(shifts["pinion"])) * normal.conjugate()
-    turn = float(np.average(apart.real, weights=forces)) / pair.driving.base_radius
+    approach = (np.array(shifts["wheel"]) - np.array(shifts["pinion"])) * normal.conjugate()
+    turn = float(np.average(approach.real, weights=forces)) / pair.driving.base_radius
     driver = pair.driver
     moved[driver] = moved[driver] + 1j * turn * (outline[driver] - centers[driver])
     driven = "wheel" if driver == "pinion" else "pinion"

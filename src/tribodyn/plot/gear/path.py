@@ -1,4 +1,4 @@
-"""The way of a tooth pair through the mesh: its positions A to E, and how many pairs share."""
+"""Positions A to E on the path of contact, and the number of pairs in contact."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import numpy as np
 
 from tribodyn.contact import path_of_contact
 from tribodyn.contact.path import pitch_point_age
-from tribodyn.plot.look.labels import axis_label, displayed
-from tribodyn.plot.look.style import MUTED, Trace
+from tribodyn.plot.theme.labels import axis_label, displayed
+from tribodyn.plot.theme.style import MUTED, Trace
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh.gears import Gears
 
-#: Part of the way that a shade takes at least to be named.
+#: Least fraction of the axis at which a shaded range has a label.
 _NAMED_SHADE = 0.03
-#: Fill behind the places where a tip corner bears.
+#: Fill behind ranges of tip-corner contact.
 _SHADE = "rgba(107, 119, 133, 0.13)"
-_WORDS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
+_NUMBER_WORDS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
 
 
 def roll_angle_of(pair: Gears, age: Any) -> Array:
@@ -37,7 +37,7 @@ def roll_label(pair: Gears) -> str:
 
 
 def pair_ages(pair: Gears) -> dict[str, float]:
-    """Ages at which a tooth pair passes the positions A to E and further changes of sharing."""
+    """Ages (mesh cycles after A) at the positions A to E and further changes of load sharing."""
     contact = path_of_contact(pair)
     ratio = contact.contact_ratio
     pitch_point = float(pitch_point_age(contact))
@@ -46,7 +46,7 @@ def pair_ages(pair: Gears) -> dict[str, float]:
 
 
 def pair_letters(pair: Gears) -> list[tuple[str, float]]:
-    """Positions A to E and further changes of sharing, as roll angles in the display unit."""
+    """Positions A to E and further changes of load sharing, as roll angles in display units."""
     ages = pair_ages(pair)
     if not 0.0 <= ages["C"] <= ages["E"]:
         del ages["C"]
@@ -64,12 +64,12 @@ def mesh_marks(
     marks = [(enters, 0.0), (leaves, ages["E"] % 1.0)]
     if 0.0 <= ages["C"] < ages["E"]:
         marks.append(("C", ages["C"] % 1.0))
-    placed = [(name, at + cycle) for cycle in range(repeats) for name, at in marks]
-    return [*placed, (enters, float(repeats))]
+    repeated = [(name, at + cycle) for cycle in range(repeats) for name, at in marks]
+    return [*repeated, (enters, float(repeats))]
 
 
 def corner_shades(pair: Gears, first: float, last: float) -> dict[str, list[Trace]]:
-    """Shade and name the places before A and after E, where a tip corner bears."""
+    """Shade and label the ranges before A and after E, where a tip corner carries load."""
     shapes, notes = [], []
     for start, stop in ((first, 0.0), (pair.transverse_contact_ratio, last)):
         if stop <= start:
@@ -81,35 +81,35 @@ def corner_shades(pair: Gears, first: float, last: float) -> dict[str, list[Trac
         shapes.append({"type": "rect", **common, **rectangle, **fill})
         if stop - start < _NAMED_SHADE * (last - first):
             continue
-        words = {"text": "tip corner", "textangle": -90, "font": {"size": 11, "color": MUTED}}
+        label = {"text": "tip corner", "textangle": -90, "font": {"size": 11, "color": MUTED}}
         place = {"x": float(x.mean()), "y": 0.98, "yanchor": "top", "showarrow": False}
-        notes.append({**words, **place, **common})
+        notes.append({**label, **place, **common})
     return {"shapes": shapes, "annotations": notes}
 
 
 def further_changes(contact_ratio: float) -> dict[str, float]:
-    """Ages of a tooth pair at which the number of pairs changes, besides A, B, D and E."""
-    found = {}
+    """Ages other than A, B, D and E at which the number of pairs in contact changes."""
+    ages = {}
     for number in range(2, math.ceil(contact_ratio)):
-        found[f"D{number}"] = float(number)
-        found[f"B{number}"] = contact_ratio - number
-    return found
+        ages[f"D{number}"] = float(number)
+        ages[f"B{number}"] = contact_ratio - number
+    return ages
 
 
-def sharing_words(contact_ratio: float) -> str:
-    """State in one sentence how many tooth pairs are between A and E where: geometry alone."""
+def sharing_sentence(contact_ratio: float) -> str:
+    """Sentence on the number of tooth pairs between A and E, from the geometry alone."""
     least = math.floor(contact_ratio)
     if least == contact_ratio:
         return f"The number of pairs between A and E is the same everywhere: {least}."
     if least == 1:
-        return "Before B and after D two pairs are between A and E, in the middle one is alone."
-    few, many = (number_word(number) for number in (least, least + 1))
+        return "Before B and after D two pairs are between A and E; in between one pair is alone."
+    fewer, more = (number_word(number) for number in (least, least + 1))
     return (
-        f"{few.capitalize()} or {many} pairs are between A and E everywhere; their number changes "
-        "at the marks other than C: another pair enters at each D and leaves at each B."
+        f"{fewer.capitalize()} or {more} pairs are between A and E everywhere; their number "
+        "changes at the marks other than C: another pair enters at each D and leaves at each B."
     )
 
 
 def number_word(number: int) -> str:
-    """A small number in letters."""
-    return _WORDS.get(number, str(number))
+    """Spell out a small number."""
+    return _NUMBER_WORDS.get(number, str(number))

@@ -1,11 +1,11 @@
-"""The mesh at rest.
+"""Static results of the mesh.
 
 ==================  =========================================================================
 module              what it draws
 ==================  =========================================================================
 ``table``           stiffness, load sharing, transmission error and force law of a mesh table
-``loaded_contact``  loaded tooth contacts, for one torque or several
-``studies``         Harris map, search for a tip relief, stiffness with oil film
-``cycle``           a mesh table as curves: two cycles, the life of a tooth pair, the events
+``loaded_contact``  loaded tooth contact for one or several torques
+``studies``         Harris map, tip relief optimization, stiffness with oil film, coupling
+``cycle``           curves of a mesh table over cycles and over the engagement of a pair
 ==================  =========================================================================
 """

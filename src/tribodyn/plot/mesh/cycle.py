@@ -1,6 +1,6 @@
-"""The mesh table as curves: two mesh cycles, the life of one tooth pair, and the events.
+"""Curves of a mesh table: two mesh cycles, the engagement of a tooth pair, and events.
 
-Everything here reads the mesh table alone, so that a table draws itself without its case.
+This module needs the mesh table alone, so that a table can be plotted without its case.
 
 """
 
@@ -14,16 +14,16 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.mesh.loaded_intervals import loaded_ages, sharing_parts, teeth_shares
 from tribodyn.plot.gear.path import mesh_marks, number_word, pair_ages, roll_angle_of
-from tribodyn.plot.look.labels import display_unit, displayed
+from tribodyn.plot.theme.labels import display_unit, displayed
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
 
-#: Mesh cycles drawn, so that the transition from one cycle to the next is seen.
+#: Number of mesh cycles in a plot, which shows the transition between cycles.
 CYCLES = 2
-#: How to come by what these figures draw.
-RUN = "Call tribodyn.run(case) and draw what it returns."
+#: How to create the results that these figures draw.
+RUN = "Call tribodyn.run(case) and plot its result."
 TABLE = "Call tribodyn.run(case), whose result has one, or tribodyn.mesh.build."
 #: Registers a figure of a run, and one of a mesh table.
 run_drawing = partial(drawing, of="Result", made_by=RUN)
@@ -32,13 +32,13 @@ Curve = tuple[Array, Array]
 
 
 def cycles(phase: Array, values: Array, repeats: int = CYCLES) -> Curve:
-    """Repeat one mesh cycle side by side."""
+    """Repeat a mesh cycle."""
     shifted = [phase + cycle for cycle in range(repeats)]
     return np.concatenate(shifted), np.tile(values, repeats)
 
 
 def pair_life(mesh: MeshTable, column: str) -> Curve:
-    """Follow one tooth pair from where it enters to where it leaves."""
+    """Age and values of a column for a tooth pair from entry to exit."""
     values = getattr(mesh, column)
     ages = mesh.phase[:, None] + np.arange(values.shape[1])
     touching = mesh.in_contact.T
@@ -46,40 +46,40 @@ def pair_life(mesh: MeshTable, column: str) -> Curve:
 
 
 def closed_life(mesh: MeshTable, column: str) -> Curve:
-    """Follow one tooth pair from zero and back to zero, so that the ends are drawn."""
+    """Age and values for a tooth pair, with a zero added at both ends."""
     return closed(*pair_life(mesh, column))
 
 
 def closed(age: Array, values: Array) -> Curve:
-    """Begin and end a curve at zero."""
+    """Add a zero value at both ends of a curve."""
     return np.concatenate((age[:1], age, age[-1:])), np.concatenate(([0.0], values, [0.0]))
 
 
 def between(phase: Array, values: Array, ends: tuple[float, float]) -> Curve:
-    """Repeat a mesh cycle over the ages of a tooth pair between two ends."""
+    """Repeat a mesh cycle over the ages between two limits."""
     numbers = range(int(np.floor(ends[0])), int(np.ceil(ends[1])))
     age = np.concatenate([phase + number for number in numbers])
-    seen = (age >= ends[0]) & (age <= ends[1])
-    return age[seen], np.tile(values, len(numbers))[seen]
+    inside = (age >= ends[0]) & (age <= ends[1])
+    return age[inside], np.tile(values, len(numbers))[inside]
 
 
 def pair_lives(mesh: MeshTable, column: str) -> list[Curve]:
-    """Follow every tooth pair that touches within the cycles drawn, from zero and back to zero."""
+    """Curves of all tooth pairs in contact within the plotted cycles, with zeros at both ends."""
     age, values = closed_life(mesh, column)
     lives = []
     for start in range(1 - mesh.in_contact.shape[1], CYCLES):
-        seen = (age + start >= 0.0) & (age + start <= CYCLES)
-        lives.append((age[seen] + start, values[seen]))
+        inside = (age + start >= 0.0) & (age + start <= CYCLES)
+        lives.append((age[inside] + start, values[inside]))
     return lives
 
 
 def driving_roll_angle(mesh: MeshTable) -> Array:
-    """Roll angle of the driving gear along the life of one tooth pair."""
+    """Roll angle of the driving gear over the engagement of a tooth pair [rad]."""
     return roll_angle_of(mesh.gear_pair, pair_life(mesh, "stiffness")[0])
 
 
 def roll_angle_positions(mesh: MeshTable) -> dict[str, float]:
-    """Roll angles of the driving gear at the positions A to E and further changes of sharing."""
+    """Roll angles of the driving gear at A to E and at further changes of load sharing [rad]."""
     pair = mesh.gear_pair
     return {name: float(roll_angle_of(pair, age)) for name, age in pair_ages(pair).items()}
 
@@ -87,21 +87,21 @@ def roll_angle_positions(mesh: MeshTable) -> dict[str, float]:
 def mesh_events(mesh: MeshTable, repeats: int = CYCLES) -> list[tuple[str, float]]:
     """Name the phases at which a tooth pair enters, leaves or rolls without sliding.
 
-    Without gears nothing is known of pairs: the beginnings of the mesh cycles are marked.
+    Tables without gears have no pair data: the starts of the mesh cycles are marked.
     """
     if getattr(mesh, "gears", mesh) is None:
         return [("cycle", float(cycle)) for cycle in range(repeats + 1)]
     return mesh_marks(mesh.gear_pair, repeats, "enters", "leaves")
 
 
-#: Load share of an oil film beyond the contact of the teeth that is reported.
+#: Least load share of the oil film outside the tooth contact that is reported.
 _NOTABLE = 0.01
-#: Part of the mesh cycle that is rounding.
+#: Fraction of the mesh cycle that counts as rounding error.
 _BRIEF = 1e-6
 
 
 def sharing_under_load(mesh: MeshTable, *, ends: bool = False) -> str:
-    """State how many tooth pairs share the load for how long, and between which ends if wanted."""
+    """Sentences on the number of pairs that share the load, and on their limits if ``ends``."""
     ages = loaded_ages(mesh, teeth_shares(mesh))
     parts = {number: part for number, part in sharing_parts(ages).items() if part > _BRIEF}
     phrases = [
@@ -114,7 +114,7 @@ def sharing_under_load(mesh: MeshTable, *, ends: bool = False) -> str:
 
 
 def _carrying_ends(mesh: MeshTable) -> str:
-    """Roll angles between which a pair carries, compared with A and E."""
+    """Sentence on where a pair begins and ceases to carry load, relative to A and E."""
     if mesh.gears is None:
         return ""
     ages = loaded_ages(mesh, teeth_shares(mesh))
@@ -128,14 +128,14 @@ def _carrying_ends(mesh: MeshTable) -> str:
 
 
 def _compared(age: float, geometric: float, letter: str, angle: str) -> str:
-    """Where a pair begins or ceases to carry, compared with the end of the path."""
+    """Location of a limit of the load, relative to an end of the path of contact."""
     if abs(age - geometric) < 1e-4:
         return f"at {letter}"
     return f"{'before' if age < geometric else 'after'} {letter}{angle}"
 
 
 def _beyond(mesh: MeshTable) -> str:
-    """What the oil film carries between flanks that the teeth alone would keep apart."""
+    """Sentence on the load of the oil film between flanks that do not touch without oil."""
     teeth = mesh.tooth_load_share
     if teeth is None:
         return ""
@@ -143,13 +143,13 @@ def _beyond(mesh: MeshTable) -> str:
     if most < _NOTABLE:
         return ""
     return (
-        f"Beyond, the oil film carries up to {100.0 * most:.2g} % of the load between flanks that "
-        "the teeth alone would not close."
+        f"In addition the oil film carries up to {100.0 * most:.2g} % of the load between flanks "
+        "that do not touch without oil."
     )
 
 
 def stiffness_jump(mesh: MeshTable) -> float:
-    """Greatest step of the mesh stiffness at an event of the mesh cycle [N/m]."""
+    """Largest step of the mesh stiffness at an event of the mesh cycle [N/m]."""
     starts = np.array([segment.start for segment in mesh.segments])
     ends = np.roll([segment.stop - 1 for segment in mesh.segments], 1)
     return float(np.max(np.abs(mesh.mesh_stiffness[starts] - mesh.mesh_stiffness[ends])))

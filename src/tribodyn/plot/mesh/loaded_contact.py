@@ -1,4 +1,4 @@
-"""A loaded tooth contact at rest, for one torque or several."""
+"""Static loaded tooth contact for one or several torques."""
 
 from __future__ import annotations
 
@@ -10,40 +10,40 @@ from numpy.typing import ArrayLike
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import TOTAL, Trace, line
 from tribodyn.plot.mesh.cycle import between
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import TOTAL, Trace, line
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     from tribodyn.stiffness import LoadedContact
 
-#: Colours from the least to the greatest torque; between them they are mixed.
+#: Colours from the smallest to the largest torque, interpolated in between.
 _ANCHORS = ("#0d0887", "#7e03a8", "#cc4778", "#f0893e")
-#: Names of torques in a legend; further ones are told by the pointer.
+#: Most torques in a legend; hovering names the others.
 _NAMED = 8
-#: Mesh cycles shown beyond both ends of what is loaded.
+#: Margin of the axis beyond the loaded range [mesh cycles].
 _MARGIN = 0.04
-#: Part of the total force that counts as load.
+#: Least load share that counts as load.
 _BEARS = 1e-6
 _QUANTITY = "static_transmission_error"
 #: Width of lines over many mesh cycles or for more than a few torques [px].
-_THIN, _FEW = 1.2, 8
-#: Torques for which stiffness is drawn: its curves lie close to one another.
+_THIN, _MANY_TORQUES = 1.2, 8
+#: Most torques with a stiffness curve: the curves are close together.
 _STIFFNESSES = 4
-#: Part of the greatest force that counts as load, and difference of teeth that is drawn.
+#: Least fraction of the largest force that counts as load, and that gives a band of the pairs.
 _LOADED, _DIFFERENT = 1e-6, 1e-3
 
 
 def torque_names(torques: ArrayLike) -> list[str]:
-    """Torques with their unit and as many digits as tell them apart."""
+    """Format torques with their unit."""
     unit = display_unit("torque")
     return [f"{torque:.4g} {unit}" for torque in displayed("torque", np.ravel(torques))]
 
 
 def torque_colors(count: int) -> list[str]:
-    """Colours of curves that belong to rising torques."""
+    """Colours of curves for ascending torques."""
     if count == 1:
         return [TOTAL]
     anchors = np.array([[int(each[k : k + 2], 16) for k in (1, 3, 5)] for each in _ANCHORS])
@@ -52,53 +52,56 @@ def torque_colors(count: int) -> list[str]:
     return ["#" + "".join(f"{round(part):02x}" for part in each) for each in np.transpose(mixed)]
 
 
-def named(count: int, most: int = _NAMED) -> list[bool]:
-    """Which of many torques are named in a legend: all of few, first, last and some of many."""
+def in_legend(count: int, most: int = _NAMED) -> list[bool]:
+    """Flags of the evenly spaced torques that have a legend entry, at most ``most``."""
     chosen = np.linspace(0, count - 1, min(count, most)).round().astype(int)
     return [number in set(chosen.tolist()) for number in range(count)]
 
 
 @dataclass(frozen=True)
 class Life:
-    """Least, mean and greatest value over all tooth pairs, from entry to exit."""
+    """Minimum, mean and maximum over all tooth pairs from entry to exit."""
 
-    age: Array  #: mesh cycles since a pair passed A, in order
+    age: Array  #: mesh cycles since A, ascending
     least: Array
     mean: Array
     greatest: Array
 
     @classmethod
     def of(cls, contact: LoadedContact, values: Array) -> Life:
-        """Follow the tooth pairs of a loaded contact."""
-        many = np.reshape(values, (-1, *np.shape(values)[-2:]))
+        """Collect the values of a loaded contact by the age of the tooth pairs."""
+        by_torque = np.reshape(values, (-1, *np.shape(values)[-2:]))
         fraction = np.round(np.mod(contact.phase, 1.0), 9)
         phases, where = np.unique(fraction, return_inverse=True)
-        groups = [many[:, where == group, :] for group in range(phases.size)]
-        found = []
+        groups = [by_torque[:, where == group, :] for group in range(phases.size)]
+        statistics = []
         for reduce in (np.min, np.mean, np.max):
-            each = np.stack([reduce(group, axis=1) for group in groups], axis=1)
-            found.append(np.moveaxis(each, 2, 1).reshape(many.shape[0], -1))
+            reduced = np.stack([reduce(group, axis=1) for group in groups], axis=1)
+            statistics.append(np.moveaxis(reduced, 2, 1).reshape(by_torque.shape[0], -1))
         age = np.asarray((phases[:, None] + contact.number).T.ravel(), dtype=np.float64)
         order = np.argsort(age, kind="stable")
-        age, found = age[order], [part[:, order] for part in found]
+        age, statistics = age[order], [part[:, order] for part in statistics]
         if np.min(contact.number) == 0:
-            # Without tip corners the load begins at A at once.
-            age, found = np.append(0.0, age), [np.pad(part, ((0, 0), (1, 0))) for part in found]
-        return cls(age, *found)
+            # Without tip corners the load starts at A.
+            age, statistics = (
+                np.append(0.0, age),
+                [np.pad(part, ((0, 0), (1, 0))) for part in statistics],
+            )
+        return cls(age, *statistics)
 
 
 def rows(contact: LoadedContact, values: Array) -> list[Array]:
-    """Split values by torque, whether there is one torque or several."""
+    """Split values by torque, for one or several torques."""
     return list(np.reshape(values, (np.size(contact.torque), -1)))
 
 
 def several_cycles(contact: LoadedContact) -> bool:
-    """Whether the teeth differ, so that several mesh cycles pass before everything repeats."""
+    """Whether the teeth differ, so that the period is several mesh cycles."""
     return bool(np.max(contact.phase) >= 1.0)
 
 
 def span(contact: LoadedContact) -> tuple[float, float]:
-    """Ages between which some pair carries load, with a little margin."""
+    """Range of ages at which any pair carries load, with a margin."""
     shares = Life.of(contact, contact.load_share)
     loaded = shares.age[(shares.greatest > _BEARS).any(axis=0)]
     last = max(contact.gear_pair.transverse_contact_ratio, float(loaded.max()))
@@ -106,14 +109,14 @@ def span(contact: LoadedContact) -> tuple[float, float]:
 
 
 def whole_cycles(phase: Array, values: Array, period: int, repeats: int = 1) -> tuple[Array, Array]:
-    """Repeat evenly spaced samples of a periodic curve, up to where the last cycle ends."""
+    """Repeat evenly spaced samples of a periodic curve and close the last cycle."""
     turns = [phase + period * number for number in range(repeats)]
     end = [phase[0] + period * repeats]
     return np.concatenate([*turns, end]), np.append(np.tile(values, repeats), values[0])
 
 
 def _title(contact: LoadedContact) -> str:
-    """Answer: mean and swing of the transmission error."""
+    """Title: mean and peak-to-peak value of the transmission error."""
     names = torque_names(contact.torque)
     swings = np.ravel(contact.peak_to_peak_transmission_error)
     if len(names) == 1:
@@ -127,64 +130,66 @@ def _title(contact: LoadedContact) -> str:
 
 
 def _over(contact: LoadedContact, values: Array) -> tuple[Array, Array]:
-    """Values of the whole mesh over what the figure has as its horizontal axis."""
+    """Values of the mesh over the horizontal axis: mesh cycles or roll angle."""
     if several_cycles(contact):
         return whole_cycles(contact.phase, values, contact.mesh_cycles)
     age, repeated = between(contact.phase, values, span(contact))
     return displayed("roll_angle", roll_angle_of(contact.gear_pair, age)), repeated
 
 
-def _curves(contact: LoadedContact, quantity: str, values: Array, **look: Any) -> list[Trace]:
-    """One curve for each torque."""
+def _curves(contact: LoadedContact, quantity: str, values: Array, **style: Any) -> list[Trace]:
+    """One curve per torque."""
     colors, names = torque_colors(np.size(contact.torque)), torque_names(contact.torque)
-    known, traces = named(len(names)), []
-    for color, name, shown, each in zip(colors, names, known, rows(contact, values), strict=True):
+    in_legend_flags, traces = in_legend(len(names)), []
+    for color, name, visible, each in zip(
+        colors, names, in_legend_flags, rows(contact, values), strict=True
+    ):
         x, y = _over(contact, displayed(quantity, each))
         trace = line(
             x,
             y,
-            look.get("name", name),
+            style.get("name", name),
             color,
             unit=display_unit(quantity),
-            dash=look.get("dash", "solid"),
-            width=_THIN if several_cycles(contact) or len(names) > _FEW else 2.0,
+            dash=style.get("dash", "solid"),
+            width=_THIN if several_cycles(contact) or len(names) > _MANY_TORQUES else 2.0,
         )
-        traces.append({**trace, "showlegend": shown and len(names) > 1})
+        traces.append({**trace, "showlegend": visible and len(names) > 1})
     return traces
 
 
 def _stiffness(contact: LoadedContact) -> list[Trace]:
-    """Secant solid, tangent dashed; the legend tells the dashes, not the torques again."""
+    """Secant (solid) and tangent (dashed) stiffness; the legend explains the dashes."""
     if several_cycles(contact):
-        found = _curves(contact, "mesh_stiffness_secant", contact.mesh_stiffness_secant)
-        return [{**trace, "showlegend": False} for trace in found]
+        curves = _curves(contact, "mesh_stiffness_secant", contact.mesh_stiffness_secant)
+        return [{**trace, "showlegend": False} for trace in curves]
     traces: list[Trace] = []
-    chosen = named(np.size(contact.torque), _STIFFNESSES)
+    chosen = in_legend(np.size(contact.torque), _STIFFNESSES)
     for kind, dash in (("secant", "solid"), ("tangent", "dash")):
         name = f"mesh_stiffness_{kind}"
-        found = _curves(contact, name, getattr(contact, name), name=kind, dash=dash)
-        kept = [trace for trace, shown in zip(found, chosen, strict=True) if shown]
-        traces += [{**trace, "showlegend": number == 0} for number, trace in enumerate(kept)]
+        curves = _curves(contact, name, getattr(contact, name), name=kind, dash=dash)
+        visible = [trace for trace, selected in zip(curves, chosen, strict=True) if selected]
+        traces += [{**trace, "showlegend": number == 0} for number, trace in enumerate(visible)]
     return traces
 
 
 def _shares(contact: LoadedContact) -> list[Trace]:
-    """Load share: of one tooth pair over its way, or of all pairs over the mesh cycles."""
+    """Load share of a tooth pair over the roll angle, or the largest share over the cycles."""
     if several_cycles(contact):
         return _shares_over_cycles(contact)
     life = Life.of(contact, contact.load_share)
     first, last = span(contact)
-    seen = (life.age >= first) & (life.age <= last)
-    x = displayed("roll_angle", roll_angle_of(contact.gear_pair, life.age[seen]))
+    inside = (life.age >= first) & (life.age <= last)
+    x = displayed("roll_angle", roll_angle_of(contact.gear_pair, life.age[inside]))
     colors, names = torque_colors(np.size(contact.torque)), torque_names(contact.torque)
     return [
-        {**line(x, share[seen], name, color), "showlegend": False}
+        {**line(x, share[inside], name, color), "showlegend": False}
         for color, name, share in zip(colors, names, life.mean, strict=True)
     ]
 
 
 def _shares_over_cycles(contact: LoadedContact) -> list[Trace]:
-    """Share of the pair that carries most, for each torque."""
+    """Largest load share of all pairs, for each torque."""
     greatest = np.max(contact.load_share, axis=-1)
     period = contact.mesh_cycles
     colors, names = torque_colors(np.size(contact.torque)), torque_names(contact.torque)
@@ -200,10 +205,10 @@ def _shares_over_cycles(contact: LoadedContact) -> list[Trace]:
 @drawing(
     "loaded_contact",
     heading="Loaded tooth contact",
-    caption="The transmission error is the way by which the loaded gears approach along the line "
-    "of action; what varies in it excites the vibration. The tangent of the stiffness counts for "
-    "small vibration about the load, the secant for the whole deflection. A pair that carries "
-    "before A or after E does so on a tip corner.",
+    caption="The transmission error is the approach of the loaded gears along the line of action; "
+    "its variation excites vibration. The tangent stiffness applies to small vibration about the "
+    "load, the secant stiffness to the total deflection. A pair that carries load before A or "
+    "after E has tip-corner contact.",
     of="LoadedContact",
     made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )
@@ -234,15 +239,15 @@ def _caption(contact: LoadedContact) -> str:
     driving = contact.gear_pair.driver
     driven = "wheel" if driving == "pinion" else "pinion"
     return (
-        "A pair takes over load as it comes in and hands it on before it leaves. Where the "
-        f"background is grey a tip corner bears off the line of action: before A that of the "
-        f"{driven}, after E that of the {driving}. High forces there press hard and call for "
-        "tip relief. Where teeth differ, the band goes from the least to the most loaded pair."
+        "A pair takes over load as it enters and sheds it before it leaves. In the grey ranges a "
+        f"tip corner carries load off the line of action: before A that of the {driven}, after E "
+        f"that of the {driving}. High forces there cause high pressure and call for tip relief. "
+        "If teeth differ, the band covers all pairs."
     )
 
 
 def _band(x: Array, least: Array, greatest: Array, color: str) -> dict[str, Any]:
-    """Fill between the least and the most loaded pair."""
+    """Band between the least and the most loaded pair."""
     return {
         "type": "scatter",
         "mode": "lines",
@@ -257,21 +262,21 @@ def _band(x: Array, least: Array, greatest: Array, color: str) -> dict[str, Any]
     }
 
 
-def _traces(contact: LoadedContact, life: Life, seen: Mask) -> list[Trace]:
-    x = displayed("roll_angle", roll_angle_of(contact.gear_pair, life.age[seen]))
+def _traces(contact: LoadedContact, life: Life, inside: Mask) -> list[Trace]:
+    x = displayed("roll_angle", roll_angle_of(contact.gear_pair, life.age[inside]))
     newton, names = display_unit("normal_force"), torque_names(contact.torque)
     traces = []
-    for row, (name, color, shown) in enumerate(
-        zip(names, torque_colors(len(names)), named(len(names)), strict=True)
+    for row, (name, color, visible) in enumerate(
+        zip(names, torque_colors(len(names)), in_legend(len(names)), strict=True)
     ):
         least, mean, most = (
-            displayed("normal_force", part[row][seen])
+            displayed("normal_force", part[row][inside])
             for part in (life.least, life.mean, life.greatest)
         )
         if np.max(most - least) > _DIFFERENT * np.max(most):
             traces.append(_band(x, least, most, color))
         trace = line(x, mean, name, color, unit=newton)
-        traces.append({**trace, "showlegend": shown and len(names) > 1})
+        traces.append({**trace, "showlegend": visible and len(names) > 1})
     return traces
 
 
@@ -283,15 +288,15 @@ def _traces(contact: LoadedContact, life: Life, seen: Mask) -> list[Trace]:
     made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )
 def loaded_sharing(contact: LoadedContact) -> Any:
-    """Draw the force on one tooth pair from where it begins to carry to where it ends."""
+    """Draw the force on a tooth pair over the range in which it carries load."""
     pair, (first, last) = contact.gear_pair, span(contact)
     life = Life.of(contact, contact.normal_force)
-    seen = (life.age >= first) & (life.age <= last)
+    inside = (life.age >= first) & (life.age <= last)
     peak = life.greatest.max()
     loaded = life.age[(life.greatest > _LOADED * peak).any(axis=0)]
     layout = event_lines(pair_letters(pair))
-    for kind, found in corner_shades(pair, float(loaded.min()), float(loaded.max())).items():
-        layout[kind] = [*found, *layout[kind]]
+    for kind, shades in corner_shades(pair, float(loaded.min()), float(loaded.max())).items():
+        layout[kind] = [*shades, *layout[kind]]
     layout["xaxis"] = {
         "range": displayed("roll_angle", roll_angle_of(pair, np.array([first, last]))).tolist()
     }
@@ -301,7 +306,7 @@ def loaded_sharing(contact: LoadedContact) -> Any:
         [
             Panel(
                 axis_label("normal_force", "Force on a tooth pair"),
-                _traces(contact, life, seen),
+                _traces(contact, life, inside),
                 {"rangemode": "tozero"},
                 1.6,
             )

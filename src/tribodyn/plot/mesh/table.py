@@ -1,4 +1,4 @@
-"""The mesh at rest: its stiffness, load sharing, transmission error and force law."""
+"""Static mesh: stiffness, load sharing, transmission error and force law."""
 
 from __future__ import annotations
 
@@ -8,9 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.look.panels import Panel, Row, event_lines, stack, stack_rows
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, TOTAL, line
 from tribodyn.plot.mesh.cycle import (
     CYCLES,
     between,
@@ -24,23 +21,26 @@ from tribodyn.plot.mesh.cycle import (
     stiffness_jump,
     table_drawing,
 )
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
 
 _PAIR = "one tooth pair"
-#: Mesh cycles shown before A and after E.
+#: Margin of the axis before A and after E [mesh cycles].
 _MARGIN = 0.12
-#: Step of the stiffness over its mean that counts as a jump.
+#: Least step of the stiffness over its mean that counts as a jump.
 _STEP = 0.01
-#: Part of the total force that counts as load on a tip corner.
+#: Least fraction of the total force that counts as load on a tip corner.
 _LOADED = 1e-6
 _QUANTITY = "static_transmission_error"
-#: Mesh harmonics drawn.
+#: Number of mesh harmonics.
 _ORDERS = 8
 _COLORS = (TOTAL, *PAIR_COLORS)
-#: Deflections of a curve, and how far it goes beyond the working load.
+#: Points of a curve, and its range in multiples of the working deflection.
 _POINTS, _BEYOND = 241, 1.3
 
 
@@ -55,15 +55,15 @@ def _stiffness_caption(mesh: MeshTable) -> str:
         events = "at an event" if mesh.gears is None else "where a tooth pair enters or leaves"
         change = (
             f"The stiffness jumps by up to {amount(jump)} {events}. Jumps excite the vibration: "
-            "the higher they are, the louder the gears."
+            "the higher they are, the stronger the vibration."
         )
     elif swing > _STEP * mean:
         change = (
-            f"The stiffness does not jump: pairs take over the load gradually. It varies by "
+            f"The stiffness has no jump: pairs take over the load gradually. It varies by "
             f"{amount(swing)}, which excites the vibration."
         )
     else:
-        change = f"The stiffness is the same all over the mesh cycle to {amount(swing)}."
+        change = f"The stiffness is constant over the mesh cycle to within {amount(swing)}."
     pairs = "The coloured curves are the single tooth pairs that add up to the total."
     if np.any(mesh.corner_share > _LOADED):
         pairs = (
@@ -81,8 +81,8 @@ def mesh_stiffness(mesh: MeshTable) -> Any:
     traces = [line(phase, total, "all pairs", TOTAL, unit=unit)]
     for number, (at, pair) in enumerate(pair_lives(mesh, "stiffness"), start=1):
         color = PAIR_COLORS[(number - 1) % len(PAIR_COLORS)]
-        shown = displayed("pair_stiffness", pair)
-        traces.append(line(at, shown, f"tooth pair {number}", color, unit=unit, dash="dash"))
+        values = displayed("pair_stiffness", pair)
+        traces.append(line(at, values, f"tooth pair {number}", color, unit=unit, dash="dash"))
     least, greatest = (rounded("mesh_stiffness", f(mesh.mesh_stiffness)) for f in (np.min, np.max))
     return stack(
         f"The mesh stiffness varies between {least} and {greatest}",
@@ -93,25 +93,26 @@ def mesh_stiffness(mesh: MeshTable) -> Any:
 
 
 def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array, Array]]:
-    """Stiffness of the pair between A and E, and of those before and after it."""
+    """Stiffness of the pair between A and E and of its neighbours: (name, age, stiffness)."""
     age, stiffness = closed_life(mesh, "stiffness")
-    found = []
+    curves = []
     for shift in range(-len(mesh.path[0]), len(mesh.path[0]) + 1):
-        seen = (age + shift >= ends[0]) & (age + shift <= ends[1])
-        if np.count_nonzero(seen) > 1:
+        inside = (age + shift >= ends[0]) & (age + shift <= ends[1])
+        if np.count_nonzero(inside) > 1:
             name = _PAIR if shift == 0 else "its neighbours"
-            found.append((name, age[seen] + shift, stiffness[seen]))
-    return sorted(found, key=lambda each: each[0] != _PAIR)
+            curves.append((name, age[inside] + shift, stiffness[inside]))
+    return sorted(curves, key=lambda each: each[0] != _PAIR)
 
 
 @table_drawing(
     "static_stiffness",
     heading="Stiffness over the roll angle",
-    caption="The secant is the load over the whole deflection, the tangent what counts for small "
-    "vibration about the load. The part of each tooth pair is its share of the secant.",
+    caption="The secant stiffness is the load over the total deflection, the tangent stiffness "
+    "applies to small vibration about the load. The curve of a tooth pair is its part of the "
+    "secant stiffness.",
 )
 def static_stiffness(mesh: MeshTable) -> Any:
-    """Draw secant and tangent stiffness of the mesh and the part of each tooth pair."""
+    """Draw secant and tangent stiffness of the mesh and the parts of the tooth pairs."""
     pair, unit = mesh.gear_pair, display_unit("mesh_stiffness")
     ends = (-_MARGIN, mesh.transverse_contact_ratio + _MARGIN)
 
@@ -143,14 +144,14 @@ def static_stiffness(mesh: MeshTable) -> Any:
     )
 
 
-def whole_life(mesh: MeshTable) -> tuple[Array, Array]:
-    """Follow the load share of one tooth pair, tip corners before A and after E included."""
+def life_with_corners(mesh: MeshTable) -> tuple[Array, Array]:
+    """Load share of a tooth pair over its age, with tip corners before A and after E."""
     age, share = pair_life(mesh, "load_share")
     ratio = mesh.transverse_contact_ratio
     before, after = mesh.corner_share.T
     coming = before > _LOADED
     gone = mesh.phase + np.ceil(ratio - mesh.phase - 1e-9)
-    # At the knot where the pair is at E itself there are both sides of the event.
+    # The grid point at E has both sides of the event.
     order = np.argsort(gone, kind="stable")
     order = order[after[order] > _LOADED]
     return (
@@ -160,12 +161,11 @@ def whole_life(mesh: MeshTable) -> tuple[Array, Array]:
 
 
 def _caption(mesh: MeshTable) -> str:
-    caption = (
-        "How much of the load one tooth pair carries from where it comes in to where it leaves. "
-        + sharing_under_load(mesh, ends=True)
+    caption = "Share of the load of a tooth pair from its entry to its exit. " + sharing_under_load(
+        mesh, ends=True
     )
     if np.any(mesh.corner_share > _LOADED):
-        return f"{caption} The loaded teeth bend: where the background is grey, a tip corner bears."
+        return f"{caption} Teeth bend under load: in the grey ranges a tip corner carries load."
     return caption
 
 
@@ -173,7 +173,7 @@ def _caption(mesh: MeshTable) -> str:
 def load_sharing(mesh: MeshTable) -> Any:
     """Draw the load on one tooth pair over the roll angle of the driving gear."""
     pair = mesh.gear_pair
-    age, share = closed(*whole_life(mesh))
+    age, share = closed(*life_with_corners(mesh))
     x = displayed("roll_angle", roll_angle_of(pair, age))
     newton = display_unit("normal_force")
     hover = f"%{{y:.4g}} (%{{customdata:.4g}} {newton})<extra>load share</extra>"
@@ -183,8 +183,8 @@ def load_sharing(mesh: MeshTable) -> Any:
         "hovertemplate": hover,
     }
     layout = event_lines(pair_letters(pair))
-    for kind, found in corner_shades(pair, float(age[0]), float(age[-1])).items():
-        layout[kind] = [*found, *layout[kind]]
+    for kind, shades in corner_shades(pair, float(age[0]), float(age[-1])).items():
+        layout[kind] = [*shades, *layout[kind]]
     most = float(np.max(share)) * mesh.total_normal_force
     return stack(
         f"A tooth pair carries up to {rounded('normal_force', most)}, "
@@ -195,13 +195,13 @@ def load_sharing(mesh: MeshTable) -> Any:
     )
 
 
-def _course(mesh: MeshTable, error: Array, mean: float) -> Row:
-    """Transmission error over the mesh cycles, and its mean."""
+def _transmission_error_row(mesh: MeshTable, error: Array, mean: float) -> Row:
+    """Row with the transmission error over the mesh cycles and its mean."""
     unit = display_unit(_QUANTITY)
-    phase, shown = cycles(mesh.phase, displayed(_QUANTITY, error))
+    phase, displayed_error = cycles(mesh.phase, displayed(_QUANTITY, error))
     level = np.full(2, displayed(_QUANTITY, mean))
     curves = [
-        line(phase, shown, "under load", TOTAL, unit=unit),
+        line(phase, displayed_error, "under load", TOTAL, unit=unit),
         line(np.array([0.0, CYCLES]), level, "mean", MUTED, unit=unit, dash="dash", width=1.2),
     ]
     return Row(
@@ -213,7 +213,7 @@ def _course(mesh: MeshTable, error: Array, mean: float) -> Row:
 
 
 def _bars(mesh: MeshTable, error: Array) -> Row:
-    """Amplitudes of the mesh harmonics."""
+    """Row with the amplitudes of the mesh harmonics."""
     unit = display_unit(_QUANTITY)
     bars = {
         "type": "bar",
@@ -234,18 +234,18 @@ def _bars(mesh: MeshTable, error: Array) -> Row:
 def _error_caption(contact: Any) -> str:
     mesh: MeshTable = getattr(contact, "mesh", contact)
     caption = (
-        "How far the driven gear lags on the line of action when the gears turn very slowly under "
-        "load, counted from where perfect rigid flanks touch: deflection and what the flanks do "
-        "without load together. What varies excites the vibration; the bars show how much of it "
-        "falls on each harmonic of the mesh frequency."
+        "Lag of the driven gear on the line of action when the gears turn very slowly under load, "
+        "relative to perfect rigid flanks: deflection plus the transmission error without load. "
+        "Its variation excites vibration; the bars show the amplitudes at the harmonics of the "
+        "mesh frequency."
     )
     teeth = mesh.tooth_transmission_error
     if teeth is None:
         return caption
     mean, total = (float(mesh.grid.mean(e)) for e in (teeth, mesh.transmission_error_at_rest))
     return (
-        f"{caption} The teeth alone approach by {rounded(_QUANTITY, mean)} on average; the oil "
-        f"film in series changes that by {rounded(_QUANTITY, total - mean)}."
+        f"{caption} The mean approach of the teeth alone is {rounded(_QUANTITY, mean)}; the oil "
+        f"film in series changes it by {rounded(_QUANTITY, total - mean)}."
     )
 
 
@@ -265,37 +265,37 @@ def static_transmission_error(contact: Any) -> Any:
     )
     mean, swing = float(mesh.grid.mean(error)), float(np.ptp(error))
     return stack_rows(
-        f"At rest the transmission error is {rounded(_QUANTITY, mean)} on average and varies by "
+        f"The static transmission error has a mean of {rounded(_QUANTITY, mean)} and varies by "
         f"{rounded(_QUANTITY, swing)}",
-        [_course(mesh, error, mean), _bars(mesh, error)],
+        [_transmission_error_row(mesh, error, mean), _bars(mesh, error)],
     )
 
 
 def _phases(mesh: MeshTable) -> list[tuple[str, float]]:
-    """Phases in the middle between two events, and how many pairs are on the path there."""
+    """Labelled phases between the events and just before them, with the number of pairs."""
     events = sorted({0.0, mesh.transverse_contact_ratio % 1.0, 1.0})
-    found = []
+    phases = []
     for start, stop in pairwise(events):
         if stop - start > 1e-6:
             middle = 0.5 * (start + stop)
             pairs = int(np.count_nonzero(mesh.at("in_contact", middle)))
-            words = "1 pair" if pairs == 1 else f"{pairs} pairs"
-            # Shortly before the event a tip corner may carry.
+            label = "1 pair" if pairs == 1 else f"{pairs} pairs"
+            # A tip corner may carry load shortly before the event.
             for phase in (middle, stop - 0.05 * (stop - start)):
-                found.append((f"phase {significant(phase, 2)}: {words}", phase))
-    return found
+                phases.append((f"phase {significant(phase, 2)}: {label}", phase))
+    return phases
 
 
 def _law_caption(mesh: MeshTable) -> str:
     straight = mesh.ramp_deflection.shape[1] == 1
     shape = (
-        "Each is a straight line: the stiffness does not depend on the load."
+        "Straight lines: the stiffness does not depend on the load."
         if straight
-        else "A curve bends upwards where flanks flatten and where a further pair comes to bear."
+        else "The curves stiffen where flanks flatten and where a further pair makes contact."
     )
     return (
-        f"Force over the approach of the gears at places of the mesh cycle. {shape} The marks are "
-        "the working load. To the left of a curve's foot the flanks are apart."
+        f"Force over the approach of the gears at several mesh phases. {shape} The markers are "
+        "the working load. The flanks are separated to the left of the foot of a curve."
     )
 
 
@@ -314,12 +314,12 @@ def force_law(mesh: MeshTable) -> Any:
         line(
             x,
             displayed("normal_force", law.force(phase, deflection)),
-            words,
+            label,
             _COLORS[number % len(_COLORS)],
             unit=newton,
             dash="solid" if number % 2 == 0 else "dash",
         )
-        for number, (words, phase) in enumerate(chosen)
+        for number, (label, phase) in enumerate(chosen)
     ]
     level = np.full(2, displayed("normal_force", load))
     traces.append(line(x[[0, -1]], level, "working load", MUTED, unit=newton, dash="dot", width=1))

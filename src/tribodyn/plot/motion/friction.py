@@ -1,4 +1,4 @@
-"""What friction does to a running pair: its effect over the coefficient, and claims judged."""
+"""Effect of friction on the vibration over its coefficient, and published claims about it."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import INK, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import INK, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
 from tribodyn.study.pipeline.words import in_a_sentence
 from tribodyn.study.studies.friction_claims import DRIVING, HELD
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _MADE = "Call tribodyn.friction_experiment(case) and its plot method."
 _SYMBOLS, _DASHES = ("circle", "square", "diamond"), ("solid", "dash", "dot")
-#: Panels of the effect: figure of the summary and label.
+#: Panels of the effect: summary key and axis label.
 _EFFECTS = (
     ("rms_mesh_force", "Mesh force, rms<br>change [%]"),
     ("peak_to_peak_dynamic_transmission_error", "Transmission error,<br>peak to peak, change [%]"),
@@ -28,38 +28,38 @@ _HARMONICS, _HARMONIC = 5, "dynamic_transmission_error_harmonic_"
 _VERDICTS = [[0.0, "#f6d5c8"], [1.0, "#c9e7d8"]]
 
 
-def _title(found: FrictionExperiment) -> str:
-    told = []
-    for driving, change in zip(DRIVING, 100.0 * found.change("rms_mesh_force"), strict=True):
+def _title(experiment: FrictionExperiment) -> str:
+    effects = []
+    for driving, change in zip(DRIVING, 100.0 * experiment.change("rms_mesh_force"), strict=True):
         values = change[:, 1:]
         if not np.isfinite(values).any():
             continue
         low, high = np.nanmin(values), np.nanmax(values)
         does = "lowers" if high <= 0.0 else "raises" if low >= 0.0 else "changes"
-        told.append(f"{does} it where the {driving} ({low:+.2g} to {high:+.2g} %)")
-    words = " and ".join(told).replace(" it ", " the rms mesh force ", 1)
-    return f"Friction {words}" if told else "No steady state was computed"
+        effects.append(f"{does} it where the {driving} ({low:+.2g} to {high:+.2g} %)")
+    phrase = " and ".join(effects).replace(" it ", " the rms mesh force ", 1)
+    return f"Friction {phrase}" if effects else "No steady state was computed"
 
 
-def _curves(found: FrictionExperiment, name: str) -> list[Trace]:
-    """One curve for each setting, over the mean coefficient of whatever law."""
+def _curves(experiment: FrictionExperiment, name: str) -> list[Trace]:
+    """One curve per setting over the mean friction coefficient of all laws."""
     absolute = name == _EFFECTS[-1][0]
-    values = found[name] if absolute else 100.0 * found.change(name)
+    values = experiment[name] if absolute else 100.0 * experiment.change(name)
     traces = []
     for row, driving in enumerate(DRIVING):
-        for column, held in enumerate(HELD):
-            mu = found["mean_friction_coefficient"][row, column]
+        for column, torque in enumerate(HELD):
+            mu = experiment["mean_friction_coefficient"][row, column]
             order = np.argsort(mu)
             color = (PINION, WHEEL)[row]
             curve = line(
                 mu[order],
                 values[row, column][order],
-                f"{driving}, {held}",
+                f"{driving}, {torque}",
                 color,
                 dash=_DASHES[column],
                 width=1.2,
             )
-            text = [found.rubbing[k].name for k in order]
+            text = [experiment.rubbing[k].name for k in order]
             hover = f"%{{text}}<br>%{{x:.3f}}: %{{y:.4g}} {'N' if absolute else '%'}"
             marker = {"symbol": _SYMBOLS[column], "size": 7, "color": color}
             traces.append(
@@ -74,20 +74,20 @@ def _curves(found: FrictionExperiment, name: str) -> list[Trace]:
     return traces
 
 
-def _no_effect(found: FrictionExperiment) -> str:
-    done = found.figures and np.isfinite(found.change(_EFFECTS[0][0])[..., 1:]).any()
+def _no_effect(experiment: FrictionExperiment) -> str:
+    done = experiment.figures and np.isfinite(experiment.change(_EFFECTS[0][0])[..., 1:]).any()
     return "" if done else "No steady state with friction was computed."
 
 
-def _no_claim(found: FrictionExperiment) -> str:
-    known = any(claim.holds is not None for claim in found.claims)
-    return "" if known else "Not one claim has all the steady states that it needs."
+def _no_claim(experiment: FrictionExperiment) -> str:
+    judged = any(claim.holds is not None for claim in experiment.claims)
+    return "" if judged else "No claim has all the steady states that it needs."
 
 
-def _no_harmonics(found: FrictionExperiment) -> str:
-    lack = _no_effect(found)
-    column = found.axes[1].values.index(found.case.operation.torque_balance)
-    if lack or np.isfinite(found.change(f"{_HARMONIC}1")[:, column, 1:]).any():
+def _no_harmonics(experiment: FrictionExperiment) -> str:
+    lack = _no_effect(experiment)
+    column = experiment.axes[1].values.index(experiment.case.operation.torque_balance)
+    if lack or np.isfinite(experiment.change(f"{_HARMONIC}1")[:, column, 1:]).any():
         return lack
     return "No steady state with friction was computed with the torque held as in the case."
 
@@ -95,55 +95,57 @@ def _no_harmonics(found: FrictionExperiment) -> str:
 @drawing(
     "friction_effect",
     heading="What friction changes",
-    caption="Every point is a steady state; whatever the law, the mean coefficient tells the "
-    "effect. Which gear drives, and which torque is held while friction acts, decide over its "
-    "sign; only across the line of action does friction excite by itself.",
+    caption="Every point is a steady state. The mean coefficient determines the size of the "
+    "effect for every friction law; the driving gear and the torque that is held constant "
+    "determine its sign. Friction alone excites vibration only across the line of action.",
     missing=_no_effect,
     of="FrictionExperiment",
     made_by=_MADE,
 )
-def friction_effect(found: FrictionExperiment) -> Any:
+def friction_effect(experiment: FrictionExperiment) -> Any:
     """Draw the effect of friction on forces and transmission error over its mean coefficient."""
     panels = [
-        Panel(label, [{**t, "showlegend": number == 0} for t in _curves(found, name)])
+        Panel(label, [{**t, "showlegend": number == 0} for t in _curves(experiment, name)])
         for number, (name, label) in enumerate(_EFFECTS)
-        if name in found.figures
+        if name in experiment.figures
     ]
-    return stack(_title(found), "Mean friction coefficient", panels, {"hovermode": "closest"})
+    return stack(_title(experiment), "Mean friction coefficient", panels, {"hovermode": "closest"})
 
 
 @drawing(
     "friction_claims",
     heading="Five published claims",
-    caption="Green: the claim holds under these assumptions. The table says what was printed, what "
-    "this pair does, and why.",
+    caption="Green: the claim holds under these assumptions. The table lists the printed "
+    "statement, the result for this pair, and the reason.",
     missing=_no_claim,
     of="FrictionExperiment",
     made_by=_MADE,
 )
-def friction_claims(found: FrictionExperiment) -> Any:
-    """Draw which claim holds under which assumption."""
-    known = [
-        (claim.statement, claim.holds.ravel()) for claim in found.claims if claim.holds is not None
+def friction_claims(experiment: FrictionExperiment) -> Any:
+    """Draw for each published claim the assumptions under which it holds."""
+    judged = [
+        (claim.statement, claim.holds.ravel())
+        for claim in experiment.claims
+        if claim.holds is not None
     ]
-    holds = np.array([each for _, each in known]).reshape(len(known), -1)
+    holds = np.array([each for _, each in judged]).reshape(len(judged), -1)
     settings = [f"{d}<br>{h.replace(' torque', '<br>torque')}" for d in DRIVING for h in HELD]
     heat = {
         "type": "heatmap", "x": settings, "z": holds.astype(float), "zmin": 0.0, "zmax": 1.0,
-        "y": [_broken(statement) for statement, _ in known], "showscale": False, "xgap": 3,
+        "y": [_wrapped(statement) for statement, _ in judged], "showscale": False, "xgap": 3,
         "ygap": 3, "colorscale": _VERDICTS, "text": np.where(holds, "holds", "fails"),
         "texttemplate": "%{text}", "textfont": {"color": INK},
         "hovertemplate": "%{y}<br>%{x}: %{text}<extra></extra>",
     }  # fmt: skip
-    whole = int(holds.all(axis=1).sum())
-    part = int(holds.any(axis=1).sum()) - whole
-    title = f"Claims that hold everywhere: {whole} of {len(known)}; in some settings only: {part}"
+    everywhere = int(holds.all(axis=1).sum())
+    somewhere = int(holds.any(axis=1).sum()) - everywhere
+    title = f"Claims that always hold: {everywhere} of {len(judged)}; in some settings: {somewhere}"
     axes = {"yaxis": {"autorange": "reversed"}, "xaxis": {"side": "top"}}
     margin = {"t": 150, "l": 70, "r": 24, "b": 30}
     return figure(
         title,
         [heat],
-        {"height": 190 + 56 * len(known), "margin": margin, **axes, "hovermode": "closest"},
+        {"height": 190 + 56 * len(judged), "margin": margin, **axes, "hovermode": "closest"},
     )
 
 
@@ -156,12 +158,12 @@ def friction_claims(found: FrictionExperiment) -> Any:
     of="FrictionExperiment",
     made_by=_MADE,
 )
-def friction_harmonics(found: FrictionExperiment) -> Any:
+def friction_harmonics(experiment: FrictionExperiment) -> Any:
     """Draw how friction changes the harmonics of the dynamic transmission error."""
     names = [f"{_HARMONIC}{k}" for k in range(1, _HARMONICS + 1)]
-    change = 100.0 * np.array([found.change(name) for name in names])
-    column = found.axes[1].values.index(found.case.operation.torque_balance)
-    drawn = found.nearest()
+    change = 100.0 * np.array([experiment.change(name) for name in names])
+    column = experiment.axes[1].values.index(experiment.case.operation.torque_balance)
+    variants = experiment.nearest()
     colors, panels = (PINION, WHEEL, *PAIR_COLORS), []
     for row, driving in enumerate(DRIVING):
         bars = [
@@ -169,24 +171,24 @@ def friction_harmonics(found: FrictionExperiment) -> Any:
                 "type": "bar",
                 "x": list(range(1, _HARMONICS + 1)),
                 "y": change[:, row, column, k],
-                "name": found.rubbing[k].name,
+                "name": experiment.rubbing[k].name,
                 "marker": {"color": colors[n % len(colors)]},
                 "showlegend": row == 0,
                 "hovertemplate": "%{y:.3g} %",
             }
-            for n, k in enumerate(drawn)
+            for n, k in enumerate(variants)
         ]
         panels.append(Panel(f"Change, the<br>{driving} [%]", bars))
-    part = change[:, :, column, drawn]
+    part = change[:, :, column, variants]
     order, driver, place = np.unravel_index(int(np.nanargmax(np.abs(part))), part.shape)
     title = (
         f"The {in_a_sentence(names[order])} changes most: {part[order, driver, place]:+.3g} % "
-        f"({DRIVING[driver]}, {found.rubbing[drawn[int(place)]].name})"
+        f"({DRIVING[driver]}, {experiment.rubbing[variants[int(place)]].name})"
     )
     return stack(title, "Mesh harmonic", panels, {"hovermode": "closest", "barmode": "group"})
 
 
-def _broken(words: str) -> str:
+def _wrapped(statement: str) -> str:
     from textwrap import wrap
 
-    return "<br>".join(wrap(words, 44))
+    return "<br>".join(wrap(statement, 44))

@@ -1,4 +1,4 @@
-"""Natural modes, where mesh harmonics meet them, and the response to a harmonic error."""
+"""Natural modes, Campbell diagram and response to a harmonic error."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, ForcedResponse, NaturalModes
 
 _COLORS = (PINION, WHEEL, *PAIR_COLORS, MUTED, TOTAL)
 _HATCHES = ("", "/", "x", ".")
-#: Springs below this share in every mode are not drawn.
+#: Springs with a smaller strain share in every mode are left out.
 _LEAST = 1e-3
 #: Widths of the curve of a mode without and with all of its strain in the mesh [px].
 _THIN, _THICK = 1.0, 4.0
 
 
 def _bars(labels: list[str], shares: dict[str, Any]) -> list[Trace]:
-    seen = {name: share for name, share in shares.items() if np.max(share, initial=0.0) > _LEAST}
+    visible = {name: part for name, part in shares.items() if np.max(part, initial=0.0) > _LEAST}
     return [
         {
             "type": "bar",
@@ -37,26 +37,27 @@ def _bars(labels: list[str], shares: dict[str, Any]) -> list[Trace]:
             },
             "hovertemplate": f"%{{y:.1f}} % at %{{x}}<extra>{name}</extra>",
         }
-        for number, (name, share) in enumerate(seen.items())
+        for number, (name, share) in enumerate(visible.items())
     ]
 
 
 def _strained(modes: NaturalModes) -> dict[str, Any]:
-    """Strain of each spring in the elastic modes; contacts of one force law are one mesh."""
+    """Strain share of each spring in the elastic modes; contacts of a mesh are added up."""
     share, springs = modes.strain_share[modes.rigid :], len(modes.elements) - modes.contacts
-    found = {name: share[:, column] for column, name in enumerate(modes.elements[:springs])}
+    strain = {name: share[:, column] for column, name in enumerate(modes.elements[:springs])}
     laws = np.unique(modes.linear.bundle)
     for number, law in enumerate(laws, 1):
-        members = springs + np.flatnonzero(modes.linear.bundle == law)
-        found[f"mesh {number}" if laws.size > 1 else "mesh"] = share[:, members].sum(axis=1)
-    return found
+        contacts = springs + np.flatnonzero(modes.linear.bundle == law)
+        strain[f"mesh {number}" if laws.size > 1 else "mesh"] = share[:, contacts].sum(axis=1)
+    return strain
 
 
 @drawing(
     "mode_shapes",
     heading="Natural modes",
-    caption="One bar for each natural frequency. Above, which body moves; below, which spring "
-    "is strained. A mode with much of its strain in the mesh answers to transmission errors.",
+    caption="One bar per natural frequency. Top: kinetic energy of the bodies; bottom: strain "
+    "energy of the springs. Transmission errors excite the modes with a high share of strain in "
+    "the mesh.",
     of=("NaturalModes", "Result.natural_modes"),
     made_by="Call tribodyn.dynamics.natural_modes and its plot method.",
 )
@@ -64,7 +65,7 @@ def mode_shapes(modes: NaturalModes) -> Any:
     """Draw the energy shares of all elastic modes."""
     first, unit = modes.rigid, display_unit("frequency")
     hertz = displayed("frequency", modes.frequency[first:])
-    # Two modes can have one frequency: the number keeps their bars apart.
+    # Modes can have the same frequency: the mode number makes the labels unique.
     labels = [f"{first + k}: {significant(float(value), 4)}" for k, value in enumerate(hertz)]
     moving = {body: share[first:] for body, share in modes.body_share().items()}
     strained = _strained(modes)
@@ -72,8 +73,8 @@ def mode_shapes(modes: NaturalModes) -> Any:
     if share.size and modes.contacts:
         top = int(np.argmax(share))
         title = (
-            f"The mesh has most in mode {first + top}: {100 * share[top]:.0f} % of the strain at "
-            f"{rounded('frequency', float(modes.frequency[first + top]))}"
+            f"The mesh has its largest share in mode {first + top}: {100 * share[top]:.0f} % of "
+            f"the strain at {rounded('frequency', float(modes.frequency[first + top]))}"
         )
     else:
         title = f"{len(labels)} natural frequencies"
@@ -100,7 +101,7 @@ def _title(diagram: Campbell) -> str:
 
 
 def _modes(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
-    """Lines of the modes; those wholly above the picture have no place in its legend."""
+    """Lines of the modes; those above the plotted range have no legend entry."""
     unit, traces = display_unit("frequency"), []
     for column in range(diagram.frequency.shape[1]):
         share = float(np.mean(diagram.contact_share[:, column]))
@@ -114,17 +115,17 @@ def _modes(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
 
 
 def _rising(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
-    """Lines of the mesh harmonics, each with its number where it leaves the picture."""
+    """Lines of the mesh harmonics, labelled with their number at the upper end."""
     traces = []
     for order in diagram.orders:
         values = displayed("frequency", order * diagram.mesh_frequency)
-        seen = np.flatnonzero(values <= 0.97 * top)
-        words = [""] * len(values)
-        if seen.size:
-            words[seen[-1]] = str(order)
+        visible = np.flatnonzero(values <= 0.97 * top)
+        texts = [""] * len(values)
+        if visible.size:
+            texts[visible[-1]] = str(order)
         name, unit = f"harmonic {order}", display_unit("frequency")
         rising = line(speed, values, name, MUTED, unit=unit, dash="dash", width=1.0)
-        traces.append({**rising, "mode": "lines+text", "text": words, "textposition": "top left"})
+        traces.append({**rising, "mode": "lines+text", "text": texts, "textposition": "top left"})
     return traces
 
 
@@ -132,17 +133,17 @@ def _met(diagram: Campbell) -> list[Trace]:
     if not diagram.resonances:
         return []
     met = diagram.resonances
-    facts = [[each.order, 100.0 * each.contact_share] for each in met]
+    facts = [[resonance.order, 100.0 * resonance.contact_share] for resonance in met]
     return [
         {
             "type": "scatter",
             "mode": "markers",
-            "x": displayed("speed", np.array([each.speed for each in met])),
-            "y": displayed("frequency", np.array([each.frequency for each in met])),
+            "x": displayed("speed", np.array([resonance.speed for resonance in met])),
+            "y": displayed("frequency", np.array([resonance.frequency for resonance in met])),
             "name": "resonance",
             "marker": {
                 "color": WHEEL,
-                "size": 6.0 + 10.0 * np.array([each.contact_share for each in met]),
+                "size": 6.0 + 10.0 * np.array([resonance.contact_share for resonance in met]),
             },
             "customdata": facts,
             "hovertemplate": "harmonic %{customdata[0]}, %{y:.5g} "
@@ -155,10 +156,10 @@ def _met(diagram: Campbell) -> list[Trace]:
 @drawing(
     "campbell",
     heading="Campbell diagram",
-    caption="Natural frequencies across, mesh harmonics rising with speed. Where two lines cross "
-    "the mesh can drive a resonance; the thicker the line of a mode and the larger the dot, the "
-    "more of the strain sits in the mesh. Of a case the operating speed is marked, and the "
-    "stiffness is that at this speed and load.",
+    caption="Natural frequencies and mesh harmonics over the speed. Where two lines cross, "
+    "the mesh can excite a resonance; the thicker the line of a mode and the larger the dot, the "
+    "higher the share of strain in the mesh. For a case the operating speed is marked, and the "
+    "stiffness is taken at this speed and load.",
     of=("Campbell", "Result.campbell"),
     made_by="Call tribodyn.dynamics.campbell and its plot method.",
 )
@@ -171,7 +172,7 @@ def campbell(diagram: Campbell) -> Any:
     axis = {"range": [0.0, top]}
     traces = [*_modes(diagram, speed, top), *_rising(diagram, speed, top), *_met(diagram)]
     now = diagram.operating_speed
-    marks = [] if now is None else [("now", float(displayed("speed", now)))]
+    marks = [] if now is None else [("operation", float(displayed("speed", now)))]
     return stack(
         _title(diagram),
         axis_label("speed"),
@@ -183,9 +184,9 @@ def campbell(diagram: Campbell) -> Any:
 @drawing(
     "forced_response",
     heading="Response to a harmonic error",
-    caption="Amplitudes over the frequency of the error. Slow errors turn the gears and press "
-    "little; fast ones leave the inertias at rest and are taken up by the teeth; between "
-    "them stand the natural modes of the mesh.",
+    caption="Amplitudes over the frequency of the error. At low frequency the gears follow the "
+    "error with little force; at high frequency the inertias stay at rest and the teeth deflect. "
+    "In between lie the natural modes of the mesh.",
     of="ForcedResponse",
     made_by="Call tribodyn.dynamics.forced_response and its plot method.",
 )
@@ -200,12 +201,12 @@ def forced_response(response: ForcedResponse) -> Any:
         line(
             x,
             displayed(name, np.abs(values[:, contact])),
-            words,
+            label,
             color,
             unit=display_unit(name),
             dash=dash,
         )
-        for name, values, words, color, dash in (
+        for name, values, label, color, dash in (
             ("transmission_error", response.transmission_error, "approach", TOTAL, "solid"),
             ("deflection", response.deflection, "compression", PAIR_COLORS[0], "dash"),
         )
@@ -217,7 +218,7 @@ def forced_response(response: ForcedResponse) -> Any:
     ]
     error = rounded("deflection", float(response.error))
     return stack(
-        f"An error of {error} makes {rounded('mesh_force', float(force[top]))} at "
+        f"An error of {error} causes up to {rounded('mesh_force', float(force[top]))} at "
         f"{rounded('frequency', float(response.frequency[top]))}",
         axis_label("frequency"),
         [

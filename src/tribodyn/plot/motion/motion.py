@@ -1,4 +1,4 @@
-"""The response as curves: over two mesh cycles for a steady state, over time for a transient."""
+"""Signals of a run over two mesh cycles (steady state) or over time (transient)."""
 
 from __future__ import annotations
 
@@ -8,48 +8,48 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.drawing import Sketch, drawing
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, button_row, line
 from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, button_row, line
 from tribodyn.study.pipeline import series
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.study import Result, ResultComparison
 
-#: Samples that each part of a transient curve keeps; more would not be seen but fill the file.
-_KEPT = 2000
-#: Relative change of the vibration from one quarter of a run to the next that is called settled.
+#: Most samples in each part of a transient curve; more would only enlarge the file.
+_MAX_SAMPLES = 2000
+#: A run has settled if its rms changes by less than this fraction from quarter to quarter.
 _SETTLED = 0.01
 #: Difference of two neighbouring samples, relative to the range, that is drawn as a jump.
 _JUMP = 1e-6
 
 
 def no_translation(result: Result) -> str:
-    """Tell why a result has no motion of the gear centres."""
+    """Reason why a result has no motion of the gear centres; empty if it has."""
     if series.centre_column(result.response.names, "pinion", "y") is not None:
         return ""
     return (
-        "The model turns the gears only: their centres stay in place and no bearing is loaded. "
+        "The gears of this model only rotate: their centres are fixed and no bearing is loaded. "
         'Choose dynamics.model = "spur-6dof" to let them move.'
     )
 
 
 def _ends(values: Array) -> NDArray[np.intp]:
-    """Of three samples a step, its left end, and its right end where a jump or the end follows."""
+    """Indices of the left end of every step, and of its right end before a jump and at the end."""
     left = np.arange(0, len(values), 3)
     right = left + 2
-    apart = np.abs(values[right[:-1]] - values[left[1:]]) > _JUMP * np.ptp(values)
-    return np.sort(np.concatenate((left, right[:-1][apart], right[-1:])))
+    jumps = np.abs(values[right[:-1]] - values[left[1:]]) > _JUMP * np.ptp(values)
+    return np.sort(np.concatenate((left, right[:-1][jumps], right[-1:])))
 
 
 def _extremes(values: Array) -> NDArray[np.intp]:
-    """Indices of the least and greatest value of every group, so that thinning keeps peaks."""
+    """Indices of the minimum and maximum of every group, so that thinning preserves peaks."""
     count = len(values)
-    if count <= _KEPT:
+    if count <= _MAX_SAMPLES:
         return np.arange(count)
-    width = -(-2 * count // _KEPT)
+    width = -(-2 * count // _MAX_SAMPLES)
     folded = np.append(values, np.full(-count % width, values[-1])).reshape(-1, width)
     picked = np.stack((folded.argmin(axis=1), folded.argmax(axis=1)), axis=1)
     starts = np.arange(len(folded))[:, None] * width
@@ -59,59 +59,59 @@ def _extremes(values: Array) -> NDArray[np.intp]:
 class Motion:
     """The signals of a run and the horizontal axis on which they are drawn.
 
-    Signals stand on the fine samples of the response: three a step, jumps on both sides.
+    Signals use the fine samples of the response: three per step, with both sides of a jump.
     """
 
     def __init__(self, result: Result) -> None:
         self._result = result
         self._response = result.response
         self._mesh = result.mesh
-        #: A steady state; the error of a transient has no meaning.
+        #: Whether the response is a steady state.
         self.periodic = series.is_steady(result.response)
-        words = "Mesh cycles"
-        self.label = axis_label("mesh_phase", words) if self.periodic else axis_label("time")
-        #: Mesh cycles drawn of a steady state.
+        label = "Mesh cycles"
+        self.label = axis_label("mesh_phase", label) if self.periodic else axis_label("time")
+        #: Number of mesh cycles in the plot of a steady state.
         self.shown = max(CYCLES, self._response.periods)
         self._measured = len(series.measured(self._response).phase)
         periods = self._response.periods
-        counted = round(periods * self._measured / len(self._response.fine.phase))
-        self.window = "" if self.periodic else f" in the last {counted} of {periods} mesh cycles"
+        last = round(periods * self._measured / len(self._response.fine.phase))
+        self.window = "" if self.periodic else f" in the last {last} of {periods} mesh cycles"
 
     @property
     def mesh_force(self) -> Array:
-        """Dynamic force along the line of action, all ramps of a force law together."""
+        """Dynamic force along the line of action, summed over the ramps of the force law."""
         return series.mesh_force(self._response.fine)
 
     @property
     def transmission_error(self) -> Array:
-        """Dynamic transmission error, counted from where perfect rigid driving flanks touch."""
+        """Dynamic transmission error, zero where perfect rigid driving flanks touch."""
         return series.transmission_error(self._result, self._response.fine)
 
     def of_gear(self, quantity: str, gear: str, axis: str) -> Array:
-        """Acceleration of a gear's centre, or ``"bearing_force"``, its force on its support."""
+        """Acceleration of a gear centre, or its force on the support (``"bearing_force"``)."""
         column = series.centre_column(self._response.names, gear, axis)
         if quantity == "acceleration":
             return np.asarray(self._response.fine.acceleration[:, column])
-        assert column is not None  # Asked of gears whose centres move.
+        assert column is not None  # callers check that the gear centres move
         return series.support_force(self._result.system, self._response.fine, column)
 
     def measured(self, values: Array) -> Array:
-        """Keep the part of a signal over which the figures of a summary are taken."""
+        """Return the part of a signal over which summary figures are evaluated."""
         return values[-self._measured :]
 
     def _last(self) -> int:
-        """Samples before the last mesh cycles, those that the zoom of a transient shows."""
+        """Index of the first sample of the last mesh cycles, the zoom of a transient."""
         count, periods = len(self._response.fine.phase), int(self._response.periods)
         return count - count // periods * min(CYCLES, periods)
 
     def settling(self, values: Array) -> str:
-        """Say whether a transient has become steady, judged by its last two quarters."""
+        """Report whether a transient has settled, judged by the rms of its last two quarters."""
         if self.periodic:
             return ""
         periods, weight = self._response.periods, self._response.fine.weight
         quarter = len(values) // periods * (periods // 4)
         if not quarter:
-            return "The run is too short to tell whether the motion has settled."
+            return "The run is too short to judge whether the response has settled."
 
         def rms(part: slice) -> float:
             mean = np.average(values[part], weights=weight[part])
@@ -123,42 +123,45 @@ class Motion:
         percent = "less than 0.01" if change < 1e-4 else significant(100.0 * change, 2)
         verdict = "has settled" if change < _SETTLED else "has not settled"
         return (
-            f"The motion {verdict}: from the third to the last quarter of the run the rms of its "
+            f"The response {verdict}: from the third to the last quarter of the run the rms of its "
             f"alternating part changes by {percent} %."
         )
 
     def curve(self, name: str, values: Array) -> tuple[Array, Array]:
-        """Place a signal on the axis."""
-        shown, fine = displayed(name, values), self._response.fine
+        """Return the horizontal and vertical values of a signal in display units."""
+        displayed_values, fine = displayed(name, values), self._response.fine
         if not self.periodic:
             last = self._last()
-            early, late = _extremes(shown[:last]), last + _extremes(shown[last:])
-            kept = np.concatenate((early, late))
-            return displayed("time", fine.time)[kept], shown[kept]
-        kept = _ends(shown)
+            early, late = (
+                _extremes(displayed_values[:last]),
+                last + _extremes(displayed_values[last:]),
+            )
+            samples = np.concatenate((early, late))
+            return displayed("time", fine.time)[samples], displayed_values[samples]
+        samples = _ends(displayed_values)
         if self._response.periods > 1:
-            return fine.phase[kept], shown[kept]
-        return cycles(fine.phase[kept], shown[kept])
+            return fine.phase[samples], displayed_values[samples]
+        return cycles(fine.phase[samples], displayed_values[samples])
 
-    def line(self, name: str, values: Array, words: str, color: str, **look: Any) -> Trace:
-        """Draw a signal over the axis."""
-        return line(*self.curve(name, values), words, color, unit=display_unit(name), **look)
+    def line(self, name: str, values: Array, label: str, color: str, **style: Any) -> Trace:
+        """Describe the curve of a signal."""
+        return line(*self.curve(name, values), label, color, unit=display_unit(name), **style)
 
     def figure(self, title: str, panels: list[Panel]) -> Sketch:
-        """Stack panels over the axis; the title tells of what is measured."""
+        """Stack panels over the axis; the title names the evaluated mesh cycles."""
         return stack(f"{title}{self.window}", self.label, panels, self.layout())
 
     def layout(self) -> dict[str, Any]:
-        """Marks of the events and range of the horizontal axis."""
+        """Event marks, range of the horizontal axis and zoom buttons."""
         if self.periodic:
             events = event_lines(mesh_events(self._mesh, self.shown))
             return {**events, "xaxis": {"range": [0, self.shown]}}
         time = displayed("time", self._response.fine.time)
-        views = [("whole run", float(time[0]))]
+        views = [("entire run", float(time[0]))]
         if self._last():
             views.append((f"last {CYCLES} mesh cycles", float(time[self._last()])))
         end = float(time[-1])
-        buttons = [(words, {"xaxis.range": [start, end]}) for words, start in views]
+        buttons = [(label, {"xaxis.range": [start, end]}) for label, start in views]
         return {"updatemenus": [button_row(buttons)], "xaxis": {"range": [views[0][1], end]}}
 
 
@@ -166,25 +169,25 @@ _COLORS = (TOTAL, PINION, WHEEL, *PAIR_COLORS)
 _DASHES = ("solid", "dash", "dot")
 
 
-def _unlike(found: ResultComparison) -> str:
-    """Say why the motions share no axis."""
-    if len({Motion(each).label for each in found.results}) == 1:
+def _axis_mismatch(comparison: ResultComparison) -> str:
+    """Reason why the responses cannot share an axis; empty if they can."""
+    if len({Motion(each).label for each in comparison.results}) == 1:
         return ""
-    return "Steady motions and motions over time share no axis: compare those of one kind"
+    return "Steady states and transients have different axes: compare results of the same kind"
 
 
 @drawing(
     "result_comparison",
-    heading="Results beside each other",
-    caption="Transmission error and mesh force of each result; what differs in their cases stands "
-    "in the table of the comparison.",
-    missing=_unlike,
+    heading="Comparison of results",
+    caption="Transmission error and mesh force of each result; the table of the comparison lists "
+    "the differences of their cases.",
+    missing=_axis_mismatch,
     of="ResultComparison",
     made_by="tribodyn.compare_results",
 )
-def result_comparison(found: ResultComparison) -> Any:
-    """Draw transmission error and mesh force of all results over each other."""
-    motions = [Motion(each) for each in found.results]
+def result_comparison(comparison: ResultComparison) -> Any:
+    """Draw transmission error and mesh force of all results in the same axes."""
+    motions = [Motion(each) for each in comparison.results]
     panels: list[Panel] = []
     names = {"dynamic_transmission_error": "transmission_error", "mesh_force": "mesh_force"}
     for quantity, name in names.items():
@@ -197,13 +200,13 @@ def result_comparison(found: ResultComparison) -> Any:
                 width=1.8,
                 dash=_DASHES[i // len(_COLORS)],
             )
-            for i, (motion, title) in enumerate(zip(motions, found.names, strict=True))
+            for i, (motion, title) in enumerate(zip(motions, comparison.names, strict=True))
         ]
-        shown = [{**trace, "showlegend": not panels} for trace in traces]
-        panels.append(Panel(axis_label(quantity), shown))
-    changed = ", ".join(found.values) or "nothing"
+        traces_with_legend = [{**trace, "showlegend": not panels} for trace in traces]
+        panels.append(Panel(axis_label(quantity), traces_with_legend))
+    changed = ", ".join(comparison.values) or "nothing"
     layout = motions[0].layout()
-    if any(each.case.gears != found.results[0].case.gears for each in found.results):
-        # Pairs of other gears enter and leave elsewhere.
+    if any(each.case.gears != comparison.results[0].case.gears for each in comparison.results):
+        # The marks depend on the gears.
         layout = {k: v for k, v in layout.items() if k not in ("shapes", "annotations")}
-    return stack(f"What changes: {changed}", motions[0].label, panels, layout)
+    return stack(f"Changed: {changed}", motions[0].label, panels, layout)

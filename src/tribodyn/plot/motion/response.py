@@ -1,4 +1,4 @@
-"""The motion of a structure as it was computed: contact forces, compressions, coordinates."""
+"""Computed response of a structure: contact forces, compressions, coordinates."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import readable, scaled, significant, unit_of
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.labels import readable, scaled, significant, unit_of
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ _CURVES, _POINTS = 8, 4000
 
 
 def _extremes(values: Array) -> Index:
-    """Samples of one curve: the smallest and the largest of every stretch."""
+    """Indices of the minimum and maximum of every group of samples of a curve."""
     if values.size <= _POINTS:
         return np.arange(values.size)
     length = -(-values.size // (_POINTS // 2))
@@ -32,7 +32,7 @@ def _extremes(values: Array) -> Index:
 
 
 def _panel(quantity: str, unit: str, time: Array, columns: dict[str, Array]) -> list[Panel]:
-    """Curves of one kind over the time; none where there are no such columns."""
+    """Panel with the columns of one quantity over the time; empty without columns."""
     chosen = dict(list(columns.items())[:_CURVES])
     if not chosen:
         return []
@@ -67,10 +67,9 @@ def _milliseconds(time: Array) -> tuple[Array, str]:
 
 @drawing(
     "response",
-    heading="Motion of the structure",
-    caption="Force and compression of every contact, and the accelerations of the coordinates. A "
-    "force of zero is a contact that is lost; the force of one that is compressed by less than "
-    "its backlash.",
+    heading="Response of the structure",
+    caption="Force and compression of every contact, and the accelerations of the coordinates. The "
+    "force is zero where the contact is lost: there the compression lies within the backlash.",
     of="Response",
     made_by="Call tribodyn.dynamics.simulate or steady_state and its plot method.",
 )
@@ -106,9 +105,9 @@ def response(motion: Response) -> Any:
 
 @drawing(
     "adaptive_solution",
-    heading="Motion in accepted steps",
-    caption="Positions at the ends of the steps that met the tolerance, and the length of every "
-    "step: short ones lie where a contact changes its side or the mesh an event.",
+    heading="Adaptive time integration",
+    caption="Positions at the ends of the accepted steps, and the length of every "
+    "step: steps are short where a contact changes its side and at mesh events.",
     of="AdaptiveSolution",
     made_by="Call tribodyn.dynamics.solve_adaptive and its plot method.",
 )

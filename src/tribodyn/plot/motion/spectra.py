@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.analysis import Spectrum, amplitude_spectrum
-from tribodyn.plot.look.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import MUTED, TOP, TOTAL, Trace, button_row
 from tribodyn.plot.mesh.cycle import run_drawing
-from tribodyn.plot.motion.courses import GEARS, directions, words_of
 from tribodyn.plot.motion.motion import Motion, no_translation
+from tribodyn.plot.motion.time_histories import GEARS, directions, two_line_label
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, TOP, TOTAL, Trace, button_row
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 #: Highest mesh harmonic drawn.
 _HIGHEST = 80
-#: Decades below the largest line that count on the logarithmic scale.
+#: Decades below the largest line that the logarithmic scale shows.
 _DECADES = 4.0
 #: The same on a linear scale.
 _SEEN = 1.8
@@ -34,7 +34,7 @@ _NAMES = 30
 
 
 def _no_harmonics(result: Result) -> str:
-    """Tell why a result has no mesh harmonics."""
+    """Reason why a result has no mesh harmonics; empty if it has."""
     if Motion(result).periodic:
         return ""
     return (
@@ -44,7 +44,7 @@ def _no_harmonics(result: Result) -> str:
 
 
 def _spectrum(result: Result, signal: Array) -> Spectrum:
-    """Spectrum as far as the steps resolve it, eight to a wave, and no further than is readable."""
+    """Spectrum up to the order that eight steps per period resolve, at most 80."""
     steps = result.response.time.size // result.response.periods
     return amplitude_spectrum(result.response, signal, highest=min(_HIGHEST, steps // 8))
 
@@ -52,7 +52,7 @@ def _spectrum(result: Result, signal: Array) -> Spectrum:
 def _panel(
     result: Result, quantity: str, label: str, signals: Sequence[tuple[str, str, Array]]
 ) -> Panel:
-    """Show the harmonics of one or two signals side by side."""
+    """Panel with the harmonics of one or two signals as grouped bars."""
     hertz, unit = display_unit("frequency"), display_unit(quantity)
     traces = []
     for name, color, signal in signals:
@@ -73,7 +73,7 @@ def _panel(
 
 
 def _gear_panels(result: Result, quantity: str) -> list[Panel]:
-    """Show the mesh harmonics of a signal of both gears."""
+    """Panels with the mesh harmonics of a signal of pinion and wheel."""
     if no_translation(result):
         return []
     motion = Motion(result)
@@ -81,10 +81,10 @@ def _gear_panels(result: Result, quantity: str) -> list[Panel]:
         _panel(
             result,
             quantity,
-            words_of(quantity, words),
+            two_line_label(quantity, direction),
             [(gear, color, motion.of_gear(quantity, gear, axis)) for gear, color in GEARS],
         )
-        for axis, words in directions(result)
+        for axis, direction in directions(result)
     ]
 
 
@@ -97,8 +97,8 @@ def _strongest(panel: Panel) -> str:
 
 
 def _natural(result: Result, last: float) -> tuple[dict[str, Any], list[Trace]]:
-    """Mark the natural frequencies as far as the harmonics go; their numbers are in the legend."""
-    # Numbers of neighbours stand together, above the panels, where no bar reaches.
+    """Mark the natural frequencies in the range of the harmonics and list them in the legend."""
+    # Numbers of close frequencies share one label above the panels.
     modes, places = result.natural_modes, list[tuple[str, float]]()
     legend: list[Trace] = []
     for number, hertz in enumerate(modes.frequency[modes.rigid :], start=1):
@@ -106,29 +106,29 @@ def _natural(result: Result, last: float) -> tuple[dict[str, Any], list[Trace]]:
         if _FIRST < place <= last:
             places.append((str(number), place))
             name = f"{number}: {rounded('frequency', float(hertz))}"
-            look = {"color": MUTED, "width": 1, "dash": "dot"}
+            style = {"color": MUTED, "width": 1, "dash": "dot"}
             legend.append({"type": "scatter", "mode": "lines", "x": [None], "y": [None],
-                           "name": name, "line": look})  # fmt: skip
+                           "name": name, "line": style})  # fmt: skip
     lines, groups = event_lines(places), list[list[tuple[str, float]]]()
     for mark in places:
         if groups and mark[1] - groups[-1][0][1] < _APART * last:
             groups[-1].append(mark)
         else:
             groups.append([mark])
-    told = [(", ".join(name for name, _ in group), group[0][1]) for group in groups]
+    labels = [(", ".join(name for name, _ in group), group[0][1]) for group in groups]
     share = (places[-1][1] - places[0][1]) / last if len(places) > 1 else 1.0
-    lines["annotations"] = event_lines(told, share)["annotations"]
+    lines["annotations"] = event_lines(labels, share)["annotations"]
     return lines, legend
 
 
-def _drawn(title: str, result: Result, panels: list[Panel]) -> Any:
+def _harmonic_figure(title: str, result: Result, panels: list[Panel]) -> Any:
     """Draw a figure of harmonics, with buttons for a linear and a logarithmic scale."""
     layout, legend = _harmonic_layout(result, panels)
     panels[0] = replace(panels[0], traces=[*panels[0].traces, *legend])
-    drawn = stack(title, "Mesh harmonic", panels, layout)
-    drawn.layout["margin"] |= {"t": TOP + _NAMES}
-    drawn.layout["height"] += _NAMES
-    return drawn
+    sketch = stack(title, "Mesh harmonic", panels, layout)
+    sketch.layout["margin"] |= {"t": TOP + _NAMES}
+    sketch.layout["height"] += _NAMES
+    return sketch
 
 
 def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> tuple[dict[str, Any], list[Trace]]:
@@ -147,7 +147,7 @@ def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> tuple[dict[str,
 
 
 def _last_order(panels: Sequence[Panel], decades: float) -> float:
-    """Highest order whose line counts beside the largest of its unit in the figure."""
+    """Highest order whose amplitude is within ``decades`` of the largest with the same unit."""
     largest: dict[str, float] = {}
     for panel in panels:
         unit = panel.label.rpartition("[")[2]
@@ -157,13 +157,13 @@ def _last_order(panels: Sequence[Panel], decades: float) -> float:
     for panel in panels:
         least = 10.0**-decades * largest[panel.label.rpartition("[")[2]]
         for trace in panel.traces:
-            seen = np.asarray(trace["x"])[np.asarray(trace["y"]) > least]
-            last = max(last, float(np.max(seen, initial=1.0)))
+            visible = np.asarray(trace["x"])[np.asarray(trace["y"]) > least]
+            last = max(last, float(np.max(visible, initial=1.0)))
     return last
 
 
 def _decades(panel: Panel) -> list[float]:
-    """Range of a logarithmic axis: below it there is only rounding."""
+    """Range of a logarithmic axis; amplitudes below it are rounding errors."""
     top = max(float(np.max(trace["y"])) for trace in panel.traces)
     exponent = math.log10(top) if top > 0.0 else 0.0
     return [exponent - _DECADES, exponent + 0.3]
@@ -172,10 +172,10 @@ def _decades(panel: Panel) -> list[float]:
 @run_drawing(
     "spectrum",
     heading="Spectra",
-    caption="How strong each mesh harmonic is. Harmonic 1 is the mesh frequency, the teeth that "
-    "pass in a second. Dotted lines are natural frequencies, numbered as in the "
-    "table of figures: a bar near one is amplified by it. "
-    "The buttons switch to a logarithmic scale, on which small harmonics show.",
+    caption="Amplitude of each mesh harmonic. Harmonic 1 is the mesh frequency, the number of "
+    "teeth that engage per second. Dotted lines are natural frequencies, numbered as in the table "
+    "of results: they amplify the harmonics close to them. The buttons switch to a logarithmic "
+    "scale, which shows the small harmonics.",
     missing=_no_harmonics,
 )
 def spectrum(result: Result) -> Any:
@@ -191,7 +191,7 @@ def spectrum(result: Result) -> Any:
         *_gear_panels(result, "acceleration"),
     ]
     title = f"Mesh harmonic {_strongest(panels[0])} is the strongest in the transmission error"
-    return _drawn(title, result, panels)
+    return _harmonic_figure(title, result, panels)
 
 
 def _no_bearing_harmonics(result: Result) -> str:
@@ -201,8 +201,8 @@ def _no_bearing_harmonics(result: Result) -> str:
 @run_drawing(
     "bearing_spectrum",
     heading="Spectra of the bearing forces",
-    caption="What the bearings pass on to the housing, by mesh harmonic. A harmonic that meets a "
-    "natural frequency of the housing is the one that is heard. Dotted lines are natural "
+    caption="Forces that the bearings transmit to the housing, by mesh harmonic. A harmonic close "
+    "to a natural frequency of the housing dominates the noise. Dotted lines are natural "
     "frequencies of the gears on their supports.",
     missing=_no_bearing_harmonics,
 )
@@ -210,4 +210,4 @@ def bearing_spectrum(result: Result) -> Any:
     """Draw the mesh harmonics of the bearing forces."""
     panels = _gear_panels(result, "bearing_force")
     title = f"Mesh harmonic {_strongest(panels[0])} is the strongest on the pinion's bearing"
-    return _drawn(title, result, panels)
+    return _harmonic_figure(title, result, panels)

@@ -1,4 +1,4 @@
-"""Steady motions over the speed, and figures of a summary over keys of the case."""
+"""Steady states over the speed, and summary figures over keys of the case."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import axis_label, displayed, engineering, readable, rounded
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, marked
+from tribodyn.plot.theme.labels import axis_label, displayed, engineering, readable, rounded
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, marked
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.words import in_a_sentence, in_words
 from tribodyn.units import convert
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 _WAYS = {"up": (PINION, "solid"), "down": (WHEEL, "dash")}
 _WORDS = {"up": "upwards", "down": "downwards"}
 _COLORS = (PINION, WHEEL, *PAIR_COLORS)
-#: More curves than this make a map.
+#: Number of curves above which a map is drawn.
 _CURVES = len(_COLORS)
 
 
 def _axis(sweep: SpeedSweep) -> tuple[str, Any]:
-    """Quantity of the horizontal axis: the speed of a shaft whose teeth are told, or the beat."""
+    """Quantity of the horizontal axis: shaft speed if the teeth are given, else mesh frequency."""
     return ("speed", sweep.speed) if sweep.teeth > 1 else ("mesh_frequency", sweep.mesh_frequency)
 
 
@@ -41,10 +41,10 @@ def _speed_curves(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
     traces = []
     for number, direction in enumerate(sweep.directions):
         color, dash = _WAYS[direction]
-        # The broader curve below, so that both are seen where they agree.
+        # The broader curve is drawn first, so that both are visible where they agree.
         width = 3.0 if direction == "up" else 1.6
-        words = _WORDS[direction]
-        traces.append(line(speed, values[number], words, color, unit=unit, dash=dash, width=width))
+        label = _WORDS[direction]
+        traces.append(line(speed, values[number], label, color, unit=unit, dash=dash, width=width))
     return traces
 
 
@@ -62,10 +62,10 @@ def _jumps(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
         row = sweep.directions.index(jump.direction)
         at = [int(np.argmin(np.abs(sweep.mesh_frequency - f))) for f in (jump.before, jump.after)]
         x = _places(sweep)[at]
-        made = line(x, values[row][at], "jump", MUTED, unit=unit, dash="dot", width=1.2)
+        curve = line(x, values[row][at], "jump", MUTED, unit=unit, dash="dot", width=1.2)
         marker = {"symbol": "arrow", "angleref": "previous", "size": [0, 11], "color": MUTED}
         mode = {"mode": "lines+markers", "marker": marker, "showlegend": number == 0}
-        traces.append({**made, **mode, "legendgroup": "jump"})
+        traces.append({**curve, **mode, "legendgroup": "jump"})
     return traces
 
 
@@ -73,21 +73,21 @@ def _speed_title(sweep: SpeedSweep) -> str:
     where, (name, places) = np.flatnonzero(sweep.differs), _axis(sweep)
     if where.size:
         first, last = (rounded(name, float(places[k])) for k in (where[0], where[-1]))
-        told = f"The ways up and down differ at {where.size} of {sweep.differs.size} speeds"
-        return f"{told}, " + (f"from {first} to {last}" if where.size > 1 else f"at {first}")
+        difference = f"The sweeps up and down differ at {where.size} of {sweep.differs.size} speeds"
+        return f"{difference}, " + (f"from {first} to {last}" if where.size > 1 else f"at {first}")
     lost = int(np.count_nonzero(~sweep.stable))
     if lost:
-        return f"{lost} of {sweep.stable.size} motions are not stable or do not repeat"
+        return f"{lost} of {sweep.stable.size} states are unstable or not periodic"
     top = int(np.argmax(sweep.rms[0, :, 0]))
-    return f"The mesh vibrates most at {rounded(name, float(places[top]))}"
+    return f"The mesh vibrates most strongly at {rounded(name, float(places[top]))}"
 
 
 @drawing(
     "speed_sweep",
-    heading="Steady motions over the speed",
-    caption="How strong the steady motion is when the speed goes up slowly, and when it comes "
-    "down. Where the two differ, two motions are possible and the one before decides; arrows are "
-    "jumps. Crosses are motions that are not stable or do not repeat.",
+    heading="Steady states over the speed",
+    caption="Amplitude of the steady state for slowly rising and for slowly falling speed. "
+    "Where the two differ, two steady states coexist and the history decides; arrows are "
+    "jumps. Crosses are states that are unstable or not periodic.",
     of="SpeedSweep",
     made_by="Call tribodyn.dynamics.speed_sweep(...) and its plot method.",
 )
@@ -109,11 +109,11 @@ def speed_sweep(sweep: SpeedSweep, *, signal: str | None = None) -> Any:
     column = sweep.of(name)
     unit = sweep.units[column]
     small = unit == "m" and float(np.nanmax(sweep.peak_to_peak[..., column])) < 1e-2
-    factor, shown = (1e6, "µm") if small else (1.0, readable(unit))
+    factor, display_unit = (1e6, "µm") if small else (1.0, readable(unit))
     rms, span = (factor * part[..., column] for part in (sweep.rms, sweep.peak_to_peak))
-    words, top = name.replace("_", " "), {"rangemode": "tozero"}
+    signal_label, top = name.replace("_", " "), {"rangemode": "tozero"}
     if name in sweep.names:
-        words = f"acceleration of {words}"
+        signal_label = f"acceleration of {signal_label}"
     several = [sweep.period[k] > 1 for k in range(len(sweep.directions))]
     marks = [
         *_dots(sweep, rms, list(~sweep.stable), "not stable", PAIR_COLORS[3], "x"),
@@ -121,14 +121,14 @@ def speed_sweep(sweep: SpeedSweep, *, signal: str | None = None) -> Any:
     ]
     panels = [
         Panel(
-            f"Alternating rms of<br>{words} [{shown}]",
-            [*_speed_curves(sweep, rms, shown), *_jumps(sweep, rms, shown), *marks],
+            f"Alternating rms of<br>{signal_label} [{display_unit}]",
+            [*_speed_curves(sweep, rms, display_unit), *_jumps(sweep, rms, display_unit), *marks],
             top,
             1.3,
         ),
         Panel(
-            f"Range [{shown}]",
-            [*_speed_curves(sweep, span, shown), *_jumps(sweep, span, shown)],
+            f"Range [{display_unit}]",
+            [*_speed_curves(sweep, span, display_unit), *_jumps(sweep, span, display_unit)],
             top,
         ),
     ]
@@ -139,18 +139,18 @@ def speed_sweep(sweep: SpeedSweep, *, signal: str | None = None) -> Any:
     return stack(_speed_title(sweep), label, panels, {"hovermode": "closest"})
 
 
-def _words(name: str) -> str:
-    words = name.replace("_", " ")
-    return words[:1].upper() + words[1:]
+def _key_label(name: str) -> str:
+    label = name.replace("_", " ")
+    return label[:1].upper() + label[1:]
 
 
 def _axis_text(axis: Axis) -> str:
     unit = readable(axis.display_unit)
-    return f"{_words(axis.name)} [{unit}]" if unit else _words(axis.name)
+    return f"{_key_label(axis.name)} [{unit}]" if unit else _key_label(axis.name)
 
 
-def _told(axis: Axis, value: Any) -> str:
-    """A value as a title or a legend tells it."""
+def _value_text(axis: Axis, value: Any) -> str:
+    """Format a value of an axis for a title or a legend."""
     number, _, unit = axis.show(value).partition(" ")
     if not axis.numeric:
         return str(axis.show(value))
@@ -158,27 +158,27 @@ def _told(axis: Axis, value: Any) -> str:
 
 
 def _values(study: Sweep, name: str) -> tuple[Any, str]:
-    """Figure in its display unit, and that unit."""
-    shown = SUMMARY[name]
-    factor = convert(1.0, shown.unit, shown.display_unit) if shown.unit else 1.0
-    return study[name] * factor, readable(shown.display_unit)
+    """Return a summary figure in its display unit, and that unit."""
+    quantity = SUMMARY[name]
+    factor = convert(1.0, quantity.unit, quantity.display_unit) if quantity.unit else 1.0
+    return study[name] * factor, readable(quantity.display_unit)
 
 
 def _case_title(study: Sweep, name: str, values: Any, unit: str) -> str:
     failed = sum(bool(point.failed) for point in study.points)
     if not np.any(np.isfinite(values)):
-        return f"No value has this figure; {failed} failed"
+        return f"No run has this result; {failed} failed"
     place = np.unravel_index(int(np.nanargmax(values)), values.shape)
     where = ", ".join(
-        _told(axis, axis.values[at]) for axis, at in zip(study.axes, place, strict=True)
+        _value_text(axis, axis.values[at]) for axis, at in zip(study.axes, place, strict=True)
     )
     lost = f"; {failed} of {values.size} failed" if failed else ""
     greatest = " ".join(engineering(float(np.nanmax(values)), unit, 4)).rstrip()
-    return f"The {in_a_sentence(name)} is greatest at {where}: {greatest}{lost}"
+    return f"The {in_a_sentence(name)} is largest at {where}: {greatest}{lost}"
 
 
 def _marked(x: Any, y: Any, failed: Any, name: str, color: str, unit: str) -> list[Trace]:
-    """One curve, with a cross at its foot for every value that failed."""
+    """A curve with a cross at its minimum for every failed run."""
     curve = {**line(x, y, name, color, unit=unit), "mode": "lines+markers", "marker": {"size": 5}}
     lost = np.array([bool(text) for text in failed])
     if not lost.any():
@@ -198,12 +198,12 @@ def _marked(x: Any, y: Any, failed: Any, name: str, color: str, unit: str) -> li
 
 
 def _case_curves(study: Sweep, values: Any, unit: str) -> list[Trace]:
-    """Curves over the first key, one for each combination of the others."""
+    """Curves over the first key, one per combination of the other keys."""
     x, traces = study.axes[0].shown(), []
     others = list(product(*(range(len(axis.values)) for axis in study.axes[1:])))
     for number, place in enumerate(others):
         pairs = zip(study.axes[1:], place, strict=True)
-        name = ", ".join(_told(axis, axis.values[at]) for axis, at in pairs) or "figure"
+        name = ", ".join(_value_text(axis, axis.values[at]) for axis, at in pairs) or "figure"
         column: Any = (slice(None), *place)
         color = _COLORS[number % len(_COLORS)]
         traces += _marked(x, values[column], study.failed[column], name, color, unit)
@@ -238,15 +238,15 @@ def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
 @drawing(
     "sweep",
     heading="Sweep",
-    caption="One figure of the summary over the values that were varied. Peaks are resonances; a "
-    "step means that the motion jumped. A cross or an empty place is a value that could not be "
-    "computed, and the reason stands in the table.",
+    caption="A summary figure over the varied values. Peaks are resonances; a "
+    "step is a jump of the response. A cross or an empty cell is a run that failed; "
+    "the table lists the reason.",
     of="Sweep",
     made_by='Call tribodyn.sweep(case, {"operation.speed": ("400 rpm", "3500 rpm", '
     "60)}) and its plot method.",
 )
 def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Any:
-    """Draw a figure of the summary over the keys that vary.
+    """Draw a summary figure over the keys that vary.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Any:
     if curves > _CURVES and values.ndim == 2 and all(axis.numeric for axis in study.axes):
         return _map(study, values, label, unit, title)
     panel = Panel(label, _case_curves(study, values, unit), height=1.6)
-    drawn = stack(title, _axis_text(study.axes[0]), [panel])
-    varied = ", ".join(_words(axis.name) for axis in study.axes[1:])
-    drawn.layout["legend"] |= {"title": {"text": varied, "font": {"size": 13}}}
-    return drawn
+    sketch = stack(title, _axis_text(study.axes[0]), [panel])
+    varied = ", ".join(_key_label(axis.name) for axis in study.axes[1:])
+    sketch.layout["legend"] |= {"title": {"text": varied, "font": {"size": 13}}}
+    return sketch

@@ -1,10 +1,10 @@
-"""Motions over parameters and starts.
+"""Nonlinear responses over parameters and initial states.
 
 ===============  =============================================================
 module           what it draws
 ===============  =============================================================
-``planes``       planes of starts or of two parameters, coloured by the motion
-``branches``     bifurcation diagrams, branches of periodic motions
+``planes``       basins of attraction and maps over two parameters
+``branches``     bifurcation diagrams, branches of periodic orbits
 ``phase_plane``  phase portrait, Poincare section, Lyapunov exponents
 ===============  =============================================================
 """

@@ -1,4 +1,4 @@
-"""Motions over a parameter: bifurcation diagrams and branches of periodic motions."""
+"""Bifurcation diagrams and branches of periodic orbits over a parameter."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.plot.look.labels import (
+from tribodyn.plot.theme.labels import (
     axis_label,
     displayed,
     readable,
@@ -17,8 +17,8 @@ from tribodyn.plot.look.labels import (
     significant,
     unit_of,
 )
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line, marked
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line, marked
 from tribodyn.types import Array, Mask
 from tribodyn.units import convert
 
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
 
 _COLORS = {"up": PINION, "down": WHEEL, "independent": PINION}
 _WORDS = {"up": "upwards", "down": "downwards", "independent": "from rest"}
-#: What a point that is not physics looks like.
+#: Colour of points that depend on the step of the time integration.
 _STEP_LIMITED = "#b8c0c8"
 _PERIODS = 16
-#: Difference of two motions over the largest rms from which they count as two.
-_APART = 0.05
-#: Part of the motions up to which those that the step made are told last.
-_FEW = 0.05
+#: Responses with a larger difference, relative to the largest rms, count as different.
+_DIFFERENT = 0.05
+#: Fraction of step-limited responses up to which the title mentions them last.
+_MAX_LIMITED = 0.05
 _UNSTABLE = PAIR_COLORS[3]
-#: Kind of special point: words, colour and symbol.
+#: Kind of special point: label, colour and symbol.
 _MARKS = {
     "fold": ("fold", PAIR_COLORS[1], "circle"),
     "period-doubling": ("period doubling", PAIR_COLORS[0], "diamond"),
@@ -47,32 +47,32 @@ _MARKS = {
 
 
 def _scale(diagram: Bifurcation) -> tuple[float, str]:
-    """Factor and unit in which lengths below a tenth of a millimetre are drawn."""
+    """Factor and unit of the section: µm below a millimetre, else m."""
     largest = float(np.nanmax(np.abs(diagram.section), initial=0.0))
     return (1e6, "µm") if largest < 1e-3 else (1.0, "m")
 
 
 def _bifurcation_parameter(diagram: Bifurcation) -> tuple[Any, str]:
-    """Values of the parameter as engineers read them, and their label."""
+    """Values of the parameter in its display unit, and the axis label."""
     name = diagram.parameter_name.rpartition(".")[2]
     if name in QUANTITIES and QUANTITIES[name].unit == diagram.parameter_unit:
         return displayed(name, diagram.parameter), axis_label(name)
-    words, unit = name.replace("_", " ").capitalize(), diagram.parameter_unit
+    label, unit = name.replace("_", " ").capitalize(), diagram.parameter_unit
     if unit in ("", "-"):
-        return diagram.parameter, words
+        return diagram.parameter, label
     kind = name.rpartition("_")[2]
-    alike = [
+    display_units = [
         each.display_unit
         for each in QUANTITIES.values()
         if each.unit == unit and each.name.rpartition("_")[2] == kind
     ]
-    shown = alike[0] if alike else unit
-    factor = convert(1.0, unit, shown) if alike else 1.0
-    return diagram.parameter * factor, f"{words} [{readable(shown)}]"
+    display_unit = display_units[0] if display_units else unit
+    factor = convert(1.0, unit, display_unit) if display_units else 1.0
+    return diagram.parameter * factor, f"{label} [{readable(display_unit)}]"
 
 
 def _section(diagram: Bifurcation, parameter: Any, factor: float, unit: str) -> list[Trace]:
-    """Points of every branch; those that a long step made are grey."""
+    """Points of every branch; step-limited points are grey."""
     traces = []
     for number, branch in enumerate(diagram.branches):
         limited = diagram.verdict[number] == "step-limited"
@@ -81,11 +81,11 @@ def _section(diagram: Bifurcation, parameter: Any, factor: float, unit: str) -> 
             if not chosen.any():
                 continue
             rows = diagram.section[number][chosen]
-            name = "step-limited, not physics" if grey else _WORDS[branch]
+            name = "step-limited, not physical" if grey else _WORDS[branch]
             color = _STEP_LIMITED if grey else _COLORS[branch]
             x = np.repeat(parameter[chosen], rows.shape[1])
             trace = line(x, factor * rows.ravel(), name, color, unit=unit)
-            # Of two motions at one place both are seen: small points lie on large ones.
+            # Small points on large ones show coinciding branches.
             size = 5 if branch != "down" else 3
             traces.append({**trace, "mode": "markers", "marker": {"size": size, "color": color}})
     return traces
@@ -110,56 +110,56 @@ def _curves(diagram: Bifurcation, parameter: Any, values: Any, unit: str) -> lis
 
 
 def _two_motions(diagram: Bifurcation, parameter: Any, label: str) -> str:
-    """Where the motion depends on the direction of the sweep."""
+    """Parameter range in which the response depends on the direction of the sweep."""
     if not {"up", "down"} <= set(diagram.branches):
         return ""
     up, down = (diagram.rms[diagram.branches.index(name)] for name in ("up", "down"))
-    apart = np.abs(up - down) > _APART * np.nanmax(diagram.rms, initial=0.0)
-    if not apart.any():
+    different = np.abs(up - down) > _DIFFERENT * np.nanmax(diagram.rms, initial=0.0)
+    if not different.any():
         return ""
     unit = label.rpartition("[")[2].rstrip("]") if "[" in label else ""
-    low, high = (f"{edge(parameter[apart]):.4g} {unit}".rstrip() for edge in (np.min, np.max))
-    return f"Two motions are possible from {low} to {high}"
+    low, high = (f"{edge(parameter[different]):.4g} {unit}".rstrip() for edge in (np.min, np.max))
+    return f"Two responses coexist from {low} to {high}"
 
 
 def _bifurcation_title(diagram: Bifurcation, parameter: Any, label: str) -> str:
     count, lost = diagram.verdict.size, int(diagram.ran_away.sum())
     done = diagram.finished & (diagram.verdict != "step-limited") & ~diagram.ran_away
     limited = diagram.verdicts().get("step-limited", 0)
-    if limited > _FEW * count:
-        return f"{limited} of {count} motions are made by the step, not by physics"
+    if limited > _MAX_LIMITED * count:
+        return f"{limited} of {count} responses depend on the time step and are not physical"
     wild = int(np.count_nonzero((diagram.period == 0) & done))
     longest = int(np.max(diagram.period, where=done, initial=0))
-    two = _two_motions(diagram, parameter, label)
-    parts = [two] if two else []
+    coexisting = _two_motions(diagram, parameter, label)
+    parts = [coexisting] if coexisting else []
     if wild:
-        within = "" if two else f" within {_PERIODS} mesh cycles"
-        parts.append(f"{wild} of {count} motions do not repeat{within}")
+        within = "" if coexisting else f" within {_PERIODS} mesh cycles"
+        parts.append(f"{wild} of {count} responses are not periodic{within}")
     elif longest > 1:
-        parts.append(f"{'the' if two else 'The'} motion repeats after up to {longest} mesh cycles")
+        parts.append(f"{'periods' if coexisting else 'Periods'} of up to {longest} mesh cycles")
     if lost:
         verb = "grows" if lost == 1 else "grow"
-        parts.insert(0, f"{lost} of {count} motions {verb} beyond all bounds")
+        parts.insert(0, f"{lost} of {count} responses {verb} without bound")
     if not parts:
-        parts.append("Every motion repeats after one mesh cycle")
+        parts.append("Every response has a period of one mesh cycle")
     if limited:
-        parts.append(f"{limited} of {count} made by the step")
-    return "; ".join(parts[:2])  # what has no room shows in the picture
+        parts.append(f"{limited} of {count} depend on the time step")
+    return "; ".join(parts[:2])  # the plot shows the rest
 
 
 @drawing(
     "bifurcation",
     heading="Bifurcation diagram",
-    caption="The compression of the mesh once per mesh cycle, at the same place of the cycle. One "
-    "point means that the motion repeats with the mesh, two that it repeats every second cycle, a "
-    "cloud that it does not repeat. Where the sweep upwards and the sweep downwards differ, two "
-    "motions are possible. Grey points vanish with a shorter step: they are not physics.",
+    caption="The compression of the mesh once per mesh cycle, at the same phase. One "
+    "point is a period of one mesh cycle, two points are a period of two cycles, a "
+    "cloud is a non-periodic response. Where the upward and the downward sweep differ, two "
+    "responses coexist. Grey points vanish with a shorter time step: they are not physical.",
     of="Bifurcation",
     made_by='Call tribodyn.bifurcation(case, over="operation.speed", between=("400 '
     'rpm", "3500 rpm")) and its plot method.',
 )
 def bifurcation(diagram: Bifurcation) -> Any:
-    """Draw the section, the rms and, if it is there, the largest exponent over the parameter."""
+    """Draw the section, the rms and, if computed, the largest exponent over the parameter."""
     factor, unit = _scale(diagram)
     parameter, label = _bifurcation_parameter(diagram)
     rms = _curves(diagram, parameter, factor * diagram.rms, unit)
@@ -175,7 +175,7 @@ def bifurcation(diagram: Bifurcation) -> Any:
 
 
 def _quantity_of(branch: Branch) -> str:
-    """Quantity that a branch goes over, also where it is a key of a case; empty if it has none."""
+    """Quantity of the branch parameter, also for a key of a case; empty if there is none."""
     name = branch.name.rpartition(".")[2]
     return name if name in QUANTITIES else ""
 
@@ -186,63 +186,63 @@ def _branch_parameter(branch: Branch, values: Any) -> Array:
 
 
 def _signal(branch: Branch) -> tuple[Array, list[float], str]:
-    """Rms of the first signal and at the special points as they are drawn, and their unit."""
+    """Rms of the first signal and at the special points in a display unit, and that unit."""
     factor, unit = scaled(branch.rms[:, 0], unit_of(branch.signals[0]))
     special = [float(factor * point.rms[0]) for point in branch.special_points]
     return factor * np.asarray(branch.rms[:, 0], dtype=float), special, unit
 
 
 def _part(values: Array, keep: Mask) -> Array:
-    """Values of the points kept and of their neighbours, so that the parts meet."""
-    near = keep | np.roll(keep, 1) & (np.arange(keep.size) > 0)
-    return np.where(near, values, np.nan)
+    """Mask values outside ``keep`` and its neighbours, so that adjacent parts connect."""
+    neighbours = keep | np.roll(keep, 1) & (np.arange(keep.size) > 0)
+    return np.where(neighbours, values, np.nan)
 
 
 def _parts(branch: Branch, x: Array, y: Array, unit: str) -> list[Trace]:
     stable = np.asarray(branch.stable, dtype=bool)
-    drawn = [line(x, _part(y, stable), "stable", TOTAL, unit=unit)]
+    curves = [line(x, _part(y, stable), "stable", TOTAL, unit=unit)]
     if not stable.all():
-        drawn.append(line(x, _part(y, ~stable), "unstable", _UNSTABLE, unit=unit, dash="dash"))
-    return drawn
+        curves.append(line(x, _part(y, ~stable), "unstable", _UNSTABLE, unit=unit, dash="dash"))
+    return curves
 
 
 def _points(branch: Branch, values: list[float], unit: str, legend: bool) -> list[Trace]:
-    drawn = []
-    for kind, (words, color, symbol) in _MARKS.items():
-        own = [n for n, point in enumerate(branch.special_points) if point.kind == kind]
-        if not own:
+    traces = []
+    for kind, (label, color, symbol) in _MARKS.items():
+        indices = [n for n, point in enumerate(branch.special_points) if point.kind == kind]
+        if not indices:
             continue
-        x = _branch_parameter(branch, [branch.special_points[n].parameter for n in own])
-        y = [values[n] for n in own]
-        mark = marked(x, y, words, color, size=9, symbol=symbol, unit=unit)
-        drawn.append({**mark, "showlegend": legend})
-    return drawn
+        x = _branch_parameter(branch, [branch.special_points[n].parameter for n in indices])
+        y = [values[n] for n in indices]
+        mark = marked(x, y, label, color, size=9, symbol=symbol, unit=unit)
+        traces.append({**mark, "showlegend": legend})
+    return traces
 
 
-def _told(branch: Branch, value: float) -> str:
+def _value_text(branch: Branch, value: float) -> str:
     name = _quantity_of(branch)
     return rounded(name, value, 4) if name else f"{branch.name} {significant(value, 4)}"
 
 
 def _branch_title(branch: Branch) -> str:
-    folds = [_told(branch, fold.parameter) for fold in branch.special("fold")]
+    folds = [_value_text(branch, fold.parameter) for fold in branch.special("fold")]
     if len(folds) > 2:
         return f"The branch turns back {len(folds)} times"
     if folds:
         return f"The branch turns back at {' and '.join(folds)}"
     if np.all(branch.stable):
-        low, high = (_told(branch, edge(branch.parameter)) for edge in (np.min, np.max))
-        return f"The motion is stable from {low} to {high}"
+        low, high = (_value_text(branch, edge(branch.parameter)) for edge in (np.min, np.max))
+        return f"The orbit is stable from {low} to {high}"
     lost = branch.parameter[int(np.argmin(branch.stable))]
-    return f"The motion is not stable at {_told(branch, float(lost))}"
+    return f"The orbit is unstable at {_value_text(branch, float(lost))}"
 
 
 @drawing(
     "continuation",
-    heading="Branch of periodic motions",
-    caption="How strong the periodic motion is over the parameter. Dashed parts exist but are "
-    "left at the slightest disturbance. Where the branch turns back, the motion jumps. Below: the "
-    "largest Floquet multiplier, by which a disturbance grows in one period.",
+    heading="Branch of periodic orbits",
+    caption="Amplitude of the periodic orbit over the parameter. Dashed parts are "
+    "unstable. Where the branch turns back, the response jumps. Below: the "
+    "largest Floquet multiplier, the growth of a disturbance in one period.",
     of="Branch",
     made_by="Call tribodyn.dynamics.continuation(...) and its plot method.",
 )
@@ -274,6 +274,6 @@ def continuation(branch: Branch) -> Any:
                 {"rangemode": "tozero"},
             ),
         ],
-        # A branch that turns back has several values at one place: each is told by itself.
+        # A branch that turns back has several values at the same parameter.
         {"hovermode": "closest"},
     )

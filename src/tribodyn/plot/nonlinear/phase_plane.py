@@ -1,4 +1,4 @@
-"""One motion: phase portrait, Poincare section, convergence of its Lyapunov exponents."""
+"""Phase portrait, Poincare section and Lyapunov exponents of one response."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.errors import InputError
-from tribodyn.plot.look.labels import scaled, unit_of
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import (
+from tribodyn.plot.theme.labels import scaled, unit_of
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import (
     FILLS,
     MUTED,
     PAIR_COLORS,
@@ -25,19 +25,19 @@ from tribodyn.plot.look.style import (
 if TYPE_CHECKING:
     from tribodyn.analysis import LyapunovExponents, PhasePortrait, PoincareSection
 
-#: Exponents that are drawn at most; the largest decides.
-_DRAWN = 3
+#: Number of exponents in the plot, largest first.
+_MAX_CURVES = 3
 _COLORS = (PINION, WHEEL, PAIR_COLORS[0])
-#: Points of a curve at most.
-_KEPT = 1500
+#: Most points of a curve.
+_MAX_POINTS = 1500
 
 
 @drawing(
     "phase_portrait",
     heading="Phase portrait",
-    caption="Velocity over position of one coordinate, or of the compression of a contact. A "
-    "motion that repeats is a closed curve; the dots are its states at the mesh phase 0. Dashed "
-    "lines are the ends of the backlash.",
+    caption="Velocity over position of a coordinate, or of the compression of a contact. A "
+    "periodic response is a closed curve; the dots are its states at mesh phase 0. Dashed lines "
+    "are the limits of the backlash.",
     of="PhasePortrait",
     made_by="Call tribodyn.analysis.phase_portrait(response) and its plot method.",
 )
@@ -70,15 +70,17 @@ def phase_portrait(portrait: PhasePortrait) -> Any:
             "y1": 1,
             "yref": "paper",
             "line": dashed,
-            "name": "the flanks part",
+            "name": "backlash limit",
             "showlegend": end > 0.0,
         }
         for end in ends
         if portrait.gap > 0.0 and (end > 0.0 or portrait.position.min() < 0.0)
     ]
-    words = "Compression of the contact" if portrait.gap >= 0.0 else portrait.name.replace("_", " ")
-    seen = np.append(portrait.position, [end for end in ends if lines and end > 0.0])
-    place = f"{words} [{x_unit}]", _around(x_factor * seen)
+    x_label = (
+        "Compression of the contact" if portrait.gap >= 0.0 else portrait.name.replace("_", " ")
+    )
+    positions = np.append(portrait.position, [end for end in ends if lines and end > 0.0])
+    place = f"{x_label} [{x_unit}]", _around(x_factor * positions)
     speed = f"its velocity [{y_unit}]", _around(y_factor * portrait.velocity)
     return _over_place(_portrait_title(portrait), traces, place, speed, shapes=lines)
 
@@ -90,7 +92,7 @@ def _over_place(
     speed: tuple[str, list[float]],
     **more: Any,
 ) -> Any:
-    """Draw velocities over places; both axes have a label and a range."""
+    """Figure of velocities over positions; each axis has a label and a range."""
     x, y = ({"title": {"text": label}, "range": ends} for label, ends in (place, speed))
     layout = {"xaxis": x, "yaxis": y, "hovermode": "closest", "height": 560, **more}
     return figure(title, traces, layout)
@@ -105,26 +107,26 @@ def _around(values: Any) -> list[float]:
 
 def _portrait_title(portrait: PhasePortrait) -> str:
     if portrait.verdict == "step-limited":
-        return "The motion is made by the step, not by physics"
+        return "The response depends on the time step and is not physical"
     if portrait.period == 1:
-        return "The motion closes after one mesh cycle"
+        return "Closed orbit with a period of one mesh cycle"
     if portrait.period:
-        return f"The motion closes after {portrait.period} mesh cycles"
-    return "The motion does not close"
+        return f"Closed orbit with a period of {portrait.period} mesh cycles"
+    return "The orbit does not close"
 
 
 def _section_title(section: PoincareSection) -> str:
     if section.verdict == "step-limited":
-        return "The motion is made by the step, not by physics"
+        return "The response depends on the time step and is not physical"
     if section.period == 1:
-        return "The motion repeats with the mesh: one point"
+        return "Period of one mesh cycle: one point"
     if section.period:
-        return f"The motion repeats after {section.period} mesh cycles: as many points"
-    return "The motion does not repeat within 16 mesh cycles"
+        return f"Period of {section.period} mesh cycles: as many points"
+    return "No period of up to 16 mesh cycles"
 
 
 def _window(values: Any, motion: float) -> list[float]:
-    """Range of an axis that does not blow up the rounding of a motion that repeats."""
+    """Axis range that does not magnify the rounding errors of a periodic response."""
     middle = 0.5 * float(values.max() + values.min())
     half = max(0.6 * float(np.ptp(values)), 0.05 * motion, 1e-300)
     return [middle - half, middle + half]
@@ -133,8 +135,8 @@ def _window(values: Any, motion: float) -> list[float]:
 @drawing(
     "poincare",
     heading="Poincare section",
-    caption="The state once per mesh cycle, at the mesh phase 0. A motion that repeats shows as "
-    "many points as it takes mesh cycles to do so, a quasi-periodic one a closed curve, a chaotic "
+    caption="The state once per mesh cycle, at mesh phase 0. A periodic response has as "
+    "many points as its period has mesh cycles, a quasi-periodic one a closed curve, a chaotic "
     "one a cloud with inner structure.",
     of="PoincareSection",
     made_by="Call tribodyn.analysis.poincare(...) and its plot method.",
@@ -168,39 +170,39 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
     y_factor, y_unit = scaled(speed, f"{unit_of(name)}/s")
     x, y = x_factor * place, y_factor * speed
     last = section.period or 0
-    shown = slice(-last, None) if last else slice(None)
-    words = "last points" if last else "points"
+    visible = slice(-last, None) if last else slice(None)
+    name_in_legend = "last points" if last else "points"
     trace = {
         "type": "scatter",
         "mode": "markers",
-        "x": x[shown],
-        "y": y[shown],
-        "name": words,
+        "x": x[visible],
+        "y": y[visible],
+        "name": name_in_legend,
         "marker": {"size": 9 if last else 3.5, "color": PINION if last else TOTAL},
         "hovertemplate": f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>",
     }
-    along = f"{name.replace('_', ' ')} [{x_unit}]", _window(x[shown], float(np.abs(x).max()))
-    across = f"its velocity [{y_unit}]", _window(y[shown], float(np.abs(y).max()))
+    along = f"{name.replace('_', ' ')} [{x_unit}]", _window(x[visible], float(np.abs(x).max()))
+    across = f"its velocity [{y_unit}]", _window(y[visible], float(np.abs(y).max()))
     return _over_place(_section_title(section), [trace], along, across)
 
 
 def _exponent_title(spectrum: LyapunovExponents) -> str:
     value, error = spectrum.largest, spectrum.largest_error
-    words = f"{value:.4g} 1/s, standard error {error:.1g} 1/s"
+    exponent = f"{value:.4g} 1/s, standard error {error:.1g} 1/s"
     if spectrum.verdict == "step-limited":
-        return f"Made by the step, not by physics: the largest exponent is {words}"
+        return f"Dependent on the time step, not physical: the largest exponent is {exponent}"
     if spectrum.chaotic:
-        return f"Chaotic: the largest exponent is {words}"
-    return f"Not chaotic: the largest exponent is {words}"
+        return f"Chaotic: the largest exponent is {exponent}"
+    return f"Not chaotic: the largest exponent is {exponent}"
 
 
 @drawing(
     "lyapunov",
     heading="Lyapunov exponents",
-    caption="Mean growth of a small disturbance up to each mesh cycle. The band is the standard "
-    "error of a mean over so many cycles, the dotted line the result. A largest exponent that "
-    "stays above zero means chaos. Free rotations of the drive are no vibration: their exponents "
-    "are left out.",
+    caption="Mean growth rate of a small disturbance up to each mesh cycle. The band is the "
+    "standard error of the mean over these cycles, the dotted line the result. A largest exponent "
+    "that stays above zero means chaos. Free rotation of the drive train is not vibration: its "
+    "exponents are left out.",
     of="LyapunovExponents",
     made_by="Call tribodyn.analysis.lyapunov_exponents(...) and its plot method.",
 )
@@ -208,16 +210,16 @@ def lyapunov(spectrum: LyapunovExponents) -> Any:
     """Draw the running means of the largest exponents."""
     cycles = len(spectrum.growth)
     count = np.arange(1, cycles + 1)
-    kept = np.unique(np.linspace(0, cycles - 1, min(cycles, _KEPT)).astype(int))
+    samples = np.unique(np.linspace(0, cycles - 1, min(cycles, _MAX_POINTS)).astype(int))
     rotation = spectrum.free_rotation
     means = np.cumsum(spectrum.vibrating_growth, axis=0) / count[:, None]
-    order = np.argsort(-means[-1])[:_DRAWN]
+    order = np.argsort(-means[-1])[:_MAX_CURVES]
     errors = spectrum.standard_error[~rotation]
     traces: list[Trace] = []
-    x = count[kept]
+    x = count[samples]
     for number, column in enumerate(order):
         color = _COLORS[number]
-        mean = means[kept, column]
+        mean = means[samples, column]
         band = errors[number] * np.sqrt(cycles / x)
         fill = FILLS.get(color, "rgba(0, 158, 115, 0.14)")
         traces.append({
@@ -235,7 +237,7 @@ def lyapunov(spectrum: LyapunovExponents) -> Any:
         name = "free rotation, left out"
         mark = line(x[[0, -1]], [value, value], name, MUTED, unit="1/s", dash="dash", width=1.6)
         traces.append({**mark, "showlegend": number == 0})
-    late = means[kept][x >= max(1, cycles // 50)][:, order]
+    late = means[samples][x >= max(1, cycles // 50)][:, order]
     span = np.append(late.ravel(), 0.0)
     margin = 0.1 * float(np.ptp(span)) or 1.0
     limits = {"range": [float(span.min()) - margin, float(span.max()) + margin]}

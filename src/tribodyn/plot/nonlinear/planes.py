@@ -1,4 +1,4 @@
-"""Planes of two parameters or of two coordinates of the start, coloured by the motion."""
+"""Basins of attraction, and maps of the response over two parameters."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.plot.look.labels import (
+from tribodyn.plot.theme.labels import (
     axis_label,
     displayed,
     parameter_axis,
@@ -17,17 +17,17 @@ from tribodyn.plot.look.labels import (
     significant,
     unit_of,
 )
-from tribodyn.plot.look.panels import Panel, Row, stack_rows
-from tribodyn.plot.look.style import PAIR_COLORS, PINION, WHEEL, figure
+from tribodyn.plot.theme.panels import Panel, Row, stack_rows
+from tribodyn.plot.theme.style import PAIR_COLORS, PINION, WHEEL, figure
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Basins, ParameterMap
     from tribodyn.types import Array
 
-#: Colours of the attractors in the order of their shares; more of them begin anew.
+#: Colours of the attractors in the order of their shares, repeated if there are more.
 _COLORS = (PINION, PAIR_COLORS[3], PAIR_COLORS[0], PAIR_COLORS[1], PAIR_COLORS[2], WHEEL)
 _NOWHERE = "#d5dae0"
-#: Words and colours of the periods; the last one is for motions without bounds.
+#: Labels and colours of the periods; the last is for unbounded responses.
 _PERIODS = (
     ("1", "#eef3f7"),
     ("2", PINION),
@@ -37,31 +37,31 @@ _PERIODS = (
     ("none", WHEEL),
     ("ran away", "#8a94a0"),
 )
-#: From little to much.
+#: Colours from small to large values.
 _SCALE = [[0.0, "#f7fbff"], [0.35, "#9ecae1"], [0.7, "#3182bd"], [1.0, "#08306b"]]
-#: Part of the motions whose rms the colours tell apart where the rest lies far beyond.
+#: Quantile of the rms at which the colour scale ends if outliers are far above it.
 _USUAL = 0.98
 
 
 def _name(plane: Basins, number: int, factor: float, unit: str) -> str:
     each = plane.attractors[number]
-    kind = f"period {each.period}" if each.period else "does not repeat"
+    kind = f"period {each.period}" if each.period else "not periodic"
     size = significant(factor * each.rms)
     return f"{kind}, rms {size} {unit}: {100.0 * each.share:.1f} %"
 
 
 def _stepped(colors: Sequence[str]) -> list[list[Any]]:
-    """Scale of colours in steps of one colour each."""
+    """Stepwise colour scale."""
     edges = np.linspace(0.0, 1.0, len(colors) + 1)
     return [[float(e), c] for n, c in enumerate(colors) for e in edges[n : n + 2]]
 
 
 def _plane(plane: Basins, x: Any, y: Any) -> dict[str, Any]:
-    """Heat map of the numbers of the attractors, in steps of one colour each."""
+    """Heat map of the attractor numbers with a stepwise colour scale."""
     count = len(plane.attractors)
     colors = [_NOWHERE, *(_COLORS[n % len(_COLORS)] for n in range(count))]
     scale = _stepped(colors)
-    words = ["no attractor", *(f"attractor {n + 1}" for n in range(count))]
+    texts = ["no attractor", *(f"attractor {n + 1}" for n in range(count))]
     label = np.clip(plane.attractor, -1, None).T
     return {
         "type": "heatmap",
@@ -73,14 +73,14 @@ def _plane(plane: Basins, x: Any, y: Any) -> dict[str, Any]:
         "colorscale": scale,
         "showscale": False,
         "opacity": 0.85,
-        "text": np.array(words)[label + 1],
+        "text": np.array(texts)[label + 1],
         "hovertemplate": "%{x:.4g}, %{y:.4g}: %{text}<extra></extra>",
         "showlegend": False,
     }
 
 
 def _component(plane: Basins, number: int, axis: int) -> Any:
-    """Component of the states of an attractor along an axis of the plane."""
+    """Values of a coordinate or velocity of the plane at the states of an attractor."""
     each, name = plane.attractors[number], plane.coordinates[axis]
     if each.section is not None:
         return each.section[:, axis]
@@ -90,33 +90,33 @@ def _component(plane: Basins, number: int, axis: int) -> Any:
 
 
 def _plane_axis(name: str, values: Any, unit: str) -> tuple[Array, str]:
-    """Values along an axis as they are drawn, and its label."""
+    """Values along an axis in its display unit, and its label."""
     if name in QUANTITIES:
         return displayed(name, values), axis_label(name)
     return parameter_axis(name, values, unit)
 
 
-def _ratio(drawn: Array, values: Any) -> float:
-    """Factor between the values of an axis and what is drawn."""
+def _display_factor(displayed_values: Array, values: Any) -> float:
+    """Factor from the SI values of an axis to their display unit."""
     largest = int(np.argmax(np.abs(values)))
-    return float(drawn[largest] / values[largest]) if values[largest] else 1.0
+    return float(displayed_values[largest] / values[largest]) if values[largest] else 1.0
 
 
 @drawing(
     "basins",
     heading="Basins of attraction",
-    caption="Every start of the plane has the colour of the motion that it comes to; crosses "
-    "are the states of these motions at the mesh phase 0. Where colours mix finely, the motion "
-    "cannot be foretold from the start.",
+    caption="The colour of an initial state is that of the attractor that it reaches; crosses "
+    "are the states of the attractors at mesh phase 0. Where colours mix finely, the attractor "
+    "cannot be predicted from the initial state.",
     of="Basins",
     made_by="Call tribodyn.analysis.basins(...) and its plot method.",
 )
 def basins(plane: Basins) -> Any:
-    """Draw the plane of starts."""
-    one, two = plane.coordinates
-    x, x_label = _plane_axis(one, plane.first, plane.units[0])
-    y, y_label = _plane_axis(two, plane.second, plane.units[1])
-    factors = [_ratio(d, v) for d, v in ((x, plane.first), (y, plane.second))]
+    """Draw the plane of initial states coloured by attractor."""
+    first, second = plane.coordinates
+    x, x_label = _plane_axis(first, plane.first, plane.units[0])
+    y, y_label = _plane_axis(second, plane.second, plane.units[1])
+    factors = [_display_factor(d, v) for d, v in ((x, plane.first), (y, plane.second))]
     factor, unit = scaled([each.rms for each in plane.attractors], unit_of(plane.signal))
     traces = [_plane(plane, x, y)]
     for number in range(len(plane.attractors)):
@@ -137,14 +137,14 @@ def basins(plane: Basins) -> Any:
             }
         )
     if plane.unresolved:
-        words = f"no attractor: {100.0 * plane.unresolved:.2g} %"
+        name = f"no attractor: {100.0 * plane.unresolved:.2g} %"
         traces.append(
             {
                 "type": "scatter",
                 "mode": "markers",
                 "x": [None],
                 "y": [None],
-                "name": words,
+                "name": name,
                 "marker": {"symbol": "square", "size": 11, "color": _NOWHERE},
             }
         )
@@ -161,14 +161,14 @@ def basins(plane: Basins) -> Any:
 def _basin_title(plane: Basins) -> str:
     count = len(plane.attractors)
     if not count:
-        return "No start comes to a motion that repeats"
+        return "No initial state reaches a periodic orbit"
     if count == 1:
-        return "All starts come to the same motion"
+        return "All initial states reach the same attractor"
     first = plane.attractors[0]
     factor, unit = scaled([each.rms for each in plane.attractors], unit_of(plane.signal))
     return (
-        f"{count} motions are possible; {100.0 * first.share:.0f} % of the starts come to the one "
-        f"of {significant(factor * first.rms)} {unit} rms"
+        f"{count} attractors coexist; {100.0 * first.share:.0f} % of the initial states reach the "
+        f"one of {significant(factor * first.rms)} {unit} rms"
     )
 
 
@@ -181,25 +181,25 @@ def _class(survey: ParameterMap) -> Any:
     return np.where(survey.finished, number, np.nan)
 
 
-def _heat(x: Any, y: Any, z: Any, words: str, **more: Any) -> dict[str, Any]:
+def _heat(x: Any, y: Any, z: Any, hover: str, **more: Any) -> dict[str, Any]:
     return {
         "type": "heatmap",
         "x": x,
         "y": y,
         "z": np.asarray(z).T,
         "colorscale": _SCALE,
-        "hovertemplate": f"%{{x:.5g}}, %{{y:.4g}}: {words}<extra></extra>",
+        "hovertemplate": f"%{{x:.5g}}, %{{y:.4g}}: {hover}<extra></extra>",
         "showlegend": False,
         **more,
     }
 
 
 def _range(rms: Any) -> dict[str, float]:
-    """Ends of the colours: a few motions far beyond the others do not take them all."""
-    seen = rms[np.isfinite(rms)]
-    if not seen.size:
+    """Range of the colour scale, limited to the usual values if outliers are far above."""
+    finite = rms[np.isfinite(rms)]
+    if not finite.size:
         return {}
-    most, usual = float(seen.max()), float(np.quantile(seen, _USUAL))
+    most, usual = float(finite.max()), float(np.quantile(finite, _USUAL))
     return {"zmin": 0.0, "zmax": usual} if 0.0 < 2.0 * usual < most else {}
 
 
@@ -222,28 +222,28 @@ def _periods(survey: ParameterMap, x: Any, y: Any) -> dict[str, Any]:
 def _map_title(survey: ParameterMap) -> str:
     if lost := int(survey.ran_away.sum()):
         verb = "grows" if lost == 1 else "grow"
-        return f"{lost} of {survey.rms.size} motions {verb} beyond all bounds"
-    seen = survey.finished & np.isfinite(survey.rms)
-    if not seen.any():
-        return "No motion is finished"
-    irregular = float(np.mean(survey.period[seen] != 1))
-    loss = float(np.mean(survey.contact_loss_share[seen] > 0.0))
+        return f"{lost} of {survey.rms.size} responses {verb} without bound"
+    finished = survey.finished & np.isfinite(survey.rms)
+    if not finished.any():
+        return "No run is finished"
+    irregular = float(np.mean(survey.period[finished] != 1))
+    loss = float(np.mean(survey.contact_loss_share[finished] > 0.0))
     if irregular == 0.0 and loss == 0.0:
-        return "Every motion repeats with the mesh, and the teeth never part"
+        return "Every response has a period of one mesh cycle, without loss of contact"
     if irregular == 0.0:
-        return f"The teeth part in {100.0 * loss:.0f} % of the map; all of it repeats with the mesh"
+        return f"Loss of contact in {100.0 * loss:.0f} % of the map; all periods are one mesh cycle"
     return (
-        f"The teeth part in {100.0 * loss:.0f} % of the map, and {100.0 * irregular:.0f} % does "
-        "not repeat with the mesh"
+        f"Loss of contact in {100.0 * loss:.0f} % of the map; {100.0 * irregular:.0f} % have no "
+        "period of one mesh cycle"
     )
 
 
 @drawing(
     "parameter_map",
     heading="Map over two parameters",
-    caption="After how many mesh cycles the motion repeats, how much the mesh vibrates and how "
-    "long the teeth are apart, over two parameters. Each motion starts by itself: where several "
-    "exist, another start may show another one.",
+    caption="Period of the response in mesh cycles, rms of the vibration and duration of the loss "
+    "of contact, over two parameters. The runs are independent: where several "
+    "responses coexist, another initial state may lead to another one.",
     of="ParameterMap",
     made_by="Call tribodyn.analysis.parameter_map(...) and its plot method.",
 )
@@ -256,20 +256,20 @@ def parameter_map(survey: ParameterMap) -> Any:
     maps = [
         ("Period [mesh cycles]", _periods(survey, x, y)),
         (f"Rms [{unit}]", _heat(x, y, rms, f"rms %{{z:.4g}} {unit}", **_range(rms))),
-        ("Contact loss [%]", _heat(x, y, loss, "apart for %{z:.3g} % of the time")),
+        ("Contact loss [%]", _heat(x, y, loss, "contact lost for %{z:.3g} % of the time")),
     ]
     rows = [Row(x_label, Panel(y_label, [trace], height=1.25)) for _, trace in maps]
-    made = stack_rows(_map_title(survey), rows, {"hovermode": "closest"})
-    for number, (words, _) in enumerate(maps):
-        low, high = made.layout[f"yaxis{number + 1 if number else ''}"]["domain"]
-        made.data[number]["colorbar"] = {
-            **made.data[number].get("colorbar", {}),
+    sketch = stack_rows(_map_title(survey), rows, {"hovermode": "closest"})
+    for number, (colorbar_title, _) in enumerate(maps):
+        low, high = sketch.layout[f"yaxis{number + 1 if number else ''}"]["domain"]
+        sketch.data[number]["colorbar"] = {
+            **sketch.data[number].get("colorbar", {}),
             "y": 0.5 * (low + high),
             "len": high - low,
             "thickness": 14,
             "x": 1.01,
             "xanchor": "left",
-            "title": {"text": words, "side": "right", "font": {"size": 13}},
+            "title": {"text": colorbar_title, "side": "right", "font": {"size": 13}},
             "outlinewidth": 0,
         }
-    return made
+    return sketch

@@ -3,15 +3,15 @@
 ==============  ===============================================================
 module          what it draws
 ==============  ===============================================================
-``analysed``    one analysed channel of a recording, its history
-``bands``       any figure of a run with the spread of variants on it
-``learned``     spread motions with bands, learned over computed values
-``lines``       spectra of a signal, sidebands, one order or the level over the speed
-``maps``        spectrogram, order map, spectra one behind the other
-``recorded``    channels of a recording, its orders, orders through time
-``revolution``  the mean revolution of a shaft, its residual and difference
-``run_up``      level and mesh orders over the speed, amplitudes over frequency
-``sensitivity`` shares of the variance of figures of a case by tolerance
-``uncertain``   shares of a variance, the band of a mean, columns of computed data
+``analysed``    analysis of a recorded channel, time history of the channel
+``bands``       any figure of a run with a band of case variants
+``learned``     response of case variants with bands; surrogate against computation
+``lines``       signal spectra, sidebands, order cut and overall level over the speed
+``maps``        spectrogram, order map, waterfall
+``recorded``    channels of a recording, order spectrum, tracked orders
+``revolution``  synchronous average of a shaft, residual and difference signal
+``run_up``      run-up: level and mesh orders over speed, map over frequency
+``sensitivity`` variance shares of summary figures by tolerance
+``uncertain``   Sobol indices, band of a mean, columns of computed data
 ==============  ===============================================================
 """

@@ -1,4 +1,4 @@
-"""One analysed channel of a recording: its history, and all of it at a glance."""
+"""Analysis of a recorded channel: overview and time history."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import axis_label, displayed, readable, significant
-from tribodyn.plot.look.panels import Panel, Row, stack, stack_rows
-from tribodyn.plot.look.style import MUTED, PINION, TOTAL, line
 from tribodyn.plot.signals.lines import spectrum_panel, strongest_lines
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.plot.signals.recorded import outline
+from tribodyn.plot.theme.labels import axis_label, displayed, readable, significant
+from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def order_panel(lines: OrderSpectrum) -> Panel:
     made_by=_MADE_BY,
 )
 def signal_analysis(analysis: SignalAnalysis) -> Any:
-    """Draw signal, spectrum, envelope spectrum and orders below one another."""
+    """Draw signal, spectrum, envelope spectrum and orders in stacked panels."""
     hertz = axis_label("frequency")
     reach = seen_frequency(analysis)
     rows = [
@@ -91,8 +91,8 @@ def signal_analysis(analysis: SignalAnalysis) -> Any:
     "signal_history",
     heading="Signal",
     caption="The channel as it was recorded, the envelope of its band, and the speed of the "
-    "shaft. Where there are more samples than the screen has points, the largest and the smallest "
-    "of each stretch are drawn.",
+    "shaft. Where there are more samples than the screen has pixels, the largest and the smallest "
+    "of each interval are drawn.",
     of="SignalAnalysis",
     made_by=_MADE_BY,
 )
@@ -118,7 +118,7 @@ def signal_history(analysis: SignalAnalysis) -> Any:
 
 
 def seen_frequency(analysis: SignalAnalysis, share: float = 0.05) -> float:
-    """Frequency beyond which all lines of the envelope are small [Hz]."""
+    """Frequency above which all lines of the envelope are small [Hz]."""
     lines = analysis.envelope_spectrum
     size = np.where(lines.frequency > 0.0, lines.amplitude, 0.0)
     last = float(lines.frequency[np.flatnonzero(size >= share * size.max())[-1]])

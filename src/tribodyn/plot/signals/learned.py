@@ -1,4 +1,4 @@
-"""What spread inputs do to a motion, and how far a learned model is off."""
+"""Response of case variants with bands, and the accuracy of a surrogate model."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import readable, scaled, significant
-from tribodyn.plot.look.panels import Panel, Row, stack_rows
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line, marked
+from tribodyn.plot.theme.labels import readable, scaled, significant
+from tribodyn.plot.theme.panels import Panel, Row, stack_rows
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from tribodyn.surrogate import Surrogate
 
 _COLORS = (PINION, WHEEL, *PAIR_COLORS)
-#: Most points of one target, harmonics of the spectrum, and the share of the variants between ends.
+#: Most points per target, harmonics of the spectrum, and fraction of the variants in the band.
 _POINTS, _HARMONICS, _SHARE = 2000, 12, 0.95
 _LIGHT, _DARK = "rgba(0, 114, 178, 0.16)", "rgba(0, 114, 178, 0.45)"
 
 
 def _area(x: Array, low: Array, high: Array, name: str, color: str) -> list[Trace]:
-    """The surface between two curves."""
+    """Filled area between two curves."""
     edge = {"mode": "lines", "line": {"width": 0}, "hoverinfo": "skip", "type": "scatter", "x": x}
     return [
         {**edge, "y": low, "showlegend": False},
@@ -32,7 +32,7 @@ def _area(x: Array, low: Array, high: Array, name: str, color: str) -> list[Trac
 
 
 def _curve(result: CaseEnsemble, signal: str, x: Array) -> tuple[list[Trace], str]:
-    """Mean over the variants, its confidence band, and where most of the variants lie."""
+    """Mean over the variants, its confidence band and the band of the variants."""
     band, spread = result.band(signal), result.spread(signal, _SHARE)
     factor, unit = scaled(band.mean, band.unit)
     traces = [
@@ -46,7 +46,7 @@ def _curve(result: CaseEnsemble, signal: str, x: Array) -> tuple[list[Trace], st
 
 
 def _lines(result: CaseEnsemble) -> tuple[list[Trace], str]:
-    """Mesh harmonics with both bands as bars."""
+    """Mesh harmonics with both bands as error bars."""
     band = result.band("mesh_force", harmonics=_HARMONICS)
     spread = result.spread("mesh_force", _SHARE, _HARMONICS)
     factor, unit = scaled(band.mean, band.unit)
@@ -64,10 +64,10 @@ def _lines(result: CaseEnsemble) -> tuple[list[Trace], str]:
 
 @drawing(
     "ensemble",
-    heading="Spread of the motion",
-    caption="What the inputs that are known within bounds do: the light surface holds most of the "
-    "variants, the dark one the mean of all that could be drawn. Over the time of a mesh cycle, "
-    "over its phase, and by mesh harmonics.",
+    heading="Spread of the response",
+    caption="Effect of uncertain inputs: the light band holds 95 % of the "
+    "variants, the dark band is the confidence band of their mean. Over the time of a mesh cycle, "
+    "over its phase, and by mesh harmonic.",
     of="CaseEnsemble",
     made_by="Call tribodyn.ensemble(case, {...}, seed=1) and its plot method.",
 )
@@ -93,18 +93,18 @@ def ensemble(result: CaseEnsemble) -> Any:
 
 @drawing(
     "surrogate",
-    heading="Learned and computed",
-    caption="Rows that the training has not seen: what the model says over what was computed. "
-    "Points on the line are exact; between the dotted lines lies a new one with the stated "
+    heading="Surrogate against computation",
+    caption="Predictions over computed values for rows that were not used in training. "
+    "Points on the line are exact; a new prediction lies between the dotted lines with the stated "
     "probability.",
     of="Surrogate",
     made_by="Call tribodyn.surrogate.train(data, ...) and its plot method.",
 )
 def surrogate(result: Surrogate) -> Any:
-    """Draw predictions over true values of the held-out rows, one panel for each target."""
-    rows, words = [], []
+    """Draw predictions over computed values of the held-out rows, one panel per target."""
+    rows, qualities = [], []
     for number, name in enumerate(result.targets):
-        true, told = result.true[number], result.predicted[number]
+        true, predicted = result.true[number], result.predicted[number]
         factor, unit = scaled(true, readable(str(result.target_unit[number])))
         chosen = np.linspace(0, true.size - 1, min(true.size, _POINTS)).round().astype(int)
         color = _COLORS[number % len(_COLORS)]
@@ -112,7 +112,7 @@ def surrogate(result: Surrogate) -> Any:
         half = factor * float(result.band[number])
         points = marked(
             factor * true[chosen],
-            factor * told[chosen],
+            factor * predicted[chosen],
             "held-out rows",
             color,
             size=4,
@@ -121,11 +121,13 @@ def surrogate(result: Surrogate) -> Any:
         )
         traces = [points, line(ends, ends, "exact", TOTAL, width=1.2)]
         if np.isfinite(half):
-            for sign, shown in ((1.0, True), (-1.0, False)):
+            for sign, in_legend in ((1.0, True), (-1.0, False)):
                 edge = line(ends, ends + sign * half, f"{result.level:.0%} band", MUTED, dash="dot")
-                traces.append({**edge, "showlegend": shown})
+                traces.append({**edge, "showlegend": in_legend})
         label = str(name).replace("_", " ") + (f" [{unit}]" if unit not in ("", "1") else "")
-        rows.append(Row(f"Computed {label}", Panel("Learned", traces)))
-        words.append(f"{str(name).replace('_', ' ')} {result.errors[str(name)].determination:.4f}")
-    title = f"R² over {result.true.shape[1]} held-out rows: {', '.join(words[:3])}"
+        rows.append(Row(f"Computed {label}", Panel("Predicted", traces)))
+        qualities.append(
+            f"{str(name).replace('_', ' ')} {result.errors[str(name)].determination:.4f}"
+        )
+    title = f"R² over {result.true.shape[1]} held-out rows: {', '.join(qualities[:3])}"
     return stack_rows(title, rows, {"hovermode": "closest"})

@@ -1,4 +1,4 @@
-"""Spectra of a signal, its sidebands, one order and the overall level over the speed."""
+"""Signal spectra, sidebands, order cuts and overall level over the speed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import (
+from tribodyn.plot.signals.maps import amplitude_label, with_unit
+from tribodyn.plot.theme.labels import (
     axis_label,
     display_unit,
     displayed,
@@ -16,23 +17,22 @@ from tribodyn.plot.look.labels import (
     rounded,
     significant,
 )
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
-from tribodyn.plot.signals.maps import amplitude_label, with_unit
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
 from tribodyn.signals.spectrum import distinct_peaks
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.analysis import OrderCut, OverallLevel, Sidebands, SignalSpectrum, Spectrum
 
-#: Most lines of a spectrum on the screen, peaks that are marked, and their least share of the top.
+#: Most plotted lines of a spectrum, most marked peaks, and their least fraction of the largest.
 _LINES, _PEAKS, _LEAST = 8000, 5, 0.02
 #: Decades below the largest line of a power or density spectrum.
 _DECADES = 8.0
 
 
 def strongest_lines(place: Array, size: Array, most: int = _LINES) -> tuple[Array, Array]:
-    """Largest line of every stretch of a spectrum, so that no peak is lost."""
+    """Thin a spectrum to the largest line of every interval, which preserves peaks."""
     if size.size <= most:
         return place, size
     length = -(-size.size // most)
@@ -43,7 +43,7 @@ def strongest_lines(place: Array, size: Array, most: int = _LINES) -> tuple[Arra
 
 
 def spectrum_panel(spectrum: SignalSpectrum, to: float | None = None) -> Panel:
-    """Lines above zero, with the largest peaks marked where they are amplitudes."""
+    """Panel of a spectrum without the line at zero; peaks of an amplitude spectrum are marked."""
     above = (spectrum.frequency > 0.0) & (spectrum.frequency <= (to or np.inf))
     frequency, size = strongest_lines(spectrum.frequency[above], spectrum.amplitude[above])
     unit = readable(spectrum.value_unit)
@@ -88,9 +88,9 @@ def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:
 @drawing(
     "signal_spectrum",
     heading="Spectrum",
-    caption="How strong each frequency of the signal is; circles mark the largest peaks, between "
-    "the lines. The mean of the signal, the line at zero, is left out. The mean square and the "
-    "density are drawn on a logarithmic scale.",
+    caption="Amplitude over the frequency; circles mark the largest peaks, interpolated between "
+    "the lines. The mean of the signal, the line at zero, is left out. Mean square and "
+    "density have a logarithmic scale.",
     of="SignalSpectrum",
     made_by="Call tribodyn.analysis.spectrum on a signal and its plot method.",
 )
@@ -139,8 +139,8 @@ def spectrum_title(spectrum: SignalSpectrum) -> str:
 @drawing(
     "harmonic_spectrum",
     heading="Harmonics",
-    caption="Peak amplitude of every line over the multiples of the mesh frequency. Lines between "
-    "whole numbers belong to a motion that repeats only after several mesh cycles.",
+    caption="Peak amplitude over multiples of the mesh frequency. Lines between "
+    "integer harmonics belong to a response with a period of several mesh cycles.",
     of="Spectrum",
     made_by="Call tribodyn.analysis.amplitude_spectrum(response, signal) and its plot method.",
 )
@@ -168,9 +168,9 @@ def harmonic_spectrum(spectrum: Spectrum) -> Any:
 @drawing(
     "sidebands",
     heading="Sidebands",
-    caption="The carrier and the lines on both sides of it. Equal sidebands come of a load that "
-    "changes with the shaft (amplitude modulation), unequal ones of an uneven rotation on top of "
-    "it (phase modulation).",
+    caption="The carrier and its sidebands. Symmetric sidebands indicate a load that "
+    "varies with the shaft (amplitude modulation), asymmetric sidebands additional uneven "
+    "rotation (phase modulation).",
     of="Sidebands",
     made_by="Call tribodyn.analysis.sidebands(signal, rate, carrier, modulation) and its plot "
     "method.",
@@ -215,9 +215,9 @@ def _over_speed(speed: Array, values: Array, name: str, unit: str) -> Trace:
 
 @drawing(
     "order_cut",
-    heading="One order over the speed",
-    caption="Amplitude of one multiple of the rotation at every speed. A peak is a speed at which "
-    "the order meets a natural frequency.",
+    heading="Order cut",
+    caption="Amplitude of an order over the speed. A peak is a speed at which "
+    "the order excites a natural frequency.",
     of="OrderCut",
     made_by="Call .cut(order) of an order map, or tribodyn.analysis.order_cut, and its plot "
     "method.",
@@ -243,7 +243,7 @@ def order_cut(cut: OrderCut) -> Any:
 @drawing(
     "overall_level",
     heading="Overall level",
-    caption="Alternating rms of the signal over the speed; the circle marks the loudest block.",
+    caption="Alternating rms of the signal over the speed; the circle marks the largest value.",
     of="OverallLevel",
     made_by="Call tribodyn.analysis.overall_level(run_up) and its plot method.",
 )
@@ -266,7 +266,7 @@ def overall_level(level: OverallLevel) -> Any:
     label = f"Alternating rms [{unit}]" if unit else "Alternating rms"
     curves = [{**each, "showlegend": False} for each in (curve, loudest)]
     return stack(
-        f"Loudest at {rounded('speed', float(level.speed[top]), 4)}: "
+        f"Highest level at {rounded('speed', float(level.speed[top]), 4)}: "
         f"{with_unit(float(level.rms[top]), level.unit)} rms",
         axis_label("speed"),
         [Panel(label, curves, {"rangemode": "tozero"}, 1.4)],

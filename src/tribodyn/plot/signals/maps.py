@@ -1,4 +1,4 @@
-"""Amplitudes over time or speed: spectrogram, order map, and spectra one behind the other."""
+"""Amplitudes over time or speed: spectrogram, order map and waterfall."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.analysis import OrderMap
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import (
+from tribodyn.plot.theme.labels import (
     axis_label,
     display_unit,
     displayed,
@@ -16,23 +16,23 @@ from tribodyn.plot.look.labels import (
     rounded,
     significant,
 )
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import GRID, INK, MUTED, PINION, TOTAL, WHEEL, line
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import GRID, INK, MUTED, PINION, TOTAL, WHEEL, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Spectrogram
 
-#: From silence to the largest amplitude, and the decades between them.
+#: Colours from the smallest to the largest amplitude, and the decades between them.
 _SCALE = [[0.0, "#ffffff"], [0.35, "#c6dbef"], [0.6, "#6baed6"], [0.8, "#2171b5"], [1.0, "#08306b"]]
 _DECADES = 3
 #: Height of the map relative to the curves below it.
 MAP_HEIGHT = 1.9
-#: Most cells along each side: more than the pixels of the panel show nothing more.
+#: Most cells along each side, about the number of pixels of a panel.
 _MOST = 480
 _BAR = {"len": 0.62, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left"}
 _CUTS = ((TOTAL, "solid"), (PINION, "dash"), (WHEEL, "dot"))
-#: Most spectra drawn, most points in one, and how many steps up the largest amplitude reaches.
+#: Most spectra, most points of each, and the height of the largest peak in spacings.
 _CURVES, _POINTS, _REACH = 40, 600, 6.0
 
 
@@ -49,7 +49,7 @@ def amplitude_label(unit: str) -> str:
 def amplitude_heatmap(
     x: Array, y: Array, amplitude: Array, unit: str, hover: str
 ) -> dict[str, Any]:
-    """Describe a map of amplitudes on a logarithmic scale of colours."""
+    """Describe a map of amplitudes with a logarithmic colour scale."""
     rows, columns = (-(-size // _MOST) for size in amplitude.shape)
     across, along = np.arange(0, x.size, columns), np.arange(0, y.size, rows)
     most = np.maximum.reduceat(np.maximum.reduceat(amplitude, along, axis=0), across, axis=1)
@@ -85,8 +85,8 @@ def amplitude_heatmap(
 @drawing(
     "spectrogram",
     heading="Spectrogram",
-    caption="Which frequencies are there at what time. Lines that rise with the speed are orders "
-    "of a shaft; level ones are natural frequencies. Below, the rms over time.",
+    caption="Amplitudes over time and frequency. Lines that rise with the speed are orders "
+    "of a shaft; horizontal lines are natural frequencies. Below, the rms over time.",
     of="Spectrogram",
     made_by="Call tribodyn.analysis.spectrogram on a signal and its plot method.",
 )
@@ -126,24 +126,24 @@ def spectrogram(result: Spectrogram) -> Any:
 def strongest_orders(result: OrderMap) -> list[float]:
     """Find the three orders that reach the largest amplitudes."""
     most = np.sqrt(np.mean(result.amplitude**2, axis=1))
-    apart = 3  # lines: main lobe of the window
-    most[:apart] = 0.0
-    found: list[float] = []
+    main_lobe = 3  # lines: main lobe of the window
+    most[:main_lobe] = 0.0
+    orders: list[float] = []
     limit = 0.01 * float(most.max())
     peak = np.flatnonzero(
         (most >= np.append(0.0, most[:-1])) & (most > np.append(most[1:], 0.0)) & (most > limit)
     )
-    taken: list[int] = []
+    lines: list[int] = []
     reach = result.amplitude.max(axis=1)
     for number in peak[np.argsort(reach[peak])[::-1]]:
-        if all(abs(number - other) > apart for other in taken) and len(found) < 3:
-            taken.append(int(number))
-            found.append(float(result.order[number]))
-    return found
+        if all(abs(number - other) > main_lobe for other in lines) and len(orders) < 3:
+            lines.append(int(number))
+            orders.append(float(result.order[number]))
+    return orders
 
 
 def _axis(result: OrderMap) -> tuple[Array, str, str]:
-    """Speed where it only rises or only falls, else time; label and unit on hovering."""
+    """Horizontal axis: speed where it is monotonic, else time; with label and unit."""
     change = np.diff(result.speed)
     least = 1e-6 * float(np.max(result.speed))
     if change.size and (np.all(change > least) or np.all(change < -least)):
@@ -154,9 +154,9 @@ def _axis(result: OrderMap) -> tuple[Array, str, str]:
 @drawing(
     "order_map",
     heading="Order map",
-    caption="What turns with the shaft is a level line; its order counts the cycles in one "
-    "revolution. Where a level line darkens, that order meets a natural frequency. Below, the "
-    "strongest orders over the speed.",
+    caption="Vibration synchronous with the shaft is a horizontal line; its order is the number "
+    "of cycles per revolution. Where the line darkens, the order excites a natural frequency. "
+    "Below, the strongest orders over the speed.",
     of="OrderMap",
     made_by="Call tribodyn.analysis.order_map on the record of a run-up and its plot method.",
 )
@@ -197,20 +197,20 @@ def order_map(result: OrderMap) -> Any:
 @drawing(
     "waterfall",
     heading="Waterfall",
-    caption="One spectrum behind the other, from the first at the bottom to the last at the top; "
-    "all on one scale. The one with the highest peak is drawn in colour.",
+    caption="Stacked spectra, from the first at the bottom to the last at the top, "
+    "with a common scale. The spectrum with the highest peak is coloured.",
     of=("OrderMap", "Spectrogram"),
     made_by="Call tribodyn.analysis.order_map or spectrogram on a signal and draw what it returns.",
 )
 def waterfall(result: OrderMap | Spectrogram) -> Any:
-    """Draw the spectra of an order map or a spectrogram one behind the other."""
+    """Draw the spectra of an order map or a spectrogram as a waterfall."""
     by_order = isinstance(result, OrderMap)
     place = result.order if isinstance(result, OrderMap) else result.frequency
-    words = "Order" if by_order else axis_label("frequency")
+    x_label = "Order" if by_order else axis_label("frequency")
     number, block = result.strongest()
     peak = float(result.amplitude[number, block])
-    few = min(result.time.size, _CURVES)
-    chosen = np.unique(np.linspace(0, result.time.size - 1, few).round().astype(int))
+    count = min(result.time.size, _CURVES)
+    chosen = np.unique(np.linspace(0, result.time.size - 1, count).round().astype(int))
     chosen[int(np.argmin(np.abs(chosen - block)))] = block
     groups = np.arange(1, place.size, -(-place.size // _POINTS))
     foot = np.diff(np.append(groups, place.size))
@@ -235,14 +235,14 @@ def waterfall(result: OrderMap | Spectrogram) -> Any:
     label = "Speed" if by_order else "Time"
     return stack(
         f"The highest peak is {with_unit(peak, result.unit)}, {what} at {_when(result, block)}",
-        words,
+        x_label,
         [Panel(label, traces, axis, height=2.6)],
         {"hovermode": "closest"},
     )
 
 
 def _when(result: OrderMap | Spectrogram, block: int) -> str:
-    """Speed or time of a block."""
+    """Format the speed or the time of a block."""
     if isinstance(result, OrderMap):
         return rounded("speed", float(result.speed[block]))
     return f"{significant(float(result.time[block]))} s"

@@ -1,4 +1,4 @@
-"""Recordings of a test rig: channels over time, amplitudes over orders, orders through time."""
+"""Recordings of a test rig: channels over time, order spectra, tracked orders, comparison."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.measurement import Comparison, OrderSpectrum, Recording, TrackedOrders
-from tribodyn.plot.look.labels import readable, significant
-from tribodyn.plot.look.panels import Panel, event_lines, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, Trace, line, marked
 from tribodyn.plot.signals.lines import strongest_lines
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
+from tribodyn.plot.theme.labels import readable, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, Trace, line, marked
 from tribodyn.types import Array
 
 #: Most panels of a recording, most points of a curve, and names in a title.
@@ -25,7 +25,7 @@ _DASHES = ("solid", "dash", "dot", "dashdot")
     "recording",
     heading="Recording",
     caption="The channels as they were recorded. Where there are more samples than the screen has "
-    "points, the largest and the smallest of each stretch are drawn.",
+    "pixels, the largest and the smallest sample of each interval are drawn.",
     of="Recording",
     made_by="Call tribodyn.measurement.read(path) and its plot method.",
 )
@@ -38,8 +38,8 @@ def recording(recording: Recording) -> Any:
         unit = recording.units[name]
         panels.append(Panel(_label(name, unit), [line(time, values, name, TOTAL, unit=unit)]))
     left_out = f"; {len(names) - _PANELS} more channels" if len(names) > _PANELS else ""
-    words = ", ".join(names[:_NAMED]) + (" and others" if len(names) > _NAMED else "")
-    return stack(f"{recording.duration:.4g} s of {words}{left_out}", "Time [s]", panels)
+    channels = ", ".join(names[:_NAMED]) + (" and others" if len(names) > _NAMED else "")
+    return stack(f"{recording.duration:.4g} s of {channels}{left_out}", "Time [s]", panels)
 
 
 def _label(name: str, unit: str) -> str:
@@ -47,7 +47,7 @@ def _label(name: str, unit: str) -> str:
 
 
 def outline(time: Array, values: Array) -> tuple[Array, Array]:
-    """Smallest and largest sample of every stretch, so that no peak is lost."""
+    """Thin a signal to the minimum and maximum of every interval, which preserves peaks."""
     if values.size <= _POINTS:
         return time, values
     length = -(-values.size // (_POINTS // 2))
@@ -59,8 +59,8 @@ def outline(time: Array, values: Array) -> tuple[Array, Array]:
 @drawing(
     "order_spectrum",
     heading="Orders",
-    caption="How strong each multiple of the rotation is, as a mean over the angle of the shaft. "
-    "What turns with the shaft is a line; what does not is spread.",
+    caption="Amplitude over multiples of the shaft speed, as a mean over the angle of the shaft. "
+    "Vibration synchronous with the shaft is a line; other vibration is spread.",
     of="OrderSpectrum",
     made_by="Call tribodyn.measurement.order_spectrum(...) and its plot method.",
 )
@@ -92,13 +92,13 @@ def order_spectrum(spectrum: OrderSpectrum, *, marks: Iterable[tuple[str, float]
 
 @drawing(
     "tracked_orders",
-    heading="Orders through time",
-    caption="The amplitude of every followed order while the speed changes, and the speed.",
+    heading="Orders over time",
+    caption="Amplitude of every tracked order while the speed changes, and the speed.",
     of="TrackedOrders",
     made_by="Call tribodyn.measurement.track_orders(...) and its plot method.",
 )
 def tracked_orders(tracked: TrackedOrders) -> Any:
-    """Draw the amplitudes of the followed orders, and the speed of the shaft, over time."""
+    """Draw the amplitudes of the tracked orders and the shaft speed over time."""
     curves: list[Trace] = []
     for number, (order, size) in enumerate(zip(tracked.order, tracked.amplitude, strict=True)):
         time, values = outline(tracked.time, size)
@@ -123,15 +123,15 @@ def tracked_orders(tracked: TrackedOrders) -> Any:
 @drawing(
     "comparison",
     heading="Computed and measured",
-    caption="Spectra of the measured channels over the angle of the mesh, and on them the computed "
-    "mesh harmonics, each times the gain of its channel. What stands between the harmonics has "
-    "other sources than the mesh. Where the speed of the recording was not found, its spectrum is "
-    "that at the computed speed.",
+    caption="Spectra of the measured channels over the mesh order, with the computed "
+    "mesh harmonics multiplied by the gain of the channel. Lines between the harmonics have "
+    "other sources than the mesh. If the speed of the recording was not found, its spectrum is "
+    "scaled with the computed speed.",
     of="Comparison",
     made_by="Call tribodyn.measurement.compare(result, recording, channels) and its plot method.",
 )
 def comparison(comparison: Comparison) -> Any:
-    """Draw the measured spectra with the computed mesh harmonics on them."""
+    """Draw the measured spectra with the computed mesh harmonics."""
     panels, ends = [], []
     ratio = comparison.speed_ratio if np.isfinite(comparison.speed_ratio) else 1.0
     for name, lines in comparison.lines.items():
@@ -139,20 +139,20 @@ def comparison(comparison: Comparison) -> Any:
         rows = (comparison.channel == name) & np.char.startswith(comparison.measure, "mesh harm")
         top = int(rows.sum()) + 0.5
         order = lines.measured[0] / (ratio * comparison.mesh_frequency)
-        shown = (order > 0.1) & (order < top)
-        curve = outline(order[shown], lines.measured[1][shown])
-        at, made = lines.computed[0] / comparison.mesh_frequency, lines.computed[1]
-        inside = (at > 0.0) & (at < top)
-        told = f", gain {comparison.gains[name]:.4g}{' fitted' if comparison.fitted else ''}"
+        visible = (order > 0.1) & (order < top)
+        curve = outline(order[visible], lines.measured[1][visible])
+        harmonic, amplitude = lines.computed[0] / comparison.mesh_frequency, lines.computed[1]
+        inside = (harmonic > 0.0) & (harmonic < top)
+        gain = f", gain {comparison.gains[name]:.4g}{' fitted' if comparison.fitted else ''}"
         panels.append(
             Panel(
                 f"{name} [{readable(unit)}]",
                 [
                     line(*curve, "measured", MUTED, unit=unit, width=1.2),
                     marked(
-                        at[inside],
-                        made[inside],
-                        f"computed{told}",
+                        harmonic[inside],
+                        amplitude[inside],
+                        f"computed{gain}",
                         PINION,
                         size=9,
                         symbol="circle-open",
@@ -173,7 +173,7 @@ def comparison(comparison: Comparison) -> Any:
 
 
 def _comparison_title(comparison: Comparison) -> str:
-    """Largest error of a harmonic, where they are compared."""
+    """Title: largest error of a harmonic, if the harmonics are compared."""
     harmonics = np.char.startswith(comparison.measure, "mesh harm")
     if not np.isfinite(comparison.speed_ratio):
         return "The speed of the recording was not found: its harmonics are not compared"
@@ -185,7 +185,7 @@ def _comparison_title(comparison: Comparison) -> str:
 
 
 def _mesh_axis(comparison: Comparison) -> str:
-    """Title of the axis of orders, with the mesh frequencies of both."""
+    """Label of the axis of mesh orders with the computed and the measured mesh frequency."""
     computed = f"computed at {comparison.mesh_frequency:.5g} Hz"
     if not np.isfinite(comparison.speed_ratio):
         return f"Mesh order ({computed})"

@@ -1,4 +1,4 @@
-"""The mean revolution of a shaft: what repeats with it, and what damage leaves in it."""
+"""Synchronous average of a shaft with its residual and difference signal."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import readable, significant
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import FILLS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.plot.signals.maps import with_unit
+from tribodyn.plot.theme.labels import readable, significant
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import FILLS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.analysis import SynchronousAverage
 
-#: Most points of a curve; a mean revolution has 2.6 to a mesh harmonic.
+#: Most points of a curve; a mean revolution has 2.6 per mesh harmonic.
 _POINTS = 6000
-#: Points to a period of the highest order that is drawn.
+#: Points per period of the highest order.
 _FINE = 4
 
 
 def _fine(values: Array) -> Array:
-    """The same wave at more angles: its Fourier series, which no straight pieces cut."""
+    """Evaluate the Fourier series of a signal at more angles, for a smooth curve."""
     from scipy.signal import resample
 
     return np.asarray(resample(values, min(_FINE * values.size, max(_POINTS, values.size))))
@@ -32,10 +32,10 @@ def _fine(values: Array) -> Array:
 @drawing(
     "synchronous_average",
     heading="Mean revolution",
-    caption="What repeats with the shaft, over its angle from the first sample. Above, the mean "
-    "revolution with a band of two standard errors; below, the residual, without the mesh "
-    "harmonics and the lowest shaft orders, and the difference, without their first sidebands "
-    "too. A local bump of the difference is a tooth unlike the others.",
+    caption="Vibration synchronous with the shaft, over its angle from the first sample. Above, "
+    "the mean revolution with a band of two standard errors; below, the residual, without the "
+    "mesh harmonics and the lowest shaft orders, and the difference, without their first "
+    "sidebands too. A local bump of the difference indicates a faulty tooth.",
     of="SynchronousAverage",
     made_by="Call tribodyn.analysis.time_synchronous_average(...) and its plot method.",
 )

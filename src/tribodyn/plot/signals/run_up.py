@@ -1,4 +1,4 @@
-"""A run-up and run-down: level and mesh orders over the speed, and over frequency."""
+"""Run-up and run-down: level and mesh orders over the speed, map over frequency."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.labels import axis_label, displayed, readable, rounded, significant
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.plot.signals.maps import amplitude_heatmap
+from tribodyn.plot.theme.labels import axis_label, displayed, readable, rounded, significant
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -19,65 +19,67 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp
 
 _COLORS = (PINION, WHEEL, *PAIR_COLORS)
-#: Orders that are drawn by default, of those looked at, and resonances that are named.
-_DRAWN, _LOOKED, _NAMED = 4, 12, 6
-#: Fewest mesh cycles of a part that is drawn by itself.
-_FEW = 32
-#: Peaks of one order nearer than this share of the speed are one.
+#: Default number of order cuts, highest order of the search, most labelled resonances.
+_ORDER_CURVES, _HIGHEST_ORDER, _NAMED = 4, 12, 6
+#: A rising or falling part of the run is plotted separately from this many mesh cycles on.
+_MIN_CYCLES = 32
+#: Peaks of an order closer than this relative speed difference count as one.
 _APART = 0.05
 _ROWS, _ORDERS = 320, 8
 #: Modes with less of their strain in the contacts are not driven by the mesh.
 _SHARE = 0.01
 
 
-def signal_words(run: RunUp, signal: str) -> tuple[str, str]:
-    """Words and display unit of a signal of a run-up."""
+def signal_label(run: RunUp, signal: str) -> tuple[str, str]:
+    """Label and display unit of a signal of a run-up."""
     unit = run.signal(signal)[1]
-    words = signal.replace("_", " ")
+    label = signal.replace("_", " ")
     if signal in run.names:
-        words = f"acceleration of {words}"
-    return words, "µm" if unit == "m" else readable(unit)
+        label = f"acceleration of {label}"
+    return label, "µm" if unit == "m" else readable(unit)
 
 
 def _parts(run: RunUp) -> list[tuple[Any, str]]:
-    """Parts of the run and the dash of their curves."""
+    """Rising and falling part of the run with the dash of their curves."""
     rate = run.cycles.rate
-    found: list[tuple[Any, str]] = [("up", "solid")] if np.count_nonzero(rate > 0.0) > _FEW else []
-    return found + ([("down", "dot")] if np.count_nonzero(rate < 0.0) > _FEW else [])
+    parts: list[tuple[Any, str]] = (
+        [("up", "solid")] if np.count_nonzero(rate > 0.0) > _MIN_CYCLES else []
+    )
+    return parts + ([("down", "dot")] if np.count_nonzero(rate < 0.0) > _MIN_CYCLES else [])
 
 
 def _strongest(run: RunUp, signal: str, part: Any) -> list[float]:
     from tribodyn.analysis import order_cut
 
-    most = min(_LOOKED, run.samples // 2 - 1)
+    highest = min(_HIGHEST_ORDER, run.samples // 2 - 1)
     tops = [
         float(order_cut(run, order, signal, part=part).amplitude.max())
-        for order in range(1, most + 1)
+        for order in range(1, highest + 1)
     ]
-    return sorted(float(k + 1) for k in np.argsort(tops)[::-1][:_DRAWN])
+    return sorted(float(k + 1) for k in np.argsort(tops)[::-1][:_ORDER_CURVES])
 
 
-def _marks(found: Sequence[Any], factor: float, unit: str) -> dict[str, Any]:
-    """Dots on the peaks, named by order and mode."""
-    words = [
-        f"{each.order:g}×" + (f"<br>mode {each.mode}" if each.mode >= 0 else "") for each in found
+def _marks(peaks: Sequence[Any], factor: float, unit: str) -> dict[str, Any]:
+    """Markers on the peaks, labelled with order and mode."""
+    texts = [
+        f"{peak.order:g}×" + (f"<br>mode {peak.mode}" if peak.mode >= 0 else "") for peak in peaks
     ]
     facts = [
-        f"order {each.order:g} at {significant(each.frequency, 4)} Hz"
+        f"order {peak.order:g} at {significant(peak.frequency, 4)} Hz"
         + (
-            f", mode {each.mode} at {significant(each.mode_frequency, 4)} Hz"
-            if each.mode >= 0
-            else ", no natural mode near"
+            f", mode {peak.mode} at {significant(peak.mode_frequency, 4)} Hz"
+            if peak.mode >= 0
+            else ", no natural mode close by"
         )
-        + (f", near the mains of {each.mains:g} Hz" if each.mains else "")
-        for each in found
+        + (f", close to the mains frequency of {peak.mains:g} Hz" if peak.mains else "")
+        for peak in peaks
     ]
     return {
         "type": "scatter",
         "mode": "markers+text",
-        "x": displayed("speed", np.array([each.speed for each in found])),
-        "y": [factor * each.amplitude for each in found],
-        "text": words,
+        "x": displayed("speed", np.array([peak.speed for peak in peaks])),
+        "y": [factor * peak.amplitude for peak in peaks],
+        "text": texts,
         "textposition": "top center",
         "textfont": {"size": 11, "color": MUTED},
         "cliponaxis": False,
@@ -88,34 +90,36 @@ def _marks(found: Sequence[Any], factor: float, unit: str) -> dict[str, Any]:
     }
 
 
-def _apart(found: Sequence[Any]) -> list[Any]:
-    """Resonances of which no stronger one of the same order stands close by."""
-    kept: list[Any] = []
-    for each in found:
+def _distinct(peaks: Sequence[Any]) -> list[Any]:
+    """Drop resonances close to a stronger one of the same order."""
+    distinct: list[Any] = []
+    for peak in peaks:
         close = [
-            abs(each.speed / one.speed - 1.0) < _APART for one in kept if one.order == each.order
+            abs(peak.speed / other.speed - 1.0) < _APART
+            for other in distinct
+            if other.order == peak.order
         ]
         if not any(close):
-            kept.append(each)
-    return kept
+            distinct.append(peak)
+    return distinct
 
 
-def _title(levels: list[Any], found: Sequence[Any], unit: str, factor: float) -> str:
+def _title(levels: list[Any], peaks: Sequence[Any], unit: str, factor: float) -> str:
     top = max(levels, key=lambda level: float(level.rms.max()))
     at = int(np.argmax(top.rms))
-    way = " on the way down" if len(levels) > 1 and top is levels[1] else ""
-    told = f"Loudest at {rounded('speed', float(top.speed[at]))}{way}: "
-    told += f"{significant(factor * float(top.rms[at]))} {unit} rms"
-    near = [each for each in found if abs(each.speed / top.speed[at] - 1.0) < 0.05]
-    return told + (f", from order {near[0].order:g} of the mesh" if near else "")
+    direction = " while the speed falls" if len(levels) > 1 and top is levels[1] else ""
+    text = f"Loudest at {rounded('speed', float(top.speed[at]))}{direction}: "
+    text += f"{significant(factor * float(top.rms[at]))} {unit} rms"
+    close = [peak for peak in peaks if abs(peak.speed / top.speed[at] - 1.0) < 0.05]
+    return text + (f", from order {close[0].order:g} of the mesh" if close else "")
 
 
 @drawing(
     "run_up",
     heading="Run-up",
-    caption="Overall level and orders of the mesh over the speed. Solid on the way up, dotted on "
-    "the way down; where the two differ, the motion jumps or the speed changes too quickly for a "
-    "resonance to build up. Circles mark peaks of an order and the natural mode that it meets.",
+    caption="Overall level and mesh orders over the speed: solid for rising, dotted for falling "
+    "speed. Where the two differ, the response jumps or the speed changes too quickly for a "
+    "resonance to build up. Circles mark peaks of an order and the natural mode that it excites.",
     of="RunUp",
     made_by="Call tribodyn.dynamics.run_up(...) or tribodyn.run_up(case) and its plot method.",
 )
@@ -139,7 +143,7 @@ def run_up(
     """
     from tribodyn.analysis import order_cut, overall_level, resonances
 
-    words, unit = signal_words(run, signal)
+    label, unit = signal_label(run, signal)
     factor = 1e6 if unit == "µm" else 1.0
     parts = _parts(run) or [("all", "solid")]
     chosen = list(orders) if orders else _strongest(run, signal, parts[0][0])
@@ -162,35 +166,35 @@ def run_up(
                 width=1.8,
             )
             cuts.append({**trace, "showlegend": number == 0, "legendgroup": f"{order:g}"})
-    found = resonances(run, signal, orders=chosen, part=parts[0][0])
-    if found:
-        cuts.append(_marks(_apart(found)[:_NAMED], factor, unit))
+    peaks = resonances(run, signal, orders=chosen, part=parts[0][0])
+    if peaks:
+        cuts.append(_marks(_distinct(peaks)[:_NAMED], factor, unit))
     top = {"rangemode": "tozero"}
     return stack(
-        _title(levels, found, unit, factor),
+        _title(levels, peaks, unit, factor),
         axis_label("speed"),
         [
-            Panel(f"Alternating rms of<br>{words} [{unit}]", overall, top),
+            Panel(f"Alternating rms of<br>{label} [{unit}]", overall, top),
             Panel(f"Amplitude [{unit}]", cuts, top, 1.5),
         ],
         {"hovermode": "closest"},
     )
 
 
-def _over_frequency(made: OrderMap, frequency: Array) -> Array:
-    """Amplitudes of an order map on a grid of frequencies; the largest in each row is kept."""
-    per_order = made.speed / (2.0 * np.pi)
-    found = np.empty((frequency.size, made.speed.size))
+def _over_frequency(orders: OrderMap, frequency: Array) -> Array:
+    """Resample an order map on a grid of frequencies, preserving the largest amplitudes."""
+    per_order = orders.speed / (2.0 * np.pi)
+    spectra = np.empty((frequency.size, orders.speed.size))
     step = frequency[1] - frequency[0]
-    # The mean reaches into the orders beside zero as far as the main lobe of the window.
-    lines = np.where(made.order[:, None] > 2.5 / made.revolutions, made.amplitude, 0.0)
-    for block, turn in enumerate(per_order):
-        own = made.order * turn
-        found[:, block] = np.interp(frequency, own, lines[:, block], right=0.0)
-        row = np.round((own - frequency[0]) / step).astype(int)
+    # The mean leaks into low orders within the main lobe of the window.
+    lines = np.where(orders.order[:, None] > 2.5 / orders.revolutions, orders.amplitude, 0.0)
+    for block, hertz in enumerate(per_order):
+        frequencies = orders.order * hertz
+        spectra[:, block] = np.interp(frequency, frequencies, lines[:, block], right=0.0)
+        row = np.round((frequencies - frequency[0]) / step).astype(int)
         inside = (row >= 0) & (row < frequency.size)
-        np.maximum.at(found[:, block], row[inside], lines[inside, block])
-    return found
+        np.maximum.at(spectra[:, block], row[inside], lines[inside, block])
+    return spectra
 
 
 def _orders(run: RunUp, speed: Array, top: float, several: bool) -> list[Trace]:
@@ -199,22 +203,22 @@ def _orders(run: RunUp, speed: Array, top: float, several: bool) -> list[Trace]:
     traces = []
     for order in range(1, _ORDERS + 1):
         values = order * across * run.teeth / (2.0 * np.pi)
-        seen = values <= 0.97 * top
-        if not seen.any():
+        visible = values <= 0.97 * top
+        if not visible.any():
             continue
-        words = [""] * across.size
-        words[int(np.flatnonzero(seen)[-1])] = f"{order}×" if several else str(order)
-        made = line(
-            displayed("speed", across[seen]),
-            values[seen],
+        texts = [""] * across.size
+        texts[int(np.flatnonzero(visible)[-1])] = f"{order}×" if several else str(order)
+        curve = line(
+            displayed("speed", across[visible]),
+            values[visible],
             f"mesh order {order}",
             MUTED,
             unit="Hz",
             dash="dot",
             width=0.8,
         )
-        text = {"mode": "lines+text", "text": words[: int(seen.sum())]}
-        traces.append({**made, **text, "textposition": "top left", "showlegend": False})
+        text = {"mode": "lines+text", "text": texts[: int(visible.sum())]}
+        traces.append({**curve, **text, "textposition": "top left", "showlegend": False})
     return traces
 
 
@@ -227,10 +231,10 @@ def _modes(run: RunUp, speed: Array, top: float) -> list[Trace]:
     for number, (natural, part) in enumerate(zip(run.modes.frequency, share, strict=True)):
         if 0.0 < natural < top and part >= _SHARE:
             name = f"mode {number}, {100.0 * part:.0f} % mesh"
-            made = line(ends, [natural, natural], name, WHEEL, unit="Hz", dash="dash", width=1.2)
+            curve = line(ends, [natural, natural], name, WHEEL, unit="Hz", dash="dash", width=1.2)
             text = [f"mode {number}: {significant(float(natural), 4)} Hz", ""]
             label = {"mode": "lines+text", "text": text, "textposition": "top right"}
-            traces.append({**made, **label, "showlegend": False, "textfont": {"color": WHEEL}})
+            traces.append({**curve, **label, "showlegend": False, "textfont": {"color": WHEEL}})
     return traces
 
 
@@ -246,21 +250,21 @@ def _top(run: RunUp) -> float:
 
 
 def _on_one_scale(surfaces: list[tuple[float, dict[str, Any]]]) -> None:
-    """Let all panels count their colours from the largest amplitude of all."""
+    """Give all panels one colour scale, relative to the largest amplitude."""
     largest = max(top for top, _ in surfaces)
-    shown = False
+    has_scale = False
     for top, surface in surfaces:
         surface["z"] = np.maximum(surface["z"] + np.log10(top / largest), surface["zmin"])
-        surface["showscale"] = top == largest and not shown
-        shown = shown or surface["showscale"]
+        surface["showscale"] = top == largest and not has_scale
+        has_scale = has_scale or surface["showscale"]
 
 
 @drawing(
     "run_up_map",
     heading="Run-up over frequency",
-    caption="Which frequencies are there at what speed. Rising lines are orders of the mesh, "
-    "level lines natural modes that strain the mesh; where they cross, an order resonates. What "
-    "lies between the orders rings after a jump or never repeats.",
+    caption="Amplitudes over speed and frequency. Rising lines are mesh orders, "
+    "horizontal lines natural modes that strain the mesh; an order resonates where they cross. "
+    "Amplitudes between the orders are transients after a jump or non-periodic motion.",
     of="RunUp",
     made_by="Call tribodyn.dynamics.run_up(...) or tribodyn.run_up(case) and its plot_map method.",
 )
@@ -285,17 +289,17 @@ def run_up_map(
     """
     from tribodyn.analysis import run_up_order_map
 
-    words, shown = signal_words(run, signal)
+    quantity, display_unit = signal_label(run, signal)
     unit = run.signal(signal)[1]
     top = highest_frequency or _top(run)
     panels, loudest, surfaces = [], (0.0, 0.0), []
     parts = _parts(run) or [("all", "")]
     for part, _ in parts:
-        made = run_up_order_map(run, signal, part=part)
-        order = np.argsort(made.speed, kind="stable")
-        speed = made.speed[order]
+        orders = run_up_order_map(run, signal, part=part)
+        order = np.argsort(orders.speed, kind="stable")
+        speed = orders.speed[order]
         frequency = np.linspace(0.1 * run.profile.lowest, top, _ROWS)
-        amplitude = _over_frequency(made, frequency)[:, order]
+        amplitude = _over_frequency(orders, frequency)[:, order]
         factor = 1e6 if unit == "m" else 1.0
         surface = amplitude_heatmap(
             displayed("speed", speed),
@@ -305,10 +309,13 @@ def run_up_map(
             "%{y:.5g} Hz at %{x:.4g}",
         )
         surfaces.append((float(amplitude.max()) or 1.0, surface))
-        line_number, block = made.strongest()
-        if made.amplitude[line_number, block] > loudest[0]:
-            turn = float(made.speed[block]) / (2.0 * np.pi)
-            loudest = (float(made.amplitude[line_number, block]), made.order[line_number] * turn)
+        line_number, block = orders.strongest()
+        if orders.amplitude[line_number, block] > loudest[0]:
+            turn = float(orders.speed[block]) / (2.0 * np.pi)
+            loudest = (
+                float(orders.amplitude[line_number, block]),
+                orders.order[line_number] * turn,
+            )
         traces = [surface, *_orders(run, speed, top, True), *_modes(run, speed, top)]
         label = axis_label("frequency", f"Frequency, {part}" if len(parts) > 1 else "Frequency")
         panels.append(Panel(label, traces, {"range": [0.0, top]}, 1.6))
@@ -316,7 +323,7 @@ def run_up_map(
     ends = displayed("speed", np.array([run.speed.min(), run.speed.max()])).tolist()
     level = significant((1e6 if unit == "m" else 1.0) * loudest[0])
     return stack(
-        f"Strongest line of the {words}: {level} {readable(shown)} at "
+        f"Strongest line of the {quantity}: {level} {readable(display_unit)} at "
         f"{significant(loudest[1], 4)} Hz",
         axis_label("speed"),
         panels,

@@ -1,4 +1,4 @@
-"""Which input the spread of a figure comes from: shares of its variance."""
+"""Variance shares of summary figures by uncertain input (Sobol indices of a case)."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.look.style import GRID, MUTED, PAIR_COLORS, PINION, Trace, figure
+from tribodyn.plot.theme.style import GRID, MUTED, PAIR_COLORS, PINION, Trace, figure
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.study import CaseSensitivity
 
-#: Pixels of one input of one figure, and of what is above and below all of them.
+#: Height of a row, and of the margins above and below the rows [px].
 _ROW, _FRAME = 46, 190
 #: Names and colours of the two kinds of share.
 _KINDS = (("alone", PINION), ("with interactions", PAIR_COLORS[0]))
@@ -21,20 +21,20 @@ _KINDS = (("alone", PINION), ("with interactions", PAIR_COLORS[0]))
 
 @drawing(
     "sensitivity",
-    heading="Where the spread comes from",
-    caption="Share of the variance that each input causes: alone, and together with interactions, "
-    "which is the share that would be gone if the input were known exactly. Thin lines are "
-    "bootstrap intervals: where they are long, take a larger sample.",
+    heading="Contribution of each tolerance",
+    caption="Share of the variance due to each input: alone, and with interactions, "
+    "which is the share that would vanish if the input were known exactly. Thin lines are "
+    "bootstrap intervals: use a larger sample where they are long.",
     of="CaseSensitivity",
     made_by='Call tribodyn.sobol_indices(case, "peak_mesh_force", {"operation.torque": '
     '"90 N*m +- 5 %"}, seed=1) and its plot method.',
 )
 def sensitivity(shares: CaseSensitivity) -> Any:
-    """Draw the shares of the inputs as bars, a group for each figure."""
+    """Draw the shares of the inputs as bars, one group per summary figure."""
     figures, inputs = [str(name) for name in shares.figure], [str(key) for key in shares.input]
     orders = (shares.first_order, shares.total_order)
     bands = (shares.first_order_band, shares.total_order_band)
-    labels = [[_words(name) for name in figures for _ in inputs], inputs * len(figures)]
+    labels = [[_wrapped_name(name) for name in figures for _ in inputs], inputs * len(figures)]
     traces = [
         _bars(labels, np.asarray(order), band, name, color)
         for order, band, (name, color) in zip(orders, bands, _KINDS, strict=True)
@@ -68,7 +68,7 @@ def _bars(labels: Any, order: Array, band: Array, name: str, color: str) -> Trac
         "marker": {"color": color},
         "hovertemplate": f"%{{x:.3g}} % {name}<extra></extra>",
     }
-    # Estimates may lie beyond what a share can be; intervals are drawn within it.
+    # Estimates may lie outside 0 to 100 %; the intervals are clipped.
     ends = np.clip(100.0 * np.asarray(band), 0.0, 100.0)
     low, high = (ends[..., end, :].ravel() for end in (0, 1))
     trace["error_x"] = {
@@ -82,8 +82,8 @@ def _bars(labels: Any, order: Array, band: Array, name: str, color: str) -> Trac
     return trace
 
 
-def _words(name: str) -> str:
-    """Name of a figure, broken where it is long."""
+def _wrapped_name(name: str) -> str:
+    """Name of a summary figure, wrapped at 20 characters."""
     words, lines = name.split("_"), [""]
     for word in words:
         if len(lines[-1]) + len(word) > 20:
@@ -97,7 +97,7 @@ def _title(figures: list[str], inputs: list[str], total: Array) -> str:
     share = f"{100.0 * min(max(total[0, largest[0]], 0.0), 1.0):.0f} %"
     if len(figures) == 1:
         words = figures[0].replace("_", " ")
-        return f"{share} of the variance of the {words} come from {inputs[largest[0]]}"
+        return f"{share} of the variance of the {words} comes from {inputs[largest[0]]}"
     if len(set(largest)) == 1:
         return f"Most of the spread comes from {inputs[largest[0]]}"
     return f"The spread comes from {len(set(largest))} inputs, by figure"

@@ -1,4 +1,4 @@
-"""Shares of a variance by input, the band of a mean curve, and the columns of computed data."""
+"""Sobol indices, confidence band of a mean curve, and columns of computed data."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.errors import Argument, InputError, did_you_mean
-from tribodyn.plot.look.labels import readable, scaled, significant
-from tribodyn.plot.look.panels import Panel, stack
-from tribodyn.plot.look.style import FILLS, PINION, TOTAL, WHEEL, Trace, figure, line, marked
+from tribodyn.plot.theme.labels import readable, scaled, significant
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import FILLS, PINION, TOTAL, WHEEL, Trace, figure, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -23,11 +23,11 @@ _PANELS, _POINTS = 8, 3000
 
 @drawing(
     "sobol_indices",
-    heading="Which input the spread comes from",
-    caption="Shares of the variance of the output. The first order is what an input causes alone, "
-    "the total order what would be gone if it were known, with all its interactions. Where the "
-    "total exceeds the first order, the input acts together with others. Shares a little below "
-    "zero or above 100 % are the sampling error of the estimate.",
+    heading="Contribution of each input to the variance",
+    caption="Shares of the variance of the output. The first-order index is the share of an input "
+    "alone, the total-order index the share that would vanish if the input were fixed, with all "
+    "its interactions. Where the total exceeds the first order, the input interacts with others. "
+    "Shares slightly below zero or above 100 % are the sampling error of the estimate.",
     of="SobolIndices",
     made_by="Call tribodyn.uncertainty.sobol_indices(function, distributions, seed=1) and its "
     "plot method.",
@@ -75,7 +75,7 @@ def sobol_indices(indices: SobolIndices) -> Any:
     "band",
     heading="Mean and its band",
     caption="The mean over the repeats, and the band that holds the true mean with the stated "
-    "probability: the whole curve, or each point by itself.",
+    "probability, for the entire curve at once or for each point separately.",
     of="Band",
     made_by="Call tribodyn.uncertainty.bootstrap_band(samples, seed=1) and its plot method.",
 )
@@ -126,7 +126,7 @@ def band(result: Band, x: Any = None, label: str = "") -> Any:
     widest = int(np.argmax(high - low))
     half = 0.5 * float(high[widest] - low[widest])
     return stack(
-        f"Mean of {result.repeats} repeats, known within {significant(half)} {unit}".rstrip()
+        f"Mean of {result.repeats} repeats, within ±{significant(half)} {unit}".rstrip()
         + f" at {100.0 * result.level:.3g} %",
         label or "Point",
         [Panel(f"Mean [{unit}]" if unit else "Mean", traces, height=1.4)],

@@ -1,7 +1,7 @@
-"""One look for every figure: colours with fixed roles, fonts, grids, curves, buttons.
+"""Style of all figures: colours with fixed roles, fonts, grids, curves, buttons.
 
-The colours are those of Okabe and Ito, which stay apart under the common forms of colour
-blindness; curves that share a panel differ in dash as well.
+The colours are those of Okabe and Ito, which remain distinguishable under the
+common forms of colour blindness; curves that share a panel differ in dash as well.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def _axis(**more: Any) -> dict[str, Any]:
 def figure(
     title: str, traces: Sequence[dict[str, Any]], layout: dict[str, Any] | None = None
 ) -> Sketch:
-    """Describe a figure in the look of the package."""
+    """Describe a figure in the style of the package."""
     common: dict[str, Any] = {
         "template": {"layout": {"xaxis": _axis(**_SPIKE), "yaxis": _axis()}},
         "title": {
@@ -74,12 +74,12 @@ def figure(
 
 
 def button_row(choices: Sequence[tuple[str, dict[str, Any]]]) -> dict[str, Any]:
-    """Describe buttons above the left end of the panels, clear of the menu of the figure."""
+    """Describe buttons above the left end of the panels, clear of plotly's mode bar."""
     return {
         "type": "buttons",
         "direction": "right",
         "buttons": [
-            {"label": words, "method": "relayout", "args": [change]} for words, change in choices
+            {"label": label, "method": "relayout", "args": [change]} for label, change in choices
         ],
         "x": 0.0,
         "xanchor": "left",
@@ -121,25 +121,30 @@ def line(
 
 
 def translucent(color: str, opacity: float) -> str:
-    """A colour through which others are seen."""
+    """Return a colour with an opacity between 0 and 1."""
     red, green, blue = (int(color[place : place + 2], 16) for place in (1, 3, 5))
     return f"rgba({red}, {green}, {blue}, {opacity})"
 
 
 def player(
-    words: Sequence[str], milliseconds: int, *, redraw: bool, slider: dict[str, Any], buttons: float
+    labels: Sequence[str],
+    milliseconds: int,
+    *,
+    redraw: bool,
+    slider: dict[str, Any],
+    buttons: float,
 ) -> dict[str, Any]:
-    """Slider over frames called 0, 1, ... with a text each, and buttons that run through them.
+    """Slider over frames named 0, 1, ... with a label each, and buttons that play them.
 
     ``slider`` places the slider, ``buttons`` is the height of the buttons.
     """
     at_once = {"duration": 0}
     still = {"frame": {"duration": 0, "redraw": redraw}, "mode": "immediate", "transition": at_once}
-    shown = {"frame": {"duration": milliseconds, "redraw": redraw}, "transition": at_once}
-    run = {"label": "play", "method": "animate", "args": [None, {**shown, "fromcurrent": True}]}
+    animated = {"frame": {"duration": milliseconds, "redraw": redraw}, "transition": at_once}
+    run = {"label": "play", "method": "animate", "args": [None, {**animated, "fromcurrent": True}]}
     steps = [
         {"label": label, "method": "animate", "args": [[str(number)], still]}
-        for number, label in enumerate(words)
+        for number, label in enumerate(labels)
     ]
     bar = {
         "yanchor": "top",

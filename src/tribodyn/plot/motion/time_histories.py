@@ -1,4 +1,4 @@
-"""The motion of a run: mesh force, transmission error, accelerations and bearing forces."""
+"""Time histories of a run: mesh force, transmission error, accelerations, bearing forces."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.plot.look.labels import axis_label, axis_words, display_unit, displayed, rounded
-from tribodyn.plot.look.panels import Panel
-from tribodyn.plot.look.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
 from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, quantity_label, rounded
+from tribodyn.plot.theme.panels import Panel
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
 from tribodyn.study.pipeline import series
 
 if TYPE_CHECKING:
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 #: Name and colour of each gear's curve.
 GEARS = (("pinion", PINION), ("wheel", WHEEL))
-#: Axis of the coordinate and the words for it.
+#: Axis of the coordinate and its description.
 DIRECTIONS = (("y", "along the line of action"), ("x", "across the line of action"))
-#: Shift of a mean over the mean that is reported.
+#: Smallest relative shift of the mean force that the caption reports.
 _SHIFTED = 1e-3
 _ALONG = "along the line of action"
 
 
 def directions(result: Result) -> tuple[tuple[str, str], ...]:
-    """Axes of the coordinates of a gear and the words for them: in a plane, or in space."""
+    """Axes of a gear's coordinates and their descriptions, for planar and spatial models."""
     in_space = "pinion_z" in result.response.names
     return tuple(series.directions_of(result.response.names).values()) if in_space else DIRECTIONS
 
@@ -35,13 +35,13 @@ def _along(result: Result) -> str:
     return dict(directions(result))["y"]
 
 
-def words_of(quantity: str, direction: str) -> str:
-    """Quantity and direction on two lines, which fit beside one panel."""
-    return f"{axis_words(quantity)}<br>{direction}"
+def two_line_label(quantity: str, direction: str) -> str:
+    """Label of a quantity with its direction on a second line."""
+    return f"{quantity_label(quantity)}<br>{direction}"
 
 
 def _motion_panels(result: Result, quantity: str) -> list[Panel]:
-    """Show a signal of both gears over the mesh cycle or over time."""
+    """Panels with a signal of pinion and wheel over the mesh cycle or over time."""
     motion = Motion(result)
 
     def curve(gear: str, axis: str, color: str) -> dict[str, Any]:
@@ -50,32 +50,32 @@ def _motion_panels(result: Result, quantity: str) -> list[Panel]:
 
     return [
         Panel(
-            axis_label(quantity, words_of(quantity, words)),
+            axis_label(quantity, two_line_label(quantity, direction)),
             [curve(gear, axis, color) for gear, color in GEARS],
         )
-        for axis, words in directions(result)
+        for axis, direction in directions(result)
     ]
 
 
 def _below_zero(result: Result) -> str:
-    """Explain a negative force, which the driving flanks alone could not bear."""
+    """Explain a negative mesh force, which the driving flanks cannot transmit."""
     fine = result.response.fine
     if np.min(series.mesh_force(fine)) >= 0.0:
         return ""
     if result.half_backlash == 0.0:
-        return "Where it is negative, a mesh with play would part: this case has no backlash."
+        return "Where it is negative, a mesh with backlash would separate: here it has none."
     if np.any(series.compression(fine) < -series.first_touch(result.system, fine)):
-        return "Where it is negative, the play is used up and the back flanks touch."
-    return "Where it is negative, the damping of the contact pulls just before the flanks part."
+        return "Where it is negative, the backlash is crossed and the back flanks touch."
+    return "Where it is negative, the contact damping pulls just before the flanks separate."
 
 
 def _force_caption(result: Result) -> str:
     motion = Motion(result)
     lost = result.summary().get("contact_loss_share", 0.0) > 0.0
     sentences = (
-        "The force between the gears while they run, against the force that the torque alone "
-        "would cause.",
-        "Where the curve stays at zero, the flanks have lost contact." if lost else "",
+        "The dynamic force between the gears, compared with the static force that the torque alone "
+        "causes.",
+        "Where the curve is zero, the flanks have lost contact." if lost else "",
         _mean_shift(result, motion) if motion.periodic else "",
         _below_zero(result),
         motion.settling(motion.mesh_force),
@@ -84,7 +84,7 @@ def _force_caption(result: Result) -> str:
 
 
 def _mean_shift(result: Result, motion: Motion) -> str:
-    """How far friction moves the mean of the force from the static one."""
+    """Sentence on the shift of the mean force from the static force by friction."""
     mean = float(result.response.fine.weight @ motion.mesh_force)
     shift = mean / result.mesh.total_normal_force - 1.0
     if abs(shift) < _SHIFTED or not np.any(result.mesh.friction_coefficient):
@@ -113,14 +113,14 @@ def mesh_force(result: Result) -> Any:
 def _friction_caption(result: Result) -> str:
     split = "film_friction_force" in series.friction_forces(result, result.response.fine)
     parts = (
-        "What the oil films and what the asperities cause of it add up to the whole."
+        "The parts of the oil films and of the asperities add up to the total."
         if split
-        else f'The friction law "{result.mesh.friction_law}" does not tell films from asperities; '
-        '"mixed", "mixed-ehl" and "mixed-solved" do.'
+        else f'The friction law "{result.mesh.friction_law}" does not separate films from '
+        'asperities; "mixed", "mixed-ehl" and "mixed-solved" do.'
     )
     return (
         "Friction of all tooth pairs across the line of action, each pair with its direction of "
-        f"sliding: it follows the force of the running gears. {parts}"
+        f"sliding; it follows the dynamic mesh force. {parts}"
     )
 
 
@@ -133,42 +133,42 @@ def _friction_caption(result: Result) -> str:
     ),
 )
 def friction_force(result: Result) -> Any:
-    """Draw the friction force of all tooth pairs, and its parts from films and asperities."""
+    """Draw the friction force of all tooth pairs and its film and asperity parts."""
     motion = Motion(result)
-    found = series.friction_forces(result, result.response.fine)
-    shown = (
-        ("friction_force", "whole", TOTAL),
+    forces = series.friction_forces(result, result.response.fine)
+    parts = (
+        ("friction_force", "total", TOTAL),
         ("film_friction_force", "oil films", PAIR_COLORS[2]),
         ("asperity_friction_force", "asperities", WHEEL),
     )
     traces = [
-        motion.line("friction_force", found[name][0], words, color)
-        for name, words, color in shown
-        if name in found
+        motion.line("friction_force", forces[name][0], label, color)
+        for name, label, color in parts
+        if name in forces
     ]
-    force = motion.measured(found["friction_force"][0])
+    force = motion.measured(forces["friction_force"][0])
     low, high = (rounded("friction_force", float(f(force))) for f in (np.min, np.max))
     panel = Panel(axis_label("friction_force"), traces, {"zeroline": True}, height=1.3)
-    return motion.figure(f"The friction force goes from {low} to {high}", [panel])
+    return motion.figure(f"The friction force ranges from {low} to {high}", [panel])
 
 
 def _error_caption(result: Result) -> str:
     motion = Motion(result)
     sentences = [
-        "How far the driven gear lags behind its ideal place, measured on the line of action."
+        "Lag of the driven gear behind its ideal position, measured on the line of action."
     ]
     if not motion.periodic:
         sentences.append(motion.settling(motion.transmission_error))
     elif np.any(result.mesh.friction_coefficient):
         sentences.append(
-            "The dashed curve is the lag at a very slow speed without friction. What varies about "
-            "it is vibration; an offset of the mean comes from the friction, which carries a part "
-            "of the torque."
+            "The dashed curve is the lag at a very low speed without friction. The variation about "
+            "it is vibration; an offset of the mean is due to friction, which carries a part of "
+            "the torque."
         )
     else:
         sentences.append(
-            "The dashed curve is the lag at a very slow speed; what the running gears add to it "
-            "is vibration."
+            "The dashed curve is the lag at a very low speed; what the dynamics add to it is "
+            "vibration."
         )
     return " ".join(sentences)
 
@@ -181,9 +181,9 @@ def transmission_error(result: Result) -> Any:
     traces = [motion.line("dynamic_transmission_error", moving, "dynamic", TOTAL)]
     if motion.periodic:
         mesh = result.mesh
-        static = result.transmission_error_at_rest()
-        phase, shown = cycles(mesh.phase, displayed("transmission_error", static), motion.shown)
-        traces.append(line(phase, shown, "quasi-static", MUTED, unit=unit, dash="dash"))
+        static = displayed("transmission_error", result.transmission_error_at_rest())
+        phase, error = cycles(mesh.phase, static, motion.shown)
+        traces.append(line(phase, error, "quasi-static", MUTED, unit=unit, dash="dash"))
     swing = rounded("dynamic_transmission_error", float(np.ptp(motion.measured(moving))))
     panel = Panel(axis_label("dynamic_transmission_error"), traces, height=1.3)
     return motion.figure(f"The transmission error varies by {swing} peak to peak", [panel])
@@ -195,11 +195,15 @@ def _settling(result: Result, quantity: str) -> str:
 
 
 def _shake_caption(result: Result) -> str:
-    planar = "Along the line of action the mesh force acts, across it only friction does" + (
+    planar = "The mesh force acts along the line of action; across it only friction acts" + (
         ". " if np.any(result.mesh.friction_coefficient) else ", and this case has none. "
     )
-    told = planar if _along(result) == _ALONG else ""
-    return ("How the two gear centres shake. " + told + _settling(result, "acceleration")).rstrip()
+    sentences = (
+        "Vibration of the two gear centres. ",
+        planar if _along(result) == _ALONG else "",
+        _settling(result, "acceleration"),
+    )
+    return "".join(sentences).rstrip()
 
 
 @run_drawing(
@@ -209,14 +213,15 @@ def acceleration(result: Result) -> Any:
     """Draw the accelerations of the gear centres."""
     motion = Motion(result)
     strongest = np.max(np.abs(motion.measured(motion.of_gear("acceleration", "pinion", "y"))))
-    title = f"The pinion shakes with up to {rounded('acceleration', strongest)} {_along(result)}"
+    peak = rounded("acceleration", strongest)
+    title = f"The pinion accelerates with up to {peak} {_along(result)}"
     return motion.figure(title, _motion_panels(result, "acceleration"))
 
 
 def _bearing_caption(result: Result) -> str:
     planar = "Along the line of action the bearings carry the mesh force, across it the friction. "
     return (
-        "The mean force loads the bearings; what varies around it shakes the housing and is heard. "
+        "The mean force loads the bearings; the variation about it excites the housing. "
         + (planar if _along(result) == _ALONG else "")
         + _settling(result, "bearing_force")
     ).rstrip()
@@ -239,25 +244,25 @@ def bearing_force(result: Result) -> Any:
 def _in_a_plane(result: Result) -> str:
     if "pinion_z" in result.response.names:
         return ""
-    return "The teeth of these gears push in a plane, along one line of action."
+    return "The tooth forces of these gears lie in a plane, along one line of action."
 
 
 @run_drawing(
     "tooth_force",
     heading="Mesh force in space",
-    caption="Force of the teeth on the wheel with friction in the axes of the pinion: x along the "
-    "common perpendicular of both axes, y along the pinion's own, z across both.",
+    caption="Force of the teeth on the wheel, friction included, in the axes of the pinion: x "
+    "along the common perpendicular of the two axes, y along the pinion axis, z normal to x and y.",
     missing=_in_a_plane,
 )
 def tooth_force(result: Result) -> Any:
-    """Draw the three components of the force of the teeth."""
+    """Draw the three components of the tooth force."""
     motion, fine = Motion(result), result.response.fine
-    found = series.tooth_force(result, series.one_sided_phase(fine), motion.mesh_force)
-    values = np.zeros((fine.phase.size, 3)) if found is None else found
+    components = series.tooth_force(result, series.one_sided_phase(fine), motion.mesh_force)
+    values = np.zeros((fine.phase.size, 3)) if components is None else components
     panels = []
-    for axis, color, course in zip("xyz", (PINION, WHEEL, TOTAL), values.T, strict=True):
-        curve = motion.line("mesh_force", course, axis, color, width=1.5)
-        panels.append(Panel(axis_label("mesh_force", words_of("mesh_force", axis)), [curve]))
-    means = [rounded("mesh_force", float(fine.weight @ course)) for course in values.T]
-    title = f"On average the teeth push with {means[0]}, {means[1]} and {means[2]}"
+    for axis, color, component in zip("xyz", (PINION, WHEEL, TOTAL), values.T, strict=True):
+        curve = motion.line("mesh_force", component, axis, color, width=1.5)
+        panels.append(Panel(axis_label("mesh_force", two_line_label("mesh_force", axis)), [curve]))
+    means = [rounded("mesh_force", float(fine.weight @ component)) for component in values.T]
+    title = f"The mean tooth force is {means[0]}, {means[1]} and {means[2]}"
     return motion.figure(title, panels)

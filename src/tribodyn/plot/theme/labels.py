@@ -1,4 +1,4 @@
-"""Values, axis labels and units as engineers read them, taken from the nomenclature."""
+"""Axis labels, display units and rounded values, taken from the nomenclature."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from tribodyn.nomenclature import lookup
 from tribodyn.types import Array
 from tribodyn.units import convert
 
-#: Units that are told in thousands and millions.
+#: Units that take the prefixes kilo, mega and giga.
 _PREFIXED = ("N", "W", "Hz", "Pa")
 _SIGNS = (("^2", "²"), ("^3", "³"), ("*", "·"), ("um", "µm"), ("deg", "°"))
 
 
 def readable(unit: str) -> str:
-    """Write a unit the way it is printed."""
+    """Write a unit with the signs used in print: µm, N·m, m/s²."""
     for plain, printed in _SIGNS:
         unit = unit.replace(plain, printed)
     return unit
 
 
-def axis_label(name: str, words: str | None = None) -> str:
+def axis_label(name: str, label: str | None = None) -> str:
     """Label an axis with a quantity and its display unit."""
-    words = axis_words(name) if words is None else words
+    label = quantity_label(name) if label is None else label
     unit = display_unit(name)
-    return f"{words} [{unit}]" if unit else words
+    return f"{label} [{unit}]" if unit else label
 
 
-def axis_words(name: str) -> str:
-    """Name a quantity in words, without its unit."""
+def quantity_label(name: str) -> str:
+    """Label of a quantity from the nomenclature, without its unit."""
     return lookup(name).label.partition(" [")[0]
 
 
@@ -47,12 +47,12 @@ def displayed(name: str, values: Any) -> Array:
 
 
 def rounded(name: str, value: float, digits: int = 3) -> str:
-    """Write one SI value in its display unit for a title or a card."""
+    """Format an SI value in its display unit for a title or a card."""
     return f"{significant(float(displayed(name, value)), digits)} {display_unit(name)}".rstrip()
 
 
 def significant(value: float, digits: int = 3) -> str:
-    """Write a number with some significant digits, but never with fewer than its whole part."""
+    """Format a number with significant digits; the integer part is never rounded."""
     if value == 0.0:
         return "0"
     decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
@@ -60,35 +60,35 @@ def significant(value: float, digits: int = 3) -> str:
 
 
 def engineering(value: float, unit: str, digits: int = 5) -> tuple[str, str]:
-    """Number and unit without a power of ten, a large one in thousands of its unit."""
+    """Format a number and its unit with a prefix k, M or G in place of a power of ten."""
     power = 0
     while power < 3 and abs(value) >= 10.0**digits and unit.startswith(_PREFIXED):
         value, power = value / 1e3, power + 1
-    shown = significant(value, digits)
-    if "." in shown and "e" not in shown:
-        shown = shown.rstrip("0").rstrip(".")
-    return shown, ("", "k", "M", "G")[power] + unit
+    text = significant(value, digits)
+    if "." in text and "e" not in text:
+        text = text.rstrip("0").rstrip(".")
+    return text, ("", "k", "M", "G")[power] + unit
 
 
 def scaled(values: Any, unit: str) -> tuple[float, str]:
-    """Factor and unit in which values are drawn."""
-    found = np.abs(np.asarray(values, dtype=float))
-    found = found[np.isfinite(found)]
-    largest = float(found.max(initial=0.0))
+    """Return the factor and the unit in which values are plotted."""
+    magnitudes = np.abs(np.asarray(values, dtype=float))
+    magnitudes = magnitudes[np.isfinite(magnitudes)]
+    largest = float(magnitudes.max(initial=0.0))
     if unit in ("", "-", "1") or largest >= 0.1 or largest == 0.0:
         return 1.0, unit
     return (1e3, f"m{unit}") if largest >= 1e-3 and unit != "m" else (1e6, f"µ{unit}")
 
 
 def unit_of(name: str) -> str:
-    """Unit of a coordinate by its name: angles are called theta."""
+    """Unit of a coordinate by its name: rad for angles (theta), m otherwise."""
     return "rad" if "theta" in name else "m"
 
 
 def parameter_axis(name: str, values: Any, unit: str) -> tuple[Array, str]:
-    """Values of a parameter as they are drawn, and the label of their axis."""
-    words = name.replace("_", " ")
-    words = words[:1].upper() + words[1:]
-    factor, shown = scaled(values, unit)
-    drawn = factor * np.asarray(values, dtype=float)
-    return drawn, words if shown in ("", "-", "1") else f"{words} [{shown}]"
+    """Return the values of a parameter in their display unit and the label of the axis."""
+    label = name.replace("_", " ")
+    label = label[:1].upper() + label[1:]
+    factor, display = scaled(values, unit)
+    values_in_display_unit = factor * np.asarray(values, dtype=float)
+    return values_in_display_unit, label if display in ("", "-", "1") else f"{label} [{display}]"

@@ -1,4 +1,4 @@
-"""Panels below one another, over one common horizontal axis or each over its own."""
+"""Vertically stacked panels with one common horizontal axis or one axis each."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from tribodyn.drawing import Sketch
-from tribodyn.plot.look.style import BOTTOM, MUTED, TOP, Trace, figure
+from tribodyn.plot.theme.style import BOTTOM, MUTED, TOP, Trace, figure
 
 #: Pixels of one panel, of the gap between panels, and of the gap with an axis and a title in it.
 _PANEL, _GAP, _WIDE_GAP = 230, 34, 84
@@ -21,12 +21,12 @@ class Panel:
     """One panel of a figure."""
 
     label: str  #: label of the vertical axis, with its unit
-    traces: Sequence[Trace]  #: curves made by :func:`line`
+    traces: Sequence[Trace]  #: curves as :func:`line` returns them
     axis: dict[str, Any] = field(default_factory=dict)  #: further properties of the vertical axis
     height: float = 1.0  #: height relative to the other panels
 
-    def placed(self, x: str, suffix: str) -> list[Trace]:
-        """Curves on their axes; a single one needs no legend: the label of its axis names it."""
+    def with_axes(self, x: str, suffix: str) -> list[Trace]:
+        """Assign the curves to their axes; a single curve has no legend entry."""
         place = {"xaxis": x, "yaxis": f"y{suffix}", "legend": f"legend{suffix}"}
         several = len(self.traces) > 1
         return [{"showlegend": several, **trace, **place} for trace in self.traces]
@@ -39,7 +39,7 @@ class Row:
     label: str  #: label of the horizontal axis, with its unit
     panel: Panel  #: curves and vertical axis
     axis: dict[str, Any] = field(default_factory=dict)  #: further properties of the horizontal axis
-    marks: Iterable[tuple[str, float]] = ()  #: names and places of lines across the panel
+    marks: Iterable[tuple[str, float]] = ()  #: names and positions of vertical event lines
 
 
 def _domains(panels: Sequence[Panel], gap: int) -> tuple[list[tuple[float, float]], float]:
@@ -54,14 +54,14 @@ def _domains(panels: Sequence[Panel], gap: int) -> tuple[list[tuple[float, float
 
 
 def _suffix(number: int) -> str:
-    """What plotly appends to the names of the axes of a panel, counted from 0."""
+    """Suffix of plotly's axis names for a panel; panels count from 0."""
     return str(number + 1) if number else ""
 
 
 def stack(
     title: str, x_label: str, panels: Sequence[Panel], layout: dict[str, Any] | None = None
 ) -> Sketch:
-    """Stack panels over one common horizontal axis, each with its own legend beside it."""
+    """Stack panels over one common horizontal axis, each with a legend to its right."""
     more = dict(layout or {})
     domains, height = _domains(panels, _GAP)
     x_axis = {"title": {"text": x_label}, "anchor": f"y{_suffix(len(panels) - 1)}"}
@@ -72,7 +72,7 @@ def stack(
         y_axis = {"title": {"text": panel.label}, "domain": domain}
         merged[f"yaxis{suffix}"] = {**y_axis, **panel.axis}
         merged[f"legend{suffix}"] = {**_legend(domain[1]), "tracegroupgap": 2}
-        traces += panel.placed("x", suffix)
+        traces += panel.with_axes("x", suffix)
     return figure(title, traces, {**merged, **more})
 
 
@@ -90,7 +90,7 @@ def stack_rows(title: str, rows: Sequence[Row], layout: dict[str, Any] | None = 
         merged[f"xaxis{suffix}"] = {**x_axis, **row.axis}
         merged[f"yaxis{suffix}"] = {**y_axis, **row.panel.axis}
         merged[f"legend{suffix}"] = _legend(domain[1])
-        traces += row.panel.placed(f"x{suffix}", suffix)
+        traces += row.panel.with_axes(f"x{suffix}", suffix)
         marks = event_lines(row.marks)
         place = {"xref": f"x{suffix}", "yref": f"y{suffix} domain"}
         shapes += [{**shape, **place} for shape in marks["shapes"]]
@@ -103,9 +103,9 @@ def _legend(top: float) -> dict[str, Any]:
 
 
 def event_lines(places: Iterable[tuple[str, float]], share: float = 1.0) -> dict[str, Any]:
-    """Mark places on the horizontal axis by dotted lines with a short name on top.
+    """Mark positions on the horizontal axis by dotted lines with a short name on top.
 
-    ``share`` is the part of the width that the axis takes.
+    ``share`` is the fraction of the figure's width that the axis takes.
     """
     joined: dict[float, list[str]] = {}
     for name, x in places:
@@ -128,7 +128,7 @@ def event_lines(places: Iterable[tuple[str, float]], share: float = 1.0) -> dict
 
 
 def _levels(names: dict[float, str], share: float) -> list[int]:
-    """Raise a name by one level where it would run into its left neighbour."""
+    """Raise a name by one level where it would overlap its left neighbour."""
     span = (max(names, default=0.0) - min(names, default=0.0)) / share
     levels = [0] * bool(names)
     for (left, first), (right, second) in pairwise(names.items()):

@@ -1,10 +1,10 @@
-"""How every figure looks.
+"""Common style of all figures.
 
 ==========  ===================================================================
-module      what it draws
+module      contents
 ==========  ===================================================================
 ``style``   colours with fixed roles, fonts, grids, curves, buttons
-``panels``  panels over one common axis or each over its own, marks across them
-``labels``  values, axis labels and units as engineers read them
+``panels``  stacked panels with a common axis or one axis each, event lines
+``labels``  axis labels, display units and rounding of values
 ==========  ===================================================================
 """
