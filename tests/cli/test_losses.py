@@ -71,7 +71,7 @@ def test_teeth_alone_are_told_as_such_and_a_rig_has_its_power_flow(
     )
     assert rig["test"]["gear"] == rig["slave"]["gear"] == found["gear"][0][0]
     assert rig["test"]["bearing_rolling"] != rig["slave"]["bearing_rolling"]
-    assert "go round in the loop" in (tmp_path / "b" / "report.html").read_text()
+    assert "circulate in the loop" in (tmp_path / "b" / "report.html").read_text()
 
 
 @pytest.mark.parametrize(

@@ -186,12 +186,14 @@ def test_diagram_has_units_and_a_figure(hysteresis):
     assert table["largest_exponent"].attrs["units"] == "1/s"
     assert table["rms"].sel(branch="down").values[2] == pytest.approx(HIGH, abs=1e-6)
     figure = hysteresis.plot()
-    assert figure.layout.title.text == "Two motions are possible from 0.84 to 0.9"
+    assert figure.layout.title.text == "Two responses coexist from 0.84 to 0.9"
     assert len(figure.data) == 7
 
 
 def test_figure_greys_what_the_step_made(stiffer):
     figure = stiffer.plot()
-    assert figure.layout.title.text == "2 of 4 motions are made by the step, not by physics"
-    (grey,) = (trace for trace in figure.data if trace.name == "step-limited, not physics")
+    assert (
+        figure.layout.title.text == "2 of 4 responses depend on the time step and are not physical"
+    )
+    (grey,) = (trace for trace in figure.data if trace.name == "step-limited, not physical")
     assert np.unique(grey.x).size == 2

@@ -27,4 +27,4 @@ def test_a_parametric_resonance_in_a_map():
     found = parameter_map(pumped(), over=over, signal="q0", steps=128, transient=8000)
     assert found.ran_away.tolist() == [[True], [False]]
     assert repr(found).endswith("1 ran away)")
-    assert "1 of 2 motions grows beyond all bounds" in found.plot().layout.title.text
+    assert "1 of 2 responses grows without bound" in found.plot().layout.title.text

@@ -69,7 +69,7 @@ def test_a_known_motion_is_judged_with_its_system():
     assert portrait.to_xarray().attrs["verdict"] == "physical"
     assert phase_portrait(orbit, 0).verdict == ""
     limited = replace(portrait, verdict="step-limited")
-    assert "made by the step" in limited.plot().layout.title.text
+    assert "depends on the time step" in limited.plot().layout.title.text
     motion = simulate(system, BEAT, 120, START, steps=128)
     assert poincare(motion, transient=80, system=system).verdict == "physical"
     # The section of another system is another motion.
@@ -88,7 +88,7 @@ def test_exponents_carry_a_verdict():
     assert repr(plain).endswith("not chaotic)")
     np.testing.assert_array_equal(plain.exponents, found.exponents)
     assert (
-        "made by the step"
+        "dependent on the time step"
         in replace(found, verdict="step-limited").plot().layout.title.text.lower()
     )
 

@@ -53,7 +53,7 @@ def test_it_draws_itself_and_the_default_goes_to_twice_the_torque() -> None:
     study = td.harris_map(td.load_case("hypoid-mixed-ehl"), phases=16)
     assert study.torque[[0, -1]] == pytest.approx([50.0, 1000.0])
     figure = study.plot()
-    assert "Quietest at" in figure.layout.title.text
+    assert "Least variation of the transmission error" in figure.layout.title.text
     assert {note.text for note in figure.layout.annotations} >= {"pair enters"}
     assert "plot_flank_modification" not in dir(study)
 

@@ -125,7 +125,7 @@ def test_every_drawn_figure_has_its_place_and_its_data(page: str, outline: Outli
 
 def test_missing_figures_are_explained(drawable: Any) -> None:
     page = render_report(drawable(names=("pinion_theta", "wheel_theta")))
-    assert page.count("their centres stay in place") == 1
+    assert page.count("their centres are fixed") == 1
     assert "dynamics.model = &#34;spur-6dof&#34;" in page
     together = "Accelerations, bearing forces, spectra of the bearing forces"
     assert together in Outline(page).headings
@@ -137,7 +137,7 @@ def test_modified_flanks_are_drawn(drawable: Any) -> None:
     relieved = drawable(changes={"gears.pinion.modification.tip_relief": "10 um"})
     page = render_report(relieved)
     assert "figure-flank_modification" in Outline(page).ids
-    assert "The flanks stand apart by up to 10.0 µm" in page
+    assert "Gap of the unloaded flanks of up to 10.0 µm" in page
     assert "neither gear has a modification" not in page
 
 

@@ -40,7 +40,7 @@ def test_curves_are_those_of_each_result(results) -> None:
     alone = results[1].plot_transmission_error().data[0]
     np.testing.assert_array_equal(drawn[0].y, alone.y)
     np.testing.assert_array_equal(drawn[1].y, results[1].plot_mesh_force().data[0].y)
-    assert figure.layout.title.text == "What changes: operation.torque"
+    assert figure.layout.title.text == "Changed: operation.torque"
 
 
 def test_equal_results_differ_in_nothing(results) -> None:

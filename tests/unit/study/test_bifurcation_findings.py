@@ -92,18 +92,17 @@ def test_the_title_of_the_figure_tells_what_matters_most():
         made = replace(plain, rms=rms, period=period, verdict=verdict)
         return made.plot().layout.title.text
 
-    assert title() == "Every motion repeats after one mesh cycle"
+    assert title() == "Every response has a period of one mesh cycle"
     period[0, 7] = 2
-    assert title() == "The motion repeats after up to 2 mesh cycles"
+    assert title() == "Periods of up to 2 mesh cycles"
     rms[1, 3:5] *= 2.0
     assert title() == (
-        "Two motions are possible from 1300 rpm to 1400 rpm; the motion repeats after up to 2 "
-        "mesh cycles"
+        "Two responses coexist from 1300 rpm to 1400 rpm; periods of up to 2 mesh cycles"
     )
     verdict[0, 7] = "step-limited"  # its period counts no longer
-    assert title().endswith("1400 rpm; 1 of 20 made by the step")
+    assert title().endswith("1400 rpm; 1 of 20 depend on the time step")
     verdict[:, 5:] = "step-limited"
-    assert title() == "10 of 20 motions are made by the step, not by physics"
+    assert title() == "10 of 20 responses depend on the time step and are not physical"
 
 
 def test_motions_that_ran_away_are_told(case):
@@ -114,7 +113,7 @@ def test_motions_that_ran_away_are_told(case):
     made = replace(plain, rms=rms, period=period, verdict=verdict)
     assert made.ran_away.sum() == 3
     assert repr(made).endswith("3 undecided, 3 ran away)")
-    assert made.plot().layout.title.text.startswith("3 of 20 motions grow beyond all bounds")
+    assert made.plot().layout.title.text.startswith("3 of 20 responses grow without bound")
     found = Findings(case, made)
     told = "\n".join(found.sentences())
     assert "up: 3 motions grew beyond all bounds from 1600 rpm to 1800 rpm" in told

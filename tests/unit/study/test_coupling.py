@@ -275,9 +275,9 @@ def test_wrong_keys_are_refused(changes: dict[str, Any], told: str) -> None:
 
 def test_it_is_drawn_reported_and_read_back(dynamic: Any, tmp_path: Any) -> None:
     figure = dynamic.plot_coupling()
-    assert figure.layout.title.text.startswith("Load, film, friction and stiffness agree")
+    assert figure.layout.title.text.startswith("Load, film, friction and stiffness converge")
     place = dynamic.save(tmp_path / "r")
-    assert "Load, film and friction agree" in (place / "report.html").read_text()
+    assert "Coupling of load, film and friction" in (place / "report.html").read_text()
     again = td.load_result(place)
     assert again.summary() == dynamic.summary()
     assert again.mesh == dynamic.mesh

@@ -63,7 +63,7 @@ def _below_zero(result: Result) -> str:
     if np.min(series.mesh_force(fine)) >= 0.0:
         return ""
     if result.half_backlash == 0.0:
-        return "Where it is negative, a mesh with backlash would separate: here it has none."
+        return "Where it is negative, the flanks would separate, but the case has no backlash."
     if np.any(series.compression(fine) < -series.first_touch(result.system, fine)):
         return "Where it is negative, the backlash is crossed and the back flanks touch."
     return "Where it is negative, the contact damping pulls just before the flanks separate."
