@@ -9,15 +9,15 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import collected
-from tribodyn.study.pipeline.run import Asked, begin, with_tables
+from tribodyn.study.pipeline.run import PendingRun, prepare_run, with_tables
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 _POINTS = (100.0, 60.0), (100.0, 150.0), (300.0, 60.0), (300.0, 150.0)
 _KEYS = "operation.speed", "operation.torque"
 
 
-def _asked(case: td.Case, points: Any = _POINTS) -> list[Asked]:
-    return [Asked(case.replace(dict(zip(_KEYS, point, strict=True)))) for point in points]
+def _pending(case: td.Case, points: Any = _POINTS) -> list[PendingRun]:
+    return [PendingRun(case.replace(dict(zip(_KEYS, point, strict=True)))) for point in points]
 
 
 def _columns(mesh: Any) -> dict[str, Any]:
@@ -41,11 +41,11 @@ def _columns(mesh: Any) -> dict[str, Any]:
 )
 def test_every_column_is_that_of_a_single_point(changes: dict[str, Any]) -> None:
     case = td.load_case("fzg-roughness").replace(changes)
-    asked = with_tables(_asked(case))
-    assert [callable(known) for _, known in asked] == [True] * len(_POINTS)
-    for one, known in asked:
+    pending = with_tables(_pending(case))
+    assert [callable(mesh_source) for _, mesh_source in pending] == [True] * len(_POINTS)
+    for one, mesh_source in pending:
         with collected() as beside:
-            together = _columns(known())
+            together = _columns(mesh_source())
         with collected() as told:
             alone = _columns(mesh_of(one))
         assert [str(each) for each in beside] == [str(each) for each in told]
@@ -61,22 +61,22 @@ def test_every_column_is_that_of_a_single_point(changes: dict[str, Any]) -> None
 def test_films_in_series_need_points_of_their_own() -> None:
     changes = {"film.model": "moes", "film.stiffness": "tangent"}
     case = td.load_case("fzg-roughness").replace(changes)
-    assert [known for _, known in with_tables(_asked(case))] == [None] * len(_POINTS)
+    assert [mesh_source for _, mesh_source in with_tables(_pending(case))] == [None] * len(_POINTS)
 
 
 def test_points_of_other_gears_are_no_company() -> None:
     case = td.load_case("fzg-roughness")
     wide = case.replace({"gears.pinion.face_width": 15e-3})
-    asked = [*_asked(case, _POINTS[:2]), *_asked(wide, _POINTS[:1])]
-    known = [known for _, known in with_tables(asked)]
-    assert [each is None for each in known] == [False, False, True]
-    assert known[1]().pinion_torque == _POINTS[1][1]
+    pending = [*_pending(case, _POINTS[:2]), *_pending(wide, _POINTS[:1])]
+    mesh_source = [mesh_source for _, mesh_source in with_tables(pending)]
+    assert [each is None for each in mesh_source] == [False, False, True]
+    assert mesh_source[1]().pinion_torque == _POINTS[1][1]
 
 
 def test_a_point_that_fails_leaves_the_others_to_themselves() -> None:
     case = td.load_case("fzg-roughness")
-    asked = with_tables(_asked(case, [*_POINTS, (300.0, 1e7)]))
-    assert all(known is None for _, known in asked)
+    pending = with_tables(_pending(case, [*_POINTS, (300.0, 1e7)]))
+    assert all(mesh_source is None for _, mesh_source in pending)
     with pytest.raises(td.ComputationError):
-        begin(asked[-1].case)
-    assert begin(asked[0].case).mesh.pinion_torque == _POINTS[0][1]
+        prepare_run(pending[-1].case)
+    assert prepare_run(pending[0].case).mesh.pinion_torque == _POINTS[0][1]

@@ -228,7 +228,7 @@ def test_it_is_stored_and_goes_on(found: Any, case: Any, tmp_path: Any) -> None:
     with Members(tmp_path / "m") as members:
         whole = friction_experiment(case, **options, members=members)
     with Members(tmp_path / "m") as members, pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sweeps, "begin", lambda *a, **k: asked.append(a))
+        patch.setattr(sweeps, "prepare_run", lambda *a, **k: asked.append(a))
         again = friction_experiment(case, **options, members=members)
     assert not asked
     assert again.to_csv() == whole.to_csv()

@@ -8,7 +8,7 @@ import pytest
 import tribodyn as td
 from tribodyn.dynamics.orbits.batched_orbits import SystemBatch
 from tribodyn.errors import quiet
-from tribodyn.study.pipeline.run import Begun, begin, computed, move_together
+from tribodyn.study.pipeline.run import PreparedRun, computed, find_motions, prepare_run
 
 #: Speed [rad/s], torque [N*m] and transmission error [m]: with 1024 and 2048 steps, and parting.
 _POINTS = (300.0, 150.0, 0.0), (310.0, 60.0, 1e-6), (120.0, 250.0, 0.0), (366.0, 50.0, 2e-4)
@@ -24,18 +24,20 @@ def cases() -> list[td.Case]:
 
 
 @pytest.fixture(scope="module")
-def together(cases: list[td.Case]) -> list[Begun]:
-    points = [begin(case) for case in cases]
+def together(cases: list[td.Case]) -> list[PreparedRun]:
+    points = [prepare_run(case) for case in cases]
     with quiet():
-        move_together(points)
+        find_motions(points)
     return points
 
 
-def test_flanks_that_part_are_left_to_themselves(together: list[Begun]) -> None:
+def test_flanks_that_part_are_left_to_themselves(together: list[PreparedRun]) -> None:
     assert [point.response is None for point in together] == [False, False, False, True]
 
 
-def test_figures_are_those_of_single_runs(cases: list[td.Case], together: list[Begun]) -> None:
+def test_figures_are_those_of_single_runs(
+    cases: list[td.Case], together: list[PreparedRun]
+) -> None:
     lost = []
     for case, point in zip(cases, together, strict=True):
         with quiet():
@@ -59,13 +61,13 @@ def test_figures_are_those_of_single_runs(cases: list[td.Case], together: list[B
     assert lost[-1] > 0.0 == max(lost[:-1])
 
 
-def test_a_motion_depends_on_no_other(cases: list[td.Case], together: list[Begun]) -> None:
-    alone = [begin(cases[1])]
+def test_a_motion_depends_on_no_other(cases: list[td.Case], together: list[PreparedRun]) -> None:
+    alone = [prepare_run(cases[1])]
     with quiet():
-        move_together(alone)
+        find_motions(alone)
     assert alone[0].response == together[1].response
     with quiet():
-        move_together([begin(cases[0])])
+        find_motions([prepare_run(cases[0])])
     assert alone[0].response == together[1].response
 
 
@@ -75,9 +77,9 @@ def test_slow_points_whose_map_has_more_rounding_are_found_together() -> None:
         case.replace({"operation.speed": "400 rpm", "operation.torque": f"{torque} Nm"})
         for torque in (136.2, 265.5, 300.0)
     ]
-    points = [begin(each) for each in changed]
+    points = [prepare_run(each) for each in changed]
     with quiet():
-        move_together(points)
+        find_motions(points)
         alone = computed(changed[1]).summary()
     responses = [point.response for point in points if point.response is not None]
     assert len(responses) == len(points)
@@ -89,7 +91,7 @@ def test_slow_points_whose_map_has_more_rounding_are_found_together() -> None:
 
 @pytest.mark.parametrize("count", [2, 8, 9])
 def test_motions_of_systems_alike_march_as_alone(cases: list[td.Case], count: int) -> None:
-    points = [begin(cases[number % 2]) for number in range(count)]
+    points = [prepare_run(cases[number % 2]) for number in range(count)]
     frequencies = np.array([point.mesh.mesh_frequency for point in points])
     group = SystemBatch([point.system for point in points], frequencies, 1024)
     state, every = group.coordinates.expand(group.start()), np.arange(count)

@@ -78,7 +78,7 @@ def test_a_value_that_fails_is_told_and_the_others_go_on(case):
 def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
     import tribodyn.study.studies.sweep as module
 
-    begin, figures = module.begin, module._figures
+    prepare_run, figures = module.prepare_run, module._figures
     ready = [threading.Event(), threading.Event()]
 
     def third_is_interrupted(changed, **known):
@@ -86,7 +86,7 @@ def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
         if speed == 1250:
             assert all(event.wait(300.0) for event in ready)
             raise KeyboardInterrupt
-        return begin(changed, **known)
+        return prepare_run(changed, **known)
 
     def told(point):
         found = figures(point)
@@ -96,7 +96,7 @@ def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
             threading.Timer(0.2, ready[place].set).start()
         return found
 
-    monkeypatch.setattr(module, "begin", third_is_interrupted)
+    monkeypatch.setattr(module, "prepare_run", third_is_interrupted)
     monkeypatch.setattr(module, "_figures", told)
     found = td.sweep(case, between=("1000 rpm", "1500 rpm"), points=5, partial=True)
     assert not found.complete
@@ -185,7 +185,7 @@ def test_an_unknown_figure_names_the_nearest(grid):
 )
 def test_bad_input_is_refused_before_anything_runs(case, over, words, monkeypatch):
     monkeypatch.setattr(
-        "tribodyn.study.studies.sweep.begin", lambda *_, **__: pytest.fail("it ran")
+        "tribodyn.study.studies.sweep.prepare_run", lambda *_, **__: pytest.fail("it ran")
     )
     with pytest.raises(InputError, match=words):
         td.sweep(case, over)

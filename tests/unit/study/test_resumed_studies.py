@@ -49,8 +49,10 @@ def test_a_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         _dying(patch, 2)
         with pytest.raises(_KilledError):
             sweep(case, _SPEEDS, members=members)
-    begin, asked = sweeps.begin, []
-    monkeypatch.setattr(sweeps, "begin", lambda *a, **k: asked.append(a) or begin(*a, **k))
+    prepare_run, asked = sweeps.prepare_run, []
+    monkeypatch.setattr(
+        sweeps, "prepare_run", lambda *a, **k: asked.append(a) or prepare_run(*a, **k)
+    )
     with Members(tmp_path / "s") as members:
         found = sweep(case, _SPEEDS, members=members)
     assert len(asked) == 2

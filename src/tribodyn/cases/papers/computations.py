@@ -141,7 +141,7 @@ def _friction_places(case: Case, mesh: MeshTable) -> dict[str, float]:
 def _run(case: Case, meshes: Meshes) -> Figures:
     """The summary of a run, and of both gears the acceleration in both directions together."""
     mesh_source = None if case.gears.kind != "spur" else lambda: meshes.table(case)
-    result = computed(case, known=mesh_source)
+    result = computed(case, mesh_source=mesh_source)
     multipliers = np.abs(result.response.floquet_multipliers)
     figures = result.summary()
     mode = figures.get("mesh_natural_frequency", math.nan)

@@ -1,4 +1,4 @@
-"""The one pipeline: case, gear pair, mesh cycle, motion, result."""
+"""Pipeline of a run: case, gear pair, mesh cycle, motion, result."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from tribodyn.study.pipeline.computed import Coupling
 from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.tooth_contact import (
-    alike,
+    film_group,
     load_friction_of,
     mesh_of,
     meshes_of,
@@ -55,24 +55,24 @@ def run(
     case : Case
         From :func:`tribodyn.load_case`.
     progress : Progress
-        Told how far the run has come; silent by default.
+        Receives the progress of the run; silent by default.
     stacklevel : int
         Frames to skip in warnings, as in :func:`warnings.warn`.
     follow : callable, optional
-        Takes the case and its mesh in every pass of ``solver.coupling``, and returns the case with
-        what follows from them, such as oil at another temperature.
+        Called with the case and its mesh in every pass of ``solver.coupling``; returns the case
+        with the values that follow from them, such as oil at another temperature.
 
     Raises
     ------
     InputError
-        If the case cannot be computed as it stands.
+        If a value of the case is missing or invalid.
     ComputationError
         If no steady motion is found.
 
     Warns
     -----
     ModelWarning
-        Everything that the models said, once each; also kept in ``Result.warnings``.
+        Every warning of the models, once each; also in ``Result.warnings``.
 
     Examples
     --------
@@ -88,14 +88,14 @@ def run(
 
 
 def _has_marched() -> bool:
-    """Whether this process has loaded the engine already, and so most of what it needs."""
+    """Whether this process has already loaded the time integration kernel."""
     from tribodyn.dynamics._engine.marching import march_block
 
     return bool(getattr(march_block, "signatures", ()))
 
 
 def rehearse(case: Case) -> tuple[ModelWarning, ...]:
-    """Refuse what a run would refuse because of the case alone; tell what it would of the load."""
+    """Raise the input errors of a run without computing it; return its warnings on the load."""
     from tribodyn.dynamics.equations.compiled import compile_for
 
     with locate_errors(case), collected():
@@ -109,19 +109,19 @@ def rehearse(case: Case) -> tuple[ModelWarning, ...]:
 def computed(
     case: Case,
     progress: Progress = SILENT,
-    known: Callable[[], MeshTable] | None = None,
+    mesh_source: Callable[[], MeshTable] | None = None,
     follow: Follow | None = None,
 ) -> Result:
-    """Compute a case; what the models said is kept in the result alone.
+    """Compute a case without raising the warnings of the models, which the result holds.
 
-    ``known`` gives its mesh table where a study has loads and films at hand.
+    ``mesh_source`` returns its mesh table if a study has already computed loads and films.
     """
-    return begin(case, progress, known, follow).result(progress)
+    return prepare_run(case, progress, mesh_source, follow).result(progress)
 
 
 @dataclass
-class Begun:
-    """A case up to its motion, which studies find side by side."""
+class PreparedRun:
+    """A case with mesh and structure, ready for its motion, which studies find in batches."""
 
     case: Case
     mesh: MeshTable
@@ -130,53 +130,59 @@ class Begun:
     friction: MeshFriction | None
     damping: Damping
     system: System
-    told: list[ModelWarning]
-    motion: Callable[[], Response] | None = None  #: samples its motion, where that is known
+    model_warnings: list[ModelWarning]
+    motion: Callable[[], Response] | None = None  #: samples the motion, if it was found in a batch
 
     @property
     def response(self) -> Response | None:
-        """Its motion, where it is known, sampled anew."""
+        """Newly sampled motion, if it was found in a batch."""
         return None if self.motion is None else self.motion()
 
     def result(self, progress: Progress = SILENT) -> Result:
-        """Find the motion if it is not known, and the result."""
+        """Return the result, after computing the motion if no batch has found it."""
         case, mesh, response, compared = self.case, self.mesh, self.response, None
-        with unchanged_files(case), locate_errors(case), collected() as found:
+        with unchanged_files(case), locate_errors(case), collected() as model_warnings:
             if response is None:
                 with friction_suspected(mesh):
                     response = motion_of(case, self.system, mesh.mesh_frequency, progress)
             if self.friction is not None:
                 table = system_of(case, mesh, self.damping)
                 compared = motion_of(case, table, mesh.mesh_frequency, progress)
-        noticed = (
+        cautions = (
             *mesh_cautions(mesh),
             *motion_cautions(case, self.system, response),
             *friction_cautions(self.friction, response),
         )
-        everything = (*case_cautions(case), *teeth_cautions(case), *self.told, *found, *noticed)
-        told = tuple({str(warning): warning for warning in everything}.values())
-        parts = case, mesh, self.system, response, self.damping, told
+        everything = (
+            *case_cautions(case),
+            *teeth_cautions(case),
+            *self.model_warnings,
+            *model_warnings,
+            *cautions,
+        )
+        unique_warnings = tuple({str(warning): warning for warning in everything}.values())
+        parts = case, mesh, self.system, response, self.damping, unique_warnings
         return Result(*parts, self.friction, compared, self.coupling, self.heat)
 
 
-def begin(
+def prepare_run(
     case: Case,
     progress: Progress = SILENT,
-    known: Callable[[], MeshTable] | None = None,
+    mesh_source: Callable[[], MeshTable] | None = None,
     follow: Follow | None = None,
-) -> Begun:
-    """Compute a case up to its motion, as :func:`computed`."""
-    with unchanged_files(case), locate_errors(case), collected() as found:
+) -> PreparedRun:
+    """Compute mesh and structure of a case; the motion follows in :meth:`PreparedRun.result`."""
+    with unchanged_files(case), locate_errors(case), collected() as model_warnings:
         progress.start("Tooth contact")
 
         def mesh_at(point: Case) -> tuple[Case, MeshTable, Coupling | None]:
             if case.solver.coupling != "none":
                 return coupled(point, progress, follow)
-            return point, mesh_of(point, progress) if known is None else known(), None
+            return point, mesh_of(point, progress) if mesh_source is None else mesh_source(), None
 
         heat = None
         if case.lubricant is not None and case.lubricant.heat_transfer is not None:
-            known = None  # loads and films at hand belong to another temperature
+            mesh_source = None  # loads and films of the study belong to another temperature
             case, mesh, coupling, heat = balanced(case, mesh_at)
         else:
             case, mesh, coupling = mesh_at(case)
@@ -184,34 +190,36 @@ def begin(
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)
         progress.finish()
-    return Begun(case, mesh, coupling, heat, friction, damping, system, found)
+    return PreparedRun(case, mesh, coupling, heat, friction, damping, system, model_warnings)
 
 
-class Asked(NamedTuple):
-    """A case that is to be begun, and its mesh table where a study has loads and films at hand."""
+class PendingRun(NamedTuple):
+    """A case to be prepared, and the source of its mesh table if the study has computed it."""
 
     case: Case
-    known: Callable[[], MeshTable] | None = None
+    mesh_source: Callable[[], MeshTable] | None = None
 
 
-def with_tables(asked: Sequence[Asked]) -> list[Asked]:
-    """Add the mesh tables of cases that differ by speed and load alone, computed in one pass."""
+def with_tables(pending: Sequence[PendingRun]) -> list[PendingRun]:
+    """Add the mesh tables of cases that differ in speed and load alone, computed in one pass."""
     places: dict[Any, list[int]] = {}
-    for place, (case, known) in enumerate(asked):
+    for place, (case, mesh_source) in enumerate(pending):
         oil = case.lubricant
         follows = case.solver.coupling != "none" or (oil is not None and oil.heat_transfer)
-        if known is None and not follows and (key := alike(case)) is not None:
+        if mesh_source is None and not follows and (key := film_group(case)) is not None:
             places.setdefault(key, []).append(place)
-    found = list(asked)
+    filled = list(pending)
     for group in places.values():
-        tables = meshes_of([asked[place].case for place in group])
+        tables = meshes_of([pending[place].case for place in group])
         for place, table in zip(group, tables, strict=False):
-            found[place] = asked[place]._replace(known=table)
-    return found
+            filled[place] = pending[place]._replace(mesh_source=table)
+    return filled
 
 
-def move_together(points: Sequence[Begun]) -> None:
-    """Find motions side by side, of as many cases as that is possible for."""
-    motions = motions_of([(each.case, each.system, each.mesh.mesh_frequency) for each in points])
-    for each, motion in zip(points, motions, strict=True):
-        each.motion = motion
+def find_motions(points: Sequence[PreparedRun]) -> None:
+    """Find the motions of as many cases as possible in one batch."""
+    motions = motions_of(
+        [(point.case, point.system, point.mesh.mesh_frequency) for point in points]
+    )
+    for point, motion in zip(points, motions, strict=True):
+        point.motion = motion

@@ -115,7 +115,7 @@ def teeth_contact_ratio(case: Case) -> float | None:
     return contact_ratio(cycle.grid, shared.share, shared.corner_share)
 
 
-def alike(case: Case) -> object:
+def film_group(case: Case) -> object:
     """What cases share whose tooth contacts differ by speed and load alone; None of others."""
     if case.gears.kind != "spur" or case._named_files():
         return None

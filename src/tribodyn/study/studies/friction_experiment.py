@@ -1,7 +1,7 @@
-"""What friction does to a running gear pair: one pair, everything else held, claims judged.
+"""Experiment on the effect of friction on one running gear pair, all other values held constant.
 
-Friction laws and roughnesses vary under every choice of the driving gear and of the torque that
-is held. Load shares and oil films do not depend on them: they are found once for each driver.
+Friction laws and roughnesses vary for every choice of the driving gear and of the torque that is
+held constant. Load shares and oil films do not depend on them: they are computed once per driver.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tribodyn.checkpoints import Members
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import locate_errors, mesh_law_of
-from tribodyn.study.pipeline.run import Asked
+from tribodyn.study.pipeline.run import PendingRun
 from tribodyn.study.pipeline.tooth_contact import contact_settings
 from tribodyn.study.studies.axes import Axis, ends_of
 from tribodyn.study.studies.friction_claims import (
@@ -26,7 +26,7 @@ from tribodyn.study.studies.friction_claims import (
     Rubbing,
 )
 from tribodyn.study.studies.grid import identity, over_cases
-from tribodyn.study.studies.sweep import points_of
+from tribodyn.study.studies.sweep import compute_points
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
@@ -35,9 +35,9 @@ if TYPE_CHECKING:
 
 #: Laws that are compared; ``constant`` takes COEFFICIENTS, and the mean of MIXED at each roughness.
 LAWS = ("none", "constant", "benedict-kelly", "xu-2007", "mixed", "mixed-ehl", "ehl")
-#: Coefficients of the sources: the measured one of the rig, and three that were compared.
+#: Coefficients of the sources: the one measured on the rig, and three that a source compares.
 COEFFICIENTS = (0.035, 0.05, 0.15, 0.25)
-#: Composite roughnesses [m]: those of the sources that the laws know, and some beside them.
+#: Composite roughnesses [m]: those of the sources within the range of the laws, and some between.
 ROUGHNESSES = (0.1e-6, 0.325e-6, 0.4e-6, 0.53e-6, 0.7e-6, 0.8e-6, 0.991e-6)
 DRIVERS, BALANCES = ("pinion", "wheel"), ("drive", "load", "both")
 #: Laws that need the thickness of the film.
@@ -65,21 +65,21 @@ def friction_experiment(
         Composite roughnesses: floats in m, or text with a unit; by default seven from 0.1 to
         0.991 um.
     laws : sequence of str
-        Names in :data:`tribodyn.friction.LAWS`; ``"none"`` is always there to compare with.
+        Names in :data:`tribodyn.friction.LAWS`; ``"none"`` is always added as the reference.
     coefficients : sequence of float
-        Coefficients of the law ``"constant"``, beside the mean of ``"mixed-ehl"`` at each
+        Coefficients of the law ``"constant"``, in addition to the mean of ``"mixed-ehl"`` at each
         roughness.
     partial : bool
-        Return what is done when the computation is interrupted with Ctrl-C, in place of nothing.
+        Return the finished steady states when interrupted with Ctrl-C, instead of raising.
     progress : Progress
-        Told how many steady states are done; silent by default.
+        Receives the number of finished steady states; silent by default.
     members : tribodyn.checkpoints.Members, optional
-        Keeps every state as it is finished, and has those that a killed process finished.
+        Stores each finished state, and restores those that a killed process had finished.
 
     Returns
     -------
     FrictionExperiment
-        Every figure of the summary over driving gear, held torque and friction, and ``claims``.
+        All figures of the summary over driving gear, held torque and friction, and ``claims``.
 
     Raises
     ------
@@ -97,47 +97,49 @@ def friction_experiment(
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-roughness")
-    >>> found = friction_experiment(case, laws=["xu-2007"], roughness=["0.4 um", "0.8 um"])
-    >>> bool(found.change("rms_mesh_force")[0, 0, -1] < 0.0)
+    >>> experiment = friction_experiment(case, laws=["xu-2007"], roughness=["0.4 um", "0.8 um"])
+    >>> bool(experiment.change("rms_mesh_force")[0, 0, -1] < 0.0)
     True
     """
     heights = _roughnesses(case, ROUGHNESSES if roughness is None else roughness)
     named = _laws(laws)
     base = _with_film(case, named)
     loaded = _loaded(base, progress)
-    rubbing = tuple(_rubbing(base, loaded["pinion"], named, heights, coefficients))
-    frictions = {one.name: one for one in rubbing}
+    rubbing = tuple(_list_frictions(base, loaded["pinion"], named, heights, coefficients))
+    frictions = {applied.name: applied for applied in rubbing}
     axes = (Axis(_KEYS[0], DRIVERS), Axis(_KEYS[1], BALANCES), Axis(_KEYS[2], tuple(frictions)))
 
-    def asked(driver: str, balance: str, friction: str) -> Asked:
-        one, mesh = frictions[friction], loaded[driver]
-        changed = _changed(base, one, mesh, driver).replace({_KEYS[1]: balance})
-        return Asked(changed, lambda: _table(changed, mesh))
+    def pending_at(driver: str, balance: str, friction: str) -> PendingRun:
+        applied, mesh = frictions[friction], loaded[driver]
+        changed = _case_with(base, applied, mesh, driver).replace({_KEYS[1]: balance})
+        return PendingRun(changed, lambda: _table(changed, mesh))
 
     study = identity("friction", base, [(axis.key, axis.values) for axis in axes])
-    points = points_of(axes, asked, study, partial, progress, members)
+    points = compute_points(axes, pending_at, study, partial, progress, members)
     return FrictionExperiment(base, axes, points, rubbing)
 
 
-def _roughnesses(case: Case, given: Sequence[Any]) -> tuple[float, ...]:
-    if isinstance(given, str) or not len(given):
+def _roughnesses(case: Case, values: Sequence[Any]) -> tuple[float, ...]:
+    if isinstance(values, str) or not len(values):
         remedy = 'Write, for example, ["0.4 um", "0.8 um"]'
-        raise InputError(f"roughness = {given!r}", "argument roughness", "A list of them", remedy)
-    return tuple(sorted(set(ends_of(case, "gears.composite_roughness", given))))
+        raise InputError(
+            f"roughness = {values!r}", "argument roughness", "It must be a list", remedy
+        )
+    return tuple(sorted(set(ends_of(case, "gears.composite_roughness", values))))
 
 
-def _laws(given: Sequence[str]) -> tuple[str, ...]:
-    from tribodyn.friction import LAWS as KNOWN
+def _laws(names: Sequence[str]) -> tuple[str, ...]:
+    from tribodyn.friction import LAWS as LAW_REGISTRY
 
-    for name in given:
-        KNOWN[name]  # tells which there are
-    return tuple(dict.fromkeys((NONE, *given)))
+    for name in names:
+        LAW_REGISTRY[name]  # raises an error that lists the laws
+    return tuple(dict.fromkeys((NONE, *names)))
 
 
 def _with_film(case: Case, laws: Sequence[str]) -> Case:
-    """Case with the film that the laws need, and its roughness given as that of both flanks."""
+    """Return the case with the film that the laws need and a composite roughness."""
     from tribodyn.ehl import FILM_MODELS
-    from tribodyn.friction import LAWS as KNOWN
+    from tribodyn.friction import LAWS as LAW_REGISTRY
 
     if case.gears.kind != "spur":
         remedy = "Take a case of spur gears"
@@ -145,23 +147,23 @@ def _with_film(case: Case, laws: Sequence[str]) -> Case:
         raise InputError(what, "argument case", why, remedy)
     changes: dict[str, Any] = {}
     solved = FILM_MODELS[case.film.model].method
-    if any(KNOWN[name].needs_film for name in laws) and not solved:
+    if any(LAW_REGISTRY[name].needs_film for name in laws) and not solved:
         changes["film.model"] = "newton"
     if case.film.model == "none" and not _ON_FILM.isdisjoint(laws):
         changes.setdefault("film.model", "dowson-higginson")
     heights = [
         f"gears.{gear}.{name}" for gear in DRIVERS for name in ("roughness_rms", "roughness_ra")
     ]
-    given = {key: None for key in heights if key in case.given}
-    rough = {"gears.composite_roughness": case.composite_roughness} if given else {}
-    return case.replace({**changes, **given, **rough})
+    cleared = {key: None for key in heights if key in case.given}
+    rough = {"gears.composite_roughness": case.composite_roughness} if cleared else {}
+    return case.replace({**changes, **cleared, **rough})
 
 
 def _loaded(base: Case, progress: Progress) -> dict[str, LoadedMesh]:
-    """Loads and films of the pair, one for each driving gear."""
+    """Compute loads and films of the pair for each driving gear."""
     from tribodyn.mesh.build import loaded_mesh
 
-    found: dict[int, LoadedMesh] = {}
+    meshes: dict[int, LoadedMesh] = {}
 
     def load(driver: str) -> LoadedMesh:
         case = base.replace({_KEYS[0]: driver})
@@ -174,56 +176,59 @@ def _loaded(base: Case, progress: Progress) -> dict[str, LoadedMesh]:
             )
 
     progress.start("Loads and films", len(DRIVERS))
-    over_cases(load, DRIVERS, found, progress)
+    over_cases(load, DRIVERS, meshes, progress)
     progress.finish()
-    return {driver: found[place] for place, driver in enumerate(DRIVERS)}
+    return {driver: meshes[place] for place, driver in enumerate(DRIVERS)}
 
 
-def _rubbing(
+def _list_frictions(
     base: Case,
     loaded: LoadedMesh,
     laws: Sequence[str],
     heights: Sequence[float],
     coefficients: Sequence[float],
 ) -> list[Rubbing]:
-    """Every friction of the experiment."""
-    found = []
+    """List every combination of law, roughness and coefficient of the experiment."""
+    frictions = []
     for law in laws:
         if law == CONSTANT:
-            found += [Rubbing(law, heights[0], float(c), varies=False) for c in coefficients]
+            frictions += [Rubbing(law, heights[0], float(c), varies=False) for c in coefficients]
             if MIXED in laws:
-                found += [Rubbing(law, height, as_mixed=True) for height in heights]
+                frictions += [Rubbing(law, height, as_mixed=True) for height in heights]
             continue
-        each = [Rubbing(law, height) for height in heights]
-        if len(heights) > 1 and _alike(base, loaded, each[0], each[-1]):
-            each = each[:1]
-        found += [one._replace(varies=len(each) > 1 or law == MIXED) for one in each]
-    return found
+        by_roughness = [Rubbing(law, height) for height in heights]
+        if len(heights) > 1 and _same_coefficients(base, loaded, by_roughness[0], by_roughness[-1]):
+            by_roughness = by_roughness[:1]
+        frictions += [
+            friction._replace(varies=len(by_roughness) > 1 or law == MIXED)
+            for friction in by_roughness
+        ]
+    return frictions
 
 
-def _alike(base: Case, loaded: LoadedMesh, one: Rubbing, other: Rubbing) -> bool:
-    """Whether two frictions have the same coefficients; what cannot be applied is told later."""
+def _same_coefficients(base: Case, loaded: LoadedMesh, smooth: Rubbing, rough: Rubbing) -> bool:
+    """Whether two frictions have the same coefficients; False if a law cannot be applied."""
     try:
         with collected():
-            first, second = (
-                _table(_changed(base, each, loaded, DRIVERS[0]), loaded).friction_coefficient
-                for each in (one, other)
+            coefficients, others = (
+                _table(_case_with(base, friction, loaded, DRIVERS[0]), loaded).friction_coefficient
+                for friction in (smooth, rough)
             )
     except InputError:
         return False
-    return bool(np.array_equal(first, second))
+    return bool(np.array_equal(coefficients, others))
 
 
-def _changed(base: Case, one: Rubbing, loaded: LoadedMesh, driver: str) -> Case:
-    changes = {_KEYS[0]: driver, "gears.composite_roughness": one.roughness}
-    if one.as_mixed:
+def _case_with(base: Case, friction: Rubbing, loaded: LoadedMesh, driver: str) -> Case:
+    changes = {_KEYS[0]: driver, "gears.composite_roughness": friction.roughness}
+    if friction.as_mixed:
         mixed = base.replace({**changes, "friction.law": MIXED})
         with collected():
             mean = _table(mixed, loaded).mean_friction_coefficient
         return base.replace({**changes, "friction.law": CONSTANT, "friction.coefficient": mean})
-    chosen: dict[str, Any] = {**changes, "friction.law": one.law}
-    if one.coefficient is not None:
-        chosen["friction.coefficient"] = one.coefficient
+    chosen: dict[str, Any] = {**changes, "friction.law": friction.law}
+    if friction.coefficient is not None:
+        chosen["friction.coefficient"] = friction.coefficient
     return base.replace(chosen)
 
 
