@@ -1,4 +1,4 @@
-"""All friction laws side by side at the points of the path of contact of a case."""
+"""Comparison of all friction laws at points of the path of contact of a case."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from tribodyn.friction import TribologicalContact
     from tribodyn.study.case.case import Case
 
-#: Where a tooth pair is looked at, in the order of roll of FZG type A.
+#: Compared points of the path of contact, in the order of roll of FZG type A.
 PLACES = ("A", "C", "after B", "middle", "before D", "E")
 
 
 def friction_laws(case: Case) -> list[dict[str, Any]]:
-    """Each law with its meaning, source, options, coefficients at PLACES and whether in range."""
+    """List each law with meaning, source, options, coefficients at PLACES and range check."""
     from tribodyn.friction import LAWS
 
     contact = _contacts(case)
@@ -31,8 +31,8 @@ def friction_laws(case: Case) -> list[dict[str, Any]]:
                 inside = not warnings
             except InputError as error:
                 solved = 'needs a solved film: film.model = "newton"'
-                told = "; ".join(problem.what for problem in error.problems)
-                missing = solved if law.needs_film else told
+                reason = "; ".join(problem.what for problem in error.problems)
+                missing = solved if law.needs_film else reason
         rows.append(
             {
                 "law": name,

@@ -1,4 +1,4 @@
-"""One loop over the cases of a study: each is built or computed once, several at a time."""
+"""Loop over the cases of a study, which are built or computed in parallel threads."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Value = TypeVar("Value")
 
 
 class Member(NamedTuple):
-    """One case of a study with its tooth contact and its structure."""
+    """Case of a study with its tooth contact and its structure."""
 
     case: Case
     mesh: MeshTable
@@ -34,12 +34,12 @@ class Member(NamedTuple):
 
 
 def contact_without_speed(case: Case) -> bool:
-    """Whether nothing in the tooth contact depends on how fast the gears turn."""
+    """Whether the tooth contact is independent of the speed."""
     return case.film.model == "none" and case.friction.law in ("none", "constant")
 
 
 def built(case: Case) -> Member:
-    """Tooth contact and structure of a case."""
+    """Build tooth contact and structure of a case."""
     mesh = mesh_of(case)
     return Member(case, mesh, whole_system(case, mesh))
 
@@ -48,11 +48,11 @@ def varied(
     case: Case,
     changes: Sequence[Mapping[str, Any]],
     progress: Progress,
-    kept: Members | None = None,
+    checkpoints: Members | None = None,
 ) -> list[Member]:
-    """Tooth contact and structure of a case under each of some changes, in their order."""
+    """Build tooth contact and structure of a case for each change, in their order."""
     members: dict[int, Member] = {}
-    folder = kept.folder if kept is not None else None
+    folder = checkpoints.folder if checkpoints is not None else None
 
     def member(index: int) -> Member:
         changed = case.replace(changes[index])
@@ -62,10 +62,10 @@ def varied(
                 mesh = MeshTable.load(path)
                 return Member(changed, mesh, whole_system(changed, mesh))
             path.unlink()
-        found = built(changed)
+        built_member = built(changed)
         if path is not None:
-            found.mesh.save(path)
-        return found
+            built_member.mesh.save(path)
+        return built_member
 
     progress.start("Tooth contacts", len(changes))
     over_cases(member, range(len(changes)), members, progress)
@@ -74,7 +74,7 @@ def varied(
 
 
 def identity(study: str, case: Case, over: Any, **options: Any) -> dict[str, Any]:
-    """What tells a study from others: only members of the same one are taken for finished."""
+    """Identity of a study; checkpoints are reused only if it is the same."""
     import tribodyn
 
     text = json.dumps(over, default=str)
@@ -93,21 +93,21 @@ def over_cases(
     done: dict[int, Value],
     progress: Progress = SILENT,
 ) -> None:
-    """Compute members in threads; ``done`` holds what is finished by index, interrupted or not."""
+    """Compute members in threads; ``done`` receives values by index, even if interrupted."""
     lock = threading.Lock()
     progress.advance(len(done))
 
-    def one(index: int) -> None:
+    def compute_one(index: int) -> None:
         value = compute(members[index])
         with lock:
             done[index] = value
             progress.advance()
 
-    left = [index for index in range(len(members)) if index not in done]
-    in_threads(one, left, os.cpu_count() or 1)
+    remaining = [index for index in range(len(members)) if index not in done]
+    in_threads(compute_one, remaining, os.cpu_count() or 1)
 
 
 def finished(done: Mapping[int, Value]) -> list[Value]:
-    """What is finished before the first member that is not."""
+    """Return the finished values up to the first one that is missing."""
     count = next(index for index in range(len(done) + 1) if index not in done)
     return [done[index] for index in range(count)]

@@ -1,4 +1,4 @@
-"""Losses and efficiency of a case over torque and speed, and the power flow of a rig with it."""
+"""Losses and efficiency of a case over torque and speed, and the power flow of a test rig."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses, RigPowerFlow
     from tribodyn.study.case.case import Case
 
-#: Torques and speeds of a map over those of the case, which is one of them.
+#: Torques and speeds of a map relative to those of the case, which is one of the points.
 STEPS = np.linspace(0.25, 2.0, 8)
 
 
@@ -36,7 +36,7 @@ def loss_map(
         Torques [N*m] and speeds [rad/s] of the gear named by ``operation.speed_of``, or text with
         a unit. By default 8 of each up to twice those of the case.
     progress : Progress
-        Told how many points are computed.
+        Receives the number of computed points; silent by default.
 
     Returns
     -------
@@ -53,44 +53,44 @@ def loss_map(
     Warns
     -----
     ModelWarning
-        What the models said, each code once, with the number of points that it holds for.
+        Warnings of the models, each code once, with the number of points that raised it.
 
     Examples
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-roughness").replace({"friction.law": "schlenk"})
-    >>> found = loss_map(case, torque=["50 N*m", "300 N*m"], speed="900 rpm")
-    >>> found.gear_efficiency.round(4).tolist()
+    >>> losses = loss_map(case, torque=["50 N*m", "300 N*m"], speed="900 rpm")
+    >>> losses.gear_efficiency.round(4).tolist()
     [[0.9889], [0.9841]]
     """
     torques, speeds = pinion_torques(case, torque), pinion_speeds(case, speed)
     torques = torques if torque is not None else list(STEPS * torques[0])
     speeds = speeds if speed is not None else list(STEPS * speeds[0])
     turns = case.gear_ratio if case.operation.speed_of == "wheel" else 1.0
-    heard: list[ModelWarning] = []
+    model_warnings: list[ModelWarning] = []
     progress.start("Tooth contact", len(torques) * len(speeds))
     lost = np.empty((len(torques), len(speeds)))
     for row, load in enumerate(torques):
         for column, turning in enumerate(speeds):
             point = {"operation.torque": load * turns, "operation.speed": turning / turns}
-            with locate_errors(case), collected() as told:
+            with locate_errors(case), collected() as point_warnings:
                 lost[row, column] = mesh_of(case.replace(point)).mean_friction_power
-            heard += {warning.code: warning for warning in told}.values()
+            model_warnings += {warning.code: warning for warning in point_warnings}.values()
             progress.advance()
     progress.finish()
-    _tell(heard, lost.size)
+    _warn_once(model_warnings, lost.size)
     with locate_errors(case):
         return gearbox_losses_of(case, lost, pinion_torque=torques, pinion_speed=speeds)
 
 
-def _tell(heard: Iterable[ModelWarning], points: int) -> None:
-    """Tell each warning once: that of the first point, and of how many others."""
+def _warn_once(model_warnings: Iterable[ModelWarning], points: int) -> None:
+    """Raise each warning once, with the message of its first point and the number of points."""
     first: dict[str, list[ModelWarning]] = {}
-    for warning in heard:
+    for warning in model_warnings:
         first.setdefault(warning.code, []).append(warning)
-    for code, told in first.items():
-        among = f" This was told at {len(told)} of {points} points." if points > 1 else ""
-        warn(code, told[0].message + among, stacklevel=3)
+    for code, repeated in first.items():
+        count_text = f" This holds at {len(repeated)} of {points} points." if points > 1 else ""
+        warn(code, repeated[0].message + count_text, stacklevel=3)
 
 
 def rig_power_flow(case: Case, slave: Case | None = None) -> RigPowerFlow:
@@ -101,8 +101,8 @@ def rig_power_flow(case: Case, slave: Case | None = None) -> RigPowerFlow:
     case : Case
         The test gearbox with its ``[losses]``.
     slave : Case, optional
-        The gearbox that closes the loop, at the same torque and speed of the pinion; one like the
-        first by default.
+        The gearbox that closes the loop, at the same torque and speed of the pinion; by default
+        the same as the test gearbox.
 
     Raises
     ------
@@ -118,9 +118,11 @@ def rig_power_flow(case: Case, slave: Case | None = None) -> RigPowerFlow:
     """
     from tribodyn.losses import rig_power_flow as compute
 
-    found = []
-    for each in (case, case if slave is None else slave):
-        with locate_errors(each), collected() as told:
-            found.append(gearbox_losses_of(each, mesh_of(each).mean_friction_power))
-        _tell(told, 1)
-    return compute(*found)
+    gearboxes = []
+    for gearbox_case in (case, case if slave is None else slave):
+        with locate_errors(gearbox_case), collected() as model_warnings:
+            gearboxes.append(
+                gearbox_losses_of(gearbox_case, mesh_of(gearbox_case).mean_friction_power)
+            )
+        _warn_once(model_warnings, 1)
+    return compute(*gearboxes)

@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, NaturalModes, System
     from tribodyn.study.case.case import Case
 
-#: Mesh harmonics whose critical speeds are told.
+#: Mesh harmonics whose critical speeds are reported.
 ORDERS = (1, 2, 3, 4, 5)
-#: Speeds of a diagram, and how far it goes beyond the operating speed and the last resonance.
+#: Number of speeds of a diagram, and its top speed over the operating speed or last resonance.
 _SPEEDS, _BEYOND = 201, 1.15
-#: Shares of the energy below this are not told.
+#: Smallest share of the energy that is reported.
 _LEAST = 0.05
 
 
 @dataclass(frozen=True)
 class Mode:
-    """One elastic mode in figures that are printed."""
+    """Printed figures of an elastic mode."""
 
-    number: int  #: counted with the rigid ones from 0
+    number: int  #: index among all modes, the rigid ones included, from 0
     frequency: float  #: [Hz]
     damping_ratio: float  #: part of the critical damping
     moves: str  #: bodies with their shares of the kinetic energy
@@ -45,7 +45,7 @@ def natural_modes(case: Case, progress: Progress = SILENT) -> NaturalModes:
     case : Case
         From :func:`tribodyn.load_case`.
     progress : Progress
-        Told about the tooth contact; silent by default.
+        Receives the progress of the tooth contact; silent by default.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def natural_modes(case: Case, progress: Progress = SILENT) -> NaturalModes:
     Raises
     ------
     InputError
-        If the case cannot be computed as it stands.
+        If a value of the case is missing or invalid.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def campbell(
     orders : iterable of int
         Mesh harmonics.
     progress : Progress
-        Told about the tooth contact; silent by default.
+        Receives the progress of the tooth contact; silent by default.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def campbell(
     Raises
     ------
     InputError
-        If a speed is out of range, or the case cannot be computed as it stands.
+        If a speed is out of range, or a value of the case is missing or invalid.
 
     Examples
     --------
@@ -127,8 +127,8 @@ def diagram_of(
     now = case.operation.speed
     if ends is None:
         modes = modes_of(system)
-        own = modes.frequency[int(np.argmax(modes.contact_share))] if modes.contacts else 0.0
-        top = _BEYOND * max(now, now * float(own) / mesh_frequency)
+        mesh_mode = modes.frequency[int(np.argmax(modes.contact_share))] if modes.contacts else 0.0
+        top = _BEYOND * max(now, now * float(mesh_mode) / mesh_frequency)
         ends = [top / _SPEEDS, top]
     gear = getattr(case.gears, case.operation.speed_of)
     diagram = compute(
@@ -138,7 +138,7 @@ def diagram_of(
 
 
 def mode_rows(modes: NaturalModes, case: Case, mesh_frequency: float) -> list[Mode]:
-    """Elastic modes of a case with what moves, what is strained, and their critical speeds."""
+    """Elastic modes of a case with energy shares by body and spring, and their critical speeds."""
     per_hertz = case.operation.speed / mesh_frequency
     bodies, springs = modes.body_share(), modes.strain_by_kind()
     return [
@@ -146,14 +146,14 @@ def mode_rows(modes: NaturalModes, case: Case, mesh_frequency: float) -> list[Mo
             number,
             float(modes.frequency[number]),
             float(modes.damping_ratio[number]),
-            _told({name: float(share[number]) for name, share in bodies.items()}),
-            _told({name: float(share[number]) for name, share in springs.items()}),
+            _describe_shares({name: float(share[number]) for name, share in bodies.items()}),
+            _describe_shares({name: float(share[number]) for name, share in springs.items()}),
             tuple(per_hertz * float(modes.frequency[number]) / order for order in ORDERS),
         )
         for number in range(modes.rigid, modes.frequency.size)
     ]
 
 
-def _told(shares: dict[str, float]) -> str:
+def _describe_shares(shares: dict[str, float]) -> str:
     largest = sorted(shares.items(), key=lambda item: -item[1])
     return ", ".join(f"{name} {100 * share:.0f} %" for name, share in largest if share >= _LEAST)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import Branch, System
     from tribodyn.study.case.case import Case
 
-#: Half the width of the plane of starts over the static deflection of the mesh.
+#: Half width of the plane of initial states, relative to the static deflection of the mesh.
 _WIDE = 5.0
 
 
@@ -42,14 +42,14 @@ def lyapunov_exponents(
     cycles : int
         Mesh cycles over which to average.
     transient : int
-        Mesh cycles marched before.
+        Mesh cycles that are simulated before.
     steps : int, optional
-        Steps per mesh cycle; those of the case, else a quarter of what a single run takes and at
-        least 512.
+        Steps per mesh cycle; by default those of the case, else a quarter of those of a single run
+        and at least 512.
     verdict : bool
-        Whether to find them again with half the step.
+        Whether to compute them again with half the step.
     progress : Progress
-        Told about the mesh cycles; silent by default.
+        Receives the number of mesh cycles; silent by default.
 
     Returns
     -------
@@ -67,8 +67,8 @@ def lyapunov_exponents(
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-roughness").replace({"friction.law": "none"})
-    >>> found = lyapunov_exponents(case, cycles=40, transient=40, verdict=False)
-    >>> found.chaotic, found.rotating
+    >>> exponents = lyapunov_exponents(case, cycles=40, transient=40, verdict=False)
+    >>> exponents.chaotic, exponents.rotating
     (False, ('pinion_theta', 'wheel_theta'))
     """
     from tribodyn.analysis import lyapunov_exponents as compute
@@ -98,7 +98,7 @@ def basins(
     keep_partial: bool = False,
     progress: Progress = SILENT,
 ) -> Basins:
-    """Find which motion of a case a disturbed start comes to.
+    """Find the steady motion that each disturbed initial state of a case leads to.
 
     Parameters
     ----------
@@ -114,20 +114,20 @@ def basins(
     points : int or two int
         Values of each.
     cycles : int
-        Mesh cycles at most for a start to come near its motion.
+        Largest number of mesh cycles for a start to approach its steady motion.
     steps : int, optional
         As of :func:`lyapunov_exponents`.
     verdict : bool
         Repeat everything with half the step, and judge.
     keep_partial : bool
-        Return what is finished when interrupted (Ctrl-C), see ``finished``.
+        Return the finished starts when interrupted (Ctrl-C), see ``finished``.
     progress : Progress
-        Told about the starts; silent by default.
+        Receives the number of finished starts; silent by default.
 
     Returns
     -------
     Basins
-        Its coordinates are the transmission error and its rate; all else of the start is at the
+        Its coordinates are the transmission error and its rate; all other coordinates start at the
         static equilibrium, and free rotations get no momentum.
 
     Raises
@@ -140,8 +140,8 @@ def basins(
 
     counts = (points, points) if isinstance(points, int) else tuple(points)
     ends = [
-        None if each is None else _read_ends(name, each, unit)
-        for name, each, unit in (
+        None if ends_of_range is None else _read_ends(name, ends_of_range, unit)
+        for name, ends_of_range, unit in (
             ("transmission_error", transmission_error, "m"),
             ("rate", rate, "m/s"),
         )
@@ -149,8 +149,8 @@ def basins(
     system, frequency = build_system(case, progress=progress)
     with locate_errors(case), compile_in_parallel(case, "bifurcation"):
         count = steps or study_steps(case, system, frequency)
-        usual = _plane_about_rest(system, frequency, count)
-        first, second = (own or other for own, other in zip(ends, usual, strict=True))
+        default_ends = _plane_about_equilibrium(system, frequency, count)
+        first, second = (chosen or other for chosen, other in zip(ends, default_ends, strict=True))
         return compute(
             system,
             frequency,
@@ -170,7 +170,7 @@ def _read_ends(name: str, ends: Sequence[Any], unit: str) -> tuple[float, float]
 
     remedy = 'Write, for example, ("-50 um", "50 um")' if unit == "m" else 'Write ("0 um/s", ...)'
     try:
-        low, high = (parse(each, unit) if isinstance(each, str) else float(each) for each in ends)
+        low, high = (parse(end, unit) if isinstance(end, str) else float(end) for end in ends)
     except (UnitProblemError, TypeError, ValueError) as error:
         raise InputError(f"{name} = {ends}", f"argument {name}", str(error), remedy) from None
     if not (np.isfinite(low) and np.isfinite(high) and low < high):
@@ -179,7 +179,7 @@ def _read_ends(name: str, ends: Sequence[Any], unit: str) -> tuple[float, float]
     return low, high
 
 
-def _plane_about_rest(
+def _plane_about_equilibrium(
     system: System, mesh_frequency: float, steps: int
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Ranges of transmission error and rate about the static equilibrium."""
@@ -188,13 +188,13 @@ def _plane_about_rest(
     from tribodyn.nonlinear.start_plane import MESH_PLANE, start_plane
 
     compiled = compile_for(system, mesh_frequency, steps)
-    rest = start_plane(compiled, mesh_frequency, MESH_PLANE).section(static_start(compiled))
+    equilibrium = start_plane(compiled, mesh_frequency, MESH_PLANE).section(static_start(compiled))
     nodes, along = compiled.nodes, compiled.nodes.direction[0, 0, 0]
     stiffness = float(np.einsum("rs,rsc->", nodes.weight, nodes.stiffness))
     mass = 1.0 / float(along @ np.linalg.solve(np.asarray(system.mass), along))
-    width = _WIDE * abs(float(rest[0]))
+    width = _WIDE * abs(float(equilibrium[0]))
     swing = width * float(np.sqrt(stiffness / mass))
-    return (float(rest[0]) - width, float(rest[0]) + width), (-swing, swing)
+    return (float(equilibrium[0]) - width, float(equilibrium[0]) + width), (-swing, swing)
 
 
 def continuation(
@@ -226,16 +226,17 @@ def continuation(
     longest_step : float
         Longest step relative to the range [-]; shorter ones separate neighbouring special points.
     points : int
-        Points at most.
+        Largest number of points.
     by : str
-        What asks, for messages; then a bare number for a dimension is refused as in a file.
+        Name of the caller in messages; if set, a bare number for a dimension is refused as in a
+        file.
     progress : Progress
-        Told about the points; silent by default.
+        Receives the number of points; silent by default.
 
     Returns
     -------
     Branch
-        Its parameter is in the unit of the key, SI.
+        Its parameter is in the SI unit of the key.
 
     Raises
     ------

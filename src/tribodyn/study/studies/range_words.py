@@ -1,4 +1,4 @@
-"""Words for what varies: a range ``400..3500 rpm:60``, or a list ``50,150,300 N*m``."""
+"""Syntax of values that vary: a range ``400..3500 rpm:60``, or a list ``50,150,300 N*m``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
 
 
 def toml_value(text: str) -> Any:
-    """Read a TOML value; what is none is text."""
+    """Read a TOML value; any other text stays text."""
     try:
         value = tomllib.loads(f"value = {text}\n")
     except (ValueError, RecursionError):
@@ -19,7 +19,7 @@ def toml_value(text: str) -> Any:
 
 
 class UnreadError(ValueError):
-    """Why a word cannot be read."""
+    """Reason why a text cannot be read as values."""
 
 
 def read_values(text: str) -> Any:

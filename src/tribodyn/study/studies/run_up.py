@@ -1,4 +1,4 @@
-"""The speed of a case rises and falls: as prescribed, or so slowly that the motion is steady."""
+"""Run-up and speed sweep of a case: prescribed acceleration, or a series of steady motions."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def run_up(
     steps: int | None = None,
     progress: Progress = SILENT,
 ) -> RunUp:
-    """March a case while its speed rises evenly and, if asked for, falls again.
+    """Simulate a case while its speed rises at a constant rate and optionally falls again.
 
     Parameters
     ----------
@@ -47,18 +47,18 @@ def run_up(
     duration : float
         Length of the rise, and of the fall [s].
     down : bool
-        Whether the speed falls back as it rose.
+        Whether the speed falls again at the same rate.
     hold : float
         Time at the highest speed [s].
     tables : int
-        Speeds, evenly spaced in the logarithm, at which the tooth contact is computed; film and
-        friction follow the speed between them in straight lines.
+        Number of speeds, evenly spaced in the logarithm, at which the tooth contact is computed;
+        film and friction are interpolated linearly between them.
     samples : int
-        Samples of each mesh cycle that are kept.
+        Samples of each mesh cycle that are stored.
     steps : int, optional
         Steps per mesh cycle at all speeds; by default each speed has as many as it needs.
     progress : Progress
-        Told how far the study has come; silent by default.
+        Receives the progress of the study; silent by default.
 
     Returns
     -------
@@ -106,27 +106,27 @@ def run_up(
 def speed_systems(
     case: Case, speeds: Any, progress: Progress = SILENT
 ) -> tuple[dict[float, System], float]:
-    """Structures of a case at some speeds, by mesh frequency."""
+    """Build the structure of a case at each speed, by mesh frequency."""
     members = varied(case, [{_SPEED: float(speed)} for speed in speeds], progress)
     systems = {member.mesh.mesh_frequency: member.system for member in members}
     return systems, members[-1].mesh.mesh_frequency / float(speeds[-1])
 
 
 def _ends(case: Case, between: tuple[Any, Any] | None) -> tuple[float, float]:
-    """Both speeds in SI, checked like the key of the case."""
+    """Return the lowest and highest speed in SI, checked like the key of the case."""
     if between is None or len(between) != 2:
         why = "A run-up goes from one speed to another"
         remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
         raise InputError(f"between = {between}", "argument between", why, remedy)
     low, high = (_speed(end, between) for end in between)
     if not low < high:
-        what, remedy = f"between = {between}", "Turn them round; down=True adds the way back"
+        what, remedy = f"between = {between}", "Exchange them; down=True adds the run-down"
         raise InputError(what, "argument between", "The first speed is the lowest", remedy)
     return low, high
 
 
 def _speed(end: Any, between: tuple[Any, Any]) -> float:
-    """One end of a run-up in SI."""
+    """Read an end speed of a run-up in SI."""
     spec = dict(Operation.specs())["speed"]
     try:
         return float(read_value(spec, "speed", Plain(end)))
@@ -143,9 +143,9 @@ def supports(system: System) -> dict[str, Any]:
     """Forces on the supports of the gears as rows over positions and velocities."""
     rows = {}
     for column, name in enumerate(system.names):
-        both = (np.asarray(system.stiffness)[column], np.asarray(system.damping)[column])
-        if np.any(both[0]) and name.startswith(("pinion_", "wheel_")):
-            rows[f"bearing_force_{name}"] = np.concatenate(both)
+        row_pair = (np.asarray(system.stiffness)[column], np.asarray(system.damping)[column])
+        if np.any(row_pair[0]) and name.startswith(("pinion_", "wheel_")):
+            rows[f"bearing_force_{name}"] = np.concatenate(row_pair)
     return rows
 
 
@@ -204,8 +204,8 @@ def speed_sweep(
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
-    >>> found = speed_sweep(case, ("2000 rpm", "2100 rpm"), 2, tables=1)
-    >>> (found.speed * 30 / np.pi).round(6).tolist()
+    >>> response = speed_sweep(case, ("2000 rpm", "2100 rpm"), 2, tables=1)
+    >>> (response.speed * 30 / np.pi).round(6).tolist()
     [2000.0, 2100.0]
     """
     from tribodyn.dynamics import speed_sweep as compute

@@ -66,8 +66,8 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     Parameters
     ----------
     case : Case
-        From :func:`tribodyn.load_case`; its ``[stiffness]`` says how the teeth give way, that of
-        hypoid gears ``gears.line_stiffness``.
+        From :func:`tribodyn.load_case`; its ``[stiffness]`` sets the compliance of the teeth,
+        ``gears.line_stiffness`` that of hypoid gears.
     torque : list of float or str, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
         By default 20 of them up to twice that of the case.
@@ -91,8 +91,8 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
-    >>> found = harris_map(case, torque=["60 N*m", "120 N*m"])
-    >>> bool(found.peak_to_peak_transmission_error[0] < found.peak_to_peak_transmission_error[1])
+    XX harris_map(case, torque=["60 N*m", "120 N*m"])
+    >>> bool(errors.peak_to_peak_transmission_error[0] < errors.peak_to_peak_transmission_error[1])
     True
     """
     from tribodyn.stiffness import transmission_error_over_torque
@@ -162,25 +162,25 @@ def optimize_tip_relief(
     if torque is None:
         torques = [0.5 * torques[0], torques[0]]
     with locate_errors(case):
-        found = compute(
+        optimum = compute(
             case.gear_pair,
             torques,
             amount=_lengths("amount", amount),
             length=_lengths("length", length),
             **{**loaded_settings(case), "digits": _DIGITS, **options},
         )
-    return CaseTipReliefOptimum(**vars(found), studied=case)
+    return CaseTipReliefOptimum(**vars(optimum), studied=case)
 
 
-def _lengths(name: str, given: Any) -> tuple[float, float] | None:
+def _lengths(name: str, ends: Any) -> tuple[float, float] | None:
     """Read the two ends of a range of lengths."""
-    if given is None:
+    if ends is None:
         return None
     spec = dict(Modification.specs())["tip_relief" if name == "amount" else "tip_relief_length"]
     try:
-        low, high = (float(read_value(spec, name, Plain(item))) for item in given)
+        low, high = (float(read_value(spec, name, Plain(item))) for item in ends)
     except (TypeError, ValueError):
-        what, why = f"{name} = {shortened(repr(given))}", "It is a range of lengths"
+        what, why = f"{name} = {shortened(repr(ends))}", "It is a range of lengths"
         raise InputError(what, Argument(name), why, 'Give ("0 um", "40 um")') from None
     except FaultError as fault:
         raise InputError(replace(fault.problem, where=f"argument {name}")) from None
@@ -204,16 +204,16 @@ def comprehensive_stiffness(
         From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
     torque : float, str or list, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
-        That of the case where absent.
+        By default that of the case.
     speed : float, str or list, optional
-        Speeds of that gear: floats in rad/s, or text with a unit. That of the case where absent.
+        Speeds of that gear: floats in rad/s, or text with a unit. By default that of the case.
     kind : str, optional
         ``"approach"``, ``"tangent"``, ``"secant"`` or ``"seed"``; by default ``film.stiffness`` of
         the case. Where that is ``"none"``, the first of these that the film model has.
     steps : int
         Phase intervals of a mesh cycle.
     progress : Progress
-        Told how many films are solved; silent by default.
+        Receives the number of solved films; silent by default.
 
     Returns
     -------
@@ -231,8 +231,8 @@ def comprehensive_stiffness(
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-film").replace({"film.model": "moes"})
-    >>> found = comprehensive_stiffness(case, torque=["50 N*m", "300 N*m"])
-    >>> bool(found.mean_mesh_stiffness[0, 0] < found.mean_mesh_stiffness[1, 0])
+    XX comprehensive_stiffness(case, torque=["50 N*m", "300 N*m"])
+    >>> bool(stiffness.mean_mesh_stiffness[0, 0] < stiffness.mean_mesh_stiffness[1, 0])
     True
     """
     from tribodyn.ehl import FILM_MODELS
@@ -246,7 +246,7 @@ def comprehensive_stiffness(
             case.gear_pair,
             pinion_torque=pinion_torques(case, torque),
             pinion_speed=pinion_speeds(case, speed),
-            kind=kind or next((each for each in kinds if each != "none"), "none"),
+            kind=kind or next((name for name in kinds if name != "none"), "none"),
             steps=steps,
             progress=progress,
             **settings,

@@ -1,4 +1,4 @@
-"""From a case to its structure: the system that vibrates, and its mesh frequency."""
+"""Build the structure of a case: the system that vibrates, and its mesh frequency."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.study.case.case import Case
 
-#: Steps over those at which a single motion is accurate to about 1e-6, and the fewest.
+#: Factor by which a study takes fewer steps than a single motion (accurate to about 1e-6), and the
+#: smallest number of steps.
 _COARSER, _FEWEST = 4, 512
 
 
@@ -26,7 +27,7 @@ def build_system(case: Case, *, progress: Progress = SILENT) -> tuple[System, fl
     case : Case
         From :func:`tribodyn.load_case`.
     progress : Progress
-        Told about the tooth contact; silent by default.
+        Receives the progress of the tooth contact; silent by default.
 
     Returns
     -------
@@ -36,7 +37,7 @@ def build_system(case: Case, *, progress: Progress = SILENT) -> tuple[System, fl
     Raises
     ------
     InputError
-        If the case cannot be computed as it stands.
+        If a value of the case is missing or invalid.
 
     Examples
     --------
@@ -53,6 +54,6 @@ def build_system(case: Case, *, progress: Progress = SILENT) -> tuple[System, fl
 
 
 def study_steps(case: Case, system: System, mesh_frequency: float) -> int:
-    """Steps per mesh cycle of a study of many motions: those of the case, or coarse ones."""
+    """Steps per mesh cycle of a study of many motions: those of the case, or a coarse default."""
     accurate = steps_of(case, system, mesh_frequency)
     return case.solver.steps_per_mesh_cycle or max(_FEWEST, accurate // _COARSER)

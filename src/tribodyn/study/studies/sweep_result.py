@@ -1,4 +1,4 @@
-"""What a sweep holds: the figures of every value, or why there are none."""
+"""Result of a sweep: the figures of each value, or the reason of its failure."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
-#: Figures that tables and reports show, and those of the film where it varies.
+#: Figures in tables and reports, and those added if a key of the film or the oil varies.
 _MOTIONS = (
     "rms_mesh_force",
     "peak_mesh_force",
@@ -39,13 +39,13 @@ _MOTIONS = (
 _FILMS = ("central_film", "minimum_film_ratio", "mean_friction_coefficient")
 #: All of them.
 SHOWN = (*_MOTIONS, *_FILMS)
-#: Reason where a sweep was interrupted before.
+#: Reason for values that an interrupted sweep did not reach.
 _NOT_REACHED = "not computed: the sweep was interrupted before"
 
 
 @dataclass(frozen=True)
 class SweepPoint:
-    """One value of a sweep."""
+    """Value of a sweep with its figures or the reason of its failure."""
 
     values: tuple[Any, ...]  #: of the keys that vary, in SI
     figures: Mapping[str, float] = field(repr=False)  #: the summary
@@ -64,7 +64,7 @@ class Sweep(Record):
     axes : tuple of Axis
         Keys that vary, each with its values.
     points : tuple of SweepPoint
-        What is done, the last key varying fastest; all of the grid unless it was interrupted.
+        Finished points, the last key varying fastest; all of the grid unless it was interrupted.
     """
 
     case: Case
@@ -88,15 +88,17 @@ class Sweep(Record):
 
     @cached_property
     def figures(self) -> tuple[str, ...]:
-        """Names of the summary that occur, in its order."""
-        seen = {name for point in self.points for name in point.figures}
-        return tuple(name for name in SUMMARY if name in seen)
+        """Names of the computed figures, in the order of the summary."""
+        computed_names = {name for point in self.points for name in point.figures}
+        return tuple(name for name in SUMMARY if name in computed_names)
 
     @cached_property
     def failed(self) -> NDArray[np.str_]:
-        """Why a value has no figures, in the shape of the grid; empty where it has."""
-        told = [point.failed for point in self.points]
-        return np.array(told + [_NOT_REACHED] * (prod(self.shape) - len(told))).reshape(self.shape)
+        """Reason of failure of each value, in the shape of the grid; empty if it was computed."""
+        reasons = [point.failed for point in self.points]
+        return np.array(reasons + [_NOT_REACHED] * (prod(self.shape) - len(reasons))).reshape(
+            self.shape
+        )
 
     def __getitem__(self, name: str) -> Array:
         """Return one figure of the summary over the grid, in SI; NaN where ``failed`` says why."""
@@ -120,7 +122,7 @@ class Sweep(Record):
         return f"Sweep({ranges}{done}{f', {failed} failed' if failed else ''})"
 
     def rows(self) -> Iterator[dict[str, Any]]:
-        """Walk over what is done.
+        """Iterate over the finished points.
 
         Yields
         ------
@@ -162,9 +164,9 @@ class Sweep(Record):
 
     def _dimensions(self) -> list[str]:
         short = [axis.name for axis in self.axes]
-        taken = {*short, *self.figures}
-        alone = len(taken) == len(short) + len(self.figures)
-        return short if alone else [axis.key.replace(".", "_") for axis in self.axes]
+        used_names = {*short, *self.figures}
+        unique = len(used_names) == len(short) + len(self.figures)
+        return short if unique else [axis.key.replace(".", "_") for axis in self.axes]
 
     def plot(self, figure: str = "rms_mesh_force", **options: Any) -> Any:
         """Draw one figure of the summary over the keys.
@@ -183,7 +185,7 @@ class Sweep(Record):
         return draw(self, figure=figure, **options)
 
     def to_pandas(self) -> Any:
-        """Return what is done as a table of pandas.
+        """Return the finished points as a pandas table.
 
         Returns
         -------
@@ -223,13 +225,13 @@ class Sweep(Record):
         Parameters
         ----------
         names : sequence of str
-            Figures that are asked for; by default those of forces and motion, and of the film
-            where a key of the film or the oil varies.
+            Requested figures; by default those of forces and motion, and of the film if a key of
+            the film or the oil varies.
 
         Returns
         -------
         list of str
-            Those of them that occur.
+            Those that were computed.
 
         Raises
         ------
@@ -237,13 +239,13 @@ class Sweep(Record):
             If there is no such figure.
         """
         for name in names:
-            self[name]  # tells what there is
+            self[name]  # raises an error that lists the figures
         film = any(axis.key.startswith(("film", "lubricant")) for axis in self.axes)
         usual = (*_MOTIONS, *(_FILMS if film else ()))
         return list(names) or [name for name in usual if name in self.figures]
 
     def to_csv(self) -> str:
-        """Write what is done as comma-separated values in SI.
+        """Write the finished points as comma-separated values in SI.
 
         Returns
         -------
