@@ -91,7 +91,7 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
-    XX harris_map(case, torque=["60 N*m", "120 N*m"])
+    >>> errors = harris_map(case, torque=["60 N*m", "120 N*m"])
     >>> bool(errors.peak_to_peak_transmission_error[0] < errors.peak_to_peak_transmission_error[1])
     True
     """
@@ -231,7 +231,7 @@ def comprehensive_stiffness(
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("fzg-film").replace({"film.model": "moes"})
-    XX comprehensive_stiffness(case, torque=["50 N*m", "300 N*m"])
+    >>> stiffness = comprehensive_stiffness(case, torque=["50 N*m", "300 N*m"])
     >>> bool(stiffness.mean_mesh_stiffness[0, 0] < stiffness.mean_mesh_stiffness[1, 0])
     True
     """

@@ -96,9 +96,8 @@ class Sweep(Record):
     def failed(self) -> NDArray[np.str_]:
         """Reason of failure of each value, in the shape of the grid; empty if it was computed."""
         reasons = [point.failed for point in self.points]
-        return np.array(reasons + [_NOT_REACHED] * (prod(self.shape) - len(reasons))).reshape(
-            self.shape
-        )
+        reasons += [_NOT_REACHED] * (prod(self.shape) - len(reasons))
+        return np.array(reasons).reshape(self.shape)
 
     def __getitem__(self, name: str) -> Array:
         """Return one figure of the summary over the grid, in SI; NaN where ``failed`` says why."""
