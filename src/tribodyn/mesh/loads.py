@@ -15,7 +15,7 @@ from tribodyn.errors import ComputationError, quiet, warn
 from tribodyn.friction import PitchPoint, TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film.film_columns import smallest_film
-from tribodyn.mesh.film.film_lookup import TabledFilm, UntabledError, tabled_film
+from tribodyn.mesh.film.film_lookup import FilmLookup, OutsideTableError, look_up_film
 from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
 from tribodyn.mesh.film.path_film import FilmAt, FormulaFilm, PathFilm, film_of
 from tribodyn.mesh.sharing import LEAST_SHARE, FilmSprings, SharedLoad, Teeth, ToothContact
@@ -43,9 +43,9 @@ def quasi_static_loads(
     progress: Progress,
 ) -> Loads:
     """Share the load among the pairs and find their films."""
-    if (tabled := tabled_film(settings, cycle, teeth, pairs)) is not None:
+    if (tabled := look_up_film(settings, cycle, teeth, pairs)) is not None:
         # What the table cannot settle, films of its own may.
-        with suppress(UntabledError, ComputationError):
+        with suppress(OutsideTableError, ComputationError):
             return _under_load(cycle, teeth, settings, tabled)
     film = film_of(settings, cycle, teeth, pairs, pinion_speed, progress)
     return _under_load(cycle, teeth, settings, film)
@@ -55,7 +55,7 @@ def _under_load(
     cycle: MeshCycle,
     teeth: Teeth,
     settings: ToothContact,
-    film: FormulaFilm | PathFilm | TabledFilm,
+    film: FormulaFilm | PathFilm | FilmLookup,
 ) -> Loads:
     def solve(loads: Array, checked: tuple[int, ...]) -> FilmAt:
         raised = np.maximum(loads, film.least_load)

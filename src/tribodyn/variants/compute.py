@@ -54,7 +54,7 @@ class Job(NamedTuple):
 
     def compute(self, progress: Progress = SILENT) -> Part:
         """Compute the members."""
-        with quiet(), shared_films(lasting=True):
+        with quiet(), shared_films(persistent=True):
             part = _each(partial(KINDS[self.kind].compute, self.case), self.columns, progress)
         names = self.keep or tuple(
             name for name in KINDS[self.kind].figures if name in part.figures

@@ -11,7 +11,7 @@ from tribodyn.errors import InputError
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import phase_grid
 from tribodyn.mesh.cycle import PairsInContact, path_positions
-from tribodyn.mesh.film.film_refinement import Memory, contact_numbers, places_of
+from tribodyn.mesh.film.film_refinement import SolvedContacts, contact_numbers, places_of
 
 
 @pytest.fixture(params=["pinion", "wheel", "high contact ratio"])
@@ -112,7 +112,7 @@ def test_a_contact_that_is_known_is_not_solved_again():
     radius, speed, load = np.array([8e-3, 9e-3]), np.array([3.0, 3.1]), np.array([1e5, 2e5])
     oil = Lubricant(0.082, 880.0, 2.19e-8)
     pairs = PairsInContact(np.array([0.1, 0.2]), radius, speed, oil, 2.2e11, 0.02)
-    zone, memory, solved = np.array([0, 1]), Memory(), []
+    zone, memory, solved = np.array([0, 1]), SolvedContacts(), []
 
     def solve(new):
         solved.append(new.tolist())
@@ -121,10 +121,10 @@ def test_a_contact_that_is_known_is_not_solved_again():
         return places_of(pairs.some(new), zone[new], asked[new], films, np.ones(new.size, bool))
 
     asked = load
-    first = memory.told(pairs, zone, asked, solve)
+    first = memory.films_of(pairs, zone, asked, solve)
     asked = load * [1.0, 1.1]
-    memory.forget_all_but(contact_numbers(pairs, asked))
-    again = memory.told(pairs, zone, asked, solve)
+    memory.retain(contact_numbers(pairs, asked))
+    again = memory.films_of(pairs, zone, asked, solve)
     assert solved == [[0, 1], [1]]
     np.testing.assert_array_equal(again.values[:, 0], first.values[:, 0])
     assert again.solution[0] is first.solution[0]

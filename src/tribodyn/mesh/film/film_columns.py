@@ -37,7 +37,7 @@ def film_columns(
     common_face_width: float = 1.0,
     film_options: Mapping[str, Any] = NO_OPTIONS,
 ) -> dict[str, Array]:
-    """Films of the loaded contacts, as far as the model gives them; every contact on its own.
+    """Films of the loaded contacts, as far as the model gives them; each contact separately.
 
     Parameters
     ----------
@@ -93,36 +93,36 @@ def film_columns(
 
 def as_columns(films: Films, composite_roughness: float) -> dict[str, Array]:
     """Name the films as columns and add their ratio to the roughness."""
-    known = {name: getattr(films, name, None) for name in FILM_COLUMNS}
+    columns = {name: getattr(films, name, None) for name in FILM_COLUMNS}
     thickness = smallest_film(films)
     if thickness is not None and composite_roughness > 0.0:
-        known["film_ratio"] = thickness / composite_roughness
-    return {name: values for name, values in known.items() if values is not None}
+        columns["film_ratio"] = thickness / composite_roughness
+    return {name: values for name, values in columns.items() if values is not None}
 
 
-def friction_columns(told: Array | FrictionParts, film_ratio: Array | None) -> dict[str, Array]:
-    """Friction with the parts that the law tells, or with the load share by the film ratio."""
-    if isinstance(told, FrictionParts):
+def friction_columns(friction: Array | FrictionParts, film_ratio: Array | None) -> dict[str, Array]:
+    """Friction and its parts by the law, or with the load share by the film ratio."""
+    if isinstance(friction, FrictionParts):
         return {
-            "friction_coefficient": told.coefficient,
-            "asperity_friction_coefficient": told.asperities,
-            "film_load_share": told.film_load_share,
+            "friction_coefficient": friction.coefficient,
+            "asperity_friction_coefficient": friction.asperities,
+            "film_load_share": friction.film_load_share,
         }
-    columns = {"friction_coefficient": told}
+    columns = {"friction_coefficient": friction}
     if film_ratio is not None:
-        known = np.isfinite(film_ratio)
-        share = film_load_share(np.where(known, film_ratio, 0.0))
-        columns["film_load_share"] = np.where(known, share, np.nan)
+        finite = np.isfinite(film_ratio)
+        share = film_load_share(np.where(finite, film_ratio, 0.0))
+        columns["film_load_share"] = np.where(finite, share, np.nan)
     return columns
 
 
-#: Load per width over the greatest of the mesh from which a contact counts for what film formulas
-#: and friction laws warn of: pairs that do not touch have a token load, for the sake of a number.
+#: Load per width over the greatest of the mesh from which warnings of film formulas and friction
+#: laws apply to a contact: pairs that do not touch have a token load.
 JUDGED_LOAD = 0.25
 
 
 def judged(load_per_width: Array) -> Mask:
-    """Contacts that carry enough to be judged; of contacts in rows each row by itself."""
+    """Mask of the contacts with enough load for model warnings, row by row for rows of contacts."""
     return np.asarray(load_per_width >= JUDGED_LOAD * load_per_width.max(axis=-1, keepdims=True))
 
 
@@ -154,22 +154,22 @@ def friction_by_law(
 
 
 def smallest_film(films: Films) -> Array | None:
-    """Smallest film known: the minimum, or in its place that in the centre."""
+    """Smallest film of each contact: the minimum film, or else the central film."""
     thin = [film for film in (films.central_film, films.minimum_film) if film is not None]
     return np.asarray(np.min(thin, axis=0)) if thin else None
 
 
-#: How the batch of contacts names the one that failed.
+#: Name of a failed contact in an error of the batch.
 _CONTACT = re.compile(r"contact \[([\d, ]+)\]")
 
 
 @contextmanager
 def film_places(describe: Callable[..., str]) -> Iterator[None]:
-    """Replace the index of a contact in an error by its place."""
+    """Replace the index of a contact in an error by its location."""
 
     def named(problem: Problem) -> Problem:
-        def place(found: re.Match[str]) -> str:
-            return f"contact {describe(*(int(part) for part in found.group(1).split(',')))}"
+        def place(match: re.Match[str]) -> str:
+            return f"contact {describe(*(int(part) for part in match.group(1).split(',')))}"
 
         return replace(problem, what=_CONTACT.sub(place, problem.what))
 

@@ -1,7 +1,7 @@
 """Films of the touching pairs from a table that many operating points share.
 
-Every point takes its films from the table. What is reported as greatest or least, and what stands
-at the pitch point, is solved for the very contact.
+Every operating point interpolates its films in the table. The extremes that a result reports, and
+the film at the pitch point, are solved for the contact itself.
 """
 
 from __future__ import annotations
@@ -39,29 +39,29 @@ from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import SILENT
 from tribodyn.types import Array, Index, Mask
 
-#: What a table holds beside the films: their distance, how sharp the peak of the pressure is and at
-#: which node it lies, and the estimated error of the central film over it.
+#: Columns of a table after the films: their distance, the sharpness of the pressure peak and the
+#: node at which it lies, and the estimated error of the central film over that film.
 _DISTANCE, _DROP, _TIP, _ERROR, _NUMBER = range(len(QUANTITIES), len(QUANTITIES) + 5)
-#: Errors of the logarithms up to which the table is kept; of the compliance, where it is a slope of
-#: the film. That of the approach differs by several percent from node to node of a solution.
+#: Tolerances of the logarithms in the table, and of the compliance where it is a slope of the film.
+#: The compliance of the approach differs by several percent from node to node of a solution.
 _EXACT, _YIELDING = 3e-4, 2e-3
-#: Tables that are kept at most.
+#: Tables in the cache at most.
 _MOST_TABLES = 12
 #: Radius of the contacts of a table [m]: any other one has the same films over their scales.
 _RADIUS = 1e-2
-#: Contacts that are solved at most to find the greatest pressure, and expected pressure over the
-#: greatest one from which on a contact is worth it.
+#: Contacts solved at most to find the greatest pressure, and the ratio of the expected pressure to
+#: the greatest one from which a contact is solved.
 _TRIALS, _WORTH = 7, 0.98
 #: Pressure over the greatest one above which a contact may have the greatest one itself.
 _NEAR = 0.85
-#: Contacts nearer than this [mesh cycles], [nodes] are not both tried.
-_BESIDE, _ASIDE = 0.05, 0.1
-#: Ages nearer than this are one place [mesh cycles].
+#: Of contacts closer together than this [mesh cycles], [nodes] only the first is solved.
+_NEIGHBOUR_AGE, _NEIGHBOUR_TIP = 0.05, 0.1
+#: Ages closer together than this are the same position [mesh cycles].
 _SAME = 1e-6
 
 
-class UntabledError(Exception):
-    """A contact lies where a table has no films."""
+class OutsideTableError(Exception):
+    """Raised for a contact that lies where a table has no films."""
 
 
 @dataclass(eq=False)
@@ -73,41 +73,41 @@ class _Shared:
 
 
 _shared: ContextVar[_Shared | None] = ContextVar("shared_films", default=None)
-#: Tables of a process that computes one chunk of a study after the other.
-_lasting = _Shared()
+#: Tables of a process that computes the chunks of a study one after the other.
+_persistent = _Shared()
 
 
 @contextmanager
-def shared_films(*, lasting: bool = False) -> Iterator[None]:
-    """Let all meshes that are computed inside the block take their solved films from one table.
+def shared_films(*, persistent: bool = False) -> Iterator[None]:
+    """Share one table of solved films among all meshes that are computed inside the block.
 
-    A ``lasting`` one is that of all such blocks: a film depends on its contact alone, so that it
-    does not matter who made the table, and what for.
+    With ``persistent`` the table outlives the block and serves later blocks of the process: a film
+    depends on its contact alone, not on the study for which the table was built.
     """
-    token = _shared.set(_lasting if lasting else _Shared())
+    token = _shared.set(_persistent if persistent else _Shared())
     try:
         yield
     finally:
         _shared.reset(token)
 
 
-def tabled_film(
+def look_up_film(
     settings: ToothContact, cycle: MeshCycle, teeth: Teeth, pairs: PairsInContact
-) -> TabledFilm | None:
-    """Film of a tooth contact by the table that it shares; none where it is to be solved alone."""
+) -> FilmLookup | None:
+    """Film of a tooth contact from the shared table, or None where it has to be solved."""
     table = _table_for(settings, pairs)
     if table is None:
         return None
-    # Of both sides of the pitch point the one after it counts.
+    # The pitch point has two sides: take the one after it.
     pitch = np.flatnonzero(np.abs(pairs.age - pitch_point_age(cycle.contact)) < _SAME)[-1:]
-    return TabledFilm(settings, table, pairs, cycle.in_contact, teeth.least_load, pitch)
+    return FilmLookup(settings, table, pairs, cycle.in_contact, teeth.least_load, pitch)
 
 
 def _table_for(settings: ToothContact, pairs: PairsInContact) -> FilmTable | None:
     shared = _shared.get()
     if shared is None or not FILM_MODELS[settings.film_model].method:
         return None
-    # A law that shears the film asks for its pressure at all nodes, and the printed sum for nodes.
+    # A law that shears the film needs its pressure at all nodes; so does the stiffness "seed".
     if LAWS[settings.friction_law].needs_film or settings.film["stiffness"] == "seed":
         return None
     options = {name: value for name, value in settings.film.items() if name != "positions"}
@@ -126,7 +126,7 @@ def _table_for(settings: ToothContact, pairs: PairsInContact) -> FilmTable | Non
 
 @dataclass(frozen=True, eq=False)
 class _Contacts:
-    """Solves contacts that are given by ``ln M`` and ``ln L``."""
+    """Solver of contacts in terms of ``ln M`` and ``ln L``."""
 
     model: str
     options: dict[str, Any]
@@ -164,17 +164,17 @@ _HIGHEST = 0.68
 
 
 @dataclass(frozen=True, eq=False)
-class TabledFilm:
+class FilmLookup:
     """Films of the contacts of a mesh table as a function of their loads."""
 
     settings: ToothContact
     table: FilmTable
     pairs: PairsInContact
     in_contact: Mask
-    least_load: float  #: load for which the film of a pair is found at least [N/m]
+    least_load: float  #: lower bound of the load for which a film is computed [N/m]
     pitch: Index  #: contact at the pitch point, if there is one
 
-    def solve(self, load_per_width: Array, checked: tuple[int, ...] = ()) -> TabledPath:
+    def solve(self, load_per_width: Array, checked: tuple[int, ...] = ()) -> FilmsFromTable:
         """Films under the loads of a mesh table."""
         loads, pairs, least = load_per_width[self.in_contact], self.pairs, self.least_load
         oil = pairs.lubricant.dynamic_viscosity, pairs.lubricant.pressure_viscosity_coefficient
@@ -183,12 +183,13 @@ class TabledFilm:
         number = np.log(groups.moes_load)
         values = self.table(number, np.log(groups.moes_material))
         if np.any(np.isnan(values)):
-            raise UntabledError
+            raise OutsideTableError
         doubtful = np.zeros((len(QUANTITIES), loads.size), dtype=bool)
-        # It is told where it is solved. The stiffness of the approach differs by several percent
-        # from node to node: of it a study reports that of the pitch point alone, which is solved.
+        # The pressure is certain only where it is solved. The stiffness of the approach differs by
+        # several percent from node to node: a study reports only its value at the pitch point,
+        # which is solved.
         doubtful[PRESSURE] = True
-        return TabledPath(
+        return FilmsFromTable(
             pairs=pairs,
             keeps_distance=self.settings.film["stiffness"] == "approach",
             factors=np.exp(values[:STIFFNESS]),
@@ -201,10 +202,10 @@ class TabledFilm:
 
 
 @dataclass(frozen=True, eq=False)
-class TabledPath(LoadedFilms):
+class FilmsFromTable(LoadedFilms):
     """Films from a table under some loads."""
 
-    path: TabledFilm
+    path: FilmLookup
     values: Array  #: quantities of the table
 
     @property
@@ -213,21 +214,21 @@ class TabledPath(LoadedFilms):
         return np.asarray(np.exp(self.values[_DISTANCE]))
 
     def warn_of_doubt(self) -> None:
-        """Say where the nodes are too few."""
+        """Warn where the film has too few nodes."""
         warn_coarse(self.values[_ERROR], self.path.settings.film["nodes"])
 
     def friction(
         self, contact: TribologicalContact, motion: Any, settings: ToothContact
     ) -> Array | FrictionParts:
-        """Ask the friction law."""
+        """Evaluate the friction law."""
         return friction_by_law(settings.friction_law, contact, settings.friction_options)
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
-        """Solve the contacts that figures are taken from; which of all quantities are known."""
+        """Solve the contacts that results report; also return a mask of the certain quantities."""
         columns: dict[str, Any] = {name: np.array(getattr(films, name)) for name in QUANTITIES}
-        known = ~self.doubtful
+        certain = ~self.doubtful
         least = [int(np.argmin(np.where(self.scored, columns[n], np.inf))) for n in QUANTITIES[:2]]
-        # One call for all of them: threads take their time to begin.
+        # One call for all of them, because starting threads takes time.
         chosen = np.unique([*least, *self.path.pitch, *self._trials(columns["film_pressure"])])
         settings = self.path.settings
         with quiet():
@@ -236,23 +237,27 @@ class TabledPath(LoadedFilms):
             )
         for name, column in columns.items():
             column[chosen] = getattr(solved, name)
-        known[:, chosen] = True
-        return replace(films, **columns), known
+        certain[:, chosen] = True
+        return replace(films, **columns), certain
 
     def _trials(self, pressure: Array) -> list[int]:
-        """Contacts one of which has the greatest pressure, which rises and falls over the nodes."""
-        near = self.scored & (pressure > _NEAR * np.max(pressure, where=self.scored, initial=0.0))
+        """Candidates for the greatest pressure, which oscillates with the position on the nodes."""
+        candidates = self.scored & (
+            pressure > _NEAR * np.max(pressure, where=self.scored, initial=0.0)
+        )
         number, tip = self.values[[_NUMBER, _TIP]]
-        # Over some nodes the ups and downs of the table are as many.
-        even = np.polynomial.Polynomial.fit(number[near], self.values[PRESSURE, near], 1)
-        sharp = float(np.mean(self.values[_DROP, near]))
+        # The oscillations of the table average out over several nodes.
+        even = np.polynomial.Polynomial.fit(
+            number[candidates], self.values[PRESSURE, candidates], 1
+        )
+        sharp = float(np.mean(self.values[_DROP, candidates]))
         high = 0.5 * SWING * sharp * np.cos(2.0 * np.pi * (tip - _HIGHEST))
         scale = pressure / np.exp(self.values[PRESSURE])
-        expected = np.where(near, scale * np.exp(even(number) + high), 0.0)
+        expected = np.where(candidates, scale * np.exp(even(number) + high), 0.0)
         worth, trials = _WORTH * expected.max(), list[int]()
         while len(trials) < _TRIALS and expected.max() > worth:
             best = int(np.argmax(expected))
             trials.append(best)
-            beside = np.abs(self.pairs.age - self.pairs.age[best]) < _BESIDE
-            expected[beside & (np.abs(tip - tip[best]) < _ASIDE)] = 0.0
+            neighbours = np.abs(self.pairs.age - self.pairs.age[best]) < _NEIGHBOUR_AGE
+            expected[neighbours & (np.abs(tip - tip[best]) < _NEIGHBOUR_TIP)] = 0.0
         return trials

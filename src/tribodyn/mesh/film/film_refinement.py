@@ -1,7 +1,7 @@
-"""Adds solved contacts along the path until what lies between them is near enough to a solution.
+"""Adaptive refinement of solved contacts along the path of contact.
 
-Between two solved places the contact in the middle is solved and compared with what was expected
-there. Where both differ, the two halves and their neighbours are looked at in the same way.
+The contact midway between two solved ones is solved and compared with the interpolated value.
+Where they differ, both halves and their neighbours are refined in the same way.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ PRESSURE, STIFFNESS = 2, 3
 ALL = (0, 1, 2, 3)
 #: Compliance over its estimate below which a film counts as rigid: its stiffness has a bound.
 RIGID = 1e-3
-#: Error of a value between the places above which more of them are solved, and what is promised.
+#: Interpolation error above which more contacts are solved, and the error that is guaranteed.
 GOOD, PROMISED = 0.006, 0.02
-#: Difference of logarithms beyond which more is as bad.
+#: Difference of logarithms at which the error saturates.
 _FAR = 20.0
-#: Vertex of a parabola through the greatest pressure and its neighbours, in parts of a node: where
-#: it is found while the tip of a sharp peak moves evenly by a tenth of a node each.
+#: Vertex of a parabola through the greatest pressure and its neighbours, in parts of a node, while
+#: the tip of a sharp peak moves in even steps of a tenth of a node.
 _VERTEX = (0.53, 0.61, 0.655, 0.69, 0.73, 0.77, 0.82, 0.90, 1.03, 1.26, 1.53)
 _EVEN = 0.35 + 0.1 * np.arange(len(_VERTEX))
-#: How far the height of a sharp peak swings while its tip moves from node to node, over how far it
-#: falls to its neighbours.
+#: Variation of the height of a sharp peak while its tip moves from node to node, over its fall to
+#: the neighbouring nodes.
 SWING = 0.25
-#: Places whose peaks tell how sharp one is.
-_BESIDE = 8
-#: Contacts that are solved beside the positions at most.
+#: Number of neighbouring places from which the sharpness of a peak is estimated.
+_NEIGHBOURS = 8
+#: Contacts solved in addition to the positions, at most.
 MOST_ADDED = 800
-#: Ages nearer than this are one place [mesh cycles].
+#: Ages closer together than this are the same place [mesh cycles].
 _SAME = 1e-8
-#: Compliance below which a film is nearly rigid, and ratio of two of them that is steep.
+#: Compliance below which a film is nearly rigid, and ratio of two compliances that is steep.
 _NEARLY_RIGID, _SOARS = 5.0 * RIGID, 1.4
-#: Times that the contact with the greatest pressure or the least film is looked for anew.
+#: Iterations at most of the search for the greatest pressure and the least films.
 _EXTREMES = 6
 
 
@@ -65,27 +65,27 @@ class Places(NamedTuple):
     values: Array
     peak_place: Array  #: of the tip of the greatest pressure, in nodes
     peak_drop: Array
-    yielding: Mask  #: whether the stiffness of the film is taken from here too
+    yielding: Mask  #: whether the film stiffness is interpolated from this place too
     solution: Solutions  #: of each of them
     distance: Array  #: logarithm of the distance that the film keeps, over the scale of films
 
     @property
-    def yielding_ones(self) -> Places:
-        """Those from which the stiffness of the film is taken."""
+    def with_stiffness(self) -> Places:
+        """Places from which the film stiffness is interpolated."""
         return self.some(self.yielding)
 
     def some(self, which: Mask | slice) -> Places:
-        """A part of them."""
+        """Return a subset of the places."""
         return Places(**{name: getattr(self, name)[..., which] for name in self._fields})
 
     def joined(self, others: Places) -> Places:
-        """Both together."""
+        """Return the places followed by others."""
         return Places(*(np.concatenate(pair, axis=-1) for pair in zip(self, others, strict=True)))
 
 
 @dataclass(eq=False)
-class Memory:
-    """What the solutions before have shown, so that the next ones begin with it."""
+class SolvedContacts:
+    """Cache of solved contacts and refinement decisions, from which the next solution starts."""
 
     contacts: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     yielding: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))
@@ -93,18 +93,18 @@ class Memory:
     solved: dict[ContactNumbers, Places] = field(default_factory=dict)  #: one contact each
 
     def add(self, contacts: Index, yielding: Mask) -> None:
-        """Keep contacts, and whether the stiffness of their films is needed."""
+        """Store contacts, and whether the stiffness of their films is needed."""
         self.contacts = np.concatenate([self.contacts, contacts])
         self.yielding = np.concatenate([self.yielding, yielding])
 
-    def forget_all_but(self, numbers: Iterable[ContactNumbers]) -> None:
-        """Keep the solutions of these contacts: most pairs that share the load have another."""
+    def retain(self, numbers: Iterable[ContactNumbers]) -> None:
+        """Drop all solutions but those of these contacts: most shared loads change every pass."""
         self.solved = {each: self.solved[each] for each in numbers if each in self.solved}
 
-    def told(
+    def films_of(
         self, pairs: PairsInContact, zone: Index, load: Array, solve: Callable[[Index], Places]
     ) -> Places:
-        """Solved films of some pairs; what is not known yet is solved and kept."""
+        """Return solved films of some pairs; solve and store those that are not cached."""
         numbers = contact_numbers(pairs, load)
         new = np.array([i for i, each in enumerate(numbers) if each not in self.solved], dtype=int)
         if new.size:
@@ -112,13 +112,13 @@ class Memory:
             for column, index in enumerate(new):
                 self.solved[numbers[index]] = places.some(slice(column, column + 1))
         parts = zip(*(self.solved[each] for each in numbers), strict=True)
-        known = Places(*(np.concatenate(columns, axis=-1) for columns in parts))
+        solved_places = Places(*(np.concatenate(columns, axis=-1) for columns in parts))
         every = np.ones(zone.size, dtype=bool)
-        return known._replace(age=pairs.age, zone=zone, yielding=every)
+        return solved_places._replace(age=pairs.age, zone=zone, yielding=every)
 
 
 def contact_numbers(pairs: PairsInContact, load: Array) -> list[ContactNumbers]:
-    """What the film of each pair depends on."""
+    """Radius, speed and load of each pair: the key of its solved film."""
     numbers = pairs.equivalent_radius, pairs.entrainment_speed, load
     return list(zip(*(column.tolist() for column in numbers), strict=True))
 
@@ -135,45 +135,47 @@ def places_of(
     tip, drop = np.array(peaks).reshape(-1, 2).T
     solution = np.empty(zone.size, dtype=object)
     solution[:] = films.solutions
-    radius, speed, found = pairs.equivalent_radius, pairs.entrainment_speed, np.stack(values)
+    radius, speed, logarithms = pairs.equivalent_radius, pairs.entrainment_speed, np.stack(values)
     where = pairs.age, zone, radius, speed, load
     distance = np.log(np.asarray(films.film_distance) / scales["central_film"])
-    return Places(*where, found, tip, drop, yielding, solution, distance)
+    return Places(*where, logarithms, tip, drop, yielding, solution, distance)
 
 
 def _peak(pressure: Array) -> tuple[float, float]:
-    """Place of the tip of the pressure, in nodes, and how far it falls to its neighbours."""
+    """Position of the pressure peak, in nodes, and its relative fall to the neighbouring nodes."""
     node = int(np.clip(np.argmax(pressure), 1, pressure.size - 2))
     before, most, after = pressure[node - 1 : node + 2]
     bend = 2.0 * most - before - after
     vertex = node + (0.5 * (after - before) / bend if bend > 0.0 else 0.0)
-    whole = np.floor(vertex - _VERTEX[0])
-    place = whole + np.interp(vertex - whole, _VERTEX, _EVEN)
+    node_below = np.floor(vertex - _VERTEX[0])
+    place = node_below + np.interp(vertex - node_below, _VERTEX, _EVEN)
     return float(place), float(bend / (2.0 * most))
 
 
 def between(
-    positions: PathPositions, memory: Memory, places: Places, age: Array, zone: Index
+    positions: PathPositions, memory: SolvedContacts, places: Places, age: Array, zone: Index
 ) -> Array:
     """Values (4, m) at other ages."""
     count = positions.age.size
     base = places.values[:, :count].T
-    found = positions.interpolate(base, age, zone).T
-    rest = places.values - positions.interpolate(base, places.age, places.zone).T
+    values = positions.interpolate(base, age, zone).T
+    correction = places.values - positions.interpolate(base, places.age, places.zone).T
     added = np.arange(places.age.size) >= count
     for number, quantity in np.ndindex(len(positions.counts), len(QUANTITIES)):
-        here, near = zone == number, places.zone == number
+        requested, in_zone = zone == number, places.zone == number
         if quantity == STIFFNESS:
-            # Where only the pressure was in doubt the stiffness is left as it was.
-            near &= ~added | places.yielding
+            # Places that were added for the pressure alone do not change the stiffness.
+            in_zone &= ~added | places.yielding
         if memory.curves.get((number, quantity), False):
-            found[quantity, here] = _curve(
-                places.age[near], places.values[quantity, near], age[here]
+            values[quantity, requested] = _curve(
+                places.age[in_zone], places.values[quantity, in_zone], age[requested]
             )
-        elif (near & added).any():
-            order = np.flatnonzero(near)[np.argsort(places.age[near])]
-            found[quantity, here] += np.interp(age[here], places.age[order], rest[quantity, order])
-    return found
+        elif (in_zone & added).any():
+            order = np.flatnonzero(in_zone)[np.argsort(places.age[in_zone])]
+            values[quantity, requested] += np.interp(
+                age[requested], places.age[order], correction[quantity, order]
+            )
+    return values
 
 
 def _curve(knots: Array, values: Array, age: Array) -> Array:
@@ -186,22 +188,22 @@ def joined_over_age(
     positions: PathPositions, places: Places, values: Array, age: Array, zone: int, *, curve: bool
 ) -> Array:
     """Values (m, ...) of one zone at other ages, from those (places, ...) of all places in it."""
-    here = np.flatnonzero(places.zone == zone)
-    base, added = here[here < positions.age.size], here[here >= positions.age.size]
-    known = values[base - base[0]]
+    in_zone = np.flatnonzero(places.zone == zone)
+    base, added = in_zone[in_zone < positions.age.size], in_zone[in_zone >= positions.age.size]
+    base_values = values[base - base[0]]
     if not added.size:
-        return np.tensordot(_polynomial(positions, base, age), known, axes=(1, 0))
-    order = here[np.argsort(places.age[here], kind="stable")]
+        return np.tensordot(_polynomial(positions, base, age), base_values, axes=(1, 0))
+    order = in_zone[np.argsort(places.age[in_zone], kind="stable")]
     at, first = np.unique(places.age[order], return_index=True)
-    sorted_values = values[np.searchsorted(here, order[first])]
+    sorted_values = values[np.searchsorted(in_zone, order[first])]
     if curve:
         return _curve(at, sorted_values, age)
-    smooth = np.tensordot(_polynomial(positions, base, at), known, axes=(1, 0))
-    rest = sorted_values - smooth
-    flat = rest.reshape(at.size, -1)
+    smooth = np.tensordot(_polynomial(positions, base, at), base_values, axes=(1, 0))
+    correction = sorted_values - smooth
+    flat = correction.reshape(at.size, -1)
     remainder = np.stack([np.interp(age, at, column) for column in flat.T], axis=1)
-    whole = np.tensordot(_polynomial(positions, base, age), known, axes=(1, 0))
-    return np.asarray(whole + remainder.reshape(age.size, *rest.shape[1:]))
+    polynomial = np.tensordot(_polynomial(positions, base, age), base_values, axes=(1, 0))
+    return np.asarray(polynomial + remainder.reshape(age.size, *correction.shape[1:]))
 
 
 def _polynomial(positions: PathPositions, base: Index, age: Array) -> Array:
@@ -209,7 +211,7 @@ def _polynomial(positions: PathPositions, base: Index, age: Array) -> Array:
 
 
 def deviation(expected: Array, solved: Array) -> Array:
-    """Relative error of each quantity (4, m); films that do not yield all count as rigid."""
+    """Relative error of each quantity (4, m); compliances below ``RIGID`` count as ``RIGID``."""
     error = np.abs(np.expm1(np.clip(expected - solved, -_FAR, _FAR)))
     yielding, solved_yielding = (np.maximum(v[STIFFNESS], RIGID) for v in (expected, solved))
     error[STIFFNESS] = np.abs(solved_yielding / yielding - 1.0)
@@ -226,7 +228,7 @@ class PathLoads(NamedTuple):
 
 @dataclass(frozen=True)
 class _Interval:
-    """Ages of one zone between two solved places, and the errors found around it."""
+    """Ages of one zone between two solved places, and the errors around it."""
 
     zone: int
     start: float
@@ -242,7 +244,7 @@ class Refinement:
     pairs: PairsInContact  #: contacts of the mesh table
     zone: Index  #: zone of each of them
     loads: PathLoads
-    memory: Memory
+    memory: SolvedContacts
     places: Places
     solve: Callable[[Index], Places]
 
@@ -255,7 +257,7 @@ class Refinement:
         return between(self.positions, self.memory, self.places, age, zone)
 
     def refine(self, quantities: tuple[int, ...]) -> None:
-        """Add contacts until these quantities are good everywhere, or there are too many."""
+        """Solve more contacts until these quantities are accurate or the limit is reached."""
         intervals, first = self._between_places(), True
         while intervals:
             middles = [self._middle(interval) for interval in intervals]
@@ -279,7 +281,7 @@ class Refinement:
             intervals = self._halves(pairs, errors, opened, PRESSURE in quantities)
 
     def solve_extremes(self) -> None:
-        """Solve the contacts with the least films and the greatest pressure themselves."""
+        """Solve the very contacts that have the least films and the greatest pressure."""
         every = np.arange(self.zone.size)
         scales = self.pairs.scales(self.loads.of_contacts)
         for _ in range(_EXTREMES):
@@ -287,9 +289,9 @@ class Refinement:
             wanted = set()
             for quantity, sign in ((0, -1.0), (1, -1.0), (PRESSURE, 1.0)):
                 size = sign * scales[QUANTITIES[quantity]] * np.exp(values[quantity])
-                known = self.loads.scored & ~self.doubtful[quantity]
-                if known.any():
-                    wanted.add(int(np.argmax(np.where(known, size, -np.inf))))
+                eligible = self.loads.scored & ~self.doubtful[quantity]
+                if eligible.any():
+                    wanted.add(int(np.argmax(np.where(eligible, size, -np.inf))))
             new = np.array([contact for contact in wanted if not self._is_solved(contact)])
             if not new.size:
                 return
@@ -302,16 +304,16 @@ class Refinement:
 
     def _is_solved(self, contact: int) -> bool:
         same_zone = self.places.zone == self.zone[contact]
-        near = np.abs(self.places.age - self.pairs.age[contact]) < _SAME
-        return bool((same_zone & near).any())
+        same_age = np.abs(self.places.age - self.pairs.age[contact]) < _SAME
+        return bool((same_zone & same_age).any())
 
     def _between_places(self) -> list[_Interval]:
-        found = []
+        intervals = []
         for zone in range(len(self.positions.counts)):
             ages = np.unique(self.places.age[self.places.zone == zone])
-            nothing = np.zeros(len(QUANTITIES))
-            found += [_Interval(zone, float(a), float(b), nothing) for a, b in pairwise(ages)]
-        return found
+            no_error = np.zeros(len(QUANTITIES))
+            intervals += [_Interval(zone, float(a), float(b), no_error) for a, b in pairwise(ages)]
+        return intervals
 
     def _inside(self, interval: _Interval) -> Index:
         age = self.pairs.age
@@ -327,24 +329,24 @@ class Refinement:
         return int(inside[np.argmin(np.abs(self.pairs.age[inside] - middle))])
 
     def _choose_curves(self, contacts: Index, solved: Places, errors: Array) -> None:
-        """Leave the polynomial of a zone where a curve through its positions is nearer."""
-        known = self.memory.curves
+        """Replace the polynomial of a zone by a monotone curve where that is more accurate."""
+        curves = self.memory.curves
         for zone in np.unique(self.zone[contacts]):
-            here = self.zone[contacts] == zone
+            in_zone = self.zone[contacts] == zone
             for quantity in range(len(QUANTITIES)):
-                worst = float(errors[quantity, here].max())
-                if worst <= GOOD or known.get((int(zone), quantity), False):
+                worst = float(errors[quantity, in_zone].max())
+                if worst <= GOOD or curves.get((int(zone), quantity), False):
                     continue
                 trial = with_curve(self.memory, int(zone), quantity)
-                age = self.pairs.age[contacts[here]]
+                age = self.pairs.age[contacts[in_zone]]
                 of_curve = between(
-                    self.positions, trial, self.places, age, self.zone[contacts[here]]
+                    self.positions, trial, self.places, age, self.zone[contacts[in_zone]]
                 )
-                error = deviation(of_curve, solved.values[:, here])[quantity]
-                known[int(zone), quantity] = bool(error.max() < worst)
+                error = deviation(of_curve, solved.values[:, in_zone])[quantity]
+                curves[int(zone), quantity] = bool(error.max() < worst)
 
     def _opened(self, intervals: list[_Interval], errors: Array) -> Mask:
-        """Intervals with an error, and those beside them."""
+        """Mask of the intervals with an error and of their neighbours."""
         bad = np.asarray((errors > GOOD).any(axis=0))
         opened = np.array(bad)
         for left in range(len(intervals) - 1):
@@ -361,29 +363,29 @@ class Refinement:
         opened: Mask,
         spikes: bool,
     ) -> list[_Interval]:
-        found = []
+        halves = []
         for number, (interval, contact) in enumerate(pairs):
             age = float(self.pairs.age[contact])
             for start, end in ((interval.start, age), (age, interval.end)):
                 half = _Interval(interval.zone, start, end, errors[:, number])
                 uneven = spikes and self._passes_nodes(half)
                 if opened[number] or uneven or self._turns_rigid(half):
-                    found.append(half)
-        return found
+                    halves.append(half)
+        return halves
 
     def _passes_nodes(self, interval: _Interval) -> bool:
-        """Whether a sharp peak moves so far on the nodes that its height is uneven in between."""
+        """Whether a sharp peak moves so far over the nodes that its height oscillates."""
         ends = self._ends(interval)
         tips = self.places.peak_place[ends]
-        # How far a peak falls hangs on where it lies between the nodes: those beside tell more.
+        # The fall of a peak depends on its position between the nodes, so use several neighbours.
         same = np.flatnonzero(self.places.zone == interval.zone)
-        apart = np.abs(self.places.age[same] - 0.5 * (interval.start + interval.end))
-        drop = self.places.peak_drop[same[np.argsort(apart)[:_BESIDE]]].max()
+        distance = np.abs(self.places.age[same] - 0.5 * (interval.start + interval.end))
+        drop = self.places.peak_drop[same[np.argsort(distance)[:_NEIGHBOURS]]].max()
         turn = np.pi * min(abs(tips[1] - tips[0]), 1.0)
         return bool(SWING * drop * np.sin(0.5 * turn) ** 2 > 0.5 * PROMISED)
 
     def _turns_rigid(self, interval: _Interval) -> bool:
-        """Whether the film turns rigid between both ends, so that its stiffness soars."""
+        """Whether the film turns rigid between both ends, so that its stiffness rises steeply."""
         least, most = np.sort(
             np.maximum(self.places.values[STIFFNESS, self._ends(interval)], RIGID)
         )
@@ -398,13 +400,13 @@ class Refinement:
         ]
 
     def _doubt(self, intervals: list[_Interval], spikes: bool) -> None:
-        """Mark the contacts between places that are not near enough to each other."""
+        """Mark the contacts between places that are too far apart as doubtful."""
         for interval in intervals:
             bad = interval.error > PROMISED
             bad[PRESSURE] |= spikes and self._passes_nodes(interval)
             self.doubtful[np.ix_(bad, self._inside(interval))] = True
 
 
-def with_curve(memory: Memory, zone: int, quantity: int) -> Memory:
-    """The same memory with a curve in one zone."""
+def with_curve(memory: SolvedContacts, zone: int, quantity: int) -> SolvedContacts:
+    """Return a copy of the cache with a monotone curve in one zone."""
     return replace(memory, curves={**memory.curves, (zone, quantity): True})

@@ -1,9 +1,9 @@
-"""The oil film of the touching pairs: by a formula everywhere, or solved at places on the path.
+"""Oil film of the touching pairs: by a formula everywhere, or solved at positions on the path.
 
-A solved film is known at some positions of the path of contact under the load that they carry.
-What lies between them, and what a slightly other load would do, is told by the ratio of the
-solution to a formula that covers all regimes: the ratio hardly changes along the path, while the
-formula follows every change of load, radius and speed.
+A numerical film is solved at some positions of the path of contact under the load that they carry.
+Between them, and for slightly different loads, the ratio of the solution to a formula that covers
+all regimes is interpolated: it hardly changes along the path, while the formula follows every
+change of load, radius and speed.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ from tribodyn.mesh.film.film_refinement import (
     QUANTITIES,
     RIGID,
     STIFFNESS,
-    Memory,
     PathLoads,
     Places,
     Refinement,
+    SolvedContacts,
     contact_numbers,
     joined_over_age,
     places_of,
@@ -59,13 +59,13 @@ from tribodyn.types import Array, Index, Mask
 #: Coefficients, with their parts where the law has them.
 Friction = Array | FrictionParts
 
-#: Distance from an event that tells its two sides apart [mesh cycles].
+#: Distance from an event that separates its two sides [mesh cycles].
 _BESIDE = 1e-9
 #: Sliding speed up to which friction is about linear in it, for any oil under pressure [m/s].
 _SLOW = 1e-4
 #: Samples for each unit of asinh(v/_SLOW), and the least number of them.
 _DENSITY, _LEAST = 4.0, 8
-#: Sliding speed over entrainment speed, below the 2 at which one surface stands still.
+#: Greatest sliding over entrainment speed, below the 2 at which one surface is at rest.
 _MOST_SLIDING = 1.99
 
 
@@ -84,37 +84,37 @@ class FilmAt(Protocol):
         """Part of the contacts whose film does not fall with the load."""
 
     def warn_of_doubt(self) -> None:
-        """Say where quantities are in doubt."""
+        """Warn where quantities are inaccurate."""
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
-        """Films as they are reported under these loads, and which quantities of them are known."""
+        """Films as they are reported under these loads, and a mask of their certain quantities."""
 
     def friction(
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
     ) -> Friction:
-        """Friction of every pair in contact by the law of some settings, in parts if it has any."""
+        """Friction of every pair in contact by the law of the settings, with its parts if any."""
 
 
 @dataclass(frozen=True, eq=False)
 class FormulaFilm:
-    """The film by a formula, which needs no solution."""
+    """Film by a formula, which needs no numerical solution."""
 
     settings: ToothContact
     pairs: PairsInContact
-    #: Load for which the film of a pair is found at least; several where contacts are in rows.
+    #: Lower bound of the load for which a film is computed; one for each row of contacts.
     least_load: Array | float
 
     keeps_distance = False
     rigid_share = 0.0
 
     def solve(self, loads: Array, checked: tuple[int, ...] = ()) -> FilmAt:
-        """Answer with itself: nothing has to be solved."""
+        """Return the film itself: a formula needs no solution."""
         return self
 
     def __call__(self, load_per_width: Array) -> Films:
         """Films of all contacts of the mesh table."""
         load, model = np.maximum(load_per_width, self.least_load), self.settings.film_model
-        if load.ndim > 1:  # several operating points, of which each is asked again by itself
+        if load.ndim > 1:  # several operating points: the caller repeats each for its warnings
             return self.pairs.films(model, load, **self.settings.film)
         judge = np.flatnonzero(judged(load))
         return warn_of_loaded(
@@ -123,7 +123,7 @@ class FormulaFilm:
         )
 
     def warn_of_doubt(self) -> None:
-        """Say nothing: a formula is what it is."""
+        """Do nothing: a formula has no discretisation error."""
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
         """Report every film."""
@@ -132,7 +132,7 @@ class FormulaFilm:
     def friction(
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
     ) -> Friction:
-        """Ask the friction law."""
+        """Evaluate the friction law."""
         return friction_by_law(settings.friction_law, contact, settings.friction_options)
 
 
@@ -143,7 +143,7 @@ class PathFilm:
     settings: ToothContact
     grid: PhaseGrid
     in_contact: Mask
-    least_load: float  #: load for which the film of a pair is found at least [N/m]
+    least_load: float  #: lower bound of the load for which a film is computed [N/m]
     progress: Progress
     places: PathPositions  #: positions at which the film is solved
     first_angle: float  #: roll angle of the driving gear where a pair enters [rad]
@@ -151,10 +151,10 @@ class PathFilm:
     solved: PairsInContact  #: the pair at these positions
     pairs: PairsInContact  #: contacts of the mesh table
     zone: Index  #: zone of each contact of the mesh table
-    memory: Memory = field(default_factory=Memory)
+    memory: SolvedContacts = field(default_factory=SolvedContacts)
 
     def _loads(self, load_per_width: Array) -> PathLoads:
-        """Read the loads at the positions from those of a mesh table."""
+        """Interpolate the loads at the positions from those of a mesh table."""
         age, least = self.places.sided_age, self.least_load
         over_age = PhaseFunction(self.grid, load_per_width)(age)
         at_places = over_age[np.arange(age.size), np.floor(age).astype(int)]
@@ -162,25 +162,25 @@ class PathFilm:
         return PathLoads(np.maximum(at_places, least), of_contacts, of_contacts > least)
 
     def solve(self, load_per_width: Array, checked: tuple[int, ...] = ()) -> FilmAt:
-        """Solve the film at the positions, and beside them where checked quantities need it."""
+        """Solve the film at the positions, and between them where checked quantities need it."""
         loads = self._loads(load_per_width)
-        count, known = self.places.age.size, self.memory
+        count, cache = self.places.age.size, self.memory
         # A pair that carries the whole load alone carries it in every pass.
-        known.forget_all_but(
+        cache.retain(
             contact_numbers(self.solved, loads.at_positions)
             + contact_numbers(self.pairs, loads.of_contacts)
         )
-        # A pass that checks no pressure does without the places that only the pressure needs.
-        again = known.contacts if PRESSURE in checked else known.contacts[known.yielding]
+        # A pass that does not check the pressure leaves out places that only the pressure needs.
+        again = cache.contacts if PRESSURE in checked else cache.contacts[cache.yielding]
         first = self._solve(
             self.solved.joined(self.pairs.some(again)),
             np.concatenate([self.places.zone, self.zone[again]]),
             np.concatenate([loads.at_positions, loads.of_contacts[again]]),
         )
-        yielding = known.yielding if PRESSURE in checked else np.ones(again.size, dtype=bool)
+        yielding = cache.yielding if PRESSURE in checked else np.ones(again.size, dtype=bool)
         first.yielding[count:] = yielding
         more = partial(self._solve_more, loads)
-        refinement = Refinement(self.places, self.pairs, self.zone, loads, known, first, more)
+        refinement = Refinement(self.places, self.pairs, self.zone, loads, cache, first, more)
         if checked:
             refinement.refine(checked)
         if PRESSURE in checked:
@@ -200,7 +200,7 @@ class PathFilm:
     def _solve_more(self, loads: PathLoads, contacts: Index) -> Places:
         pairs, zone = self.pairs.some(contacts), self.zone[contacts]
         with quiet("seed-film-stiffness"):
-            # The positions have said it already.
+            # The positions have already caused this warning.
             return self._solve(pairs, zone, loads.of_contacts[contacts])
 
     def _solve(self, pairs: PairsInContact, zone: Index, loads: Array) -> Places:
@@ -213,12 +213,12 @@ class PathFilm:
                 )
             return places_of(some, zone[new], load, films, np.ones(new.size, dtype=bool))
 
-        return self.memory.told(pairs, zone, loads, solve)
+        return self.memory.films_of(pairs, zone, loads, solve)
 
 
 @dataclass(frozen=True, eq=False)
 class LoadedFilms:
-    """Films of all contacts under solved loads; their scales tell what other loads would do."""
+    """Films of all contacts under solved loads, scaled by a formula to other loads."""
 
     pairs: PairsInContact  #: contacts of the mesh table
     keeps_distance: bool  #: whether each film is a spring about the distance that it keeps
@@ -234,7 +234,7 @@ class LoadedFilms:
 
     @property
     def scored(self) -> Mask:
-        """Contacts that carry enough for a film of their own."""
+        """Mask of the contacts whose load exceeds the least load."""
         return self.loads.scored
 
     @property
@@ -262,13 +262,13 @@ class LoadedFilms:
         return Films(central, minimum, pressure, film_stiffness, film_distance=distance)
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
-        """Films as they are reported, and which quantities of them are known."""
+        """Films as they are reported, and a mask of their certain quantities."""
         return films, ~self.doubtful
 
 
 @dataclass(frozen=True, eq=False)
 class SolvedPath(LoadedFilms):
-    """Films solved along the path of contact; called with loads it gives those of all contacts."""
+    """Films solved along the path of contact; a call returns those of all contacts under loads."""
 
     path: PathFilm  #: positions and contacts
     places: Places  #: solved contacts: the positions first, then those that were added
@@ -276,16 +276,18 @@ class SolvedPath(LoadedFilms):
     @cached_property
     def distance_factors(self) -> Array:
         """Distance under the solved loads, over the scale of films."""
-        path, zones, places = self.path, self.path.zone, self.places.yielding_ones
+        path, zones, places = self.path, self.path.zone, self.places.with_stiffness
         factors = np.empty(zones.size)
         for zone in range(len(path.places.counts)):
-            here, curve = zones == zone, path.memory.curves.get((zone, STIFFNESS), False)
-            known, age = places.distance[places.zone == zone], path.pairs.age[here]
-            factors[here] = joined_over_age(path.places, places, known, age, zone, curve=curve)
+            in_zone, curve = zones == zone, path.memory.curves.get((zone, STIFFNESS), False)
+            distances, age = places.distance[places.zone == zone], path.pairs.age[in_zone]
+            factors[in_zone] = joined_over_age(
+                path.places, places, distances, age, zone, curve=curve
+            )
         return np.asarray(np.exp(factors))
 
     def warn_of_doubt(self) -> None:
-        """Say at how many contacts which quantities are not told."""
+        """Warn of the quantities that are left out, and at how many contacts."""
         doubtful = self.doubtful & self.scored
         count = int(doubtful.any(axis=0).sum())
         if not count:
@@ -297,9 +299,9 @@ class SolvedPath(LoadedFilms):
         warn(
             "film-positions",
             f"at {count} of {int(self.scored.sum())} contacts of the mesh cycle the "
-            f"{', '.join(names)} is not told, because it may be more than {100.0 * PROMISED:g} % "
-            "from a solution there: it changes so much along the path of contact that "
-            f"{self.places.age.size} solved contacts are too few."
+            f"{', '.join(names)} is left out, because it may deviate by more than "
+            f"{100.0 * PROMISED:g} % from a solution: it changes so much along the path of contact "
+            f"that {self.places.age.size} solved contacts are too few."
             f"{more if positions < MOST else ''}",
             stacklevel=6,
         )
@@ -307,7 +309,7 @@ class SolvedPath(LoadedFilms):
     def friction(
         self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
     ) -> Friction:
-        """Friction of every pair; a law that shears the film knows it at solved places first."""
+        """Friction of every pair; a law that shears the film is evaluated at the solved places."""
         if LAWS[settings.friction_law].needs_film:
             return film_friction(self, motion, settings)
         return friction_by_law(settings.friction_law, contact, settings.friction_options)
@@ -321,7 +323,7 @@ def film_of(
     pinion_speed: float,
     progress: Progress,
 ) -> FormulaFilm | PathFilm:
-    """Film of the settings: a formula, or solutions at positions along the path of contact."""
+    """Return the film by the settings: a formula, or solutions along the path of contact."""
     if not FILM_MODELS[settings.film_model].method:
         return FormulaFilm(settings, pairs, teeth.least_load)
     contact, side = cycle.contact, cycle.side
@@ -347,17 +349,17 @@ def film_of(
         angle_per_cycle=float((angle[-1] - angle[0]) / (places.age[-1] - places.age[0])),
         solved=solved,
         pairs=pairs,
-        # On an event the side tells the zone; bends lie between the knots.
+        # At an event the side decides the zone; bends lie between the grid points.
         zone=places.zone_of(pairs.age + np.clip(side - pairs.age, -_BESIDE, _BESIDE)),
     )
 
 
 def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact) -> Friction:
-    """Friction of the film: asked at every solved place, for a range of sliding speeds.
+    """Friction of the sheared film, from its values at the solved places over the sliding speed.
 
-    A contact between two places takes its own sliding speed, so that the steep reversal at the
-    pitch point is followed although no place is near it. Over the path friction is joined as the
-    pressure is.
+    A contact between two places uses its actual sliding speed, so that the steep reversal at the
+    pitch point is resolved although no place lies close to it. Along the path friction is
+    interpolated like the pressure.
     """
     path, places = solved.path, solved.places
     columns: list[Array] = [np.zeros(path.zone.size) for _ in range(3)]
@@ -367,31 +369,31 @@ def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact
     for zone, sign in product(
         range(len(path.places.counts)), (0.0,) if first == second else (1, -1)
     ):
-        here = (path.zone == zone) & (motion.sliding_speed * sign >= 0.0)
-        if not np.any(here):
+        in_zone = (path.zone == zone) & (motion.sliding_speed * sign >= 0.0)
+        if not np.any(in_zone):
             continue
-        sliding = np.abs(motion.sliding_speed[here])
+        sliding = np.abs(motion.sliding_speed[in_zone])
         speeds = _speeds(sliding)
         chosen = np.flatnonzero(places.zone == zone)
-        told = _asked(solved, settings, chosen, speeds, np.copysign(1.0, sign))
+        friction = _friction_over_speed(solved, settings, chosen, speeds, np.copysign(1.0, sign))
         over_speed = lobatto_polynomial(np.arcsinh(speeds / _SLOW), np.arcsinh(sliding / _SLOW))
         curve = path.memory.curves.get((zone, PRESSURE), False)
-        shared = isinstance(told, FrictionParts)
+        shared = isinstance(friction, FrictionParts)
         parts = (
-            (told.film, told.asperities, told.film_load_share)
-            if isinstance(told, FrictionParts)
-            else (told,)
+            (friction.film, friction.asperities, friction.film_load_share)
+            if isinstance(friction, FrictionParts)
+            else (friction,)
         )
         for column, values in zip(columns, parts, strict=False):
             along = joined_over_age(
                 path.places,
                 places,
                 values.reshape(-1, speeds.size),
-                path.pairs.age[here],
+                path.pairs.age[in_zone],
                 zone,
                 curve=curve,
             )
-            column[here] = np.maximum(np.einsum("ks,ks->k", along, over_speed), 0.0)
+            column[in_zone] = np.maximum(np.einsum("ks,ks->k", along, over_speed), 0.0)
     return FrictionParts(*columns) if shared else columns[0]
 
 
@@ -403,10 +405,10 @@ def _speeds(sliding: Array) -> Array:
     return np.asarray(_SLOW * np.sinh(inner))
 
 
-def _asked(
+def _friction_over_speed(
     solved: SolvedPath, settings: ToothContact, chosen: Index, speeds: Array, sign: float
 ) -> Friction:
-    """Friction of some of the solved places, each with all speeds of one sign in turn."""
+    """Friction of some solved places (place by speed), at all speeds of one sign."""
     places = solved.places
     judge = np.flatnonzero(judged(places.load_per_width))
     loaded = chosen[np.isin(chosen, judge)]
@@ -423,7 +425,7 @@ def _asked(
 def _of_places(
     solved: SolvedPath, settings: ToothContact, index: Index, sliding: Array
 ) -> Friction:
-    """Friction of solved places, each with a sliding speed of its own."""
+    """Friction of solved places, one sliding speed for each."""
     places = solved.places
     load, radius = places.load_per_width[index], places.equivalent_radius[index]
     entrainment = places.entrainment_speed[index]

@@ -238,7 +238,7 @@ def _pickled(pending_at: Callable[..., PendingRun]) -> bytes:
 def _points_in_process(
     pending_at: Callable[..., PendingRun], places: Sequence[tuple[Any, ...]]
 ) -> list[SweepPoint]:
-    with shared_films(lasting=True):
+    with shared_films(persistent=True):
         return _points(pending_at, places)
 
 
