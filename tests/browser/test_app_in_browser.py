@@ -170,7 +170,7 @@ def test_a_message_leaves_by_itself_unless_it_is_about_a_fault(visit: Visit) -> 
     assert tab.is_visible("#notice")
     tab.keyboard.press("Escape")
     tab.locator("#notice").wait_for(state="hidden")
-    tab.click("text=Replace")
+    tab.click("[data-do=replace]")
     visit.wait("#notice p.good", "saved as again.toml")
     tab.click("#tab-pair")
 
