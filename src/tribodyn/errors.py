@@ -38,7 +38,6 @@ __all__ = [
     "warn",
 ]
 
-
 #: Handlers of the model warnings of this thread, the innermost last.
 _listeners: ContextVar[tuple[Callable[[ModelWarning], bool], ...]] = ContextVar(
     "listeners", default=()
@@ -495,7 +494,7 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
 
 def did_you_mean(name: object, known: Iterable[str], otherwise: str = "") -> str:
     """Remedy for an unknown name: the closest known name, or another text."""
-    from difflib import get_close_matches  # not needed by most messages
+    from difflib import get_close_matches
 
     matches = get_close_matches(str(name), list(known), n=1)
     return f'Did you mean "{matches[0]}"?' if matches else otherwise

@@ -121,16 +121,12 @@ def mixed_line_contact(
     >>> contact.film_load_share.round(3)
     array([0.451, 0.904, 1.   ])
     """
-    load, radius, speed = np.broadcast_arrays(
-        *(
-            np.atleast_1d(values)
-            for values in positive(
-                load_per_width=load_per_width,
-                equivalent_radius=equivalent_radius,
-                entrainment_speed=entrainment_speed,
-            )
-        )
+    values = positive(
+        load_per_width=load_per_width,
+        equivalent_radius=equivalent_radius,
+        entrainment_speed=entrainment_speed,
     )
+    load, radius, speed = np.broadcast_arrays(*map(np.atleast_1d, values))
     model = FILM_MODELS[film_model]
     if load.ndim != 1 or film_model == "none":
         raise InputError(

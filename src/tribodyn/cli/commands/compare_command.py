@@ -88,6 +88,8 @@ def compare(
     channel : list of str
         Measured channel and computed signal, such as "acc=acceleration_loa_pinion", or with the
         sensitivity of the sensor, "acc=acceleration_loa_pinion, 100 mV/g"; one for each.
+    options : RecordingOptions
+        How a recording is compared: gain, harmonics and tachometer.
     out : Path
         Directory for the report of the comparison with a recording.
     force : bool
