@@ -216,7 +216,7 @@ def compare(
     >>> comparison = compare(made, recording, {"cell": "force"}, harmonics=2)
     >>> comparison.measured.round(3).tolist()
     [1.581, 1.581, 2.0, 1.0]
-    >>> round(comparison.speed_ratio, 6)
+    >>> round(comparison.speed_ratio, 4)
     1.0
     """
     data = computed.to_xarray() if hasattr(computed, "to_xarray") else computed

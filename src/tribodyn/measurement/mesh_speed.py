@@ -41,8 +41,10 @@ _POINTS = 16
 _CLEAR, _CLEAR_LINE = 10.0, 40.0
 #: Samples in a period of the highest frequency that is searched.
 _OVERSAMPLED = 2.6
+#: Least uncertainty of the ratio; the clock of a recorder is no better than a hundred times that.
+_LEAST = 1e-7
 #: Passes of the demodulation.
-_PASSES = 2
+_PASSES = 3
 #: Shorter blocks must gather so much more power.
 _GAIN = 0.02
 #: Share of the power, and of the sum of levels, from which another comb is a rival.
@@ -231,10 +233,13 @@ class _Search:
 
     def demodulated(self, angle: Array, length: int, floor: Array) -> _Path | None:
         """Path near this angle, by the phases of the harmonics that are clear in such blocks."""
-        least = _CLEAR_LINE if length == self.size else _CLEAR
+        steady = length == self.size
+        least = _CLEAR_LINE if steady else _CLEAR
+        # A slope of the phase shows in parts of the record only.
+        block = max(length // 4, 1) if steady else length
         time = np.arange(self.size)
         for _ in range(_PASSES):
-            places, envelope = self._envelopes(angle, length)
+            places, envelope = self._envelopes(angle, block)
             clear = np.mean(np.abs(envelope) ** 2, axis=2) / floor
             used = clear > least
             if not used.any():
@@ -425,7 +430,9 @@ def _result(search: _Search, path: _Path | None, tolerance: float) -> MeshSpeed:
     blocks = "the whole record" if steady else f"blocks of {path.length / search.rate:.3g} s"
     return MeshSpeed(
         mean,
-        float(np.hypot(max(noise / turns, path.scatter), path.change / (np.pi * turns))),
+        float(
+            np.hypot(max(noise / turns, path.scatter, _LEAST), path.change / (0.5 * np.pi * turns))
+        ),
         mean if steady else float(ratio.min()),
         mean if steady else float(ratio.max()),
         mean * search.frequency,
