@@ -15,8 +15,8 @@ from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
-from tribodyn.study.beside import differing
 from tribodyn.study.case.provenance import spec_of
+from tribodyn.study.result_comparison import differing
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
 from tribodyn.validated_files import plain_number
 

@@ -146,7 +146,7 @@ def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     from tribodyn import plot
     from tribodyn.cases.stored_result import load_result
     from tribodyn.report.blocks import drawn_block
-    from tribodyn.study.beside import compare_results, difference_rows
+    from tribodyn.study.result_comparison import compare_results, difference_rows
 
     results = [load_result(place) for place in order["results"]]
     found = compare_results(*results, names=order["names"])

@@ -1,4 +1,4 @@
-"""The case and its result: what the user typed, and what came of it."""
+"""The case and its result: user input, computation and results."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.arguments import guarded
 
 if TYPE_CHECKING:
-    from tribodyn.study.beside import ResultComparison, compare_results
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.pipeline.tooth_contact import loaded_contact
+    from tribodyn.study.result_comparison import ResultComparison, compare_results
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.friction_experiment import friction_experiment
     from tribodyn.study.studies.losses import loss_map, rig_power_flow
@@ -76,13 +76,13 @@ __all__ = [
 
 #: Public names by the module that they are taken from.
 _NAMES = {
-    "beside": "ResultComparison compare_results",
     "case.case": "Case",
     "case.read": "read_case",
     "pipeline.result": "Result",
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",
     "pipeline.tooth_contact": "loaded_contact",
+    "result_comparison": "ResultComparison compare_results",
     "studies.bifurcation": "bifurcation",
     "studies.friction_experiment": "friction_experiment",
     "studies.losses": "loss_map rig_power_flow",
@@ -106,5 +106,5 @@ def __getattr__(name: str) -> Any:
     """Load a public name when it is first used."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    thing = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    return globals().setdefault(name, guarded(thing, __name__))
+    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    return globals().setdefault(name, guarded(value, __name__))

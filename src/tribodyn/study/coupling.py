@@ -1,8 +1,8 @@
-"""Two-way coupling: load, load shares, film, friction and stiffness until each follows the others.
+"""Two-way coupling of load, load shares, film, friction and stiffness by fixed-point iteration.
 
-A mesh table belongs to the force of all pairs at each mesh phase. Friction takes part of the
-torque, so that this force follows from the table: at rest from the balance of the torques, in
-motion from the steady orbit. Both are iterated to their fixed point.
+A mesh table is computed for the force of all pairs at each mesh phase. Friction takes part of the
+torque, so that this force depends on the table: at rest by the torque balance, in motion by the
+steady orbit. Both are iterated to their fixed point.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
-#: Takes a case and its mesh; returns the case with what follows from it, such as warmer oil.
+#: Takes a case and its mesh; returns the case updated by the mesh, such as with warmer oil.
 Follow = Callable[["Case", "MeshTable"], "Case"]
 
-#: Passes, and the least part of a step that is taken before giving up.
-_MOST, _LEAST_STEP = 60, 1.0 / 64.0
-#: Force over the nominal one below which film and friction are those of this force.
+#: Largest number of passes, and smallest relaxation factor before the iteration fails.
+_MAX_PASSES, _MIN_RELAXATION = 60, 1.0 / 64.0
+#: Lower limit of the force ratio at which film and friction are computed.
 _LIGHT = 0.04
-#: Distance of two samples below which they are one [mesh cycles].
-_SAME = 1e-9
-#: What changes in a pass, in the order of its row.
+#: Distance of two samples below which they coincide [mesh cycles].
+_PHASE_TOLERANCE = 1e-9
+#: Changes recorded in each pass, in the order of its row.
 _CHANGES = tuple(
     f"{name}_change" for name in ("load", "share", "film", "friction", "stiffness", "oil")
 )
@@ -47,40 +47,40 @@ _CHANGES = tuple(
 def coupled(
     case: Case, progress: Progress, follow: Follow | None
 ) -> tuple[Case, MeshTable, Coupling]:
-    """Iterate the mesh of a case with its load; the case that follows, the mesh, and how."""
+    """Iterate mesh and load to convergence; return the case, the mesh and the iteration."""
     nominal = mesh = mesh_of(case, progress)
     kind, tolerance = case.solver.coupling, case.solver.coupling_tolerance
-    loading, part, before = np.ones(mesh.phase.size), 1.0, np.inf
+    loading, relaxation, last_change = np.ones(mesh.phase.size), 1.0, np.inf
     rows: list[tuple[float, ...]] = []
     while True:
-        with collected():  # The mesh and the motion that are found say it again.
-            answer = _loading(kind, case, mesh, progress)
-            step = np.maximum(answer, _LIGHT) - loading
+        with collected():  # The final mesh and motion repeat these warnings.
+            required = _loading(kind, case, mesh, progress)
+            step = np.maximum(required, _LIGHT) - loading
             change = float(np.abs(step).max())
-            if change > before:
-                part *= 0.5
-            before = change
-            loading = loading + part * step
+            if change > last_change:
+                relaxation *= 0.5
+            last_change = change
+            loading = loading + relaxation * step
             changed = case if follow is None else follow(case, mesh)
             if changed != case:
                 nominal = mesh_of(changed, progress)
-            found = _under(changed, nominal, loading)
-        rows.append((change, *_changes(mesh, found), _oil(case, changed)))
-        case, mesh = changed, found
+            solved = _mesh_under_load(changed, nominal, loading)
+        rows.append((change, *_changes(mesh, solved), _viscosity_change(case, changed)))
+        case, mesh = changed, solved
         if max(rows[-1]) < tolerance:
             break
-        if not np.isfinite(change) or part < _LEAST_STEP or len(rows) == _MOST:
-            raise ComputationError(_unsettled(kind, rows))
-    if np.any(answer < _LIGHT):
+        if not np.isfinite(change) or relaxation < _MIN_RELAXATION or len(rows) == _MAX_PASSES:
+            raise ComputationError(_not_converged(kind, rows))
+    if np.any(required < _LIGHT):
         warn(
             "coupling-light-load",
             f"the teeth carry less than {100.0 * _LIGHT:g} % of their nominal force in "
-            f"{100.0 * float(mesh.grid.mean((answer < _LIGHT).astype(float))):.2g} % of the mesh "
-            "cycle; film and friction there are those of that force",
+            f"{100.0 * float(mesh.grid.mean((required < _LIGHT).astype(float))):.2g} % of the mesh "
+            "cycle; film and friction there are computed at that force",
         )
     columns: dict[str, Any] = dict(zip(_CHANGES, np.array(rows).T, strict=True))
     order = np.arange(1.0, len(rows) + 1.0)
-    how = Coupling(
+    record = Coupling(
         iteration=order,
         phase=mesh.phase,
         loading=loading,
@@ -88,11 +88,11 @@ def coupled(
         tolerance=tolerance,
         **columns,
     )
-    return case, mesh, how
+    return case, mesh, record
 
 
-def _under(case: Case, nominal: MeshTable, loading: Array) -> MeshTable:
-    """Mesh of a case under these forces; what is told of it at rest is that of the torque."""
+def _mesh_under_load(case: Case, nominal: MeshTable, loading: Array) -> MeshTable:
+    """Compute the mesh under given forces; static results stay those of the nominal torque."""
     from tribodyn.mesh.build import loaded_mesh
 
     settings = contact_settings(case)
@@ -114,65 +114,65 @@ def _under(case: Case, nominal: MeshTable, loading: Array) -> MeshTable:
 
 
 def _loading(kind: str, case: Case, mesh: MeshTable, progress: Progress) -> Array:
-    """Force of all pairs over that of the torque alone that follows from a mesh."""
+    """Return the force of all pairs that results from a mesh, over its nominal force."""
     if kind == "static":
         return balanced_load(case, mesh)
     response = motion_of(case, whole_system(case, mesh), mesh.mesh_frequency, progress)
     if response.periods > 1:
         what = f"the motion repeats only after {response.periods} mesh cycles"
-        why = "Then the load of the teeth is not a function of the mesh phase"
+        why = "The load of the teeth is then not a function of the mesh phase"
         remedy = 'Set solver.coupling = "static", or dynamics.friction_load = "dynamic"'
         raise ComputationError(what, "solver.coupling", why, remedy)
     return force_at_knots(mesh, response) / mesh.total_normal_force
 
 
 def balanced_load(case: Case, mesh: MeshTable) -> Array:
-    """Force of all pairs at rest, over that of the torque alone, with friction in the balance.
+    """Return the static force of all pairs with friction, over that without friction.
 
-    With one torque held it is the force that holds it; with both, that which leaves both gears
-    the same acceleration along the line of action.
+    With the torque of one gear prescribed, the force balances that torque; with both prescribed,
+    both gears have the same acceleration along the line of action.
     """
-    held = {"drive": case.gears.driver, "both": None}.get(
+    held_gear = {"drive": case.gears.driver, "both": None}.get(
         case.operation.torque_balance, "wheel" if case.gears.driver == "pinion" else "pinion"
     )
     body, direction, friction = geometry(case), np.atleast_2d(mesh.direction), mesh.friction
-    above = below = np.zeros(1)
+    numerator = denominator = np.zeros(1)
     for gear in ("pinion", "wheel"):
-        if held not in (gear, None):
+        if held_gear not in (gear, None):
             continue
         turn = COORDINATES.index(f"{gear}_theta")
-        lever = direction[:, turn] / (1.0 if held else body[f"moment_of_inertia_{gear}"])
-        above = above + lever * direction[:, turn]
-        below = below + lever * (direction[:, turn] + friction[:, turn])
-    return np.asarray(above / below)
+        lever = direction[:, turn] / (1.0 if held_gear else body[f"moment_of_inertia_{gear}"])
+        numerator = numerator + lever * direction[:, turn]
+        denominator = denominator + lever * (direction[:, turn] + friction[:, turn])
+    return np.asarray(numerator / denominator)
 
 
 def force_at_knots(mesh: MeshTable, response: Response) -> Array:
-    """Force of a periodic motion at the knots of a mesh, on both sides of every event."""
+    """Return the force of a periodic response at mesh grid points, on both sides of events."""
     from scipy.interpolate import Akima1DInterpolator
 
     samples, grid = response.fine, mesh.grid
     phase, force = one_sided_phase(samples), mesh_force(samples)
-    found = np.empty(grid.phase.size)
-    for knots in grid.segments:
-        places = grid.phase[knots]
-        inside = np.flatnonzero((phase > places[0]) & (phase < places[-1]))
-        # A step ends where the next begins: of both sides one is enough.
-        here = inside[np.diff(phase[inside], prepend=-1.0) > _SAME]
-        # Chords would blunt the force at its peaks; it has kinks where flanks part.
-        curve = Akima1DInterpolator(phase[here], force[here], method="makima")
-        found[knots] = curve(np.clip(places, *phase[here[[0, -1]]]))
-    return found
+    forces = np.empty(grid.phase.size)
+    for segment in grid.segments:
+        phases = grid.phase[segment]
+        inside = np.flatnonzero((phase > phases[0]) & (phase < phases[-1]))
+        # The end of a step and the start of the next coincide: drop duplicates.
+        samples_used = inside[np.diff(phase[inside], prepend=-1.0) > _PHASE_TOLERANCE]
+        # Linear interpolation would flatten peaks; the force has kinks where flanks separate.
+        curve = Akima1DInterpolator(phase[samples_used], force[samples_used], method="makima")
+        forces[segment] = curve(np.clip(phases, *phase[samples_used[[0, -1]]]))
+    return forces
 
 
 def _changes(before: MeshTable, after: MeshTable) -> tuple[float, float, float, float]:
-    """Greatest change of shares, films, friction and stiffness from one mesh to the next."""
+    """Return the largest changes of shares, films, friction and stiffness between two meshes."""
     film = 0.0
     for name in ("central_film", "minimum_film"):
-        one, other = getattr(before, name), getattr(after, name)
-        if other is not None:
-            known = (one > 0.0) & (other > 0.0)
-            film = max(film, float(np.abs(np.log(other[known] / one[known])).max(initial=0.0)))
+        old, new = getattr(before, name), getattr(after, name)
+        if new is not None:
+            positive = (old > 0.0) & (new > 0.0)
+            film = max(film, float(np.abs(np.log(new[positive] / old[positive])).max(initial=0.0)))
     scales = {
         "load_share": 1.0,
         "friction_coefficient": float(after.friction_coefficient.max()) or 1.0,
@@ -185,26 +185,26 @@ def _changes(before: MeshTable, after: MeshTable) -> tuple[float, float, float, 
     return share, film, friction, stiffness
 
 
-def _oil(before: Case, after: Case) -> float:
-    one, other = before.lubricant_properties, after.lubricant_properties
-    if one is None or other is None:
+def _viscosity_change(before: Case, after: Case) -> float:
+    viscous_before, viscous_after = before.lubricant_properties, after.lubricant_properties
+    if viscous_before is None or viscous_after is None:
         return 0.0
-    return abs(float(np.log(other.dynamic_viscosity / one.dynamic_viscosity)))
+    return abs(float(np.log(viscous_after.dynamic_viscosity / viscous_before.dynamic_viscosity)))
 
 
-def _unsettled(kind: str, rows: list[tuple[float, ...]]) -> Problem:
+def _not_converged(kind: str, rows: list[tuple[float, ...]]) -> Problem:
     last = rows[-1][0]
     factor = last / rows[-2][0] if len(rows) > 1 else np.inf
     remedy = (
-        'Set solver.coupling = "static", whose load is that at rest; or give more damping or torque'
+        'Set solver.coupling = "static", which uses the static load; or increase damping or torque'
         if kind == "dynamic"
-        else "Give more torque or a smaller friction coefficient"
+        else "Increase the torque or reduce the friction coefficient"
     )
     return Problem(
         f"load, film and friction do not settle: the load still changes by {100.0 * last:.2g} % in "
         f"pass {len(rows)}, {factor:.2g} times the change before",
         "solver.coupling",
-        "Each pass throws the load further than the one before: teeth that part, a resonance, or "
-        "friction that nearly holds the torque",
+        "The changes grow from pass to pass: loss of contact, a resonance, or "
+        "friction that nearly balances the torque",
         f'{remedy}, or set solver.coupling = "none"',
     )

@@ -1,4 +1,4 @@
-"""The first run on a machine: another process compiles what it needs later, while it goes on."""
+"""Compilation in a background process during the first run on a machine."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ import numpy as np
 
 from tribodyn.compiled.cache_lock import CacheLock, ElsewhereError, is_cached, locked
 from tribodyn.interrupt import STOPPED, processors, refuse_stopped, stop_flag
-from tribodyn.study.processes import aside
+from tribodyn.study.processes import in_background
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.study.case.case import Case
 
-#: Whether a first run may begin a process; those that compile for others begin none.
+#: Whether a first run may start a process; compiling processes start none themselves.
 allowed = True
-#: Motions side by side that fill a block of the engine.
+#: Trajectories that fill a block of the engine.
 _BLOCK = 16
-#: What a study comes to last, first: it begins with the other end itself.
+#: Jobs of each study in reverse order of use: the study itself starts with the other end.
 _JOBS = {
     "run": ("loads", "one motion", "motions"),
     "map": ("loads", "rows of motions"),
@@ -35,13 +35,13 @@ _JOBS = {
 @contextmanager
 def compile_in_parallel(case: Case, study: str = "run") -> Iterator[bool]:
     """Compile in parallel what a study needs inside the block; yield whether there is anything."""
-    jobs = _missing(case, study) if allowed and processors() > 1 else []
+    jobs = _missing_jobs(case, study) if allowed and processors() > 1 else []
     with ExitStack() as stack:
         if jobs:
-            with suppress(OSError):  # Where no folder can be made, this process compiles alone.
-                made = TemporaryDirectory(prefix="tribodyn-", ignore_cleanup_errors=True)
-                folder = stack.enter_context(made)
-                busy = stack.enter_context(aside(_compile, [(folder, job) for job in jobs]))
+            with suppress(OSError):  # Without a temporary folder this process compiles alone.
+                directory = TemporaryDirectory(prefix="tribodyn-", ignore_cleanup_errors=True)
+                folder = stack.enter_context(directory)
+                busy = stack.enter_context(in_background(_compile, [(folder, job) for job in jobs]))
                 lock = CacheLock(Path(folder), partial(_interruptibly, busy))
                 stack.enter_context(locked(lock))
         yield bool(jobs)
@@ -52,39 +52,39 @@ def _interruptibly(busy: Callable[[], bool]) -> bool:
     return busy()
 
 
-def _missing(case: Case, study: str = "run") -> Sequence[str]:
-    """The jobs that are left of a study."""
+def _missing_jobs(case: Case, study: str = "run") -> Sequence[str]:
+    """Return the jobs of a study that are not cached."""
     from tribodyn.dynamics._engine.marching import march_block
     from tribodyn.dynamics.time.engines import ENGINES
 
-    if not hasattr(march_block, "_cache"):  # Numba was told to compile nothing
+    if not hasattr(march_block, "_cache"):  # Numba is disabled
         return []
-    absent = set()
+    uncached = set()
     if case.gears.kind == "spur":
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
-        absent |= set() if is_cached(solve_loads) else {"loads"}
+        uncached |= set() if is_cached(solve_loads) else {"loads"}
     if ENGINES[case.solver.engine].method == "rk4" and not is_cached(march_block):
-        absent |= {job for jobs in _JOBS.values() for job in jobs} - {"loads"}
-    return [job for job in _JOBS[study] if job in absent]
+        uncached |= {job for jobs in _JOBS.values() for job in jobs} - {"loads"}
+    return [job for job in _JOBS[study] if job in uncached]
 
 
 def _compile(order: tuple[str, str]) -> None:
-    """Do a job for another process, unless that has begun to."""
+    """Compile for another process, unless that has already started to."""
     folder, job = order
     with suppress(ElsewhereError), locked(CacheLock(Path(folder))):
         _WORK[job]()
 
 
 def compile_marches() -> None:
-    """Do the jobs of all studies that march in this process; teeth come with the run of a case."""
+    """Compile the time integration of all studies in this process."""
     for job, work in _WORK.items():
         if job != "loads":
             work()
 
 
 def _loads() -> None:
-    """Loads of tooth pairs at no phase."""
+    """Compile the load distribution with empty arrays."""
     from tribodyn.stiffness.loaded.kernel import solve_loads
 
     none, line = np.zeros((0, 1, 1)), np.zeros((1, 0))
@@ -93,22 +93,22 @@ def _loads() -> None:
 
 
 def _march(lanes: int, followed: bool = False) -> None:
-    """A march that takes no time, and statistics of it."""
+    """Compile a time integration of zero length, and its statistics."""
     from tribodyn.dynamics._engine.statistics import Statistics
     from tribodyn.dynamics.time.engines import Setting, prepare
 
     system, frequency = _system(), np.full(lanes, 10.0)
-    motions = prepare("rk4", Setting(system, frequency, 1, 64, np.zeros((lanes, 1))))
-    gathered = Statistics.of(motions.compiled, np.zeros((1, 2)), lanes) if followed else None
-    motions.march(np.zeros((lanes, 2)), 1, statistics=gathered)
+    trajectories = prepare("rk4", Setting(system, frequency, 1, 64, np.zeros((lanes, 1))))
+    gathered = Statistics.of(trajectories.compiled, np.zeros((1, 2)), lanes) if followed else None
+    trajectories.march(np.zeros((lanes, 2)), 1, statistics=gathered)
 
 
 def _rows() -> None:
-    """Motions of as many systems as an operating map has side by side, which take no time."""
+    """Compile the batched time integration of an operating map with zero length."""
     from tribodyn.dynamics.orbits.batched_orbits import SystemBatch
 
-    group = SystemBatch([_system()] * _BLOCK, np.full(_BLOCK, 10.0), 64)
-    group.march(group.full_steps, group.start(), np.arange(_BLOCK), lambda number, states: None)
+    batch = SystemBatch([_system()] * _BLOCK, np.full(_BLOCK, 10.0), 64)
+    batch.march(batch.full_steps, batch.start(), np.arange(_BLOCK), lambda number, states: None)
 
 
 def _system() -> System:

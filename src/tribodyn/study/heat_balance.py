@@ -1,4 +1,4 @@
-"""Temperature of gears and oil at which the surroundings take up what the gearbox loses."""
+"""Heat balance: the temperature at which the gearbox dissipates its power loss."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
-#: Difference of loss and heat given off, over the loss, that is a balance; and most passes.
-_CLOSE, _MOST = 5e-7, 40
+#: Tolerance of the balance over the loss, and largest number of passes.
+_TOLERANCE, _MAX_PASSES = 5e-7, 40
 
-_ROOM = 293.15  # surroundings that nobody stated [K]
+_DEFAULT_AMBIENT = 293.15  # default temperature of the surroundings [K]
 
-Answer = TypeVar("Answer")
+Extra = TypeVar("Answer")
 
 
 @record
 class HeatBalance(Record):
-    """How gears and oil came to the temperature at which they give off what is lost.
+    """Iteration to the temperature at which gears and oil dissipate the power loss.
 
     Parameters
     ----------
@@ -38,9 +38,9 @@ class HeatBalance(Record):
     temperature : array (passes,) [K]
         Temperature of gears and oil.
     power_loss : array (passes,) [W]
-        What teeth, bearings, seals and oil lose at it.
+        Power loss of teeth, bearings, seals and oil at this temperature.
     dissipated : array (passes,) [W]
-        Heat that the surroundings take up at it.
+        Heat flow to the surroundings at this temperature.
     heat_transfer : float [W/K]
         Heat transfer coefficient times area.
     ambient_temperature : float [K]
@@ -56,69 +56,69 @@ class HeatBalance(Record):
 
 
 def balanced(
-    case: Case, mesh_at: Callable[[Case], tuple[Case, MeshTable, Answer]]
-) -> tuple[Case, MeshTable, Answer, HeatBalance]:
-    """Case where the losses are given off, ``loss(T) = hA (T - T_amb)``, its mesh, and the way."""
+    case: Case, mesh_at: Callable[[Case], tuple[Case, MeshTable, Extra]]
+) -> tuple[Case, MeshTable, Extra, HeatBalance]:
+    """Solve ``loss(T) = hA (T - T_amb)``; return the case, its mesh, extras and the iteration."""
     # Secants within a bracket: the loss is positive at the temperature of the surroundings, and has
-    # to be smaller than the heat given off at the highest one at which the oil is known.
+    # to be smaller than the dissipated heat at the highest temperature of the oil data.
     oil = case.lubricant
     assert oil is not None
     assert oil.heat_transfer is not None
-    transfer, ambient = oil.heat_transfer, oil.ambient_temperature or _ROOM
+    transfer, ambient = oil.heat_transfer, oil.ambient_temperature or _DEFAULT_AMBIENT
     coldest, hottest = temperature_range(oil.name) if oil.name else SHEET_RANGE
     name = oil.name or "the oil of the data sheet"
     if ambient < coldest:
         what = f"ambient_temperature = {ambient - ZERO_CELSIUS:.4g} degC"
-        why = f"{name} is known from {coldest - ZERO_CELSIUS:.4g} degC on"
-        remedy = "Give warmer surroundings, or another oil"
+        why = f"The data of {name} start at {coldest - ZERO_CELSIUS:.4g} degC"
+        remedy = "Increase ambient_temperature, or choose another oil"
         raise ComputationError(what, "lubricant.ambient_temperature", why, remedy)
     low, high = 0.0, hottest - ambient
     rise = float(np.clip((oil.temperature or ambient) - ambient, 0.0, high))
     rows: list[tuple[float, float]] = []
-    while len(rows) < _MOST:
+    while len(rows) < _MAX_PASSES:
         point = case.replace({"lubricant.temperature": ambient + rise})
         with collected():
-            found, mesh, answer = mesh_at(point)
-        loss = float(gearbox_losses_of(found, mesh.mean_friction_power).total[0, 0])
+            solved, mesh, extra = mesh_at(point)
+        loss = float(gearbox_losses_of(solved, mesh.mean_friction_power).total[0, 0])
         rows.append((rise, loss))
         excess = loss - transfer * rise
-        if abs(excess) <= _CLOSE * loss:
-            return found, mesh, answer, _record(rows, transfer, ambient)
+        if abs(excess) <= _TOLERANCE * loss:
+            return solved, mesh, extra, _record(rows, transfer, ambient)
         if excess > 0.0 and rise == hottest - ambient:
             raise ComputationError(
                 f"no temperature up to {hottest - ZERO_CELSIUS:.4g} degC balances the losses: "
-                f"there {loss:.4g} W are lost and {transfer * rise:.4g} W given off",
+                f"there the loss is {loss:.4g} W and {transfer * rise:.4g} W are dissipated",
                 where="lubricant.heat_transfer",
-                why=f"{name} is known up to {hottest - ZERO_CELSIUS:.4g} degC",
-                remedy=f"Give more than {loss / rise:.4g} W/K, or less torque or speed",
+                why=f"The data of {name} end at {hottest - ZERO_CELSIUS:.4g} degC",
+                remedy=f"Set more than {loss / rise:.4g} W/K, or reduce torque or speed",
             )
         low, high = (rise, high) if excess > 0.0 else (low, rise)
         rise = _next(rows, transfer, low, high, hottest - ambient)
     last, loss = rows[-1]
     raise ComputationError(
         f"temperature and losses do not settle: at {ambient + last - ZERO_CELSIUS:.6g} degC "
-        f"{loss:.6g} W are lost and {transfer * last:.6g} W given off after {len(rows)} passes",
+        f"the loss is {loss:.6g} W and {transfer * last:.6g} W are dissipated (pass {len(rows)})",
         where="lubricant.heat_transfer",
         why="The losses jump with the temperature",
-        remedy="Tighten film.tolerance or give more film.positions, or leave heat_transfer out",
+        remedy="Reduce film.tolerance, increase film.positions, or remove heat_transfer",
     )
 
 
 def _next(
-    rows: list[tuple[float, float]], transfer: float, low: float, high: float, most: float
+    rows: list[tuple[float, float]], transfer: float, low: float, high: float, highest: float
 ) -> float:
-    """Rise of the next pass: that of the last loss, the secant of two, or the middle."""
+    """Return the temperature rise of the next pass: fixed point, secant, or bisection."""
     rise, loss = rows[-1]
     if len(rows) == 1:
         step = loss / transfer
     else:
-        before, lost = rows[-2]
-        slope = (loss - lost) / (rise - before) - transfer
+        rise_before, loss_before = rows[-2]
+        slope = (loss - loss_before) / (rise - rise_before) - transfer
         step = rise - (loss - transfer * rise) / slope if slope < 0.0 else np.inf
     if low < step < high or step == low == 0.0:
         return step
-    if step >= most and high == most:
-        return most
+    if step >= highest and high == highest:
+        return highest
     return 0.5 * (low + high)
 
 

@@ -1,9 +1,9 @@
-"""Processes that compute beside this one, where most of a computation is Python.
+"""Worker processes for computations that spend most of their time in Python.
 
-They are fresh interpreters that load this package and nothing of the script that asks, which so
-needs no ``if __name__ == "__main__"`` and may have threads. This process computes too, from the
-first moment on; a helper joins in once it has loaded what it needs, and what a lost one left is
-computed here.
+They are fresh interpreters that import this package but not the user's script, which therefore
+needs no ``if __name__ == "__main__"`` and may have threads. This process computes as well from the
+start; a helper joins in once its imports are done, and items of a lost helper are computed in this
+process.
 """
 
 from __future__ import annotations
@@ -25,30 +25,30 @@ from tribodyn.interrupt import STOPPED, alone, in_threads, processors, refuse_st
 Item = TypeVar("Item")
 Value = TypeVar("Value")
 
-#: It finds the modules that this process finds.
-_CALL = "import sys; sys.path[:] = {0!r}; from {1} import serve; serve()"
-#: Longest wait that lets no interruption through [s].
-_MOMENT = 0.05
+#: Command of a helper, with the module search path of this process.
+_COMMAND = "import sys; sys.path[:] = {0!r}; from {1} import serve; serve()"
+#: Interval between checks for an interruption while waiting [s].
+_POLL_INTERVAL = 0.05
 
 
 class _LostError(Exception):
-    """A helper that ended, or could not compute."""
+    """A helper has ended or failed to compute."""
 
 
 class _Helper:
-    """A process that calls functions; it ends with the one that began it, however that ends."""
+    """A process that calls functions; it ends with its parent, however that ends."""
 
     def __init__(self) -> None:
         self.ready = self._loading = False
-        self._answers: SimpleQueue[tuple[Any] | None] = SimpleQueue()
+        self._results: SimpleQueue[tuple[Any] | None] = SimpleQueue()
         self._child = subprocess.Popen(
-            [sys.executable, "-c", _CALL.format(sys.path, __name__)],
+            [sys.executable, "-c", _COMMAND.format(sys.path, __name__)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             # Matrices are small here: threads of several processes would wait for each other.
             env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-            start_new_session=True,  # Ctrl-C is for this process, which ends the others.
+            start_new_session=True,  # Ctrl-C reaches only this process, which ends the helpers.
         )
         threading.Thread(target=self._read, daemon=True).start()
 
@@ -56,11 +56,11 @@ class _Helper:
         assert self._child.stdout is not None
         with suppress(Exception):
             while True:
-                self._answers.put((pickle.load(self._child.stdout),))
-        self._answers.put(None)
+                self._results.put((pickle.load(self._child.stdout),))
+        self._results.put(None)
 
-    def ask(self, function: bytes, item: Any) -> None:
-        """Let it call a pickled function of an item."""
+    def submit(self, function: bytes, item: Any) -> None:
+        """Send a pickled function and an item to call it with."""
         assert self._child.stdin is not None
         try:
             pickle.dump((function, item), self._child.stdin)
@@ -68,39 +68,39 @@ class _Helper:
         except OSError:
             raise _LostError from None
 
-    def answer(self, wanted: Callable[[], bool] = lambda: True) -> tuple[Any] | None:
-        """What it found, waited for as long as that is wanted."""
+    def result(self, wanted: Callable[[], bool] = lambda: True) -> tuple[Any] | None:
+        """Wait for the next result; None once ``wanted`` returns False."""
         while wanted():
             with suppress(Empty):
-                told = self._answers.get(timeout=_MOMENT)
-                if told is None:
-                    self._answers.put(None)  # for whoever asks next
+                result = self._results.get(timeout=_POLL_INTERVAL)
+                if result is None:
+                    self._results.put(None)  # for the next caller
                     raise _LostError
-                return told
+                return result
             refuse_stopped(STOPPED * int(stop_flag()[0]))
         return None
 
-    def answered(self, most: int) -> int:
-        """Number of answers that are there, at most so many; they are dropped."""
+    def discard_results(self, most: int) -> int:
+        """Discard the available results, at most ``most``; return their number."""
         for number in range(most):
             try:
-                told = self._answers.get_nowait()
+                result = self._results.get_nowait()
             except Empty:
                 return number
-            if told is None:
-                self._answers.put(None)  # for whoever asks next
+            if result is None:
+                self._results.put(None)  # for the next caller
                 raise _LostError
         return most
 
-    def load(self, function: bytes, item: Any, wanted: Callable[[], bool]) -> None:
-        """Let it load all that the function needs, by a call that nothing is kept of."""
+    def warm_up(self, function: bytes, item: Any, wanted: Callable[[], bool]) -> None:
+        """Import what the function needs by a call whose result is discarded."""
         if not self._loading:
             self._loading = True
-            self.ask(function, item)
-        self.ready = self.ready or self.answer(wanted) is not None
+            self.submit(function, item)
+        self.ready = self.ready or self.result(wanted) is not None
 
     def end(self) -> None:
-        """End it at once."""
+        """Kill the process."""
         self._child.kill()
         self._child.wait()
         for stream in (self._child.stdin, self._child.stdout):
@@ -109,7 +109,7 @@ class _Helper:
 
 
 class Helpers:
-    """Processes beside this one; made by :func:`helpers`."""
+    """Pool of helper processes; created by :func:`helpers`."""
 
     def __init__(self, count: int = 0) -> None:
         self._helpers: list[_Helper] = []
@@ -121,7 +121,7 @@ class Helpers:
         return len(self._helpers)
 
     def grow(self, count: int) -> None:
-        """Begin as many as are missing; where no process can be begun, this one computes alone."""
+        """Start processes up to a count; if none can be started, this process computes alone."""
         if sys.executable and not getattr(sys, "frozen", False):
             with suppress(OSError):
                 while len(self._helpers) < count:
@@ -130,44 +130,44 @@ class Helpers:
     def each(
         self,
         function: Callable[[Item], Value],
-        abroad: bytes,
+        pickled: bytes,
         items: Sequence[Item],
         keep: Callable[[int, Value], None],
     ) -> None:
-        """Hand a function of every item to ``keep``, by its number; helpers call it ``abroad``."""
-        left = list(reversed(range(len(items))))
+        """Pass the function of every item to ``keep`` by number; helpers call ``pickled``."""
+        remaining = list(reversed(range(len(items))))
 
-        def taken() -> Iterator[int]:
+        def next_numbers() -> Iterator[int]:
             with suppress(IndexError):
                 while True:
-                    yield left.pop()
+                    yield remaining.pop()
 
-        def here() -> None:
+        def compute_locally() -> None:
             with alone():
-                for number in taken():
+                for number in next_numbers():
                     keep(number, function(items[number]))
 
-        def beside(helper: _Helper) -> None:
+        def compute_remotely(helper: _Helper) -> None:
             try:
-                helper.load(abroad, items[0], lambda: bool(left))
+                helper.warm_up(pickled, items[0], lambda: bool(remaining))
             except _LostError:
-                return here()
-            for number in taken():
+                return compute_locally()
+            for number in next_numbers():
                 try:
-                    helper.ask(abroad, items[number])
-                    found = helper.answer()
+                    helper.submit(pickled, items[number])
+                    result = helper.result()
                 except _LostError:
-                    left.append(number)
-                    return here()
-                if found is not None:
-                    keep(number, found[0])
+                    remaining.append(number)
+                    return compute_locally()
+                if result is not None:
+                    keep(number, result[0])
             return None
 
         def work(helper: _Helper | None) -> None:
             try:
-                here() if helper is None else beside(helper)
+                compute_locally() if helper is None else compute_remotely(helper)
             except BaseException:
-                left.clear()
+                remaining.clear()
                 raise
 
         from threadpoolctl import threadpool_limits
@@ -175,85 +175,89 @@ class Helpers:
         with threadpool_limits(1, "blas"):
             in_threads(work, [None, *self._helpers], 1 + len(self._helpers))
 
-    def aside(self, function: Callable[[Item], None], items: Sequence[Item]) -> Callable[[], bool]:
-        """Let the first call a function of every item; whether it still does."""
+    def start_in_background(
+        self, function: Callable[[Item], None], items: Sequence[Item]
+    ) -> Callable[[], bool]:
+        """Call a function of every item in the first helper; return a check whether it is busy."""
         if not self._helpers:
             return lambda: False
-        helper, order = self._helpers[0], pickle.dumps(function)
+        helper, pickled_function = self._helpers[0], pickle.dumps(function)
         with suppress(_LostError):
             for item in items:
-                helper.ask(order, item)
-        left = len(items)
+                helper.submit(pickled_function, item)
+        pending = len(items)
 
         def busy() -> bool:
-            nonlocal left
+            nonlocal pending
             with suppress(_LostError):
-                left -= helper.answered(left)
-                return left > 0
+                pending -= helper.discard_results(pending)
+                return pending > 0
             return False
 
         return busy
 
     def end(self) -> None:
-        """End all of them."""
+        """Kill all processes."""
         for helper in self._helpers:
             helper.end()
 
 
-_begun: ContextVar[Helpers | None] = ContextVar("helpers", default=None)
+_current: ContextVar[Helpers | None] = ContextVar("helpers", default=None)
 
 
 @contextmanager
 def helpers(most: int = 0) -> Iterator[Helpers]:
-    """Helpers, at most so many; the same ones for all blocks inside this one, and ended with it."""
-    outer = _begun.get()
-    own = Helpers() if outer is None else outer
-    token = _begun.set(own)
+    """Provide at most ``most`` helpers, shared by inner blocks and ended with the outermost."""
+    outer = _current.get()
+    pool = Helpers() if outer is None else outer
+    token = _current.set(pool)
     try:
-        own.grow(min(most, processors() - 1))
-        yield own
+        pool.grow(min(most, processors() - 1))
+        yield pool
     finally:
-        _begun.reset(token)
+        _current.reset(token)
         if outer is None:
-            own.end()
+            pool.end()
 
 
 @contextmanager
-def aside(function: Callable[[Item], None], items: Sequence[Item]) -> Iterator[Callable[[], bool]]:
-    """Let a process call a function of every item; the block is told whether it still does.
+def in_background(
+    function: Callable[[Item], None], items: Sequence[Item]
+) -> Iterator[Callable[[], bool]]:
+    """Call a function of every item in another process; yield a check whether it is busy.
 
-    It is ended with the block. Where it cannot be begun, or is lost, nothing is said.
+    The process is killed at the end of the block. Failures to start it are ignored.
     """
-    own = Helpers(min(1, processors() - 1))
+    pool = Helpers(min(1, processors() - 1))
     try:
-        yield own.aside(function, items)
+        yield pool.start_in_background(function, items)
     finally:
-        own.end()
+        pool.end()
 
 
 def serve() -> None:
-    """Call what is asked for on the standard input until that ends; answer on the output."""
+    """Call functions read from standard input until it ends; write results to standard output."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    asked: SimpleQueue[tuple[bytes, Any]] = SimpleQueue()
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # What a model prints is no answer.
+    requests: SimpleQueue[tuple[bytes, Any]] = SimpleQueue()
+    output = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # Output printed by a model must not mix with results.
 
-    def listen(orders: IO[bytes]) -> None:
+    def listen(stream: IO[bytes]) -> None:
         with suppress(Exception):
             while True:
-                asked.put(pickle.load(orders))
-        os._exit(0)  # Nobody waits for what is still computed.
+                requests.put(pickle.load(stream))
+        os._exit(0)  # The parent has ended: results are no longer needed.
 
     threading.Thread(target=listen, args=(sys.stdin.buffer,), daemon=True).start()
-    text, function = b"", None
+    loaded, function = b"", None
     try:
         with alone():
             while True:
-                order, item = asked.get()
-                if order != text:
-                    text, function = order, pickle.loads(order)
+                pickled_function, item = requests.get()
+                if pickled_function != loaded:
+                    loaded, function = pickled_function, pickle.loads(pickled_function)
                 assert function is not None
-                pickle.dump(function(item), answers)
-                answers.flush()
-    finally:  # Whoever asked computes what cannot be computed here, and tells why.
+                pickle.dump(function(item), output)
+                output.flush()
+    finally:  # The parent recomputes a failed item and reports its error.
         os._exit(1)

@@ -14,7 +14,7 @@ import pytest
 
 from tribodyn import load_case
 from tribodyn.study import first_use
-from tribodyn.study.processes import aside
+from tribodyn.study.processes import in_background
 
 #: Kernels of the disk cache that a process compiled, and how often each.
 _LISTEN = """
@@ -39,9 +39,9 @@ _JOBS = """
 import os
 from tribodyn.study import first_use
 case, study = tribodyn.load_case("fzg-roughness"), sys.argv[2]
-for job in first_use._missing(case, study):
+for job in first_use._missing_jobs(case, study):
     first_use._compile((sys.argv[1], job))
-assert first_use._missing(case, study) == []
+assert first_use._missing_jobs(case, study) == []
 """
 _RUN = """
 from tribodyn.study import first_use
@@ -124,8 +124,8 @@ def test_where_no_folder_can_be_made_a_run_compiles_alone(monkeypatch: pytest.Mo
 
     asked: list[object] = []
     monkeypatch.setattr(first_use, "TemporaryDirectory", refuses)
-    monkeypatch.setattr(first_use, "aside", lambda *given: asked.append(given))
-    monkeypatch.setattr(first_use, "_missing", lambda *_: ["loads"])
+    monkeypatch.setattr(first_use, "in_background", lambda *given: asked.append(given))
+    monkeypatch.setattr(first_use, "_missing_jobs", lambda *_: ["loads"])
     monkeypatch.setattr(first_use, "processors", lambda: 2)
     with first_use.compile_in_parallel(load_case("fzg-roughness")):
         asked.append("run")
@@ -134,7 +134,7 @@ def test_where_no_folder_can_be_made_a_run_compiles_alone(monkeypatch: pytest.Mo
 
 @pytest.mark.parametrize("job", [print, os._exit], ids=["done", "lost"])
 def test_a_process_is_busy_until_all_is_done_or_it_is_lost(job: Callable[[int], None]) -> None:
-    with aside(job, [3, 3]) as busy:
+    with in_background(job, [3, 3]) as busy:
         assert busy()
         looks = next(count for count in range(6000) if not busy() or time.sleep(0.01))
         assert looks > 0

@@ -350,8 +350,8 @@ def test_a_base_of_another_origin_reads_back_equal(origin: str, of_file: bool) -
     [
         ('"gears.pinion.face_widht" = { value = "20 mm", reason = "x" }', "no key"),
         (f'"{WIDTH}" = {{ value = "20 s", reason = "x" }}', "wrong kind of quantity"),
-        (f'"{WIDTH}" = {{ value = "20 mm" }}', "string"),
-        (f'"{WIDTH}" = {{ value = "20 mm", reason = "x", of = 3 }}', "string"),
+        (f'"{WIDTH}" = {{ value = "20 mm" }}', "must be text"),
+        (f'"{WIDTH}" = {{ value = "20 mm", reason = "x", of = 3 }}', "must be text"),
         ('[based_on]\n"gears.module" = "3 mm"', "no key"),
     ],
 )

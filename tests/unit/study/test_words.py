@@ -22,7 +22,7 @@ from tribodyn.study.case.reference import (
     explanations,
     warning_meanings,
 )
-from tribodyn.study.case.values import listed, word
+from tribodyn.study.case.values import find_term, listed_terms
 
 _SOURCE = Path(tribodyn.__file__).parent
 _PAGE = Path(__file__).resolve().parents[3] / "docs" / "command-line.md"
@@ -92,11 +92,14 @@ def test_what_is_explained_exists_and_every_warning_has_a_remedy() -> None:
     assert set(told["equations"]) <= known | set(choice_meanings())
     assert set(told["ranges"]) <= set(choice_meanings())
     assert set(told["remedies"]) == set(warning_meanings())
-    assert {entry.key for entry in map(word, listed()) if entry and entry.key} <= known
+    assert {entry.key for entry in map(find_term, listed_terms()) if entry and entry.key} <= known
 
 
 def test_pages_that_are_named_exist() -> None:
-    named = {*explanations()["pages"].values(), *(said.page for w in listed() if (said := word(w)))}
+    named = {
+        *explanations()["pages"].values(),
+        *(said.page for w in listed_terms() if (said := find_term(w))),
+    }
     for name in named:
         file, _, anchor = name.partition("#")
         text = (_PAGE.parent / file).read_text(encoding="utf-8")

@@ -103,7 +103,7 @@ def compare(
         return
     from tribodyn.cases.load import load_case
     from tribodyn.cases.stored_result import read_summary
-    from tribodyn.study.beside import difference_rows, differing, figures_differ
+    from tribodyn.study.result_comparison import difference_rows, differing, figures_differ
 
     summaries = [read_summary(place) for place in (first, second)]
     cases = [dict(load_case(place / "case.toml").values()) for place in (first, second)]

@@ -11,7 +11,7 @@ from typing import Any
 from tribodyn.cli.console import say, say_json, table
 from tribodyn.cli.settings import Flag
 from tribodyn.errors import InputError, Problem
-from tribodyn.study.case.values import Word, listed, word
+from tribodyn.study.case.values import Term, find_term, listed_terms
 
 #: Entries beyond this number are only named.
 _MAX_ENTRIES = 8
@@ -86,7 +86,7 @@ def _all_entries() -> list[tuple[tuple[str, ...], dict[str, Any]]]:
 def _entries_by_name(query: str) -> Entries:
     """Return entries with this name: as written, or else ignoring case, hyphens and underscores."""
     candidates = _all_entries()
-    words = [_of_word(meant)] if (meant := word(query)) else []
+    words = [_of_word(meant)] if (meant := find_term(query)) else []
     exact = [entry for names, entry in candidates if query in names]
     plain_query = _plain_form(query)
     matches = exact or [e for names, e in candidates if plain_query in map(_plain_form, names)]
@@ -108,7 +108,7 @@ def _entries_with_words(query: str) -> Entries:
     return [*ranks[0], *ranks[1]] or ranks[2]
 
 
-def _of_word(meant: Word) -> dict[str, Any]:
+def _of_word(meant: Term) -> dict[str, Any]:
     return {"answer": meant.meaning, "meaning": "", "see": meant.key, "page": f"docs/{meant.page}"}
 
 
@@ -210,7 +210,7 @@ def _unknown(symbol: str) -> Problem:
 
     symbols = [quantity.symbol for quantity in QUANTITIES.values() if quantity.symbol]
     names = [*choice_meanings(), *warning_meanings(), *(key for key, _, _ in case_keys())]
-    names_and_symbols = dict.fromkeys([*QUANTITIES, *symbols, *SUMMARY, *names, *listed()])
+    names_and_symbols = dict.fromkeys([*QUANTITIES, *symbols, *SUMMARY, *names, *listed_terms()])
     similar = difflib.get_close_matches(symbol, names_and_symbols, n=3)
     remedy = f"Did you mean {' or '.join(similar)}?" if similar else "See: tribodyn units"
     what = f'there is no entry "{symbol}"'

@@ -1,4 +1,4 @@
-"""The case: what the user typed, checked and in SI, with everything derived one call away."""
+"""The case: user input, checked and in SI, with derived objects as properties."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Any, ClassVar
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case import derive
-from tribodyn.study.case.checks import cross_problems, left_behind
+from tribodyn.study.case.checks import cross_problems, dropped_options
 from tribodyn.study.case.data import CaseData
 from tribodyn.study.case.gears import is_needed
 from tribodyn.study.case.given import (
-    Given,
     Source,
+    UserInput,
     plain,
     spread_problem,
     unsound,
@@ -36,27 +36,26 @@ from tribodyn.study.case.section import Table, choices, signature_of
 from tribodyn.study.case.values import (
     FaultError,
     Plain,
-    as_meant,
-    as_typed,
+    correct_keys,
     read_fields,
     read_value,
+    with_typed_keys,
 )
 from tribodyn.study.case.write import case_rows, case_table, case_toml
 
-#: What a case keeps that follows from its tables.
+#: Attributes derived from the tables, which are not pickled.
 _DERIVED = {
     "_shared",
-    *(name for name, each in vars(CaseData).items() if isinstance(each, cached_property)),
+    *(name for name, attribute in vars(CaseData).items() if isinstance(attribute, cached_property)),
 }
-#: Keys whose choice decides which other keys of their table are allowed, beside those that name
-#: models.
+#: Keys other than model names whose choice decides which keys of their table are allowed.
 _DECIDES = ("solver.method",)
 
 
-class Case(CaseData, whole=True):
+class Case(CaseData, root=True):
     """One gear pair under one load: frozen, checked, in SI.
 
-    Made by :func:`tribodyn.load_case`, or from nested keywords: a float is SI, text and pint
+    Created by :func:`tribodyn.load_case`, or from nested keywords: a float is SI, text and pint
     quantities carry their unit.
 
     Parameters
@@ -69,7 +68,7 @@ class Case(CaseData, whole=True):
     Raises
     ------
     InputError
-        Listing every fault with its place, the allowed range and the remedy.
+        Listing every problem with its location, the allowed range and the remedy.
 
     Examples
     --------
@@ -82,40 +81,43 @@ class Case(CaseData, whole=True):
     __signature__: ClassVar[Signature]
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
-        found = list(unsound(data))
-        if found:
-            raise InputError((source or Source()).place(found))
-        data, misspelt, meant = as_meant(data)
-        middles, self._spread, spread_faults = without_spread(data)
-        given = Given(middles if source is not None else plain(middles))
+        problems = list(unsound(data))
+        if problems:
+            raise InputError((source or Source()).place(problems))
+        data, misspelt, typed_keys = correct_keys(data)
+        central_values, self._spread, spread_faults = without_spread(data)
+        inputs = UserInput(central_values if source is not None else plain(central_values))
         source = source or Source()
-        stated, found = read_stated(given)
-        body = without_records(given.data)
+        stated, problems = read_stated(inputs)
+        body = without_records(inputs.data)
         marks = body.pop("assumed", {})
-        chosen = choices(given)
-        vars(self).update(read_fields(type(self), body, "", chosen, found))
-        found = [fault for fault in found if is_needed(fault[0], given.get("gears.kind"))]
-        found += [*misspelt, *reason_faults(marks)]
-        found = [fault for fault in found if fault[0] not in dict(spread_faults)] + spread_faults
-        found += self._spread_faults({key for key, _ in found})
-        readable = not any(key.startswith("gears") for key, _ in found)
-        found += cross_problems(given, chosen, {key for key, _ in found})
-        if not found:
-            found = derive.case_problems(self)
+        chosen = choices(inputs)
+        vars(self).update(read_fields(type(self), body, "", chosen, problems))
+        problems = [fault for fault in problems if is_needed(fault[0], inputs.get("gears.kind"))]
+        problems += [*misspelt, *reason_faults(marks)]
+        spread_keys = {key for key, _ in spread_faults}
+        problems = [fault for fault in problems if fault[0] not in spread_keys] + spread_faults
+        problems += self._spread_faults({key for key, _ in problems})
+        readable = not any(key.startswith("gears") for key, _ in problems)
+        problems += cross_problems(inputs, chosen, {key for key, _ in problems})
+        if not problems:
+            problems = derive.case_problems(self)
         elif readable and self.gears is not None:
-            told = {key for key, _ in found}
-            found += [fault for fault in derive.gear_problems(self.gears) if fault[0] not in told]
-        if found:
-            raise InputError(source.place(as_typed(found, meant)))
+            reported = {key for key, _ in problems}
+            problems += [
+                fault for fault in derive.gear_problems(self.gears) if fault[0] not in reported
+            ]
+        if problems:
+            raise InputError(source.place(with_typed_keys(problems, typed_keys)))
         self._source, self._assumed = source, dict(marks)
         self._effective = effective_values(self)
-        self._stated, stale = settled(self, self._effective, given, stated)
+        self._stated, stale = settled(self, self._effective, inputs, stated)
         for key in stale:
             del self._assumed[key]
-        self._given = Given({**given.data, **tables(self._stated, self._assumed)})
+        self._given = UserInput({**inputs.data, **tables(self._stated, self._assumed)})
 
     def _spread_faults(self, faulty: set[str]) -> list[tuple[str, Problem]]:
-        """Spread values that reach beyond the range of their key."""
+        """Report spread values that reach beyond the range of their key."""
         faults = []
         for key, text in self._spread.items():
             spec = None if key in faulty else spec_of(self, key)
@@ -124,7 +126,7 @@ class Case(CaseData, whole=True):
         return faults
 
     def __getstate__(self) -> dict[str, Any]:
-        """What makes a case, without what is derived from it."""
+        """Return the state without derived attributes."""
         return {key: value for key, value in vars(self).items() if key not in _DERIVED}
 
     def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Case:
@@ -134,10 +136,10 @@ class Case(CaseData, whole=True):
         ----------
         changes : mapping
             Dotted key to value: a float in SI, text with a unit, a pint quantity, or None to go
-            back to the default. A changed value is no longer marked as assumed, and the origin of
-            the case no longer stands for it.
+            back to the default. A changed value is no longer marked as assumed or documented by
+            the origin of the case.
         by : str
-            What made the change, for messages, for example ``"--set"``; then a bare number for
+            Source of the change, for messages, for example ``"--set"``; then a bare number for
             a dimension is refused as in a file.
 
         Raises
@@ -153,56 +155,59 @@ class Case(CaseData, whole=True):
         >>> round(rough.gears.composite_roughness * 1e6, 3)
         0.991
         """
-        if not by and (found := self._with_numbers(changes)) is not None:
-            return found
+        if not by and (changed := self._with_numbers(changes)) is not None:
+            return changed
         ready = changes if by else {key: Plain(value) for key, value in changes.items()}
-        gone = left_behind(self._given, ready, self._chosen_by(ready))
-        spread = {key: text for key, text in self._spread.items() if key not in gone}
-        data = self._given.merged({**spread, **dict.fromkeys(gone), **ready})
+        dropped = dropped_options(self._given, ready, self._chosen_by(ready))
+        spread = {key: text for key, text in self._spread.items() if key not in dropped}
+        data = self._given.merged({**spread, **dict.fromkeys(dropped), **ready})
         if "assumed" in data:
-            kept = {k: w for k, w in data["assumed"].items() if k not in changes and k not in gone}
-            data["assumed"] = kept
+            marks = {
+                k: w for k, w in data["assumed"].items() if k not in changes and k not in dropped
+            }
+            data["assumed"] = marks
         source = self._source.with_replaced(changes, by or "replace:")
         return type(self)(source, **data)
 
     def _with_numbers(self, changes: Mapping[str, Any]) -> Case | None:
-        """Put numbers in the place of numbers; None where that may change more, or is a fault.
+        """Return a copy with changed numbers, checked by a fast path; None if that does not apply.
 
-        What is there and what is not decides everything else in a case, but for its gears.
+        It applies where numbers replace numbers outside ``[gears]`` without other effects: which
+        keys are present decides the rest of a case.
         """
         base = self._stated.base
         if not base or self.origin not in (None, base.get("origin")):
             return None
-        found: Case = object.__new__(type(self))
-        vars(found).update(self.__getstate__(), _shared=vars(self).setdefault("_shared", {}))
+        changed: Case = object.__new__(type(self))
+        vars(changed).update(self.__getstate__(), _shared=vars(self).setdefault("_shared", {}))
         numbers = {}
-        # An item of an array is a number like any other.
+        # Convert NumPy floats.
         changes = {key: float(v) if isinstance(v, float) else v for key, v in changes.items()}
         for key, value in changes.items():
             table, _, name = key.partition(".")
             spec, old = spec_of(self, key), self._given.get(key)
-            same = type(value) is float and spec is not None and spec.kind == "number"
-            apart = table == "gears" or key in self._spread or key in self._assumed
-            if not same or apart or old is None or self._effective.get(key) is None:
+            numeric = type(value) is float and spec is not None and spec.kind == "number"
+            indirect = table == "gears" or key in self._spread or key in self._assumed
+            if not numeric or indirect or old is None or self._effective.get(key) is None:
                 return None
             try:
                 numbers[key] = read_value(spec, name, Plain(value)) if spec else value
             except FaultError:
                 return None
-            section = copy(getattr(found, table))
+            section = copy(getattr(changed, table))
             vars(section)[name] = numbers[key]
-            vars(found)[table] = section
-        if derive.case_problems(found):
+            vars(changed)[table] = section
+        if derive.case_problems(changed):
             return None
-        found._files = self._named_files()
-        found._effective, found._changed = self._effective | numbers, None
-        found._given = self._given.with_numbers(changes)
-        found._source = self._source.with_replaced(changes, "replace:")
-        changed_after(self, found, numbers)
-        return found
+        changed._files = self._named_files()
+        changed._effective, changed._changed = self._effective | numbers, None
+        changed._given = self._given.with_numbers(changes)
+        changed._source = self._source.with_replaced(changes, "replace:")
+        changed_after(self, changed, numbers)
+        return changed
 
     def _chosen_by(self, changes: Mapping[str, Any]) -> dict[str, str]:
-        """Models, laws and methods that changes choose anew, by key; unknown names are left out."""
+        """Return the models, laws and methods that changes select, without unknown names."""
         selectors = [
             f"{name}.{t.kind.selector}"
             for name, t in self.fields.items()
@@ -232,18 +237,18 @@ class Case(CaseData, whole=True):
         return case_toml(self)
 
     def __eq__(self, other: object) -> bool:
-        """Cases are equal when all values and what is known of their origin are."""
+        """Cases are equal when all values and their provenance are."""
         if not isinstance(other, Case):
             return NotImplemented
         same = self._effective == other._effective and self._spread == other._spread
         return same and provenance(self) == provenance(other)
 
     def __hash__(self) -> int:
-        """Hash of all values in force."""
+        """Hash all effective values."""
         return hash(tuple(self._effective.items()))
 
     def __repr__(self) -> str:
-        """Show a table of all values with units."""
+        """Format all values with units as a table."""
         return case_table(self)
 
     __str__ = __repr__

@@ -11,9 +11,9 @@ from tribodyn.errors import InputError
 from tribodyn.model import text
 from tribodyn.study.case import derive
 from tribodyn.study.case.gears import Gears
-from tribodyn.study.case.given import Given, Source, Stated
+from tribodyn.study.case.given import Source, Stated, UserInput
 from tribodyn.study.case.hypoid import hypoid_flanks
-from tribodyn.study.case.section import Whole, flat, table
+from tribodyn.study.case.section import CaseTables, flat, table
 from tribodyn.study.case.sections import (
     Dynamics,
     Film,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh.table_file import TableFile
 
 
-class CaseData(Whole):
+class CaseData(CaseTables):
     """All tables of a case, the objects of the physics that they make, and their origin."""
 
     title: str = text("Gear pair", meaning="one line that names this case", example='"My gear"')
@@ -53,7 +53,7 @@ class CaseData(Whole):
 
     _assumed: dict[str, str]
     _spread: dict[str, str]
-    _given: Given
+    _given: UserInput
     _source: Source
     _stated: Stated
     _effective: dict[str, Any]
@@ -121,8 +121,8 @@ class CaseData(Whole):
         >>> tribodyn.load_case("fzg-film").density("wheel")
         7800.0
         """
-        own = getattr(self.gears, gear).density
-        return float(self.material.density if own is None else own)
+        value = getattr(self.gears, gear).density
+        return float(self.material.density if value is None else value)
 
     @property
     def thermal_contact_coefficients(self) -> tuple[float, float]:
@@ -142,10 +142,10 @@ class CaseData(Whole):
     @property
     def backlash(self) -> float:
         """Total play on the line of action [m]: given, or that of the tooth thicknesses."""
-        given = self.dynamics.backlash
-        if given is None:
+        value = self.dynamics.backlash
+        if value is None:
             return derive.backlash(self)
-        return given
+        return value
 
     @property
     def composite_roughness(self) -> float | None:
@@ -168,7 +168,7 @@ class CaseData(Whole):
         return self.operation.torque / (self.gear_ratio if of_wheel else 1.0)
 
     @property
-    def given(self) -> Given:
+    def given(self) -> UserInput:
         """What the user gave, before any default."""
         return self._given
 

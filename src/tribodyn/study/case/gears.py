@@ -11,7 +11,7 @@ from tribodyn.errors import Problem
 from tribodyn.gear.hypoid.blank import HANDS, RANGES, hypoid_blank
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
 from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, numbers
-from tribodyn.study.case.given import Given
+from tribodyn.study.case.given import UserInput
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
 
@@ -228,10 +228,10 @@ _TAPER = "the standard taper"
 
 def _of_blank(name: str) -> Option:
     default = inspect.signature(hypoid_blank).parameters[name].default
-    (low, high, unit), given = RANGES[name], default is not inspect.Parameter.empty
+    (low, high, unit), inputs = RANGES[name], default is not inspect.Parameter.empty
     shown, example = _SHOWN[unit]
     option: Option = number(
-        default if given else REQUIRED,
+        default if inputs else REQUIRED,
         low,
         high,
         "designs in use lie well within",
@@ -360,15 +360,15 @@ def is_needed(key: str, kind: str | None) -> bool:
     )
 
 
-def heat_of_bodies(given: Given) -> Iterator[tuple[str, Problem]]:
+def heat_of_bodies(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
     """Conductivity and specific heat of a gear tell only together how its flank warms."""
     for gear in ("pinion", "wheel"):
         keys = [f"gears.{gear}.{name}" for name in ("thermal_conductivity", "specific_heat")]
-        present = [key for key in keys if key in given]
+        present = [key for key in keys if key in inputs]
         if len(present) == 1:
-            absent = next(key for key in keys if key not in given)
+            absent = next(key for key in keys if key not in inputs)
             name = absent.rpartition(".")[2]
-            why = f"{given.show(present[0])} of the {gear} needs its counterpart"
+            why = f"{inputs.show(present[0])} of the {gear} needs its counterpart"
             example = {"specific_heat": "460 J/kg/K", "thermal_conductivity": "47 W/m/K"}[name]
             remedy = f'Add {name} = "{example}", that of steel, or remove both'
             yield absent, Problem(f"{name} of the {gear} is missing", "", why, remedy)

@@ -1,6 +1,6 @@
-"""What the user gave, before any default, by dotted keys; where it stands, and its spread.
+"""User input by dotted keys, before defaults: values, file and line, and spread.
 
-A value that is known within bounds is written as ``"0.05 +- 0.83 %"``.
+A value with a spread is written as ``"0.05 +- 0.83 %"``.
 """
 
 from __future__ import annotations
@@ -21,48 +21,48 @@ from tribodyn.uncertainty import distribution
 from tribodyn.units import UnitProblemError, convert, split
 
 #: Keys of a case, tables inside each other, and characters of one text, at most.
-_MOST, _DEEPEST, _LONGEST = 3000, 12, 10_000
+_MAX_KEYS, _MAX_DEPTH, _MAX_TEXT = 3000, 12, 10_000
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff]")
-#: What tells a spread from a value, and where none is looked for.
+#: Patterns of values with a spread, and keys of free text that are not searched for it.
 _SPREAD, _RANGE = re.compile(r"\s*(?:\+-|\+/-|±)"), re.compile(r"\s\.\.\s")
 _KIND = re.compile(r"^\s*(?:normal|lognormal|uniform)\s+", re.IGNORECASE)
-_ELSEWHERE = ("title", "origin", "assumed", "based_on")
+_TEXT_KEYS = ("title", "origin", "assumed", "based_on")
 #: Share of the values of an unbounded distribution that may lie beyond the range of its key.
 _TAIL = 1e-6
-#: Items of lists that are looked into.
+#: Types of list items that are checked in turn.
 _NESTED = (Mapping, list, tuple, str, Plain)
 
 
 def unsound(data: Mapping[str, Any]) -> Iterator[tuple[str, Problem]]:
-    """Faults of values that no case can hold, whatever the key: looked for before they are read."""
+    """Report values that no key accepts, such as control characters, before reading the case."""
     pending: list[tuple[str, Any, int]] = [("", data, 0)]
     for number, (key, value, depth) in enumerate(pending):
         value = value.value if isinstance(value, Plain) else value
-        if number == _MOST:
-            remedy = "This is no case file"
-            yield "", Problem(f"there are more than {_MOST} keys", "", "", remedy)
+        if number == _MAX_KEYS:
+            remedy = "This is not a case file"
+            yield "", Problem(f"there are more than {_MAX_KEYS} keys", "", "", remedy)
             return
-        told = _unsound(key, value, depth)
-        if told is not None:
-            yield ".".join(key.split(".")[:_DEEPEST]), told
+        problem = _unsound(key, value, depth)
+        if problem is not None:
+            yield ".".join(key.split(".")[:_MAX_DEPTH]), problem
         elif isinstance(value, Mapping):
             prefix = f"{key}." if key else ""
             pending += [(f"{prefix}{name}", item, depth + 1) for name, item in value.items()]
         elif isinstance(value, list | tuple):
             inner = (item for item in value if isinstance(item, _NESTED))
-            pending += [(key, item, depth + 1) for item in islice(inner, _MOST)]
+            pending += [(key, item, depth + 1) for item in islice(inner, _MAX_KEYS)]
 
 
 def _unsound(key: str, value: Any, depth: int) -> Problem | None:
     name = key.rpartition(".")[2]
-    strange = _CONTROL.search(f"{name}{value}" if isinstance(value, str) else name)
-    if strange is not None:
-        what = f"{name} holds the character U+{ord(strange[0]):04X}"
-        return Problem(what, "", "It is not for reading", "Remove it")
-    if depth > _DEEPEST:
-        return Problem("tables or lists are nested too deeply", "", "", "This is no case file")
-    if isinstance(value, str) and len(value) > _LONGEST:
-        why = f"A text has at most {_LONGEST} characters"
+    control = _CONTROL.search(f"{name}{value}" if isinstance(value, str) else name)
+    if control is not None:
+        what = f"{name} holds the character U+{ord(control[0]):04X}"
+        return Problem(what, "", "Control characters are not allowed", "Remove it")
+    if depth > _MAX_DEPTH:
+        return Problem("tables or lists are nested too deeply", "", "", "This is not a case file")
+    if isinstance(value, str) and len(value) > _MAX_TEXT:
+        why = f"A text has at most {_MAX_TEXT} characters"
         return Problem(f"{name} has {len(value)} characters", "", why, "Shorten it")
     if isinstance(value, int) and abs(value) > 10**18:
         return Problem(f"{name} = {written(value)}", "", "It is too large", "Correct the value")
@@ -70,7 +70,7 @@ def _unsound(key: str, value: Any, depth: int) -> Problem | None:
 
 
 def plain(data: Any) -> Any:
-    """Mark every value of nested mappings as coming from Python, where a bare float is SI."""
+    """Mark all values of nested mappings as Python values, where a bare float is SI."""
     if isinstance(data, Mapping):
         return {
             key: _marks(value) if key == "assumed" else plain(value) for key, value in data.items()
@@ -79,7 +79,7 @@ def plain(data: Any) -> Any:
 
 
 def _marks(table: Any) -> Any:
-    """Mark the values that reasons belong to; the reasons stay as they are."""
+    """Mark the values in ``[assumed]``; reasons stay plain text."""
     if not isinstance(table, Mapping):
         return table
     return {
@@ -90,13 +90,13 @@ def _marks(table: Any) -> Any:
     }
 
 
-class Given(dict[str, Any]):
-    """What the user gave, by dotted keys: values as typed, and tables; ``data`` has it nested."""
+class UserInput(dict[str, Any]):
+    """User input by dotted keys: values as typed, and tables; ``data`` is the nested form."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         super().__init__()
         self.data = data
-        self.typed: tuple[str, ...] = ()  #: keys of values alone
+        self.typed: tuple[str, ...] = ()  #: keys of values, without those of tables
         pending = [("", data)]
         for prefix, table in pending:
             for name, value in table.items():
@@ -109,24 +109,24 @@ class Given(dict[str, Any]):
                 self[key] = value
 
     def __reduce__(self) -> Any:
-        """Copy and pickle it by what it was made of."""
+        """Copy and pickle by the nested data."""
         return type(self), (self.data,)
 
     def show(self, key: str) -> str:
         """Write ``key = value`` as the user typed it."""
         return f"{key.rpartition('.')[2]} = {written(self.get(key))}"
 
-    def with_numbers(self, numbers: Mapping[str, float]) -> Given:
-        """Return a copy with other numbers from Python in the place of some values of tables."""
-        found = Given({})
-        found.update(self)
-        found.data, found.typed = dict(self.data), self.typed
+    def with_numbers(self, numbers: Mapping[str, float]) -> UserInput:
+        """Return a copy with some values replaced by SI numbers from Python."""
+        copy = UserInput({})
+        copy.update(self)
+        copy.data, copy.typed = dict(self.data), self.typed
         for key, number in numbers.items():
             table, _, name = key.partition(".")
-            found[table] = {**found[table], name: Plain(number)}
-            found.data[table] = found[table]
-            found[key] = number
-        return found
+            copy[table] = {**copy[table], name: Plain(number)}
+            copy.data[table] = copy[table]
+            copy[key] = number
+        return copy
 
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """Return a copy with dotted keys set."""
@@ -151,31 +151,33 @@ def _copy(data: Any) -> Any:
     return data
 
 
-#: Why of two keys one is enough.
-TWO_WAYS = "They are two ways of saying the same thing"
+#: Reason for excluding one of two alternative keys.
+CONFLICT_REASON = "Both define the same quantity"
 
 
-def both_given(given: Given, one: str, other: str) -> tuple[str, Problem]:
-    """Problem of two keys that exclude each other, under the first of them."""
-    what = f"{given.show(one)} and {given.show(other)} are both given"
-    return one, Problem(what, "", TWO_WAYS, "Keep one of them")
+def conflicting_keys(inputs: UserInput, first: str, second: str) -> tuple[str, Problem]:
+    """Return the problem of two keys that exclude each other, with the first key."""
+    what = f"{inputs.show(first)} and {inputs.show(second)} are both given"
+    return first, Problem(what, "", CONFLICT_REASON, "Keep one of them")
 
 
 @dataclass(frozen=True)
 class Source:
     """Origin of the keys of a case."""
 
-    name: str = ""  #: file name as the user gave it
-    find: Callable[[], Mapping[str, list[int]]] = dict  #: lines of the keys, looked up when asked
+    name: str = ""  #: file name as supplied by the user
+    find: Callable[[], Mapping[str, list[int]]] = (
+        dict  #: finds the lines of the keys; called on demand
+    )
     replaced: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def lines(self) -> Mapping[str, list[int]]:
-        """Lines on which each key stands."""
+        """Line numbers of each key."""
         return self.find()
 
     def line(self, key: str) -> int:
-        """Line of a key or, where it is not written, of what it holds or is held by; or zero."""
+        """Return the line of a key, or of its first inner key or enclosing table; zero if none."""
         while key and key not in self.lines:
             inside = [at[0] for other, at in self.lines.items() if other.startswith(f"{key}.")]
             if inside:
@@ -184,7 +186,7 @@ class Source:
         return self.lines[key][0] if key else 0
 
     def where(self, key: str) -> str:
-        """Write ``file:line: key`` with as much of it as is known."""
+        """Format the location ``file:line: key``, without the parts that are unknown."""
         if key in self.replaced:
             return f"{self.replaced[key]} {key}"
         if not self.name:
@@ -192,9 +194,9 @@ class Source:
         line = self.line(key)
         return f"{self.name}:{line}: {key}" if line else f"{self.name}: {key}".removesuffix(": ")
 
-    def place(self, found: Iterable[tuple[str, Problem]]) -> list[Problem]:
-        """Set the place of each problem and order the problems as the file is read."""
-        ordered = sorted(found, key=lambda pair: self.line(pair[0]))
+    def place(self, problems: Iterable[tuple[str, Problem]]) -> list[Problem]:
+        """Set the location of each problem and sort the problems by line."""
+        ordered = sorted(problems, key=lambda pair: self.line(pair[0]))
         return [replace(problem, where=self.where(key)) for key, problem in ordered]
 
     def with_replaced(self, keys: Iterable[str], by: str) -> Source:
@@ -205,14 +207,14 @@ class Source:
 def without_spread(
     data: Mapping[str, Any], prefix: str = ""
 ) -> tuple[dict[str, Any], dict[str, str], list[tuple[str, Problem]]]:
-    """Tables with the middle in place of every spread value, the spreads by key, and faults."""
+    """Return tables with central values, the spreads by key, and problems."""
     plain: dict[str, Any] = {}
     spreads: dict[str, str] = {}
     faults: list[tuple[str, Problem]] = []
     for name, value in data.items():
         key, text = f"{prefix}{name}", value.value if isinstance(value, Plain) else value
         plain[name] = value
-        if key in _ELSEWHERE:
+        if key in _TEXT_KEYS:
             continue
         if isinstance(value, Mapping):
             plain[name], inner, wrong = without_spread(value, f"{key}.")
@@ -227,16 +229,16 @@ def without_spread(
 
 
 def _middle(key: str, text: str) -> str | float:
-    """The value about which a quantity is spread, as text; a pure number as such."""
+    """Return the central value of a spread as text with unit, or as float if dimensionless."""
     spread = _SPREAD.search(text)
     first = _KIND.sub("", text[: (spread or _RANGE.search(text) or spread).start()])  # type: ignore[union-attr]
-    known = QUANTITIES.get(key.rpartition(".")[2])
-    try:  # the unit as it is written where the nomenclature has none
-        unit = known.unit if known else split(first)[1]
+    quantity = QUANTITIES.get(key.rpartition(".")[2])
+    try:  # the typed unit where the nomenclature has none
+        unit = quantity.unit if quantity else split(first)[1]
     except UnitProblemError as error:
         raise InputError(str(error)) from None
-    drawn = distribution(key, text, unit)
-    middle = first if spread else f"{float(drawn.ppf(0.5))!r} {unit}".strip()
+    values = distribution(key, text, unit)
+    middle = first if spread else f"{float(values.ppf(0.5))!r} {unit}".strip()
     return middle if unit else float(middle)
 
 
@@ -257,12 +259,12 @@ def spread_problem(spec: Option, key: str, text: Any) -> Problem | None:
     return Problem(what, "", why, _narrower(spec, key, text))
 
 
-def _reach(drawn: Any) -> tuple[float, float]:
-    """Least and greatest value of a distribution; quantiles in its tails where it has no ends."""
-    ends = float(drawn.ppf(0.0)), float(drawn.ppf(1.0))
+def _reach(values: Any) -> tuple[float, float]:
+    """Return the bounds of a distribution; tail quantiles where it is unbounded."""
+    ends = float(values.ppf(0.0)), float(values.ppf(1.0))
     if all(map(math.isfinite, ends)):
         return ends
-    return float(drawn.ppf(_TAIL)), float(drawn.ppf(1.0 - _TAIL))
+    return float(values.ppf(_TAIL)), float(values.ppf(1.0 - _TAIL))
 
 
 def _within(spec: Option, low: float, high: float) -> bool:
@@ -277,16 +279,16 @@ def _short(spec: Option, value: float) -> str:
 
 
 def _narrower(spec: Option, key: str, text: Any) -> str:
-    """Say how wide a normal distribution may be about its mean, or what else to write."""
+    """Return the remedy for a spread out of range: the largest valid standard deviation."""
     match = _SPREAD.search(text) if isinstance(text, str) else None
     if match is None:
         return "Correct the ends of the range, or their unit"
     kind = _KIND.match(text)
     if kind is not None and kind[0].strip().lower() == "lognormal":
         return "Write a smaller standard deviation"
-    drawn = distribution(key, text, spec.unit)
-    mean, reach = float(drawn.ppf(0.5)), 0.5 * (_reach(drawn)[1] - _reach(drawn)[0])
-    deviation = float(drawn.std()) if kind else reach / 3.0
+    values = distribution(key, text, spec.unit)
+    mean, reach = float(values.ppf(0.5)), 0.5 * (_reach(values)[1] - _reach(values)[0])
+    deviation = float(values.std()) if kind else reach / 3.0
     largest = deviation * min(mean - spec.low, spec.high - mean) / reach
     middle = _KIND.sub("", text).strip()
     cut = "" if kind else ": it is cut at three of them"
@@ -311,9 +313,9 @@ def _deviation(spec: Option, text: str, value: float, mean: float) -> str:
 
 
 class Stated(NamedTuple):
-    """Values in SI by dotted key, as they were when something was said about them."""
+    """Values in SI by dotted key that reasons and the origin of the case refer to."""
 
-    #: Values that the reasons in ``[assumed]`` belong to.
+    #: Values that the reasons in ``[assumed]`` refer to.
     marks: dict[str, Any]
-    #: Values that the case began with, and the origin that stands for them.
+    #: Initial values of the case, and the origin that documents them.
     base: dict[str, Any]

@@ -1,7 +1,7 @@
-"""Which values the user gave, which are assumed, and which are defaults: nothing is hidden.
+"""Provenance of each value of a case: given by the user, assumed, or a default.
 
-A reason in ``[assumed]`` belongs to one value, and ``origin`` to those that the case began with.
-Both are kept beside the values in force, so that a changed value never keeps the words of the old.
+A reason in ``[assumed]`` refers to one value, and ``origin`` to the initial values of the case.
+Both are stored with the values they refer to, so that a changed value loses its former reason.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.gears import RQ_OVER_RA, is_idle
-from tribodyn.study.case.given import Given, Stated
+from tribodyn.study.case.given import Stated, UserInput
 from tribodyn.study.case.hypoid import solid
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.sections import PROPERTIES, SHEET
@@ -26,30 +26,30 @@ if TYPE_CHECKING:
     from tribodyn.study.case.data import CaseData
 
 
-#: Equal to this, two ways of writing one value are the same.
+#: Relative tolerance for equal values.
 _ROUNDING = 1e-9
-_PARTS = {"value", "reason"}
-#: Faults that are told.
-_TOLD = 50
+_RECORD_KEYS = {"value", "reason"}
+#: Problems that are reported, at most.
+_MAX_PROBLEMS = 50
 
-Found = list[tuple[str, Problem]]
+KeyedProblems = list[tuple[str, Problem]]
 
 
 def differing(before: Mapping[str, Any], now: Mapping[str, Any]) -> set[str]:
-    """Keys of values that are not equal to rounding any more."""
+    """Return the keys whose values differ by more than rounding."""
     return {key for key, value in before.items() if not same(value, now.get(key))}
 
 
-def same(one: Any, other: Any) -> bool:
-    """Whether two values in SI are equal to rounding."""
-    if isinstance(one, tuple) and isinstance(other, tuple):
-        return len(one) == len(other) and all(map(same, one, other))
-    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for v in (one, other))
-    return math.isclose(one, other, rel_tol=_ROUNDING) if numbers else bool(one == other)
+def same(first: Any, second: Any) -> bool:
+    """Return whether two values in SI are equal to rounding."""
+    if isinstance(first, tuple) and isinstance(second, tuple):
+        return len(first) == len(second) and all(map(same, first, second))
+    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for v in (first, second))
+    return math.isclose(first, second, rel_tol=_ROUNDING) if numbers else bool(first == second)
 
 
 def reasons(data: Mapping[str, Any]) -> Any:
-    """The ``[assumed]`` table with its reasons alone; what is no mark is left for the check."""
+    """Return the reasons in ``[assumed]``; invalid entries are left for the check."""
     marks = data["assumed"]
     if not isinstance(marks, Mapping):
         return marks
@@ -59,8 +59,8 @@ def reasons(data: Mapping[str, Any]) -> Any:
     }
 
 
-def reason_faults(marks: Any) -> Found:
-    """Faults of an ``[assumed]`` table whose reasons are no text."""
+def reason_faults(marks: Any) -> KeyedProblems:
+    """Report reasons in ``[assumed]`` that are not text."""
     if not isinstance(marks, Mapping):
         what = f"assumed = {written(marks)}"
         return [("assumed", Problem(what, "", "assumed is a table", "Write [assumed]"))]
@@ -70,8 +70,8 @@ def reason_faults(marks: Any) -> Found:
             Problem(
                 f"{key} = {written(reason)}",
                 "",
-                "Input should be a valid string",
-                "Correct the value",
+                "A reason must be text",
+                "Write it in quotes",
             ),
         )
         for key, reason in marks.items()
@@ -80,58 +80,60 @@ def reason_faults(marks: Any) -> Found:
 
 
 def without_records(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a case file that hold its values and reasons."""
+    """Return the tables of a case file without recorded values."""
     body = {key: value for key, value in data.items() if key != "based_on"}
     return {**body, "assumed": reasons(data)} if "assumed" in data else body
 
 
 def _is_record(mark: Any) -> bool:
-    return isinstance(mark, Mapping) and set(mark) <= _PARTS
+    return isinstance(mark, Mapping) and set(mark) <= _RECORD_KEYS
 
 
-def _spec_at(key: str, given: Given) -> Option | None:
-    """The Option of a key, that of the model which its table names first."""
+def _spec_at(key: str, inputs: UserInput) -> Option | None:
+    """Return the Option of a key; an option of the chosen model takes precedence."""
     *path, name = key.split(".")
     section = section_at(tuple(path))
     if section is None:
         return None
-    model = section.model_named(given.get(".".join((*path, section.selector))))
+    model = section.model_named(inputs.get(".".join((*path, section.selector))))
     return (model.declared.get(name) if model else None) or section.spec(name)
 
 
-def _read(given: Given, table: str, typed: Mapping[str, Any]) -> tuple[dict[str, Any], Found]:
+def _read(
+    inputs: UserInput, table: str, typed: Mapping[str, Any]
+) -> tuple[dict[str, Any], KeyedProblems]:
     values: dict[str, Any] = {}
-    found: Found = []
+    problems: KeyedProblems = []
     for key, value in typed.items():
-        if len(found) > _TOLD:
+        if len(problems) > _MAX_PROBLEMS:
             break
-        spec, place = _spec_at(key, given), f"{table}.{key}"
+        spec, location = _spec_at(key, inputs), f"{table}.{key}"
         if spec is None:
-            why, remedy = f"[{table}] remembers values of this case", "Remove the line"
-            found.append((place, Problem(f'there is no key "{key}"', "", why, remedy)))
+            why, remedy = f"[{table}] may contain only keys of a case", "Remove the line"
+            problems.append((location, Problem(f'there is no key "{key}"', "", why, remedy)))
             continue
         try:
             values[key] = read_value(spec, key.rpartition(".")[2], value)
         except FaultError as fault:
-            found.append((place, fault.problem))
-    return values, found
+            problems.append((location, fault.problem))
+    return values, problems
 
 
-def read_stated(given: Given) -> tuple[Stated, Found]:
-    """Read the values recorded in ``[assumed]`` and ``[based_on]``, with every fault."""
-    table, base = given.data.get("assumed", {}), given.data.get("based_on", {})
+def read_stated(inputs: UserInput) -> tuple[Stated, KeyedProblems]:
+    """Read the values recorded in ``[assumed]`` and ``[based_on]``, and their problems."""
+    table, base = inputs.data.get("assumed", {}), inputs.data.get("based_on", {})
     if not isinstance(base, Mapping):
         problem = Problem(f"based_on = {written(base)}", "", "It is a table", "Write [based_on]")
         return Stated({}, {}), [("based_on", problem)]
     records = table.items() if isinstance(table, Mapping) else ()
     typed = {k: m["value"] for k, m in records if _is_record(m) and "value" in m}
-    marks, found = _read(given, "assumed", typed)
-    began, more = _read(given, "based_on", _flat(base))
-    return Stated(marks, began), [*found, *more]
+    marks, problems = _read(inputs, "assumed", typed)
+    initial, base_problems = _read(inputs, "based_on", _flat(base))
+    return Stated(marks, initial), [*problems, *base_problems]
 
 
 def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Dotted keys of a table whose keys are quoted or nested."""
+    """Flatten a table with quoted or nested keys to dotted keys."""
     flat: dict[str, Any] = {}
     for name, value in table.items():
         deeper = isinstance(value, Mapping)
@@ -140,28 +142,28 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def settled(
-    case: CaseData, values: Mapping[str, Any], given: Given, stated: Stated
+    case: CaseData, values: Mapping[str, Any], inputs: UserInput, stated: Stated
 ) -> tuple[Stated, set[str]]:
-    """What holds of values in force [SI], and the keys whose reason was that of another value."""
-    # A reason without a recorded value belongs to the value that it came with.
+    """Return records valid for the effective values, and keys whose reason is outdated."""
+    # A reason without a recorded value refers to the value given with it.
     reasons = case.assumed
     marks = {key: stated.marks.get(key, values.get(key)) for key in reasons}
     stale = differing(marks, values)
-    said = {key: value for key, value in marks.items() if reasons[key] != DEFAULT_MARK}
-    kept = {key: value for key, value in marks.items() if key not in stale}
+    author_marks = {key: value for key, value in marks.items() if reasons[key] != DEFAULT_MARK}
+    current = {key: value for key, value in marks.items() if key not in stale}
     if stated.base and case.origin in (None, stated.base.get("origin")):
-        return Stated(kept, stated.base | said | stated.base), stale
+        return Stated(current, stated.base | author_marks | stated.base), stale
     base = {
         key: values[key]
-        for key in given.typed
+        for key in inputs.typed
         if key in values and reasons.get(key) != DEFAULT_MARK
     }
-    # Another origin stands for the values in force, whatever they were before.
-    return Stated(kept, base if stated.base else base | said), stale
+    # A new origin documents the effective values, whatever they were before.
+    return Stated(current, base if stated.base else base | author_marks), stale
 
 
 def tables(stated: Stated, marks: Mapping[str, str]) -> dict[str, Any]:
-    """The tables ``[assumed]`` and ``[based_on]``, from which an equal case is made."""
+    """Return ``[assumed]`` and ``[based_on]``, from which an equal case can be read."""
     return {
         "assumed": {
             key: {"value": Plain(stated.marks[key]), "reason": reason}
@@ -200,8 +202,8 @@ _MASSES = tuple(
 
 
 def body(gear: str) -> tuple[str, ...]:
-    """Keys that make the body of a gear."""
-    own = (
+    """Return the keys that define the body of a gear."""
+    names = (
         "teeth",
         "profile_shift_coefficient",
         "face_width",
@@ -209,7 +211,7 @@ def body(gear: str) -> tuple[str, ...]:
         "bore_diameter",
         "density",
     )
-    return (*_PROFILE, *(f"gears.{gear}.{name}" for name in own), "material.density")
+    return (*_PROFILE, *(f"gears.{gear}.{name}" for name in names), "material.density")
 
 
 _ELASTIC = (
@@ -252,22 +254,22 @@ for _value in ("cosine", "sine", "values"):
 
 
 def foundations(key: str) -> tuple[str, ...]:
-    """Keys whose change takes away what a reason of this key speaks of."""
+    """Return the keys whose change invalidates a reason given for this key."""
     return _FOUNDATIONS.get(key, ())
 
 
 _TRANSIENT_CYCLES = 50
-#: Keys of a case that are words about it.
-_WORDS = ("title", "origin")
+#: Keys of descriptive text.
+_TEXT_KEYS = ("title", "origin")
 
 
 @dataclass(frozen=True)
 class Assumption:
-    """A value that nobody stated, and why it is what it is."""
+    """A value that the user did not state, and the reason for it."""
 
     key: str  #: dotted key of the case file
     value: str  #: value with unit
-    kind: str  #: ``"assumed"`` by whoever wrote the case, or a ``"default"`` of tribodyn
+    kind: str  #: ``"assumed"`` by the author of the case, or a ``"default"`` of tribodyn
     reason: str  #: why
 
     def __str__(self) -> str:
@@ -286,13 +288,13 @@ def spec_of(case: CaseData, key: str) -> Option | None:
 
 
 def _model_of(case: CaseData, path: list[str]) -> Model | None:
-    """The model that a table of the case names."""
+    """Return the model that a table of the case names."""
     section = vars(case).get(path[0]) if len(path) == 1 else None
     return section.chosen if isinstance(section, Section) else None
 
 
 def _bored(case: CaseData, default: Any) -> Any:
-    """Body against which deflection is measured; one without a bore has no shaft seat."""
+    """Return the reference of deflection: the rim where a gear has no bore."""
     if case.gears.kind != "spur":
         return default
     bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
@@ -300,7 +302,7 @@ def _bored(case: CaseData, default: Any) -> Any:
 
 
 def effective_values(case: CaseData) -> dict[str, Any]:
-    """All values in force by dotted key, defaults of options and solver filled in."""
+    """Return all effective values by dotted key, with defaults filled in."""
     values = in_force(case)
     kind = case.gears.kind
     values |= {key: None for key in values if is_idle(key, kind)}
@@ -318,12 +320,12 @@ def effective_values(case: CaseData) -> dict[str, Any]:
 
 
 def effective(case: CaseData) -> dict[str, Any]:
-    """Return all values in force by dotted key."""
+    """Return all effective values by dotted key."""
     return dict(case._effective)
 
 
 def default_of(case: CaseData, key: str) -> Any:
-    """Value of a key where a case like this one does not give it; None if it is derived."""
+    """Return the default of a key for this case; None if it is derived."""
     *path, name = key.split(".")
     section = section_at(tuple(path))
     if key == "solver.cycles":
@@ -339,7 +341,7 @@ def default_of(case: CaseData, key: str) -> Any:
 
 
 def changed_keys(case: CaseData) -> tuple[str, ...]:
-    """Keys whose values differ from those that the case began with."""
+    """Return the keys whose values differ from the initial values of the case."""
     if case._changed is None:
         case._changed = _keys_that_changed(case)
     return case._changed
@@ -351,16 +353,16 @@ def _keys_that_changed(case: CaseData) -> tuple[str, ...]:
         derived = derived_values(case)
         values = {k: derived.get(k) if v is None else v for k, v in values.items()}
     before = {**_defaults_before(case, values), **base}
-    return _in_order(case, differing(before, values) - set(_WORDS))
+    return _in_order(case, differing(before, values) - set(_TEXT_KEYS))
 
 
 def _defaults_before(case: CaseData, keys: Iterable[str]) -> dict[str, Any]:
-    """What was in force of keys that are given now, while the case began without them."""
-    given, base = case.given, case.stated.base
+    """Return the initial defaults of keys that were given later."""
+    inputs, base = case.given, case.stated.base
     return {
         key: default_of(case, key)
         for key in keys
-        if key in given and key not in base and case.assumed.get(key) != DEFAULT_MARK
+        if key in inputs and key not in base and case.assumed.get(key) != DEFAULT_MARK
     }
 
 
@@ -374,28 +376,28 @@ def _in_order(case: CaseData, changed: Set[str]) -> tuple[str, ...]:
 
 
 def changed_after(before: CaseData, case: CaseData, numbers: Mapping[str, Any]) -> None:
-    """Tell a case with other numbers which keys differ: those of the case before, and these."""
+    """Set the changed keys of a case that differs from another only in some numbers."""
     base = case.stated.base
     if any(case._effective.get(key) is None for key in base):
-        return  # what is derived in its place may follow from the numbers
+        return  # derived values may depend on the numbers
     was = {**_defaults_before(case, numbers), **{k: base[k] for k in numbers if k in base}}
     changed = set(changed_keys(before)) - set(numbers) | differing(was, case._effective)
     case._changed = _in_order(case, changed)
 
 
 def _marked(case: CaseData, key: str, value: Any, changed: tuple[str, ...]) -> str:
-    """Origin of a value with a mark in ``[assumed]``."""
+    """Return the provenance of a value marked in ``[assumed]``."""
     reason = case.assumed[key]
     if reason != DEFAULT_MARK:
-        since = [other for other in changed if other in foundations(key)]
-        told = f"; stated before {', '.join(since)} changed" if since else ""
-        return f"assumed: {reason}{told}"
+        changed_bases = [other for other in changed if other in foundations(key)]
+        note = f"; stated before {', '.join(changed_bases)} changed" if changed_bases else ""
+        return f"assumed: {reason}{note}"
     standard = default_of(case, key)
     if same(standard, value):
         return DEFAULT_MARK
     spec = spec_of(case, key)
-    now = spec.show(standard) if spec and standard is not None else "derived"
-    return f"assumed: marked as default in the file, while this version has {now} for this case"
+    current = spec.show(standard) if spec and standard is not None else "derived"
+    return f"assumed: marked as default in the file, while this version has {current} for this case"
 
 
 def _derived_from(case: CaseData, key: str) -> str:
@@ -404,7 +406,7 @@ def _derived_from(case: CaseData, key: str) -> str:
 
 
 def _unused(case: CaseData, key: str) -> bool:
-    """Whether a key does nothing in this case: of another kind of gears, or of another model."""
+    """Return whether a key has no effect: it belongs to other gears or another model."""
     *path, name = key.split(".")
     model, section = _model_of(case, path), section_at(tuple(path))
     chosen = model is None or section is None or name in {*section.fields, *model.options}
@@ -412,12 +414,12 @@ def _unused(case: CaseData, key: str) -> bool:
 
 
 def provenance(case: CaseData) -> dict[str, str]:
-    """Tell the origin of every value in force."""
-    origins, changed, given = {}, changed_keys(case), case.given
+    """Return the provenance of every effective value."""
+    origins, changed, inputs = {}, changed_keys(case), case.given
     for key, value in effective(case).items():
         if key in case.assumed:
             origins[key] = _marked(case, key, value, changed)
-        elif key in given:
+        elif key in inputs:
             origins[key] = "given"
         elif value is not None or (_derived_from(case, key) and not _unused(case, key)):
             origins[key] = DEFAULT_MARK
@@ -435,13 +437,13 @@ def assumptions(case: CaseData) -> tuple[Assumption, ...]:
         if key in derived or (values[key] is None and spec.basis):
             reason = f"derived from {spec.basis}"
         value = derived.get(key, values[key])
-        shown = "automatic" if value is None else spec.show(value)
-        rows.append(Assumption(key, shown, kind, reason or spec.meaning))
+        display = "automatic" if value is None else spec.show(value)
+        rows.append(Assumption(key, display, kind, reason or spec.meaning))
     return (*rows, *_heights(case), *_oil_assumptions(case))
 
 
 def _heights(case: CaseData) -> Iterator[Assumption]:
-    """Rms roughness of flanks that the case gives as Ra."""
+    """Yield the rms roughness of flanks given as Ra."""
     for name, gear in (("pinion", case.gears.pinion), ("wheel", case.gears.wheel)):
         key = f"gears.{name}.roughness_rms"
         spec = spec_of(case, key)
@@ -451,7 +453,7 @@ def _heights(case: CaseData) -> Iterator[Assumption]:
 
 
 def _oil_assumptions(case: CaseData) -> list[Assumption]:
-    """What the library assumes about the oil of a case."""
+    """Return the assumptions of the oil library about the oil of a case."""
     oil = case.lubricant_properties
     if oil is None:
         return []
@@ -459,10 +461,10 @@ def _oil_assumptions(case: CaseData) -> list[Assumption]:
 
 
 def derived_values(case: CaseData) -> dict[str, float]:
-    """All values that are derived because the case does not give them."""
+    """Return all values that are derived because the case does not give them."""
     if case.gears.kind != "spur":
-        values = _of_solid_cones(case) | {"dynamics.backlash": case.backlash}
-        return _not_given(case, values)
+        values = _solid_cone_properties(case) | {"dynamics.backlash": case.backlash}
+        return _absent_from_case(case, values)
     from tribodyn.gear import default_relief_length, mass_properties
 
     pair, values = case.gear_pair, {}
@@ -476,20 +478,20 @@ def derived_values(case: CaseData) -> dict[str, float]:
             values[f"gears.{name}.modification.{end}_length"] = default_relief_length(pair)
     values["gears.center_distance"] = pair.center_distance
     values["dynamics.backlash"] = case.backlash
-    return _not_given(case, values)
+    return _absent_from_case(case, values)
 
 
-def _of_solid_cones(case: CaseData) -> dict[str, float]:
-    """Masses and inertias of a hypoid pair."""
+def _solid_cone_properties(case: CaseData) -> dict[str, float]:
+    """Return masses and inertias of a hypoid pair."""
     if case.hypoid_flanks is None:
         return {}
     return {
         f"gears.{gear}.{name}": value
-        for gear, both in solid(case.hypoid_flanks, case.material.density).items()
-        for name, value in zip(("mass", "moment_of_inertia"), both, strict=True)
+        for gear, properties in solid(case.hypoid_flanks, case.material.density).items()
+        for name, value in zip(("mass", "moment_of_inertia"), properties, strict=True)
     }
 
 
-def _not_given(case: CaseData, values: dict[str, float]) -> dict[str, float]:
-    given = dict(case.values())
-    return {key: value for key, value in values.items() if given.get(key, value) is None}
+def _absent_from_case(case: CaseData, values: dict[str, float]) -> dict[str, float]:
+    case_values = dict(case.values())
+    return {key: value for key, value in values.items() if case_values.get(key, value) is None}

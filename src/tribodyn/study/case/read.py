@@ -259,7 +259,7 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
         raise InputError(_syntax(text, name, str(error))) from None
     except RecursionError:
         what, where = "brackets are nested too deeply", f"{name}:{_deepest(text)}"
-        raise InputError(what, where, "", "This is no case file") from None
+        raise InputError(what, where, "", "This is not a case file") from None
     except (ValueError, OverflowError):
         long = re.search(r"[0-9_]{4300}", text)
         where = f"{name}:{text.count(chr(10), 0, long.start()) + 1}" if long else name

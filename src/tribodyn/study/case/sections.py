@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, choice, flag, integer, model_choice, number
-from tribodyn.study.case.given import Given, both_given
+from tribodyn.study.case.given import UserInput, conflicting_keys
 from tribodyn.study.case.section import Section, table
 
 if TYPE_CHECKING:
@@ -407,35 +407,35 @@ class Losses(Section):
     wheel: ShaftData = table(ShaftData, "shaft of the wheel", "empty")
 
 
-def _heat_balance(given: Given) -> Iterator[tuple[str, Problem]]:
+def _heat_balance(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
     """A heat balance needs an oil that is known at every temperature, and gears that rub."""
     key, other = "lubricant.heat_transfer", "lubricant.ambient_temperature"
-    if key not in given:
-        if other in given:
+    if key not in inputs:
+        if other in inputs:
             why, remedy = "Without heat_transfer the oil keeps its temperature", "Remove it"
-            yield other, Problem(given.show(other), "", why, f"{remedy}, or add heat_transfer")
+            yield other, Problem(inputs.show(other), "", why, f"{remedy}, or add heat_transfer")
         return
-    if "lubricant.dynamic_viscosity" in given:
-        what = f"{given.show(key)} with properties at one temperature"
+    if "lubricant.dynamic_viscosity" in inputs:
+        what = f"{inputs.show(key)} with properties at one temperature"
         why = "The balance needs the viscosity at others"
         remedy = 'Name an oil, for example name = "ISO VG 220", or give the figures of a data sheet'
         yield key, Problem(what, "", why, f"{remedy}, or remove heat_transfer")
-    if given.get("gears.kind", "spur") != "spur":
+    if inputs.get("gears.kind", "spur") != "spur":
         why = "The losses at other temperatures are known of spur gears"
-        yield key, Problem(given.show(key), "", why, "Remove it")
+        yield key, Problem(inputs.show(key), "", why, "Remove it")
 
 
-def lubricant_problems(given: Given) -> Iterator[tuple[str, Problem]]:
+def lubricant_problems(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
     """An oil is one of the library, one of a data sheet, or its properties at one temperature."""
-    if "lubricant" not in given:
+    if "lubricant" not in inputs:
         return
-    yield from _heat_balance(given)
-    stated = [name for name in (*PROPERTIES, *THERMAL, *SHEET) if f"lubricant.{name}" in given]
-    if "lubricant.name" in given:
+    yield from _heat_balance(inputs)
+    stated = [name for name in (*PROPERTIES, *THERMAL, *SHEET) if f"lubricant.{name}" in inputs]
+    if "lubricant.name" in inputs:
         for name in stated:
-            yield both_given(given, "lubricant.name", f"lubricant.{name}")
+            yield conflicting_keys(inputs, "lubricant.name", f"lubricant.{name}")
     elif any(name in SHEET for name in stated):
-        yield from _data_sheet(given, stated)
+        yield from _data_sheet(inputs, stated)
     else:
         for name in PROPERTIES:
             if name not in stated:
@@ -444,12 +444,12 @@ def lubricant_problems(given: Given) -> Iterator[tuple[str, Problem]]:
                 yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
 
 
-def _data_sheet(given: Given, stated: list[str]) -> Iterator[tuple[str, Problem]]:
+def _data_sheet(inputs: UserInput, stated: list[str]) -> Iterator[tuple[str, Problem]]:
     """An oil of a data sheet has two figures of its viscosity, a density and a temperature."""
     for name in ("dynamic_viscosity", "density", "temperature_viscosity_coefficient"):
         if name in stated:
-            first = next(each for each in stated if each in SHEET)
-            what = f"{given.show(f'lubricant.{name}')} and {given.show(f'lubricant.{first}')}"
+            first = next(figure for figure in stated if figure in SHEET)
+            what = f"{inputs.show(f'lubricant.{name}')} and {inputs.show(f'lubricant.{first}')}"
             why = "It follows from the figures of the data sheet"
             yield f"lubricant.{name}", Problem(what, "", why, "Remove it")
     figures = [name for name in SHEET[:3] if name in stated]
@@ -459,9 +459,11 @@ def _data_sheet(given: Given, stated: list[str]) -> Iterator[tuple[str, Problem]
         remedy = "Add one of the data sheet"
         yield f"lubricant.{missing}", Problem(f"{missing} is missing", "", why, remedy)
     for name, example in (("density_at_15", "892 kg/m^3"), ("temperature", "60 degC")):
-        if f"lubricant.{name}" not in given:
+        if f"lubricant.{name}" not in inputs:
             remedy = f'Add {name} = "{example}", with the value of your oil'
             why = "An oil of a data sheet needs it"
             yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
     if "base_oil" in stated and "pressure_viscosity_coefficient" in stated:
-        yield both_given(given, "lubricant.base_oil", "lubricant.pressure_viscosity_coefficient")
+        yield conflicting_keys(
+            inputs, "lubricant.base_oil", "lubricant.pressure_viscosity_coefficient"
+        )

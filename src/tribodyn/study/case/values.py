@@ -1,4 +1,4 @@
-"""How tables and values of the case file are read: checked, and in SI."""
+"""Read tables and values of the case file: check them and convert them to SI."""
 
 from __future__ import annotations
 
@@ -21,45 +21,45 @@ from tribodyn.model import REQUIRED, Option
 from tribodyn.study.case.section import Choice, Section, Table, section_at
 
 
-class Word(NamedTuple):
-    """What is said of a word."""
+class Term(NamedTuple):
+    """Explanation of a term that users type or search for."""
 
     meaning: str
-    key: str = ""  #: last part of the key, or the quantity, that is meant
-    page: str = ""  #: where the documentation says more
+    key: str = ""  #: last part of the key, or the quantity, that the term stands for
+    page: str = ""  #: page of the documentation
 
 
 @lru_cache(maxsize=1)
-def _words() -> dict[str, Word]:
+def _terms() -> dict[str, Term]:
     import tomllib
 
     text = files("tribodyn.study.case").joinpath("texts", "words.toml").read_text(encoding="utf-8")
     entries = tomllib.loads(text).values()
     return {
-        word: Word(**{k: v for k, v in entry.items() if k != "words"})
+        word: Term(**{k: v for k, v in entry.items() if k != "words"})
         for entry in entries
         for word in entry["words"]
     }
 
 
-def word(text: str) -> Word | None:
-    """What is said of a word, whatever its case and its underscores; None if nothing is."""
+def find_term(text: str) -> Term | None:
+    """Find a term, ignoring case and underscores; None if it is not listed."""
     lowered = text.strip().lower()
-    return _words().get(lowered) or _words().get(lowered.replace("_", " ").replace("-", " "))
+    return _terms().get(lowered) or _terms().get(lowered.replace("_", " ").replace("-", " "))
 
 
-def listed() -> list[str]:
-    """All words."""
-    return list(_words())
+def listed_terms() -> list[str]:
+    """Return all listed terms."""
+    return list(_terms())
 
 
 Chosen = Mapping[str, Choice]
-Found = list[tuple[str, Problem]]
+KeyedProblems = list[tuple[str, Problem]]
 Kind = TypeVar("Kind", bound=Section)
 
-#: Items of a list that a message repeats, and unknown keys that are told.
-_SHOWN, _TOLD = 20, 50
-#: Beyond this a whole number is a slip of the keyboard.
+#: Items of a list that a message repeats, and unknown keys that are reported, at most.
+_MAX_ITEMS, _MAX_UNKNOWN = 20, 50
+#: Integers above this are taken for typing errors.
 _LARGEST = 10**18
 
 
@@ -71,7 +71,7 @@ class Plain:
 
 
 class FaultError(Exception):
-    """What is wrong with one value; its place is not known yet."""
+    """Error in one value, before its location in the file is added."""
 
     def __init__(self, what: str, why: str = "", remedy: str = "") -> None:
         super().__init__(what)
@@ -79,7 +79,7 @@ class FaultError(Exception):
 
 
 def written(value: Any, depth: int = 5) -> str:
-    """Show a value as TOML would have it, as much of it as a message takes."""
+    """Format a value as TOML, shortened to fit a message."""
     if isinstance(value, Plain):
         value = value.value
     if isinstance(value, str):
@@ -87,34 +87,34 @@ def written(value: Any, depth: int = 5) -> str:
     if isinstance(value, Mapping | list | tuple) and not depth:
         return "..."
     if isinstance(value, Mapping):
-        items = islice(value.items(), _SHOWN)
+        items = islice(value.items(), _MAX_ITEMS)
         text = ", ".join(f"{key} = {written(item, depth - 1)}" for key, item in items)
         return shortened(f"{{{text}}}")
     if isinstance(value, list | tuple):
-        shown = [written(item, depth - 1) for item in value[:_SHOWN]]
-        return shortened(f"[{', '.join(shown)}{', ...' if len(value) > _SHOWN else ''}]")
+        items_text = [written(item, depth - 1) for item in value[:_MAX_ITEMS]]
+        return shortened(f"[{', '.join(items_text)}{', ...' if len(value) > _MAX_ITEMS else ''}]")
     if isinstance(value, int) and abs(value) > _LARGEST:
         return f"a whole number of about {int(0.30103 * value.bit_length()) + 1} digits"
     return str(value).lower() if isinstance(value, bool) else shortened(str(value))
 
 
 def _grouped(spec: Option, name: str, value: str) -> FaultError | None:
-    """Say how numbers are written, where one has a comma or separated thousands."""
-    meant = units.readings(value)
-    if not meant:
+    """Return the error for a number with a comma or separated thousands, or None."""
+    readings = units.readings(value)
+    if not readings:
         return None
-    shown = [f"{name} = {text}" if not spec.unit else f'{name} = "{text}"' for text in meant]
+    examples = [f"{name} = {text}" if not spec.unit else f'{name} = "{text}"' for text in readings]
     why = units.NUMBERS[0].upper() + units.NUMBERS[1:]
-    return FaultError(f"{name} = {written(value)}", why, f"Write {' or '.join(shown)}")
+    return FaultError(f"{name} = {written(value)}", why, f"Write {' or '.join(examples)}")
 
 
 #: A plain decimal number.
 _PLAIN = r"\d{1,9}(?:\.\d{0,9})?"
 
 
-def _misread(spec: Option, name: str, value: str, told: str) -> FaultError:
-    """Say why text is no quantity of the field, and what to write."""
-    reason, lacks_unit, _ = told.partition("; write for example")
+def _misread(spec: Option, name: str, value: str, message: str) -> FaultError:
+    """Return the error for text that is not a quantity of the field."""
+    reason, lacks_unit, _ = message.partition("; write for example")
     remedy = f"Write for example {spec.example}"
     if lacks_unit:
         remedy = f'Write for example {name} = "{value.strip()} {spec.display_unit}"'
@@ -133,14 +133,14 @@ def _misread(spec: Option, name: str, value: str, told: str) -> FaultError:
 
 
 def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
-    """Turn text, a pint quantity or a number into an SI float."""
-    shown = f"{name} = {written(value)}"
+    """Convert text, a pint quantity or a number to an SI float."""
+    entry = f"{name} = {written(value)}"
     if hasattr(value, "magnitude") and hasattr(value, "to"):
         try:
             return float(value.to(spec.unit or "dimensionless").magnitude)
         except Exception as error:
             raise FaultError(
-                shown, f"{name} is a quantity in {spec.unit or '1'}", str(error)
+                entry, f"{name} is a quantity in {spec.unit or '1'}", str(error)
             ) from None
     if isinstance(value, str):
         if grouped := _grouped(spec, name, value):
@@ -150,65 +150,67 @@ def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
             remedy = "Write it without quotes"
             if share:
                 remedy = f"Write {name} = {float(share[1]) / 100.0:g}"
-            raise FaultError(shown, f"{name} is a pure number, not text", remedy)
+            raise FaultError(entry, f"{name} is a pure number, not text", remedy)
         try:
             return units.parse(value, spec.unit)
         except units.UnitProblemError as error:
             raise _misread(spec, name, value, str(error)) from None
     if isinstance(value, bool) or not isinstance(value, numeric.Real):
         kind = "a number with a unit" if spec.unit else "a number"
-        raise FaultError(shown, f"{name} must be {kind}", f"Write for example {spec.example}")
+        raise FaultError(entry, f"{name} must be {kind}", f"Write for example {spec.example}")
     if spec.unit and as_text:
         remedy = f'Write for example {name} = "{value} {spec.display_unit}"'
-        raise FaultError(shown, f"{name} has a dimension and needs a unit, as text", remedy)
+        raise FaultError(entry, f"{name} has a dimension and needs a unit, as text", remedy)
     try:
         return float(value)
     except OverflowError:
-        raise FaultError(shown, f"{name} is too large", "Correct the value") from None
+        raise FaultError(entry, f"{name} is too large", "Correct the value") from None
 
 
 def _in_range(spec: Option, name: str, value: float, typed: Any) -> None:
-    """Refuse what is not finite or outside the limits of the field."""
+    """Raise if a value is not finite or outside the limits of the field."""
     outside = not (spec.low <= value <= spec.high) or (spec.positive and value == spec.low)
     if not outside and math.isfinite(value):
         return
-    shown = f"{name} = {written(typed)}"
+    entry = f"{name} = {written(typed)}"
     if spec.unit and math.isfinite(value) and abs(value) < 1e300:
         display = spec.show(value)
-        shown += "" if display == str(typed) else f" ({display})"
+        entry += "" if display == str(typed) else f" ({display})"
     why = f"Allowed: {spec.allowed()} ({spec.origin})" if spec.origin else spec.allowed()
     remedy = "Correct the value or its unit" if spec.unit else "Correct the value"
     if value < 0.0 <= spec.low <= -value <= spec.high:
         remedy = f"{remedy}; without its sign it is in the range"
-    raise FaultError(shown, why, remedy)
+    raise FaultError(entry, why, remedy)
 
 
-def _whole(spec: Option, name: str, value: Any) -> int:
+def _integer(spec: Option, name: str, value: Any) -> int:
     try:
         if isinstance(value, bool):
             raise TypeError
-        whole = operator.index(value)
+        number = operator.index(value)
     except TypeError:
-        meant = re.fullmatch(r"(\d{1,9})(\.0*)?", str(value).strip())
-        remedy = f"Write {name} = {int(meant[1])}" if meant else ""
+        digits = re.fullmatch(r"(\d{1,9})(\.0*)?", str(value).strip())
+        remedy = f"Write {name} = {int(digits[1])}" if digits else ""
         remedy = remedy or f"Write for example {name} = {spec.example}"
         raise FaultError(
             f"{name} = {written(value)}", f"{name} must be a whole number", remedy
         ) from None
-    _in_range(spec, name, whole, value)
-    return whole
+    _in_range(spec, name, number, value)
+    return number
 
 
 def _name(spec: Option, name: str, value: Any) -> str:
-    known = spec.names() if spec.names else []
-    if isinstance(value, str) and value in known:
+    names = spec.names() if spec.names else []
+    if isinstance(value, str) and value in names:
         return value
-    shown, why = f"{name} = {written(value)}", f"Allowed: {', '.join(known)}"
-    near = difflib.get_close_matches(str(value), known, n=1)
-    said = None if near else word(str(value))
-    if said is not None:
-        raise FaultError(shown, said.meaning, f"Allowed: {', '.join(known)}")
-    raise FaultError(shown, why, f'Did you mean "{near[0]}"?' if near else "Choose one of these")
+    entry, why = f"{name} = {written(value)}", f"Allowed: {', '.join(names)}"
+    matches = difflib.get_close_matches(str(value), names, n=1)
+    term = None if matches else find_term(str(value))
+    if term is not None:
+        raise FaultError(entry, term.meaning, f"Allowed: {', '.join(names)}")
+    raise FaultError(
+        entry, why, f'Did you mean "{matches[0]}"?' if matches else "Choose one of these"
+    )
 
 
 def read_value(spec: Option, name: str, value: Any) -> Any:
@@ -223,7 +225,7 @@ def read_value(spec: Option, name: str, value: Any) -> Any:
         _in_range(spec, name, result, value)
         return result
     if spec.kind == "integer":
-        return _whole(spec, name, value)
+        return _integer(spec, name, value)
     if spec.kind == "choice":
         return _name(spec, name, value)
     if spec.kind == "numbers":
@@ -250,84 +252,88 @@ def _list(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ..
 def _both_gears(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ...]:
     if len(value) != 2:
         remedy = f"Write one value for both gears, or {name} = [{spec.example}, {spec.example}]"
-        raise FaultError(f"{name} = {written(value)}", "A list has pinion and wheel", remedy)
+        raise FaultError(
+            f"{name} = {written(value)}",
+            "A list must have two values, for pinion and wheel",
+            remedy,
+        )
     return _list(spec, name, value, as_text)
 
 
 def read_table(
-    cls: type[Kind], data: Mapping[str, Any], path: str, chosen: Chosen, found: Found
+    cls: type[Kind], data: Mapping[str, Any], path: str, chosen: Chosen, problems: KeyedProblems
 ) -> Kind:
-    """Read a table under the models that are named; what is wrong with it is added to ``found``."""
+    """Read a table with the options of its model; append errors to ``problems``."""
     section = cls.__new__(cls)
-    vars(section).update(read_fields(cls, data, path, chosen, found))
+    vars(section).update(read_fields(cls, data, path, chosen, problems))
     return section
 
 
 def read_fields(
-    cls: type[Section], data: Mapping[str, Any], path: str, chosen: Chosen, found: Found
+    cls: type[Section], data: Mapping[str, Any], path: str, chosen: Chosen, problems: KeyedProblems
 ) -> dict[str, Any]:
-    """Values of the keys of a table, in the order of their declaration."""
+    """Read the values of a table in the order of declaration; append errors to ``problems``."""
     values: dict[str, Any] = {}
     model = chosen[path].model if path in chosen else None
-    # The options of a model go before keys of the same name.
+    # The options of a model take precedence over keys of the same name.
     options = {**cls.fields, **model.case_options} if model else cls.fields
     for name, field in options.items():
         key = f"{path}.{name}" if path else name
         if isinstance(field, Table):
-            values[name] = _inner(field, data, key, chosen, found)
+            values[name] = _read_inner(field, data, key, chosen, problems)
         elif model and name == cls.selector:
             values[name] = model.name
         elif name in data:
             try:
                 values[name] = read_value(field, name, data[name])
             except FaultError as fault:
-                found.append((key, fault.problem))
+                problems.append((key, fault.problem))
         elif name in cls.fields:
             values[name] = field.default
             if values[name] is REQUIRED:
                 values[name] = None
-                found.append((key, _missing(field, name, path)))
+                problems.append((key, _missing(field, name, path)))
         else:
             values[name] = None
     if not options.keys() >= data.keys():
-        found += _foreign(cls, data, options, path)
+        problems += _unexpected_keys(cls, data, options, path)
     return values
 
 
-def _inner(
-    table: Table, data: Mapping[str, Any], key: str, chosen: Chosen, found: Found
+def _read_inner(
+    table: Table, data: Mapping[str, Any], key: str, chosen: Chosen, problems: KeyedProblems
 ) -> Section | None:
     name = key.rpartition(".")[2]
     if name not in data:
         if table.default == "none":
             return None
         if table.default == "required":
-            found.append((key, _missing_table(table.kind, key)))
+            problems.append((key, _missing_table(table.kind, key)))
             return None
     inner = data.get(name, {})
     if isinstance(inner, Mapping):
-        return read_table(table.kind, inner, key, chosen, found)
+        return read_table(table.kind, inner, key, chosen, problems)
     what = f"{name} = {written(inner)}"
-    found.append((key, Problem(what, "", f"{name} is a table", f"Write [{key}]")))
+    problems.append((key, Problem(what, "", f"{name} is a table", f"Write [{key}]")))
     return None
 
 
-def _foreign(
+def _unexpected_keys(
     cls: type[Section], data: Mapping[str, Any], options: Mapping[str, Any], path: str
 ) -> Iterator[tuple[str, Problem]]:
-    """Faults of keys that are not those of this table under its model."""
-    strange = list(islice((name for name in data if name not in options), _TOLD))
-    known = cls.known().keys if strange else {}
-    for name in strange:
-        key, option = (f"{path}.{name}" if path else name), known.get(name)
+    """Report keys that neither this table nor its model has."""
+    unexpected = list(islice((name for name in data if name not in options), _MAX_UNKNOWN))
+    available = cls.available().keys if unexpected else {}
+    for name in unexpected:
+        key, option = (f"{path}.{name}" if path else name), available.get(name)
         if isinstance(option, Option):
-            # That it belongs to another model is told with the other contradictions.
+            # Options of another model are reported by the cross checks.
             try:
                 read_value(option, name, data[name])
             except FaultError as fault:
                 yield key, fault.problem
         else:
-            yield key, unknown(tuple(key.split(".")), data[name])
+            yield key, unknown_key(tuple(key.split(".")), data[name])
 
 
 def _missing(option: Option, name: str, path: str) -> Problem:
@@ -348,99 +354,103 @@ def _missing_table(kind: type[Section], path: str) -> Problem:
     return Problem(what, why="The case cannot be computed without it", remedy=remedy)
 
 
-def _homes(name: str, path: tuple[str, ...] = ()) -> list[str]:
+def _tables_with(name: str, path: tuple[str, ...] = ()) -> list[str]:
     """List the tables that have a key called ``name``."""
     section = section_at(path)
-    found = []
-    for key, field in section.known().keys.items() if section else ():
+    tables = []
+    for key, field in section.available().keys.items() if section else ():
         if isinstance(field, Table):
-            found += _homes(name, (*path, key))
+            tables += _tables_with(name, (*path, key))
         elif key == name:
-            found.append(f"[{'.'.join(path)}]")
-    return found
+            tables.append(f"[{'.'.join(path)}]")
+    return tables
 
 
-def _meant(name: str, section: type[Section]) -> str:
-    """Key of a table that an unknown one stands for; empty where nobody can tell."""
-    known = section.known().keys
-    if said := word(name):
-        return said.key if said.key in known else ""
+def _intended_key(name: str, section: type[Section]) -> str:
+    """Guess the key that a misspelt key stands for; empty if there is no close match."""
+    keys = section.available().keys
+    if term := find_term(name):
+        return term.key if term.key in keys else ""
     for gear in ("pinion", "wheel"):
-        inner = name.removesuffix(f"_{gear}").removeprefix(f"{gear}_")
-        if inner != name and inner in known:
-            return inner
-    return next(iter(difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)), "")
+        base_name = name.removesuffix(f"_{gear}").removeprefix(f"{gear}_")
+        if base_name != name and base_name in keys:
+            return base_name
+    return next(iter(difflib.get_close_matches(name, list(keys), n=1, cutoff=0.6)), "")
 
 
-def as_meant(
+def correct_keys(
     data: Mapping[str, Any], path: tuple[str, ...] = ()
-) -> tuple[dict[str, Any], Found, dict[str, str]]:
-    """Tell unknown keys and put them where they belong, so that nothing seems to be missing.
+) -> tuple[dict[str, Any], KeyedProblems, dict[str, str]]:
+    """Report misspelt keys and rename them, so that no further key is reported as missing.
 
-    The third has them by where they belong: what is wrong there has been told.
+    Returns the corrected data, the problems, and the typed key of each corrected key.
     """
     section = section_at(path)
-    known = section.known().keys if section else {}
+    keys = section.available().keys if section else {}
     result: dict[str, Any] = {}
-    found: Found = []
-    places: dict[str, str] = {}
-    # Keys of a case that is written in Python may be anything.
+    problems: KeyedProblems = []
+    typed_keys: dict[str, str] = {}
+    # Keys of a case from Python may be of any type.
     for name, value in ((str(key), value) for key, value in data.items()):
-        strange = section is not None and name not in known and (path or name != "assumed")
-        meant = _meant(name, section) if strange and section else ""
-        inner, table = known.get(meant or name), isinstance(value, Mapping)
-        # A value that is there goes before one that is taken for it; tables are put together.
-        if (meant in data or meant in result) and not (table and isinstance(inner, Table)):
-            meant = ""
-        if meant:
-            found.append((".".join((*path, name)), unknown((*path, name), value)))
-            places[".".join((*path, meant))] = found[-1][0]
-        key = meant or name
+        misspelt = section is not None and name not in keys and (path or name != "assumed")
+        intended = _intended_key(name, section) if misspelt and section else ""
+        inner, table = keys.get(intended or name), isinstance(value, Mapping)
+        # A correctly spelt key takes precedence over a misspelt one; tables are merged.
+        if (intended in data or intended in result) and not (table and isinstance(inner, Table)):
+            intended = ""
+        if intended:
+            problems.append((".".join((*path, name)), unknown_key((*path, name), value)))
+            typed_keys[".".join((*path, intended))] = problems[-1][0]
+        key = intended or name
         if table and isinstance(inner, Table):
-            value, more, others = as_meant(value, (*path, key))
-            found, places = [*found, *more], places | others
+            value, inner_problems, inner_typed = correct_keys(value, (*path, key))
+            problems, typed_keys = [*problems, *inner_problems], typed_keys | inner_typed
             value = {**value, **result.get(key, {})} if key in result else value
         result[key] = value
-    return result, found, places
+    return result, problems, typed_keys
 
 
-def as_typed(found: Found, meant: Mapping[str, str]) -> Iterator[tuple[str, Problem]]:
-    """Faults with the keys that the user typed, without those of values told as misspelt."""
-    for key, problem in found:
-        if key not in meant:
-            place = next((place for place in meant if key.startswith(f"{place}.")), "")
-            yield meant.get(place, "") + key[len(place) :], problem
+def with_typed_keys(
+    problems: KeyedProblems, typed_keys: Mapping[str, str]
+) -> Iterator[tuple[str, Problem]]:
+    """Yield problems under the keys as typed, without those of keys reported as misspelt."""
+    for key, problem in problems:
+        if key not in typed_keys:
+            corrected = next(
+                (corrected for corrected in typed_keys if key.startswith(f"{corrected}.")), ""
+            )
+            yield typed_keys.get(corrected, "") + key[len(corrected) :], problem
 
 
-def unknown(path: tuple[str, ...], value: Any) -> Problem:
-    """Say that there is no such key, naming the nearest or the table that has it."""
+def unknown_key(path: tuple[str, ...], value: Any) -> Problem:
+    """Return the problem of an unknown key, with the closest key or the table that has it."""
     *table, name = path
     section = section_at(tuple(table))
-    known = list(section.known().keys) if section else []
-    known += [] if table else ["assumed"]
-    shown = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
-    place = f"[{'.'.join(table)}]" if table else "the top of the file"
-    why = f"{place} has: {', '.join(known)}"
-    told = f"{shown}: unknown key"
-    if said := word(name):
-        return Problem(told, "", said.meaning, f"Write {said.key}" if said.key else "Remove it")
-    if remedy := _of_one_gear(name, section):
-        return Problem(told, "", why, remedy)
-    if homes := _homes(name):
-        inside = [home for home in homes if home.startswith(f"{place[:-1]}.")]
-        return Problem(told, "", why, f"It belongs to {' or '.join(inside or homes)}")
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
-    return Problem(told, "", why, f'Did you mean "{near[0]}"?' if near else "Remove it")
+    keys = list(section.available().keys) if section else []
+    keys += [] if table else ["assumed"]
+    entry = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
+    location = f"[{'.'.join(table)}]" if table else "the top of the file"
+    why = f"{location} has: {', '.join(keys)}"
+    what = f"{entry}: unknown key"
+    if term := find_term(name):
+        return Problem(what, "", term.meaning, f"Write {term.key}" if term.key else "Remove it")
+    if remedy := _gear_key_remedy(name, section):
+        return Problem(what, "", why, remedy)
+    if tables := _tables_with(name):
+        inner_tables = [label for label in tables if label.startswith(f"{location[:-1]}.")]
+        return Problem(what, "", why, f"It belongs to {' or '.join(inner_tables or tables)}")
+    matches = difflib.get_close_matches(name, keys, n=1, cutoff=0.6)
+    return Problem(what, "", why, f'Did you mean "{matches[0]}"?' if matches else "Remove it")
 
 
-def _of_one_gear(name: str, section: type[Section] | None) -> str:
-    """What to write for a key that has the name of a gear in it."""
+def _gear_key_remedy(name: str, section: type[Section] | None) -> str:
+    """Return the remedy for a key that contains the name of a gear, or an empty text."""
     for gear in ("pinion", "wheel"):
-        inner = name.removesuffix(f"_{gear}").removeprefix(f"{gear}_")
-        spec = section.spec(inner) if section and inner != name else None
+        base_name = name.removesuffix(f"_{gear}").removeprefix(f"{gear}_")
+        spec = section.spec(base_name) if section and base_name != name else None
         if spec is not None and spec.pair:
-            example = f"{inner} = [{spec.example}, {spec.example}]"
-            return f"Give that of pinion and wheel in one list: {example}"
-        if inner != name and f"[gears.{gear}]" in _homes(inner):
-            return f"It is {inner} in [gears.{gear}]"
+            example = f"{base_name} = [{spec.example}, {spec.example}]"
+            return f"Give the values of pinion and wheel in one list: {example}"
+        if base_name != name and f"[gears.{gear}]" in _tables_with(base_name):
+            return f"It is {base_name} in [gears.{gear}]"
     return ""

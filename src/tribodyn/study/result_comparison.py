@@ -1,4 +1,4 @@
-"""Results beside each other: what differs in their cases, and what came of it."""
+"""Comparison of results: values and summary figures that differ, and overlaid curves."""
 
 from __future__ import annotations
 
@@ -13,56 +13,56 @@ from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.summary import SUMMARY, by_topic
 
-#: Relative difference of figures that are told as equal.
-_SAME = 1e-9
+#: Relative difference below which figures count as equal.
+_TOLERANCE = 1e-9
 
 
 def differing(
     tables: Sequence[Mapping[str, Any]], differ: Callable[[Any, Any], bool] | None = None
 ) -> dict[str, tuple[Any, ...]]:
-    """Values of several tables by name, where they are not all equal; None is none."""
-    differ = differ or (lambda one, other: bool(one != other))
+    """Return the values of several tables by name where they differ; None if absent."""
+    differ = differ or (lambda first, value: bool(first != value))
     rows = {name: tuple(t.get(name) for t in tables) for table in tables for name in table}
     return {
-        name: row for name, row in rows.items() if any(differ(row[0], other) for other in row[1:])
+        name: row for name, row in rows.items() if any(differ(row[0], value) for value in row[1:])
     }
 
 
-def figures_differ(one: float | None, other: float | None) -> bool:
-    """Whether two figures of a summary are to be told apart."""
-    if one is None or other is None:
-        return one is not other
-    return abs(one - other) > _SAME * max(abs(one), abs(other))
+def figures_differ(first: float | None, second: float | None) -> bool:
+    """Return whether two summary figures differ by more than rounding."""
+    if first is None or second is None:
+        return first is not second
+    return abs(first - second) > _TOLERANCE * max(abs(first), abs(second))
 
 
-def relative_change(one: float | None, other: float | None) -> str:
-    """Relative change from the first to the second, where there is one."""
-    if one is None or other is None or one == 0.0:
+def relative_change(first: float | None, second: float | None) -> str:
+    """Format the relative change from the first to the second; empty if undefined."""
+    if first is None or second is None or first == 0.0:
         return ""
-    return f"{100.0 * (other - one) / abs(one):+.3g} %"
+    return f"{100.0 * (second - first) / abs(first):+.3g} %"
 
 
-def told(value: Any) -> str:
-    """A value of a case in a table."""
+def format_value(value: Any) -> str:
+    """Format a value of a case for a table."""
     return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def difference_rows(
     values: Mapping[str, tuple[Any, ...]], figures: Mapping[str, tuple[float | None, ...]]
 ) -> Iterator[list[str]]:
-    """Rows of a table: keys, then figures by topic, with the change from first to last."""
+    """Yield table rows: keys, then figures by topic, with the change from first to last."""
     for key, row in values.items():
-        yield [key, *map(told, row), ""]
+        yield [key, *map(format_value, row), ""]
     for topic, names in by_topic(figures).items():
         yield [topic, *("" for _ in next(iter(figures.values()))), ""]
         for name in names:
-            shown = ["-" if v is None else SUMMARY[name].show(v) for v in figures[name]]
-            yield [f"  {name}", *shown, relative_change(figures[name][0], figures[name][-1])]
+            cells = ["-" if v is None else SUMMARY[name].show(v) for v in figures[name]]
+            yield [f"  {name}", *cells, relative_change(figures[name][0], figures[name][-1])]
 
 
 @record
 class ResultComparison(Record):
-    """Several results beside each other; made by :func:`compare_results`.
+    """Comparison of several results; created by :func:`compare_results`.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class ResultComparison(Record):
     values : dict of str to tuple
         Values of the cases by key, in SI, where they differ.
     figures : dict of str to tuple of float
-        Figures of the summaries by name, in SI, where they differ; None where one has none.
+        Figures of the summaries by name, in SI, where they differ; None where a result lacks it.
     results : tuple of Result
         The results.
     """
@@ -85,8 +85,8 @@ class ResultComparison(Record):
         parts = Parts({}, {"result": (("result",), list(self.names), {})}, {})
         for name, row in self.figures.items():
             numbers = [np.nan if value is None else value for value in row]
-            known = {"units": SUMMARY[name].unit or "1", "long_name": SUMMARY[name].meaning}
-            parts.variables[name] = (("result",), numbers, known)
+            attributes = {"units": SUMMARY[name].unit or "1", "long_name": SUMMARY[name].meaning}
+            parts.variables[name] = (("result",), numbers, attributes)
         return parts
 
     def __repr__(self) -> str:
@@ -103,7 +103,7 @@ class ResultComparison(Record):
 
 
 def compare_results(*results: Result, names: Sequence[str] | None = None) -> ResultComparison:
-    """Lay results beside each other: one table of what differs, and overlaid curves.
+    """Compare results: a table of differing values and figures, and overlaid curves.
 
     Parameters
     ----------
@@ -120,41 +120,43 @@ def compare_results(*results: Result, names: Sequence[str] | None = None) -> Res
     Raises
     ------
     InputError
-        If there are fewer than two or more than twelve, or names that do not fit.
+        If there are fewer than two or more than twelve results, or the names do not match.
 
     Examples
     --------
     >>> import tribodyn as td
-    >>> one = td.run("time-varying-friction")
-    >>> other = td.run(one.case.replace({"operation.torque": "60 N*m"}))
-    >>> compare_results(one, other, names=("as printed", "60 N m")).values
+    >>> base = td.run("time-varying-friction")
+    >>> reduced = td.run(base.case.replace({"operation.torque": "60 N*m"}))
+    >>> compare_results(base, reduced, names=("as printed", "60 N m")).values
     {'operation.torque': (10.6, 60.0)}
     """
-    wrong = [each for each in results if not isinstance(each, Result)]
-    if wrong:
-        what = f"results holds {shortened(repr(wrong[0]))}"
-        raise InputError(what, Argument("results"), "Wanted: what tribodyn.run returns", "Run both")
-    if not 2 <= len(results) <= 12:
-        why = "Two to twelve are laid beside each other"
+    invalid = [result for result in results if not isinstance(result, Result)]
+    if invalid:
+        what = f"results holds {shortened(repr(invalid[0]))}"
         raise InputError(
-            f"there are {len(results)} results", Argument("results"), why, "Give several"
+            what, Argument("results"), "Expected: results of tribodyn.run", "Run each case first"
         )
-    given = tuple(names) if names is not None else _titles(results)
-    if len(given) != len(results) or len(set(given)) < len(given):
-        what = f"names = {shortened(repr(given))}"
+    if not 2 <= len(results) <= 12:
+        why = "Between 2 and 12 results can be compared"
         raise InputError(
-            what, Argument("names"), f"Wanted: {len(results)} different names", "Rename them"
+            f"number of results = {len(results)}", Argument("results"), why, "Pass 2 to 12 results"
+        )
+    labels = tuple(names) if names is not None else _titles(results)
+    if len(labels) != len(results) or len(set(labels)) < len(labels):
+        what = f"names = {shortened(repr(labels))}"
+        raise InputError(
+            what, Argument("names"), f"Expected: {len(results)} distinct names", "Rename them"
         )
     return ResultComparison(
-        given,
-        differing([dict(each.case.values()) for each in results]),
-        differing([each.summary() for each in results], figures_differ),
+        labels,
+        differing([dict(result.case.values()) for result in results]),
+        differing([result.summary() for result in results], figures_differ),
         results,
     )
 
 
 def _titles(results: Sequence[Result]) -> tuple[str, ...]:
-    titles = [each.case.title for each in results]
+    titles = [result.case.title for result in results]
     if len(set(titles)) == len(titles):
         return tuple(titles)
     return tuple(f"{number}: {title}" for number, title in enumerate(titles, start=1))

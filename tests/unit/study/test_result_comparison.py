@@ -1,4 +1,4 @@
-"""Results beside each other: one table of what differs, and overlaid curves."""
+"""Comparison of results: one table of what differs, and overlaid curves."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ def test_equal_results_differ_in_nothing(results) -> None:
     assert not found.figures
 
 
-def test_wrong_input_is_told(results) -> None:
-    with pytest.raises(InputError, match="there are 1 results"):
+def test_wrong_input_is_refused(results) -> None:
+    with pytest.raises(InputError, match="number of results = 1"):
         td.compare_results(results[0])
-    with pytest.raises(InputError, match="Wanted: 2 different names"):
+    with pytest.raises(InputError, match="Expected: 2 distinct names"):
         td.compare_results(*results, names=("a", "a"))
-    with pytest.raises(InputError, match=r"what tribodyn\.run returns"):
+    with pytest.raises(InputError, match=r"results of tribodyn\.run"):
         td.compare_results(results[0], "fzg-report")
     with pytest.raises(InputError, match="Result is no one table"):
         results[0].to_dataframe()
