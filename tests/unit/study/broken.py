@@ -339,7 +339,7 @@ BROKEN = (
            "[gears.pinion]",
            ("gears.pinion.bore_diameter", "gears.wheel.bore_diameter", 'reference = "rim"')),
     Broken("no-toml-at-all", 'title = "A pair"', "<!DOCTYPE html>" * 50, "<!DOCTYPE",
-           ("not TOML", "...", "A line reads")),
+           ("not TOML", "...", "A line has the form")),
     Broken("too-deep", 'title = "A pair"', "title = " + "[" * 5000, "",
            ("nested too deeply", "not a case file")),
     Broken("unquoted", _MODULE, "normal_module = 4.5 mm", "normal_module",

@@ -137,7 +137,7 @@ def test_a_run_ends_at_the_balance_with_and_without_coupling(law: str, local: bo
           "lubricant.density": "880 kg/m^3",
           "lubricant.pressure_viscosity_coefficient": "21.9 1/GPa"}, "at one temperature"),
         ({"lubricant.heat_transfer": None, "lubricant.ambient_temperature": "30 degC"},
-         "keeps its temperature"),
+         "temperature is fixed"),
         ({"lubricant.heat_transfer": "5 W"}, "heat_transfer"),
         ({"lubricant.heat_transfer": "0 W/K"}, "heat_transfer"),
     ],

@@ -39,7 +39,7 @@ def reason_of(case: Any, key: str) -> str:
 
 def old_form(text: str) -> str:
     """A case file as it was written before values were recorded."""
-    return MARK.sub(r"\1 = \3", text[: text.index("# What this case began with")])
+    return MARK.sub(r"\1 = \3", text[: text.index("# Initial values of this case")])
 
 
 def edited(text: str, key: str, line: str | None) -> str:

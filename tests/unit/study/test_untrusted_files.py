@@ -204,7 +204,7 @@ def test_a_file_that_changes_while_its_case_is_computed(tmp_path: Path) -> None:
     mixed = {"friction.law": "mixed", "friction.roughness_profile": str(path)}
     case = load_case("fzg-roughness").replace({"stiffness.model": "iso6336", **mixed})
     assert run(case).case == case
-    with pytest.raises(InputError, match=r"flank\.csv changed while .* Compute it again") as told:
+    with pytest.raises(InputError, match=r"flank\.csv changed while .* Run it again") as told:
         run(case, _Meanwhile(lambda: _profile(path, 0.6)))
     assert [problem.where for problem in told.value.problems] == ["friction.roughness_profile"]
     with pytest.raises(InputError, match=r"roughness_profile: .* there is no such file") as told:

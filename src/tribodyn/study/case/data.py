@@ -1,4 +1,4 @@
-"""The values of a case, in SI, and what follows from them alone."""
+"""Values of a case in SI, and the physics objects derived from them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class CaseData(CaseTables):
-    """All tables of a case, the objects of the physics that they make, and their origin."""
+    """All tables of a case, the physics objects built from them, and their provenance."""
 
     title: str = text("Gear pair", meaning="one line that names this case", example='"My gear"')
     origin: str | None = text(
@@ -48,7 +48,7 @@ class CaseData(CaseTables):
     stiffness: Stiffness = table(Stiffness, "stiffness of the teeth", "empty")
     friction: Friction = table(Friction, "friction of the teeth", "empty")
     dynamics: Dynamics = table(Dynamics, "the vibrating structure", "empty")
-    losses: Losses | None = table(Losses, "what loses power beside the teeth", "none")
+    losses: Losses | None = table(Losses, "power losses other than those of the teeth", "none")
     solver: Solver = table(Solver, "how the motion is computed", "empty")
 
     _assumed: dict[str, str]
@@ -61,7 +61,7 @@ class CaseData(CaseTables):
 
     @property
     def uncertain(self) -> dict[str, str]:
-        """Values that are known within bounds, as they were written, by dotted key."""
+        """Values with a spread as typed, by dotted key."""
         return dict(self._spread)
 
     @property
@@ -169,21 +169,21 @@ class CaseData(CaseTables):
 
     @property
     def given(self) -> UserInput:
-        """What the user gave, before any default."""
+        """User input, before defaults."""
         return self._given
 
     @property
     def source(self) -> Source:
-        """Where the values came from."""
+        """Source of the values."""
         return self._source
 
     @property
     def stated(self) -> Stated:
-        """What the values were that the reasons and the origin of the case belong to."""
+        """Values that the reasons and the origin of the case refer to."""
         return self._stated
 
     def values(self) -> Iterator[tuple[str, Any]]:
-        """Walk over all values of the case.
+        """Iterate over all values of the case.
 
         Yields
         ------

@@ -1,4 +1,4 @@
-"""From the sections of a case to the objects of the physics, and their faults back to its keys."""
+"""Build the physics objects of a case, and map their errors back to its keys."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 
 def _gear_arguments(name: str, gear: Gear, other: Gear) -> dict[str, Any]:
-    values = {key: getattr(gear, key) for key in _PASSED}
+    values = {key: getattr(gear, key) for key in _GEAR_ARGUMENTS}
     values["face_width"] = gear.face_width if gear.face_width is not None else other.face_width
     return {f"{name}_{key}": value for key, value in values.items()}
 
 
-_PASSED = (
+_GEAR_ARGUMENTS = (
     "teeth",
     "profile_shift_coefficient",
     "tip_diameter",
@@ -56,17 +56,17 @@ def flank_modification(data: Modification | None, chart: ProfileMap | None) -> F
 
 
 def gear_pair(gears: Gears, backlash: float | None = None) -> SpurPair:
-    """Build the gear pair of a case, silently; what was to be said is in :func:`gear_warnings`."""
+    """Build the gear pair of a case; its warnings are in :func:`gear_warnings`."""
     return _built(gears, backlash or None, _modifications(gears))[0]
 
 
 def gear_warnings(gears: Gears, backlash: float | None = None) -> tuple[ModelWarning, ...]:
-    """Warnings about the geometry of the pair."""
+    """Return warnings about the geometry of the pair."""
     return _built(gears, backlash or None, _modifications(gears))[1]
 
 
 class _Modified(NamedTuple):
-    """Modifications of pinion and wheel, or what is wrong with them."""
+    """Modifications of pinion and wheel, and their problems."""
 
     pinion: FlankModification | None
     wheel: FlankModification | None
@@ -74,7 +74,7 @@ class _Modified(NamedTuple):
 
 
 def _modifications(gears: Gears) -> _Modified:
-    """Modifications of both gears, files read anew where they have changed."""
+    """Build the modifications of both gears; changed files are read again."""
     problems: list[Problem] = []
 
     def modification(name: str, data: Modification | None) -> FlankModification | None:
@@ -92,11 +92,11 @@ def _modifications(gears: Gears) -> _Modified:
             )
             return None
 
-    both = (
+    modifications = (
         modification("pinion", gears.pinion.modification),
         modification("wheel", gears.wheel.modification),
     )
-    return _Modified(*both, tuple(problems))
+    return _Modified(*modifications, tuple(problems))
 
 
 @lru_cache(maxsize=16)
@@ -104,14 +104,14 @@ def _built(
     gears: Gears, backlash: float | None, modified: _Modified
 ) -> tuple[SpurPair, tuple[ModelWarning, ...]]:
     problems = list(modified.problems)
-    with collected() as found:
+    with collected() as warnings:
         try:
             pair = _spur_pair(gears, backlash, modified)
         except InputError as error:
             problems += error.problems
         if problems:
             raise InputError(problems)
-    return pair, tuple(found)
+    return pair, tuple(warnings)
 
 
 def _spur_pair(gears: Gears, backlash: float | None, modified: _Modified) -> SpurPair:
@@ -146,7 +146,7 @@ def material(data: MaterialData) -> Material:
 
 
 def thermal_contact_coefficients(case: CaseData) -> tuple[float, float]:
-    """How much heat each flank takes up, ``sqrt(k rho c)``."""
+    """Return the thermal contact coefficient ``sqrt(k rho c)`` of each flank."""
     from tribodyn.friction import STEEL_BODIES
 
     def coefficient(name: str, gear: Gear, steel: float) -> float:
@@ -201,7 +201,7 @@ def gearbox(data: Losses) -> Gearbox:
 
 
 def _gearbox_losses(case: CaseData) -> object:
-    """Losses of the case without those of its teeth, to see whether they can be computed."""
+    """Compute the losses of the case without those of its teeth, to find input errors."""
     from tribodyn.losses import gearbox_losses
 
     return case.gearbox and gearbox_losses(
@@ -215,7 +215,7 @@ def _gearbox_losses(case: CaseData) -> object:
 
 
 def mesh_law_of(case: CaseData) -> MeshForce:
-    """How the teeth of a case carry: plain stiffness, tangent to the force law, or the law."""
+    """Return the mesh law of a case: stiffness, tangent of the force law, or force law."""
     from tribodyn.stiffness import MODELS
 
     if case.dynamics.mesh_law is not None:
@@ -224,19 +224,19 @@ def mesh_law_of(case: CaseData) -> MeshForce:
         return "force-law" if case.mesh_table.has_force_law else "stiffness"
     if case.gears.kind != "spur":
         return "stiffness"
-    whole = MODELS[case.stiffness.model].coupled or case.gear_pair.has_modification
-    return "force-law" if whole else "stiffness"
+    nonlinear = MODELS[case.stiffness.model].coupled or case.gear_pair.has_modification
+    return "force-law" if nonlinear else "stiffness"
 
 
 def unused_lubricant() -> Lubricant:
-    """Return an oil for a case that needs none: no law or formula of such a case looks at it."""
+    """Return a placeholder oil for a case whose laws and formulas use none."""
     from tribodyn.lubricant import Lubricant
 
     return Lubricant(0.1, 900.0, 2e-8, name="unused")
 
 
 def _argument(problem: Problem) -> Argument | None:
-    """The argument that a problem is about."""
+    """Return the argument that a problem refers to."""
     place = problem.where
     if isinstance(place, str) and place.startswith("argument "):
         return Argument(place.removeprefix("argument ").partition(" ")[0])
@@ -245,25 +245,25 @@ def _argument(problem: Problem) -> Argument | None:
 
 @lru_cache(maxsize=1)
 def _argument_keys() -> dict[str, str]:
-    """Keys of the case file by the argument of the physics that they become."""
+    """Map arguments of physics functions to the keys of the case file."""
     return {o.argument: key for key, o in options_of(Section.root, "") if o.argument}
 
 
 def _key(problem: Problem, section: str) -> str:
-    """Key of the case file for the argument that a problem of one table names."""
+    """Return the key of the case file for the argument named by a problem of a table."""
     place = _argument(problem)
     if place is None:
         return section
-    known = _argument_keys().get(place.name)
-    if known is not None:
-        return known
+    key = _argument_keys().get(place.name)
+    if key is not None:
+        return key
     if not place.gear and section == "gears" and place.name in Gear.fields:
         return section
     return f"{section}.{place.gear}.{place.name}" if place.gear else f"{section}.{place.name}"
 
 
 def _key_in(case: CaseData, problem: Problem) -> str:
-    """Key of the case that a problem of its computation is about; empty if it cannot be told."""
+    """Return the key of the case that a problem refers to; empty if undetermined."""
     place = problem.where
     if isinstance(place, ModelOption):
         section = getattr(case, place.kind, None)
@@ -276,8 +276,8 @@ def _key_in(case: CaseData, problem: Problem) -> str:
         return ""
     for name, section in vars(case).items():
         model = section.chosen if isinstance(section, Section) else None
-        for option, known in (model.declared if model else {}).items():
-            if argument.name == (known.argument or option):
+        for option, declared in (model.declared if model else {}).items():
+            if argument.name == (declared.argument or option):
                 return f"{name}.{option}"
     key = _argument_keys().get(argument.name, "")
     if key == "gears.composite_roughness" and key not in case._given:
@@ -294,8 +294,8 @@ def locate_errors(case: CaseData) -> Iterator[None]:
     except InputError as error:
         keyed = [(_key_in(case, problem), problem) for problem in error.problems]
         unknown = [problem for key, problem in keyed if not key]
-        found = case.source.place((key, problem) for key, problem in keyed if key)
-        raise type(error)([*found, *unknown]) from None
+        located = case.source.place((key, problem) for key, problem in keyed if key)
+        raise type(error)([*located, *unknown]) from None
 
 
 def _faults(section: str, build: Callable[[], object]) -> list[tuple[str, Problem]]:
@@ -307,7 +307,7 @@ def _faults(section: str, build: Callable[[], object]) -> list[tuple[str, Proble
 
 
 def mesh_table(gears: Gears) -> TableFile | None:
-    """Read the mesh table of another program, anew where the file has changed."""
+    """Read the mesh table of another program; a changed file is read again."""
     if gears.kind != "table" or gears.table is None:
         return None
     place = Path(gears.table)
@@ -322,21 +322,21 @@ def _read_table(path: str, changed: int) -> TableFile:
     return read_table_file(path)
 
 
-_NO_PAIR = {
-    "table": "Its mesh table knows contacts, not gears",
-    "hypoid": "This looks at spur gears in a plane",
+_NO_PAIR_REASONS = {
+    "table": "Its mesh table describes contacts, not gears",
+    "hypoid": "Only spur gears have a plane gear pair",
 }
 
 
 def no_gear_pair(kind: str) -> Problem:
-    """What is said where something asks for the spur gears of a case that has none."""
+    """Return the problem of a computation that needs spur gears the case lacks."""
     what = f'a case with gears.kind = "{kind}" has no gear pair'
-    remedy = 'Give the gears with kind = "spur" for what follows from their shape'
-    return Problem(what, "gears.kind", _NO_PAIR[kind], remedy)
+    remedy = 'Give the gears with kind = "spur" to use their geometry'
+    return Problem(what, "gears.kind", _NO_PAIR_REASONS[kind], remedy)
 
 
 def backlash(case: CaseData) -> float:
-    """Play on the line of action that follows from the teeth [m]."""
+    """Return the backlash on the line of action that results from the teeth [m]."""
     flanks = case.hypoid_flanks
     if flanks is not None:
         blank = flanks.blank
@@ -346,21 +346,21 @@ def backlash(case: CaseData) -> float:
 
 
 def _table_problems(case: CaseData) -> list[tuple[str, Problem]]:
-    """Find what is wrong with a mesh table, or with what the case asks of it."""
-    found = _faults("gears.table", lambda: case.mesh_table)
-    table = None if found else case.mesh_table
+    """Find problems of a mesh table and of its use in the case."""
+    problems = _faults("gears.table", lambda: case.mesh_table)
+    table = None if problems else case.mesh_table
     if table is None:
-        return found
+        return problems
     if table.gears is not None and table.gears.pair.driver != case.gears.driver:
-        why = f"The mesh table was made for driver = {table.gears.pair.driver}"
-        problem = Problem(f"driver = {case.gears.driver}", "", why, "Take the same driver")
-        found.append(("gears.driver", problem))
+        why = f"The mesh table was computed for driver = {table.gears.pair.driver}"
+        problem = Problem(f"driver = {case.gears.driver}", "", why, "Set the same driver")
+        problems.append(("gears.driver", problem))
     coefficient = friction_of_table(case)
-    found += [
+    problems += [
         ("operation.torque" if _argument(problem) else "gears.table", problem)
         for _, problem in _faults("gears.table", lambda: _trial(case, table, coefficient))
     ]
-    return found
+    return problems
 
 
 def _trial(case: CaseData, table: TableFile, coefficient: float | None) -> object:
@@ -374,12 +374,12 @@ def _trial(case: CaseData, table: TableFile, coefficient: float | None) -> objec
 
 
 def friction_of_table(case: CaseData) -> float | None:
-    """Coefficient that replaces those of a mesh table; None where they stay."""
+    """Return the coefficient that replaces those of a mesh table; None to use the table."""
     return case.friction.coefficient if case.friction.law == "constant" else None
 
 
 def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
-    """Find the faults of the gear pair alone, where other tables are faulty."""
+    """Find problems of the gear pair alone, where other tables are invalid."""
     if gears.kind == "table":
         return _faults("gears.table", lambda: mesh_table(gears))
     if gears.kind == "hypoid":
@@ -390,31 +390,31 @@ def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
 
 
 def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
-    """Find what makes a well-written case physically impossible."""
+    """Find physical contradictions in a formally valid case."""
     if case.gears.kind == "table":
         return _table_problems(case)
     if case.gears.kind == "hypoid":
-        found = _faults("gears", lambda: case.hypoid_flanks)
-        return found + _faults("lubricant", lambda: case.lubricant_properties)
-    found = _faults("gears", lambda: case.gear_pair)
-    found += _faults("lubricant", lambda: case.lubricant_properties)
-    found += [] if found else _faults("losses", lambda: _gearbox_losses(case))
-    return found + _bores(case)
+        problems = _faults("gears", lambda: case.hypoid_flanks)
+        return problems + _faults("lubricant", lambda: case.lubricant_properties)
+    problems = _faults("gears", lambda: case.gear_pair)
+    problems += _faults("lubricant", lambda: case.lubricant_properties)
+    problems += [] if problems else _faults("losses", lambda: _gearbox_losses(case))
+    return problems + _bores(case)
 
 
 def chosen_options(case: CaseData, section: str) -> dict[str, Any]:
-    """Options in force of the model that a table names, called as the model calls them."""
+    """Return the effective options of the model of a table, by argument name."""
     model, values = getattr(case, section).chosen, case._effective
-    found = {
+    arguments = {
         option.argument or name: values[f"{section}.{name}"]
         for name, option in model.declared.items()
         if option.in_case
     }
-    return {name: value for name, value in found.items() if value is not None}
+    return {name: value for name, value in arguments.items() if value is not None}
 
 
 def _bores(case: CaseData) -> list[tuple[str, Problem]]:
-    """A gear body without a bore has nothing that holds it."""
+    """Find gears without a bore where the deflection is measured against it."""
     model = case.stiffness.model
     if case.stiffness.reference != "bore":
         return []

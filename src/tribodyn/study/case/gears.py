@@ -44,7 +44,7 @@ def _pitches(of: str, meaning: str) -> Any:
 
 
 class Modification(Section):
-    """What the loaded flanks of a gear have that the involute has not."""
+    """Modification and deviations of the loaded flanks of a gear from the involute."""
 
     tip_relief: float = _relief("tip_relief")
     tip_relief_length: float | None = _length("tip_relief_length")
@@ -62,7 +62,7 @@ class Modification(Section):
     )
     cumulative_pitch_deviation: tuple[float, ...] | None = _pitches(
         "cumulative_pitch_deviation",
-        "by how much each flank stands further on, in the order of contact",
+        "cumulative pitch deviation of each flank, in the order of contact",
     )
     run_out: float = number(0.0, 0.0, 1e-3, _GUARD, of="run_out")
     run_out_phase: float = number(0.0, -_TURN, _TURN, "one turn", of="run_out_phase")
@@ -159,13 +159,18 @@ def _amount(meaning: str, low: float = 0.0) -> Any:
     )
 
 
-def _shift(meaning: str, most: float = 2e-3, unit: str = "m", shown: str = "mm") -> Any:
-    of = {"unit": unit, "display_unit": shown, "example": f'"0.1 {shown}"', "meaning": meaning}
+def _shift(meaning: str, most: float = 2e-3, unit: str = "m", display_unit: str = "mm") -> Any:
+    of = {
+        "unit": unit,
+        "display_unit": display_unit,
+        "example": f'"0.1 {display_unit}"',
+        "meaning": meaning,
+    }
     return number(0.0, -most, most, "the gap is taken to first order", **of)
 
 
 class EaseOffData(Section):
-    """The ``[gears.ease_off]`` table: what the pinion's flank has less than the conjugate one."""
+    """The ``[gears.ease_off]`` table: material removed from the conjugate pinion flank."""
 
     lengthwise_crowning: float = _amount("gap at toe and heel, as a parabola")
     profile_crowning: float = _amount("gap at tip and root, as a parabola")
@@ -196,11 +201,15 @@ class EaseOffData(Section):
 
 
 class MountingData(Section):
-    """The ``[gears.mounting]`` table: where the gears are not where they should be."""
+    """The ``[gears.mounting]`` table: mounting errors of the gears."""
 
     offset: float = _shift("by how much the offset is too large")
-    pinion_axial: float = _shift("way of the pinion along its axis, away from the crossing point")
-    wheel_axial: float = _shift("way of the wheel along its axis, away from the crossing point")
+    pinion_axial: float = _shift(
+        "displacement of the pinion along its axis, away from the crossing point"
+    )
+    wheel_axial: float = _shift(
+        "displacement of the wheel along its axis, away from the crossing point"
+    )
     shaft_angle: float = _shift("by how much the shaft angle is too large", 0.02, "rad", "deg")
 
 
@@ -229,14 +238,14 @@ _TAPER = "the standard taper"
 def _of_blank(name: str) -> Option:
     default = inspect.signature(hypoid_blank).parameters[name].default
     (low, high, unit), inputs = RANGES[name], default is not inspect.Parameter.empty
-    shown, example = _SHOWN[unit]
+    display_unit, example = _SHOWN[unit]
     option: Option = number(
         default if inputs else REQUIRED,
         low,
         high,
         "designs in use lie well within",
         unit=unit,
-        display_unit=shown,
+        display_unit=display_unit,
         example=example,
         meaning=MEANINGS[name],
         basis=_TAPER if default is None else "",
@@ -328,8 +337,8 @@ class Gears(Section):
 
 Gears.needed = ("normal_module", "normal_pressure_angle", "driver", "pinion", "wheel")
 # Keys of a hypoid pair stand before the tables of both gears.
-_both = {name: Gears.fields.pop(name) for name in ("pinion", "wheel")}
-Gears.fields |= {**HYPOID_KEYS, **_both}
+_gear_tables = {name: Gears.fields.pop(name) for name in ("pinion", "wheel")}
+Gears.fields |= {**HYPOID_KEYS, **_gear_tables}
 #: Keys of ``[gears]`` that every kind of pair has, and those that other kinds than spur gears have.
 _OF_ALL = ("kind", "driver", "teeth", "mass", "moment_of_inertia")
 _OF = {"table": (*_OF_ALL, "table"), "hypoid": (*_OF_ALL, *_ALSO_OF_HYPOID)}
@@ -342,7 +351,7 @@ _REQUIRED = {
 
 
 def is_idle(key: str, kind: str | None) -> bool:
-    """Whether a dotted key says nothing in a case of this kind of gear pair."""
+    """Return whether a dotted key has no effect for this kind of gear pair."""
     section, _, name = key.partition(".")
     if section != "gears":
         return section in _IDLE.get(kind or "spur", ())
@@ -354,14 +363,14 @@ def is_idle(key: str, kind: str | None) -> bool:
 
 
 def is_needed(key: str, kind: str | None) -> bool:
-    """Whether a key that is missing is needed by this kind of gear pair."""
+    """Return whether a missing key is required for this kind of gear pair."""
     return all(
         key not in keys or kind_of == (kind or "spur") for kind_of, keys in _REQUIRED.items()
     )
 
 
 def heat_of_bodies(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
-    """Conductivity and specific heat of a gear tell only together how its flank warms."""
+    """Check that thermal conductivity and specific heat of a gear are given together."""
     for gear in ("pinion", "wheel"):
         keys = [f"gears.{gear}.{name}" for name in ("thermal_conductivity", "specific_heat")]
         present = [key for key in keys if key in inputs]

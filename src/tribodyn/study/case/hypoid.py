@@ -1,4 +1,4 @@
-"""The flanks, masses and levers that the keys of a hypoid pair in ``[gears]`` make."""
+"""Build flanks, masses and lever arms of a hypoid pair from the keys of ``[gears]``."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ if TYPE_CHECKING:
 
 @contextmanager
 def _placed_in(table: str) -> Iterator[None]:
-    """Place the arguments of the physics under the table of the case that they came from."""
+    """Map the arguments named by input errors to keys of a table of the case."""
     try:
         yield
     except InputError as error:
         raise InputError(
             [
-                replace(each, where=Argument(table + each.where.name.removeprefix("blank.")))
-                if isinstance(each.where, Argument)
-                else each
-                for each in error.problems
+                replace(problem, where=Argument(table + problem.where.name.removeprefix("blank.")))
+                if isinstance(problem.where, Argument)
+                else problem
+                for problem in error.problems
             ]
         ) from None
 
 
 def hypoid_flanks(gears: Gears) -> HypoidFlanks:
-    """Flanks of the side that carries, silently; what was to be said is in the warnings."""
+    """Build the flanks of the loaded side; warnings are in :func:`hypoid_warnings`."""
     return _built(gears)[0]
 
 
 def hypoid_warnings(gears: Gears) -> tuple[ModelWarning, ...]:
-    """Warnings about blank and flanks."""
+    """Return warnings about blank and flanks."""
     return _built(gears)[1]
 
 
@@ -52,18 +52,18 @@ def _built(gears: Gears) -> tuple[HypoidFlanks, tuple[ModelWarning, ...]]:
 
     values = {name: getattr(gears, name) for name in (*MEANINGS, "hand_pinion")}
     eased = {name: getattr(gears.ease_off, name) for name, _ in EaseOffData.specs()}
-    with collected() as found:
+    with collected() as warnings:
         with _placed_in("ease_off."):
             ease_off = EaseOff(**eased)
         with _placed_in(""):
             blank = hypoid_blank(gears.pinion.teeth, gears.wheel.teeth, **values)
             flanks = flanks_of(blank, gears.side, ease_off)
-    return flanks, tuple(found)
+    return flanks, tuple(warnings)
 
 
 @lru_cache(maxsize=16)
 def contact_ratio(gears: Gears) -> float:
-    """Rotation over which a pair has contact lines, over the pitch."""
+    """Return the contact ratio: rotation with contact lines over the pitch angle."""
     from tribodyn.gear.hypoid.contact_lines import ContactLines
 
     flanks = hypoid_flanks(gears)
@@ -72,30 +72,33 @@ def contact_ratio(gears: Gears) -> float:
 
 
 def mounting(gears: Gears) -> Misalignment:
-    """Displacements of both gears."""
+    """Return the displacements of both gears."""
     from tribodyn.gear import Misalignment
 
     return Misalignment(**{n: getattr(gears.mounting, n) for n, _ in MountingData.specs()})
 
 
 def levers(flanks: HypoidFlanks) -> tuple[float, float]:
-    """Levers of the normal in the calculation point about the axes of pinion and wheel [m]."""
+    """Return the lever arms of the normal at the calculation point about both axes [m]."""
     wheel = float(flanks.conjugate.touch(np.zeros(2)).lever)
     return wheel / flanks.blank.ratio, wheel
 
 
 def solid(flanks: HypoidFlanks, density: float) -> dict[str, tuple[float, float]]:
-    """Mass and polar inertia of both toothed cones, cut at the pitch cone, without shafts."""
-    found, blank = {}, flanks.blank
+    """Return mass and polar inertia of both gears as truncated pitch cones without shafts."""
+    properties, blank = {}, flanks.blank
     for gear in ("pinion", "wheel"):
         cone = getattr(blank, f"pitch_angle_{gear}")
         outer, inner = (getattr(blank, f"{end}_cone_distance_{gear}") for end in ("outer", "inner"))
-        one, two, height = (
+        outer_radius, inner_radius, height = (
             outer * math.sin(cone),
             inner * math.sin(cone),
             (outer - inner) * math.cos(cone),
         )
         scale = math.pi * density * height
-        mass = scale / 3.0 * (one**2 + one * two + two**2)
-        found[gear] = (mass, scale / 10.0 * sum(one**k * two ** (4 - k) for k in range(5)))
-    return found
+        mass = scale / 3.0 * (outer_radius**2 + outer_radius * inner_radius + inner_radius**2)
+        properties[gear] = (
+            mass,
+            scale / 10.0 * sum(outer_radius**k * inner_radius ** (4 - k) for k in range(5)),
+        )
+    return properties

@@ -77,12 +77,12 @@ def _head(
 ) -> tuple[list[str], list[float]]:
     """Names of the columns, and the factor of each to metres."""
     names = [name.lower().replace(" ", "_") for name in first[1]]
-    rest = sorted(name for name in names if name not in _PLACES)
-    sound = rest in (["deviation"], ["deviation", "face_position"])
-    if not sound or len(names) != len(rest) + 1:
+    text = sorted(name for name in names if name not in _PLACES)
+    sound = text in (["deviation"], ["deviation", "face_position"])
+    if not sound or len(names) != len(text) + 1:
         # What is no profile map at all is not for everyone to read.
-        known = set(names) & {*_PLACES, "deviation"}
-        what = f"the columns are {', '.join(first[1])}" if known else "this is no profile map"
+        labels = set(names) & {*_PLACES, "deviation"}
+        what = f"the columns are {', '.join(first[1])}" if labels else "this is no profile map"
         raise _fault(path, first[0], what, _FORM, "Correct the first row")
     if len(second[1]) != len(names) or any(_number(cell) is not None for cell in second[1]):
         what = "the row of units is missing"

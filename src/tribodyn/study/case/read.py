@@ -1,4 +1,4 @@
-"""Read a case file: text to a checked case, every fault with its line."""
+"""Read a case file: parse TOML text into a checked case, with the line of every problem."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ _SPACE = " \t\r"
 
 
 class _Scanner:
-    """One pass over the text; ``lines`` maps dotted keys to the lines on which they stand."""
+    """Scanner of TOML text; ``lines`` maps dotted keys to their line numbers."""
 
     def __init__(self, text: str) -> None:
         self.text = text
         self.at = 0
-        self.line, self.counted = 1, 0  #: line of the place up to which lines are counted
+        self.line, self.counted = 1, 0  #: line number, and position up to which lines are counted
         self.lines: dict[str, list[int]] = {}
 
     def run(self) -> dict[str, list[int]]:
-        """Scan the whole text."""
+        """Scan the text."""
         table: tuple[str, ...] = ()
         while self.at < len(self.text):
             self._skip(_SPACE + "\n")
@@ -90,7 +90,7 @@ class _Scanner:
         self._value(key, ends)
 
     def _string(self, quote: str) -> None:
-        """Step behind the string that begins here."""
+        """Skip the string that begins at the current position."""
         long = self.text.startswith(quote * 3, self.at)
         close = quote * 3 if long else quote
         self.at += len(close)
@@ -101,7 +101,7 @@ class _Scanner:
         self.at += len(close)
 
     def _value(self, key: tuple[str, ...], ends: str) -> None:
-        """Step to the end of a value, noting the keys of inline tables inside it."""
+        """Skip a value, recording the keys of its inline tables."""
         depth = 0
         while self.at < len(self.text):
             character = self._peek()
@@ -120,7 +120,7 @@ class _Scanner:
             self.at += 1
 
     def _inline(self, key: tuple[str, ...]) -> None:
-        """Read the inline table that begins here, up to and with its closing brace."""
+        """Read the inline table that begins at the current position."""
         self.at += 1
         while self.at < len(self.text):
             self._skip(_SPACE + "\n,")
@@ -131,7 +131,7 @@ class _Scanner:
 
 
 def key_lines(text: str) -> dict[str, list[int]]:
-    r"""Map every dotted key and table of TOML text to the lines on which it stands."""
+    r"""Map every dotted key and table of TOML text to its line numbers."""
     return _Scanner(text).run()
 
 
@@ -142,11 +142,11 @@ _UNQUOTED = re.compile(r"=\s*([^\"'#\[{]*'?[^\"'#\[{]*?)\s*(?:#.*)?$")
 _CURLY = re.compile("[“”„‟″‘‚«»]")
 _BARE_WORD = re.compile(r"=\s*([A-Za-z][\w-]*)\s*(?:#.*)?$")
 
-#: A key of so many parts that reading it takes for ever.
+#: A key with so many parts that parsing it would take very long.
 _CHAIN = re.compile(r"""(?<![\w"'-])(?:[\w"'-]+[ \t]*\.[ \t]*){50}""")
 
-#: Characters of a faulty line that a message repeats, and of those that are looked at.
-_SHOWN, _READ = 80, 200
+#: Characters of an invalid line that a message repeats, and that are examined.
+_MAX_EXCERPT, _MAX_LINE = 80, 200
 
 
 def read_text(path: Path) -> str:
@@ -177,7 +177,7 @@ def read_case(text: str, name: str = "") -> Case:
     Raises
     ------
     InputError
-        Listing every fault of the file.
+        Listing every problem of the file.
 
     Examples
     --------
@@ -190,9 +190,9 @@ Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
     """
     data = parse_toml(text, name)
     if not data:
-        remedy = "Write a case to start from: tribodyn new my.toml"
+        remedy = "Create a case to start from: tribodyn new my.toml"
         raise InputError(
-            "the file holds no values", name, "A case gives gears, speed and torque", remedy
+            "the file has no values", name, "A case needs gears, speed and torque", remedy
         )
     _place_files(data, Path(name).parent)
     return Case(Source(name or "case", partial(key_lines, text)), **data)
@@ -200,38 +200,38 @@ Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
 
 @contextmanager
 def unchanged_files(case: Case) -> Iterator[None]:
-    """Refuse what was computed while a file that the case names was replaced or deleted."""
+    """Raise if a file that the case names changes while the block runs."""
     files = case._named_files()
     before = {key: _state(path) for key, path in files.items()}
     yield
-    why = "A part of what was computed may belong to the file before, a part to the one after"
-    told = [
-        Problem(f"{path} changed while the case was computed", key, why, "Compute it again")
+    why = "Parts of the results may come from the old file and parts from the new file"
+    problems = [
+        Problem(f"{path} changed while the case was computed", key, why, "Run it again")
         for key, path in files.items()
         if _state(path) != before[key]
     ]
-    if told:
-        raise InputError(told)
+    if problems:
+        raise InputError(problems)
 
 
 def _state(path: Path) -> tuple[int, int, int] | None:
     with suppress(OSError):
-        found = path.stat()
-        return found.st_mtime_ns, found.st_size, found.st_ino
+        status = path.stat()
+        return status.st_mtime_ns, status.st_size, status.st_ino
     return None
 
 
 def named_files(text: str, name: str = "") -> list[tuple[str, str]]:
-    """Files that the text of a case names, by dotted key, before any of them is opened."""
+    """Return the files that the text of a case names, by dotted key, without opening them."""
     data = parse_toml(text, name)
     places = [key.split(".") for key in file_keys()]
     places += [["assumed", ".".join(place), "value"] for place in places]
-    found = [(".".join(place), _at(data, *place)) for place in places]
-    return [(key, value) for key, value in found if isinstance(value, str)]
+    values = [(".".join(place), _at(data, *place)) for place in places]
+    return [(key, value) for key, value in values if isinstance(value, str)]
 
 
 def _place_files(data: dict[str, Any], folder: Path) -> None:
-    """Let the paths of a case begin at its own folder."""
+    """Resolve the paths of a case against its folder."""
     files = file_keys()
     marks = [("assumed", key, "value") for key in files]
     for *tables, name in [key.split(".") for key in files] + marks:
@@ -241,14 +241,14 @@ def _place_files(data: dict[str, Any], folder: Path) -> None:
 
 
 def _at(data: Any, *keys: str) -> Any:
-    """Item of nested tables, or None."""
+    """Return an item of nested tables, or None."""
     for key in keys:
         data = data.get(key) if isinstance(data, dict) else None
     return data
 
 
 def parse_toml(text: str, name: str) -> dict[str, Any]:
-    """Read TOML, and say what is wrong with it."""
+    """Parse TOML; raise InputError with line and remedy if it is invalid."""
     if chain := _CHAIN.search(text):
         line = text.count("\n", 0, chain.start()) + 1
         what = "a key has more parts than any key of a case"
@@ -258,7 +258,7 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         raise InputError(_syntax(text, name, str(error))) from None
     except RecursionError:
-        what, where = "brackets are nested too deeply", f"{name}:{_deepest(text)}"
+        what, where = "brackets are nested too deeply", f"{name}:{_deepest_line(text)}"
         raise InputError(what, where, "", "This is not a case file") from None
     except (ValueError, OverflowError):
         long = re.search(r"[0-9_]{4300}", text)
@@ -266,8 +266,8 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
         raise InputError("a number is too long to be read", where, "", "Correct it") from None
 
 
-def _deepest(text: str) -> int:
-    """Line with the most open brackets."""
+def _deepest_line(text: str) -> int:
+    """Return the line with the most open brackets."""
     open_, most, line, at = 0, 0, 1, 1
     for mark in re.findall(r"[\[\]{}\n]", text):
         line += mark == "\n"
@@ -278,32 +278,32 @@ def _deepest(text: str) -> int:
 
 
 def _syntax(text: str, name: str, message: str) -> Problem:
-    """Say what the TOML reader stumbled over, and what was probably meant."""
-    found = re.search(r"\(at line (\d+), column \d+\)", message)
+    """Return the problem of a TOML syntax error, with the probable remedy."""
+    location = re.search(r"\(at line (\d+), column \d+\)", message)
     lines = text.splitlines()
-    number = int(found.group(1)) if found else len(lines)
+    number = int(location.group(1)) if location else len(lines)
     reason = re.sub(r"\s*\(at .*\)$", "", message)
     if repeated := _repeated(text, reason, number):
         key, first, second = repeated
-        why = f"It stands in lines {first} and {second}"
+        why = f"It appears in lines {first} and {second}"
         return Problem(f"{key} is given twice", f"{name}:{second}: {key}", why, "Remove one")
-    content = lines[number - 1].strip()[:_READ] if 0 < number <= len(lines) else ""
-    shown = content if len(content) <= _SHOWN else f"{content[:_SHOWN]}..."
-    what = f'this is not TOML: "{shown}"' if content else "this is not TOML"
+    content = lines[number - 1].strip()[:_MAX_LINE] if 0 < number <= len(lines) else ""
+    excerpt = content if len(content) <= _MAX_EXCERPT else f"{content[:_MAX_EXCERPT]}..."
+    what = f'this is not TOML: "{excerpt}"' if content else "this is not TOML"
     return Problem(what, f"{name}:{number}", reason, _remedy(content))
 
 
 def _repeated(text: str, reason: str, number: int) -> tuple[str, int, int] | None:
-    """Find the key that stands twice, if that is what the TOML reader refuses."""
+    """Find the key that appears twice, if the TOML parser reports a duplicate."""
     if not re.search(r"overwrite|twice|duplicate|namespace", reason, re.IGNORECASE):
         return None
     twice = [(key, at) for key, at in key_lines(text).items() if len(at) > 1]
-    near = [(key, at) for key, at in twice if number in at] or twice
-    return (near[0][0], near[0][1][0], near[0][1][1]) if near else None
+    matches = [(key, at) for key, at in twice if number in at] or twice
+    return (matches[0][0], matches[0][1][0], matches[0][1][1]) if matches else None
 
 
 def _with_quotes(number: str) -> str:
-    """A number as TOML, one with a unit in quotes."""
+    """Format a number as TOML, with quotes if it has a unit."""
     return f'"{number}"' if " " in number else number
 
 
@@ -312,10 +312,10 @@ def _remedy(content: str) -> str:
     if _CURLY.search(content):
         straight = _CURLY.sub('"', content.partition("#")[0]).strip()
         return f"Write straight quotes, as a text editor does: {straight}"
-    meant = units.readings(match.group(1)) if (match := _UNQUOTED.search(content)) else []
-    if meant:
-        shown = " or ".join(f"{key} = {_with_quotes(text)}" for text in meant)
-        return f"Write {shown}: {units.NUMBERS}"
+    readings = units.readings(match.group(1)) if (match := _UNQUOTED.search(content)) else []
+    if readings:
+        examples = " or ".join(f"{key} = {_with_quotes(text)}" for text in readings)
+        return f"Write {examples}: {units.NUMBERS}"
     if match := _BARE_UNIT.search(content):
         return f'Put the value in quotes: {key} = "{match.group(1)}"'
     if match := _BARE_WORD.search(content):
@@ -324,4 +324,4 @@ def _remedy(content: str) -> str:
         return "Close the quotes"
     if content.startswith("[") and "]" not in content:
         return "Close the bracket"
-    return 'A line reads: key = "value unit"' if "=" not in content else "Correct the line"
+    return 'A line has the form key = "value unit"' if "=" not in content else "Correct the line"

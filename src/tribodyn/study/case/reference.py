@@ -1,4 +1,4 @@
-"""All keys, models and warnings with their meaning: what ``explain`` and the pages are made of."""
+"""Keys, models and warnings with their meanings, for ``explain`` and the documentation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribodyn.study.case.section import Section, Table, section_at
 
 
 def case_keys() -> Iterator[tuple[str, Option, str]]:
-    """Walk over all keys of the case file."""
+    """Iterate over all keys of the case file."""
     yield from _walk(Case, ())
 
 
@@ -22,21 +22,21 @@ def _walk(section: type[Section], path: tuple[str, ...]) -> Iterator[tuple[str, 
         if isinstance(field, Table):
             yield from _walk(field.kind, (*path, name))
         else:
-            own = name in section.fields
-            yield ".".join((*path, name)), field, _default(field, own)
+            declared = name in section.fields
+            yield ".".join((*path, name)), field, _default(field, declared)
 
 
-def _default(option: Option, own: bool) -> str:
-    """Default of a key of every case; an option of a model has that of the model."""
-    if option.required and own:
+def _default(option: Option, declared: bool) -> str:
+    """Format the default of a declared key, or of an option of a model."""
+    if option.required and declared:
         return "required"
-    if option.default is None or not own:
+    if option.default is None or not declared:
         return f"from {option.basis}" if option.basis else "none"
     return option.show(option.default)
 
 
 def reference_tables() -> str:
-    """Write all keys as Markdown tables, one for each table of the case file."""
+    """Format all keys as Markdown tables, one for each table of the case file."""
     lines: list[str] = []
     table = ""
     for key, spec, default in case_keys():
@@ -52,7 +52,7 @@ def reference_tables() -> str:
 
 
 def start_toml() -> str:
-    """Write a short case file of no particular gears: required keys and recommended models."""
+    """Return a short template case file: required keys and recommended models."""
     text = files("tribodyn.study.case").joinpath("texts", "start.toml").read_text(encoding="utf-8")
     lines: list[str] = []
     section: type[Section] | None = Case
@@ -63,10 +63,10 @@ def start_toml() -> str:
         name = pair.partition(" = ")[0]
         spec = section.spec(name) if section and not line.startswith("#") else None
         if spec is not None:
-            # What a limit only guards against is no help to who fills in a value.
+            # Limits that only guard against typing errors do not help to choose a value.
             limits = "" if note or "guards against" in spec.origin else _choice_or_range(spec)
-            told = "; ".join(filter(None, (spec.meaning, limits, note)))
-            line = f"{pair:<34} # {f'{spec.symbol}: ' if spec.symbol else ''}{told}"
+            comment = "; ".join(filter(None, (spec.meaning, limits, note)))
+            line = f"{pair:<34} # {f'{spec.symbol}: ' if spec.symbol else ''}{comment}"
         lines.append(line)
     return "\n".join(lines) + "\n"
 
@@ -82,7 +82,7 @@ def _limits(spec: Option) -> str:
 
 
 def _models() -> Iterator[tuple[str, Model]]:
-    """All models that a case can name, each with the key that names it."""
+    """Iterate over all models that a case can name, with the key that selects each."""
     for table, field in Case.fields.items():
         section = field.kind if isinstance(field, Table) else None
         for model in section.available().models.values() if section else ():
@@ -90,20 +90,22 @@ def _models() -> Iterator[tuple[str, Model]]:
 
 
 def choice_meanings() -> dict[str, str]:
-    """Meaning of the models, laws and methods that a case chooses among."""
-    told: dict[str, list[str]] = {}
+    """Return the meanings of the models, laws and methods that a case can select."""
+    meanings: dict[str, list[str]] = {}
     for _, model in _models():
-        told.setdefault(model.name, []).append(getattr(model, "meaning", ""))
+        meanings.setdefault(model.name, []).append(getattr(model, "meaning", ""))
     for _, option, _ in case_keys():
         for name, meaning in option.meanings.items():
-            told.setdefault(name, []).append(meaning)
-    joined = {name: "; ".join(filter(None, dict.fromkeys(texts))) for name, texts in told.items()}
+            meanings.setdefault(name, []).append(meaning)
+    joined = {
+        name: "; ".join(filter(None, dict.fromkeys(texts))) for name, texts in meanings.items()
+    }
     return {name: text for name, text in joined.items() if text}
 
 
 @lru_cache(maxsize=1)
 def warning_meanings() -> Mapping[str, str]:
-    """Meaning of every warning by its code."""
+    """Return the meaning of every warning by code."""
     import tomllib
 
     text = (
@@ -114,7 +116,7 @@ def warning_meanings() -> Mapping[str, str]:
 
 @lru_cache(maxsize=1)
 def explanations() -> Mapping[str, Mapping[str, str]]:
-    """Equations, ranges of use, remedies and pages by name."""
+    """Return equations, ranges of validity, remedies and pages by name."""
     import tomllib
 
     place = files("tribodyn.study.case").joinpath("texts", "explanations.toml")
@@ -122,7 +124,7 @@ def explanations() -> Mapping[str, Mapping[str, str]]:
 
 
 def page_of(key: str) -> str:
-    """Page of the documentation on a key of the case file."""
+    """Return the documentation page of a key of the case file."""
     pages = explanations()["pages"]
-    found = [pages[part] for part in key.split(".") if part in pages]
-    return f"docs/{found[-1] if found else 'case-file.md'}"
+    matches = [pages[part] for part in key.split(".") if part in pages]
+    return f"docs/{matches[-1] if matches else 'case-file.md'}"

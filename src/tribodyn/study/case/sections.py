@@ -342,7 +342,9 @@ class Solver(Section):
 class ShaftData(Section):
     """The ``[losses.pinion]`` and ``[losses.wheel]`` tables: what turns with a gear and loses."""
 
-    bearing: str | None = choice(None, _bearings, meaning="bearings of the shaft, all alike")
+    bearing: str | None = choice(
+        None, _bearings, meaning="bearings of the shaft, all of the same type"
+    )
     bearings: int = integer(2, 1, 16, _GUARD, meaning="number of bearings, which share the load")
     bearing_drag_factor: float = number(
         0.0,
@@ -389,7 +391,7 @@ class ShaftData(Section):
 
 
 class Losses(Section):
-    """The ``[losses]`` table: what loses power beside the teeth."""
+    """The ``[losses]`` table: power losses other than those of the teeth."""
 
     oil_volume: float = number(
         0.0,
@@ -408,11 +410,11 @@ class Losses(Section):
 
 
 def _heat_balance(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
-    """A heat balance needs an oil that is known at every temperature, and gears that rub."""
+    """Check that a heat balance has an oil with temperature dependence, and spur gears."""
     key, other = "lubricant.heat_transfer", "lubricant.ambient_temperature"
     if key not in inputs:
         if other in inputs:
-            why, remedy = "Without heat_transfer the oil keeps its temperature", "Remove it"
+            why, remedy = "Without heat_transfer the oil temperature is fixed", "Remove it"
             yield other, Problem(inputs.show(other), "", why, f"{remedy}, or add heat_transfer")
         return
     if "lubricant.dynamic_viscosity" in inputs:
@@ -421,12 +423,12 @@ def _heat_balance(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
         remedy = 'Name an oil, for example name = "ISO VG 220", or give the figures of a data sheet'
         yield key, Problem(what, "", why, f"{remedy}, or remove heat_transfer")
     if inputs.get("gears.kind", "spur") != "spur":
-        why = "The losses at other temperatures are known of spur gears"
+        why = "Only spur gears have losses at other temperatures"
         yield key, Problem(inputs.show(key), "", why, "Remove it")
 
 
 def lubricant_problems(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
-    """An oil is one of the library, one of a data sheet, or its properties at one temperature."""
+    """Check the oil: from the library, from a data sheet, or properties at one temperature."""
     if "lubricant" not in inputs:
         return
     yield from _heat_balance(inputs)
@@ -445,7 +447,7 @@ def lubricant_problems(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
 
 
 def _data_sheet(inputs: UserInput, stated: list[str]) -> Iterator[tuple[str, Problem]]:
-    """An oil of a data sheet has two figures of its viscosity, a density and a temperature."""
+    """Check that an oil of a data sheet has two viscosity figures, density and temperature."""
     for name in ("dynamic_viscosity", "density", "temperature_viscosity_coefficient"):
         if name in stated:
             first = next(figure for figure in stated if figure in SHEET)
@@ -456,7 +458,7 @@ def _data_sheet(inputs: UserInput, stated: list[str]) -> Iterator[tuple[str, Pro
     if len(figures) < 2:
         missing = next(name for name in SHEET[:3] if name not in stated)
         why = f"Two of three figures are needed: {', '.join(SHEET[:3])}"
-        remedy = "Add one of the data sheet"
+        remedy = "Add one from the data sheet"
         yield f"lubricant.{missing}", Problem(f"{missing} is missing", "", why, remedy)
     for name, example in (("density_at_15", "892 kg/m^3"), ("temperature", "60 degC")):
         if f"lubricant.{name}" not in inputs:

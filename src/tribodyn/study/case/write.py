@@ -1,4 +1,4 @@
-"""Write a case: as a commented case file that reads back, and as a table to look at."""
+"""Format a case as a commented case file, and as a table."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
     from tribodyn.study.case.data import CaseData
 
 
-#: Significant digits with which a number is written: usual ones first, then all of a float.
+#: Significant digits of a number, tried in order until it reads back exactly.
 _DIGITS = (10, 15, 16, 17)
 
 
 def _quantity(spec: Option, value: float) -> str:
-    """Text with a unit that reads back to exactly the same float: as few digits as that takes."""
+    """Format a value with unit in the fewest digits that read back to the same float."""
     if not spec.unit:
         return repr(value)
     for unit in (spec.display_unit, spec.unit):
-        shown = units.convert(value, spec.unit, unit)
+        display = units.convert(value, spec.unit, unit)
         for digits in _DIGITS:
-            text = f"{shown:.{digits}g} {unit}"
+            text = f"{display:.{digits}g} {unit}"
             if units.parse(text, spec.unit) == value:
                 return f'"{text}"'
     return f'"{value!r} {spec.unit}"'
@@ -69,7 +69,7 @@ def _line(
 
 
 def _unset_example(spec: Option) -> str:
-    """A value that makes the line valid TOML when its comment sign is taken away."""
+    """Return a value that makes the line valid TOML when uncommented."""
     if spec.kind == "numbers":
         return spec.example if spec.example.startswith("[") else f"[{spec.example}]"
     if spec.kind == "flag":
@@ -78,7 +78,7 @@ def _unset_example(spec: Option) -> str:
 
 
 def _owners(case: CaseData, key: str) -> str:
-    """The models that have an option which the model of the case has not."""
+    """Name the models that have an option which the model of the case lacks."""
     table, _, name = key.rpartition(".")
     section = section_at((table,)) if "." not in table else None
     owners = section.available().owners.get(name, []) if section else []
@@ -86,12 +86,12 @@ def _owners(case: CaseData, key: str) -> str:
     if not (section and owners and isinstance(chosen, Section)) or chosen.chosen is None:
         return "not given"
     names = ", ".join(owners)
-    here = chosen.chosen.name in owners
-    return "not given" if here else f"belongs to {section.selector} = {names}"
+    available = chosen.chosen.name in owners
+    return "not given" if available else f"belongs to {section.selector} = {names}"
 
 
 def case_toml(case: CaseData) -> str:
-    """Write the complete commented case file."""
+    """Format the complete commented case file."""
     values, origins, derived = effective(case), provenance(case), derived_values(case)
     changed = changed_keys(case)
     lines: list[str] = []
@@ -109,8 +109,8 @@ def case_toml(case: CaseData) -> str:
             table = place
             section = section_at(tuple(place.split("."))) if place else None
             lines += ["", f"[{place}]  # {_table_meaning(case, place)}" if section else ""]
-        own = _owners(case, key)
-        lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key), own))
+        owners = _owners(case, key)
+        lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key), owners))
         if key in case.uncertain:
             text = json.dumps(case.uncertain[key], ensure_ascii=False)
             lines[-1] = f"{name} = {text}  # {_comment(spec, 'known within bounds')}"
@@ -131,7 +131,7 @@ def case_toml(case: CaseData) -> str:
 
 
 def _assumed_lines(case: CaseData, marks: dict[str, str]) -> list[str]:
-    """Reasons, each with the value that it belongs to."""
+    """Format the reasons in ``[assumed]``, each with the value that it refers to."""
     if not marks:
         return []
     values, lines = effective(case), []
@@ -141,15 +141,15 @@ def _assumed_lines(case: CaseData, marks: dict[str, str]) -> list[str]:
         lines.append(f'"{key}" = {{ value = {value}, reason = {why} }}')
     return [
         "",
-        "# Values above that the source of this case does not print, and defaults. A reason holds",
-        "# for the value beside it: change the value above alone, and the reason falls away.",
+        "# Values above that the source of this case does not print, and defaults. A reason is",
+        "# valid for the value recorded with it, and is dropped once the value above changes.",
         "[assumed]",
         *lines,
     ]
 
 
 def _base_lines(case: CaseData) -> list[str]:
-    """What the case began with; without a document and a change nothing is told of it."""
+    """Format the initial values in ``[based_on]``; empty without an origin and changes."""
     base = case.stated.base
     if base.get("origin") is None and not changed_keys(case):
         return []
@@ -160,7 +160,7 @@ def _base_lines(case: CaseData) -> list[str]:
     ]
     return [
         "",
-        "# What this case began with: leave it as it is, and reports name the values changed since",
+        "# Initial values of this case, which reports use to name changed values: do not edit",
         "[based_on]",
         *lines,
     ]
@@ -183,7 +183,7 @@ def _table_meaning(case: CaseData, place: str) -> str:
 
 
 def case_rows(case: CaseData) -> list[tuple[str, str, str]]:
-    """Key, value with its unit and origin of every value in force."""
+    """Return key, value with unit, and provenance of every effective value."""
     origins, derived = provenance(case), derived_values(case)
     values = {key: derived.get(key, value) for key, value in effective(case).items()}
     return [
@@ -194,7 +194,7 @@ def case_rows(case: CaseData) -> list[tuple[str, str, str]]:
 
 
 def case_table(case: CaseData) -> str:
-    """Write the case as a table with units, one row for each value in force."""
+    """Format the case as a table with units, one row for each effective value."""
     rows = case_rows(case)
     widths = [max(len(row[column]) for row in rows) for column in range(2)]
     head = f"Case: {case.title}"
