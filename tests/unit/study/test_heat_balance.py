@@ -84,10 +84,10 @@ def test_a_balance_beyond_what_is_known_of_the_oil_is_told() -> None:
     with pytest.raises(ComputationError) as caught:
         _balance(_case("0.5 W/K"))
     told = str(caught.value)
-    for words in ("130 degC", "lubricant.heat_transfer", "the loss is", "Give more than"):
+    for words in ("130 degC", "lubricant.heat_transfer", "the loss is", "Set more than"):
         assert words in told
     # what it says would do does
-    enough = float(told.partition("Give more than ")[2].partition(" W/K")[0])
+    enough = float(told.partition("Set more than ")[2].partition(" W/K")[0])
     assert _balance(_case(f"{1.02 * enough} W/K"))[0].lubricant.temperature < 403.15
 
 

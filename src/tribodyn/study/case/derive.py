@@ -288,7 +288,7 @@ def _key_in(case: CaseData, problem: Problem) -> str:
 
 @contextmanager
 def locate_errors(case: CaseData) -> Iterator[None]:
-    """Name file, line and key in the input errors that are raised inside the block."""
+    """Add file, line and key to the input errors raised inside the block."""
     try:
         yield
     except InputError as error:
