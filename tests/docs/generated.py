@@ -31,7 +31,7 @@ def _bibliography(text: str) -> str:
     """The page of sources."""
     users: dict[str, list[str]] = {}
     for table, field in Case.fields.items():
-        models = field.kind.available().models if isinstance(field, Table) else {}
+        models = field.kind.known().models if isinstance(field, Table) else {}
         for model in models.values():
             for key in model.papers:
                 users.setdefault(key, []).append(f"`{table}` `{model.name}`")

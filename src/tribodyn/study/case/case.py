@@ -52,7 +52,7 @@ _DERIVED = {
 _DECIDES = ("solver.method",)
 
 
-class Case(CaseData, root=True):
+class Case(CaseData, whole=True):
     """One gear pair under one load: frozen, checked, in SI.
 
     Created by :func:`tribodyn.load_case`, or from nested keywords: a float is SI, text and pint

@@ -57,12 +57,12 @@ class Section:
     _available: ClassVar[tuple[int, SectionKeys]]
     selector: ClassVar[str] = ""  #: key that names a model, which brings its options
     needed: ClassVar[tuple[str, ...]] = ()  #: keys that a remedy lists; empty: the required keys
-    root: ClassVar[type[Section]]  #: the table that contains all others: the case
+    whole: ClassVar[type[Section]]  #: the table that contains all others: the case
 
-    def __init_subclass__(cls, root: bool = False) -> None:
+    def __init_subclass__(cls, whole: bool = False) -> None:
         """Collect the declared keys in their order."""
-        if root:
-            Section.root = cls
+        if whole:
+            Section.whole = cls
         declared = {k: v for k, v in vars(cls).items() if isinstance(v, Option | Table)}
         cls.fields = {**cls.fields, **declared}
         chosen = [k for k, v in declared.items() if isinstance(getattr(v, "names", None), Models)]
@@ -72,7 +72,7 @@ class Section:
 
     def __getattr__(self, name: str) -> Any:
         """None for an option that the chosen model does not have."""
-        if not name.startswith("_") and name in type(self).available().keys:
+        if not name.startswith("_") and name in type(self).known().keys:
             return None
         raise AttributeError(f"{type(self).__name__} has no {name}")
 
@@ -101,10 +101,10 @@ class Section:
     def __dir__(self) -> list[str]:
         """List keys, methods and properties."""
         methods = {n for n in dir(type(self)) if not n.startswith("_") and not hasattr(Section, n)}
-        return sorted({*methods, *type(self).available().keys})
+        return sorted({*methods, *type(self).known().keys})
 
     @classmethod
-    def available(cls) -> SectionKeys:
+    def known(cls) -> SectionKeys:
         """Models that this table may name and all keys that it can have with them."""
         names = cls.fields[cls.selector].names if cls.selector else None  # type: ignore[union-attr]
         if not isinstance(names, Models):
@@ -118,7 +118,7 @@ class Section:
     @classmethod
     def model_named(cls, name: Any) -> Model | None:
         """Return the model of a name, or None if there is no such model."""
-        return cls.available().models.get(name) if isinstance(name, str) else None
+        return cls.known().models.get(name) if isinstance(name, str) else None
 
     @property
     def chosen(self) -> Model | None:
@@ -128,18 +128,18 @@ class Section:
     @classmethod
     def spec(cls, name: str) -> Option | None:
         """Return the Option of a key, or None for an unknown key or a table."""
-        option = cls.fields.get(name) or cls.available().keys.get(name)
+        option = cls.fields.get(name) or cls.known().keys.get(name)
         return option if isinstance(option, Option) else None
 
     @classmethod
     def specs(cls) -> Iterator[tuple[str, Option]]:
         """Iterate over all keys that are not tables, in order."""
-        yield from ((k, o) for k, o in cls.available().keys.items() if isinstance(o, Option))
+        yield from ((k, o) for k, o in cls.known().keys.items() if isinstance(o, Option))
 
 
 def section_at(path: tuple[str, ...]) -> type[Section] | None:
     """Return the class of the table at a dotted path of a case, or None."""
-    section = Section.root
+    section = Section.whole
     for name in path:
         table = section.fields.get(name)
         if not isinstance(table, Table):
@@ -161,9 +161,9 @@ def options_of(section: type[Section], prefix: str) -> list[tuple[str, Option]]:
 
 def file_keys() -> list[str]:
     """Return the dotted keys of a case that name files."""
-    files = [key for key, option in options_of(Section.root, "") if option.kind == "file"]
-    for table, field in Section.root.fields.items():
-        keys = field.kind.available().keys if isinstance(field, Table) else {}
+    files = [key for key, option in options_of(Section.whole, "") if option.kind == "file"]
+    for table, field in Section.whole.fields.items():
+        keys = field.kind.known().keys if isinstance(field, Table) else {}
         files += [
             f"{table}.{name}"
             for name, option in keys.items()
@@ -214,9 +214,9 @@ class Choice(NamedTuple):
 def choices(inputs: Mapping[str, Any]) -> dict[str, Choice]:
     """Return the models that the tables name, by table; ``inputs`` has dotted keys."""
     chosen = {}
-    for name, field in Section.root.fields.items():
+    for name, field in Section.whole.fields.items():
         if isinstance(field, Table) and field.kind.selector:
-            selector, keys = field.kind.selector, field.kind.available()
+            selector, keys = field.kind.selector, field.kind.known()
             model_name = inputs.get(f"{name}.{selector}", field.kind.fields[selector].default)
             model = keys.models.get(model_name) if isinstance(model_name, str) else None
             chosen[name] = Choice(selector, model, keys)
@@ -227,7 +227,7 @@ def flat(section: Section, prefix: str = "") -> dict[str, Any]:
     """Return all values of a table and its inner tables by dotted key."""
     entries = vars(section)
     values: dict[str, Any] = {}
-    for name in section.available().keys:
+    for name in section.known().keys:
         value = entries.get(name)
         if isinstance(value, Section):
             values |= flat(value, f"{prefix}{name}.")
@@ -243,7 +243,7 @@ def in_force(case: Section) -> dict[str, Any]:
         if not (isinstance(section, Section) and section.selector):
             continue
         options = section.chosen.options if section.chosen else {}
-        for name in section.available().owners:
+        for name in section.known().owners:
             key = f"{table}.{name}"
             if name not in options:
                 values[key] = None
