@@ -270,17 +270,16 @@ def _listening(takes: Callable[[ModelWarning], bool]) -> Iterator[None]:
 @contextmanager
 def collected() -> Iterator[list[ModelWarning]]:
     """Collect the model warnings of this thread inside the block, each once."""
-    by_text: dict[str, ModelWarning] = {}
-    warnings: list[ModelWarning] = []
+    texts, issued = set[str](), list[ModelWarning]()
 
-    def keep(warning: ModelWarning) -> bool:
-        if str(warning) not in by_text:
-            by_text[str(warning)] = warning
-            warnings.append(warning)
+    def collect(warning: ModelWarning) -> bool:
+        if str(warning) not in texts:
+            texts.add(str(warning))
+            issued.append(warning)
         return True
 
-    with _listening(keep):
-        yield warnings
+    with _listening(collect):
+        yield issued
 
 
 @contextmanager

@@ -87,7 +87,7 @@ _WORD = re.compile(
 _USUAL: dict[str, dict[str, tuple[float, float]]] = {
     "m": {"mm": (1, 1e3), "um": (1, 1e6), "cm": (1, 1e2), "nm": (1, 1e9)},
     "m^2/s": {"mm^2/s": (1, 1e6)},
-    "m/s": {"mm/s": (1, 1e3)},
+    "m/s": {"mm/s": (1, 1e3), "um/s": (1, 1e6)},
     "m/s^2": {"mm/s^2": (1, 1e3)},
     "kg": {"g": (1, 1e3)},
     "kg*m^2": {"kg*mm^2": (1, 1e6), "kg*cm^2": (1, 1e4), "g*mm^2": (1, 1e9)},

@@ -142,12 +142,10 @@ def mixed_line_contact(
         part = np.maximum(share, _LEAST)
         state = part * load, radius, speed, part * effective_modulus
         columns: list[Any] = [*zip(*state, strict=True)] if model.method else [state]
-        solutions = [model.films(w, r, u, lubricant, e, **options) for w, r, u, e in columns]
-        thicknesses = [
-            [h for h in (f.central_film, f.minimum_film) if h is not None] for f in solutions
-        ]
-        central = np.array([each[0] for each in thicknesses]).reshape(load.shape)
-        return central, np.array([np.min(each, axis=0) for each in thicknesses]).reshape(load.shape)
+        solved = [model.films(w, r, u, lubricant, e, **options) for w, r, u, e in columns]
+        pairs = [[h for h in (f.central_film, f.minimum_film) if h is not None] for f in solved]
+        central = np.array([pair[0] for pair in pairs]).reshape(load.shape)
+        return central, np.array([np.min(pair, axis=0) for pair in pairs]).reshape(load.shape)
 
     smooth, least = films(np.ones(load.shape))
     share, gap = _settled(
