@@ -60,12 +60,16 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
 
 def provenance(result: Any) -> list[tuple[str, str]]:
     """Versions and date that stand behind a report."""
-    from tribodyn.study.pipeline.series import told_cycles
+    from tribodyn.study.pipeline.series import describe_stored_cycles
 
     packages = ", ".join(f"{name} {installed(name)}" for name in _PACKAGES)
     return [
         ("Software", f"tribodyn {version()}"),
         ("Built on", f"Python {platform.python_version()}, {packages}"),
-        *([("Motion in response.nc", told_cycles(result.response))] if result is not None else []),
+        *(
+            [("Motion in response.nc", describe_stored_cycles(result.response))]
+            if result is not None
+            else []
+        ),
         ("Report written", f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC"),
     ]

@@ -127,9 +127,11 @@ def _of_hypoid(case: Case, flanks: HypoidFlanks) -> dict[str, float]:
     ):
         values[f"base_radius_{name}"] = lever
         values[f"face_width_{name}"] = getattr(blank, f"face_width_{name}")
-        own = (gear.mass, gear.moment_of_inertia)
-        for key, given, full in zip(("mass", "moment_of_inertia"), own, body[name], strict=True):
-            values[f"{key}_{name}"] = full if given is None else given
+        inertias = (gear.mass, gear.moment_of_inertia)
+        for key, inertia, solid_inertia in zip(
+            ("mass", "moment_of_inertia"), inertias, body[name], strict=True
+        ):
+            values[f"{key}_{name}"] = solid_inertia if inertia is None else inertia
     return {name: float(value) for name, value in values.items()}
 
 
@@ -156,14 +158,15 @@ def _modifications(pair: SpurPair) -> dict[str, float]:
 
     values = {"misalignment": pair.misalignment} if pair.misalignment else {}
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        given = gear.modification
+        modification = gear.modification
         for key in _AMOUNTS:
-            if getattr(given, key) != 0.0:
-                values[f"{key}_{name}"] = getattr(given, key)
+            if getattr(modification, key) != 0.0:
+                values[f"{key}_{name}"] = getattr(modification, key)
                 if key in ("tip_relief", "root_relief"):
-                    length = getattr(given, f"{key}_length")
-                    own = default_relief_length(pair) if length is None else length
-                    values[f"{key}_length_{name}"] = own
+                    length = getattr(modification, f"{key}_length")
+                    values[f"{key}_length_{name}"] = (
+                        default_relief_length(pair) if length is None else length
+                    )
     if pair.has_pitch_deviation:
         values["hunting_period"] = hunting_period(pair)
     return values

@@ -1,4 +1,4 @@
-"""What runs but deserves a second look: gear bodies, oil film, pressure and contact loss."""
+"""Warnings about valid but unusual results: gear bodies, oil film, pressure, contact loss."""
 
 from __future__ import annotations
 
@@ -24,29 +24,29 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
-#: Hertzian pressure that case-hardened steel does not survive [Pa].
+#: Hertzian pressure above the strength of case-hardened steel [Pa].
 _STEEL = 3e9
-#: Relief over the deflection of one pair under the whole load that is told.
+#: Ratio of relief to the deflection of a pair under the full load above which a warning is raised.
 _RELIEVED = 3.0
 #: Part of the contact ratio whose loss to modified flanks is reported.
 _LOST_CONTACT = 0.1
 #: Friction coefficient above which friction is the first suspect where a motion runs away.
 _RUBS = 0.3
-#: What to do about asperities that the friction law does not count.
+#: Remedy if the friction law ignores asperities.
 _COUNT = 'Set friction.law = "mixed", which counts the asperities. '
-#: What asperities leave as it is, where the film model tells of a stiffness.
+#: Results of the film model that asperities do not change.
 _FILMS = "Film and film stiffness are those"
 #: Rim under the root below which the body bends with the teeth [modules].
 _RIM = 1.0
-#: Ratio of a given mass or inertia to that of the solid, or the inverse, that is told: of a value
-#: that the document behind the case states for this gear, and of any other.
+#: Ratio of a given mass or inertia to that of the solid gear, or its inverse, above which a warning
+#: is raised: for values that the source of the case states for this gear, and for others.
 _OF_SOURCE, _UNLIKELY = 3.0, 1.25
-#: What a gear weighs: key, unit shown, and how many of it make the SI unit.
+#: Inertias of a gear: key, display unit, and factor from SI to it.
 _INERTIAS = (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6))
 
 
 def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
-    """Find what is odd about the gears of a case, before anything is computed."""
+    """Return warnings about the gears of a case, before anything is computed."""
     if case.gears.kind == "hypoid":
         return hypoid_warnings(case.gears)
     if case.gears.kind == "table":
@@ -57,10 +57,14 @@ def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
 
 def _of_gears(case: Case) -> tuple[ModelWarning, ...]:
     pair = case.gear_pair
-    found = list(gear_warnings(case.gears, case.dynamics.backlash))
+    warnings = list(gear_warnings(case.gears, case.dynamics.backlash))
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        found += [*_rim(case, name, gear), *_mass(case, name, gear), *_other_gear(case, name, gear)]
-    return (*found, *_starved(case))
+        warnings += [
+            *_rim(case, name, gear),
+            *_mass(case, name, gear),
+            *_other_gear(case, name, gear),
+        ]
+    return (*warnings, *_starved(case))
 
 
 def _starved(case: Case) -> Iterator[ModelWarning]:
@@ -83,8 +87,8 @@ def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
         yield ModelWarning(
             "thin-rim",
             f"{name}: the body under the root is {rim * 1e3:.4g} mm thick, less than one module of "
-            f"{gear.normal_module * 1e3:.4g} mm; such a ring bends as a whole, which the stiffness "
-            'model does not know. Reduce the bore, or set stiffness.reference = "rim"',
+            f"{gear.normal_module * 1e3:.4g} mm; such a ring bends as a body, which the stiffness "
+            'model ignores. Reduce the bore, or set stiffness.reference = "rim"',
         )
 
 
@@ -92,25 +96,25 @@ def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
 def _solid(gear: SpurGear, density: float) -> MassProperties:
     from tribodyn.gear import mass_properties
 
-    with collected():  # What is odd about the shape has been said.
+    with collected():  # The warnings about the shape have been raised.
         bare = replace(gear, mass=None, moment_of_inertia=None)
         return mass_properties(bare, density)
 
 
 def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
-    """A mass that stayed what it was while the shape of its gear has changed."""
+    """Warn of a given mass that was not adapted to the changed shape of its gear."""
     changed, base = changed_keys(case), case.stated.base
     shape = [key for key in changed if key in body(name)]
     for key, unit, factor in _INERTIAS:
-        full, given = f"gears.{name}.{key}", getattr(gear, key)
-        if not shape or given is None or base.get(full) is None or full in changed:
+        full, value = f"gears.{name}.{key}", getattr(gear, key)
+        if not shape or value is None or base.get(full) is None or full in changed:
             continue
-        own = getattr(_solid(gear, case.density(name)), key)
+        reference = getattr(_solid(gear, case.density(name)), key)
         yield ModelWarning(
             "mass-of-other-gear",
-            f"{name}: {key} = {given * factor:.4g} {unit} is that of the gear before "
-            f"{', '.join(shape)} changed; the solid gear now has {own * factor:.4g} {unit}. Give "
-            f"that of this gear, or leave {key} out for the solid one",
+            f"{name}: {key} = {value * factor:.4g} {unit} is that of the gear before "
+            f"{', '.join(shape)} changed; the solid gear now has {reference * factor:.4g} {unit}. "
+            f"Give that of this gear, or leave {key} out for the solid one",
         )
 
 
@@ -118,14 +122,14 @@ def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     """Compare given inertias with those of the solid: a wrong unit is far off."""
     solid = _solid(gear, case.density(name))
     for key, unit, factor in _INERTIAS:
-        given, own = getattr(gear, key), getattr(solid, key)
+        value, reference = getattr(gear, key), getattr(solid, key)
         most = _OF_SOURCE if _is_stated(case, name, key) else _UNLIKELY
-        if given is not None and not 1.0 / most <= given / own <= most:
+        if value is not None and not 1.0 / most <= value / reference <= most:
             yield ModelWarning(
                 "mass-unlikely",
-                f"{name}: {key} = {given * factor:.4g} {unit}, {given / own:.3g} times that of the "
-                f"solid gear, {own * factor:.4g} {unit}. Check unit and value; a web or a hub "
-                f"explain a difference. Leave {key} out for the solid gear",
+                f"{name}: {key} = {value * factor:.4g} {unit}, {value / reference:.3g} times that "
+                f"of the solid gear, {reference * factor:.4g} {unit}. Check unit and value; a web "
+                f"or a hub explain a difference. Leave {key} out for the solid gear",
             )
 
 
@@ -138,19 +142,19 @@ def _is_stated(case: Case, name: str, key: str) -> bool:
 
 
 def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
-    """Find a load that no gear stands, and flanks that the film does not keep apart."""
+    """Return warnings about excessive load, and about films that do not separate the flanks."""
     return (*load_cautions(mesh), *_mixed(mesh))
 
 
 def load_cautions(mesh: MeshTable, contact_ratio: float | None = None) -> tuple[ModelWarning, ...]:
-    """The same of the load alone; a mesh with few knots needs the contact ratio under load."""
+    """Return warnings about the load; a coarse mesh table needs the contact ratio under load."""
     ratio = mesh.contact_ratio_under_load if contact_ratio is None else contact_ratio
     return (*_pressure(mesh), *_relieved(mesh), *_parted(mesh, ratio))
 
 
 @contextmanager
 def friction_suspected(mesh: MeshTable) -> Iterator[None]:
-    """Name friction that no lubricated tooth has before any other cause of a motion that fails."""
+    """Name an implausibly high friction first if the motion inside the block fails."""
     try:
         yield
     except ComputationError as error:
@@ -160,7 +164,7 @@ def friction_suspected(mesh: MeshTable) -> Iterator[None]:
         suspect = Problem(
             f"the friction coefficient reaches {greatest:.3g}",
             "friction.law",
-            "Lubricated steel hardly exceeds 0.2, and such friction can drive the motion by itself",
+            "Lubricated steel hardly exceeds 0.2, and such friction can make the motion unstable",
             "Check roughness and speed, or choose another friction law",
         )
         raise ComputationError([suspect, *error.problems]) from None
@@ -169,7 +173,7 @@ def friction_suspected(mesh: MeshTable) -> Iterator[None]:
 def friction_cautions(
     friction: MeshFriction | None, response: Response
 ) -> tuple[ModelWarning, ...]:
-    """Find loads of the teeth beyond those for which friction is known."""
+    """Warn of tooth loads beyond the range of the friction table."""
     if friction is None:
         return ()
     force = np.abs(mesh_force(measured(response)))
@@ -180,13 +184,14 @@ def friction_cautions(
         ModelWarning(
             "friction-load",
             f"the teeth carry up to {most:.3g} times their nominal load of {friction.load:.4g} N. "
-            f"Friction is known up to {friction.limit:g} times: above, its coefficient is kept",
+            f"Friction is tabulated up to {friction.limit:g} times: above, its coefficient stays "
+            "constant",
         ),
     )
 
 
 def _relieved(mesh: MeshTable) -> Iterator[ModelWarning]:
-    """Relief far beyond what a loaded tooth gives way takes pairs out of contact."""
+    """Warn of a relief far beyond the deflection of a loaded tooth: it reduces the contact."""
     if mesh.gears is None or not mesh.gear_pair.has_profile_modification:
         return
     gears = {"pinion": mesh.gear_pair.pinion, "wheel": mesh.gear_pair.wheel}
@@ -195,13 +200,13 @@ def _relieved(mesh: MeshTable) -> Iterator[ModelWarning]:
         for name, gear in gears.items()
         for end in ("tip_relief", "root_relief")
     )
-    given_way = mesh.total_normal_force / mesh.maximum_single_pair_stiffness
-    if amount > _RELIEVED * given_way:
+    deflection = mesh.total_normal_force / mesh.maximum_single_pair_stiffness
+    if amount > _RELIEVED * deflection:
         pairs = float(mesh.grid.mean((mesh.load_per_width > 0.0).sum(axis=1).astype(float)))
         yield ModelWarning(
             "relief-large",
-            f"{end} = {1e6 * amount:.4g} um of the {name} is {amount / given_way:.3g} times the "
-            f"{1e6 * given_way:.3g} um by which a pair gives way under the whole load: "
+            f"{end} = {1e6 * amount:.4g} um of the {name} is {amount / deflection:.3g} times the "
+            f"{1e6 * deflection:.3g} um by which a pair deflects under the full load: "
             f"{pairs:.3g} tooth pairs carry on average instead of "
             f"{mesh.transverse_contact_ratio:.3g}. Usual is about once this deflection; check the "
             "unit",
@@ -209,7 +214,7 @@ def _relieved(mesh: MeshTable) -> Iterator[ModelWarning]:
 
 
 def _parted(mesh: MeshTable, under_load: float) -> Iterator[ModelWarning]:
-    """Modified profiles that keep pairs apart for much of their path under this load."""
+    """Warn of modified profiles that separate pairs for much of their path under this load."""
     if mesh.gears is None or not mesh.gear_pair.has_profile_modification:
         return
     ratio = mesh.transverse_contact_ratio
@@ -231,13 +236,13 @@ def _pressure(mesh: MeshTable) -> Iterator[ModelWarning]:
     if greatest > _STEEL:
         yield ModelWarning(
             "hertz-pressure",
-            f"the Hertzian pressure reaches {greatest * 1e-9:.4g} GPa; gear steel stands no more "
-            f"than {_STEEL * 1e-9:g} GPa. Check torque and face width",
+            f"the Hertzian pressure reaches {greatest * 1e-9:.4g} GPa; gear steel withstands no "
+            f"more than {_STEEL * 1e-9:g} GPa. Check torque and face width",
         )
 
 
 def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
-    """A film below the roughness carries only a part of the load; the models give it the whole."""
+    """Warn of films below the roughness: the models assume that they carry the full load."""
     if mesh.film_ratio is None:
         return
     least = float(np.nanmin(mesh.film_ratio[mesh.in_contact]))
@@ -247,15 +252,16 @@ def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
         counted, share = _counts_asperities(mesh), float(film_load_share(least))
         if mesh.film_load_share is not None:
             heavy = judged(mesh.load_per_width.ravel()).reshape(mesh.in_contact.shape)
-            known = float(np.nanmin(mesh.film_load_share[heavy]))
-            share = known if counted else min(known, share)
+            film_share = float(np.nanmin(mesh.film_load_share[heavy]))
+            share = film_share if counted else min(film_share, share)
         films = "The film is that" if mesh.film_stiffness is None else _FILMS
         yield ModelWarning(
             "mixed-lubrication",
             f"the film ratio falls to {least:.3g}: below 1 asperities touch; they carry up to "
             f"{1.0 - share:.0%} of the load. {films} of smooth flanks "
-            f"under the whole of it{'' if counted else ', and so is the friction'}. "
-            f"{'' if counted else _COUNT}A thicker oil, smoother flanks or more speed part them",
+            f"under the full load{'' if counted else ', and so is the friction'}. "
+            f"{'' if counted else _COUNT}A thicker oil, smoother flanks or more speed separates "
+            "them",
         )
 
 
@@ -268,30 +274,30 @@ def _counts_asperities(mesh: MeshTable) -> bool:
 
 
 def motion_cautions(case: Case, system: System, response: Response) -> tuple[ModelWarning, ...]:
-    """Find flanks that part in a steady motion."""
+    """Warn of loss of contact in a steady motion."""
     if case.backlash == 0.0 or not is_steady(response):
         return ()
     samples = response.fine  # all of them, as the motion is steady
     deflection, touch = compression(samples), first_touch(system, samples)
-    apart = deflection <= touch
-    if not apart.any():
+    separated = deflection <= touch
+    if not separated.any():
         return ()
-    share = float(measured(response).mean(apart.astype(float)))
+    share = float(measured(response).mean(separated.astype(float)))
     back = "the back flanks touch as well" if np.any(deflection < -touch) else ""
     message = (
-        f"the flanks are apart for {share:.3g} of the mesh cycle; "
+        f"the flanks lose contact for {share:.3g} of the mesh cycle; "
         f"{back or 'no back flank touches'}. More load or damping "
-        "keeps them together; other steady motions may exist beside this one"
+        "prevents this; other steady motions may exist as well"
     )
     return (ModelWarning("contact-loss", message),)
 
 
 def teeth_cautions(case: Case) -> tuple[ModelWarning, ...]:
-    """Say what the motion leaves out where teeth differ from each other."""
+    """Warn that the motion ignores deviations from tooth to tooth."""
     if case.gears.kind != "spur" or not case.gear_pair.teeth_differ:
         return ()
     message = (
         "pitch deviations and run-out differ from tooth to tooth: the static transmission error "
-        "runs over all teeth, the motion repeats with every mesh cycle and leaves them out"
+        "covers all teeth, the motion repeats with every mesh cycle and ignores them"
     )
     return (ModelWarning("teeth-alike", message),)

@@ -1,4 +1,4 @@
-"""The papers behind the models of a case, as text and as BibTeX."""
+"""References of the models of a case, as text and as BibTeX."""
 
 from __future__ import annotations
 
@@ -55,13 +55,13 @@ def papers(case: Case) -> dict[str, dict[str, Any]]:
     if case.friction.variant == "he-singh":
         keys.append("he-gunda-singh")
     keys += _loss_papers(case)
-    own = {
+    package = {
         "type": "misc",
         "author": "The tribodyn developers",
         "title": f"tribodyn {tribodyn.__version__}: gear tribo-dynamics",
     }
     return (
-        {"tribodyn": own}
+        {"tribodyn": package}
         | _data_sources(case)
         | {key: _library()[key] for key in dict.fromkeys(keys)}
         | unlisted
@@ -69,7 +69,7 @@ def papers(case: Case) -> dict[str, dict[str, Any]]:
 
 
 def _loss_papers(case: Case) -> list[str]:
-    """Papers behind the losses beside the teeth that a case counts."""
+    """Keys of the papers behind the losses of bearings, seals and oil of a case."""
     box = case.gearbox
     if box is None:
         return []
@@ -81,21 +81,21 @@ def _loss_papers(case: Case) -> list[str]:
 
 
 def _is_built_in(model: Model) -> bool:
-    """Whether a model is one of the package, whose source stands in the bibliography."""
+    """Whether a model belongs to the package, whose bibliography has its source."""
     parts = (getattr(model, "function", None), getattr(model, "central", None))
     homes = {getattr(part, "__module__", "") for part in parts if part is not None}
     return not homes or any(home.startswith("tribodyn.") for home in homes)
 
 
 def _data_sources(case: Case) -> dict[str, dict[str, Any]]:
-    """Where the values of a case and those of its oil come from."""
+    """Sources of the values of a case and of its oil."""
     oil = case.lubricant_properties
-    found = {}
+    sources = {}
     if case.origin:
-        found["case"] = _origin(case)
+        sources["case"] = _origin(case)
     if oil is not None and oil.source:
-        found["oil"] = {"type": "misc", "title": f"Oil {oil.name}: {oil.source}"}
-    return found
+        sources["oil"] = {"type": "misc", "title": f"Oil {oil.name}: {oil.source}"}
+    return sources
 
 
 def _origin(case: Case) -> dict[str, Any]:
@@ -125,8 +125,8 @@ def sources_of(section: str, name: str) -> list[str]:
 
 def bibliography() -> dict[str, str]:
     """All sources by key, as they are cited, ordered by author and title."""
-    told = {key: _text(entry) for key, entry in _library().items()}
-    return dict(sorted(told.items(), key=lambda item: item[1].casefold()))
+    references = {key: _text(entry) for key, entry in _library().items()}
+    return dict(sorted(references.items(), key=lambda item: item[1].casefold()))
 
 
 def _text(entry: dict[str, Any]) -> str:
@@ -150,11 +150,11 @@ def _bibtex(key: str, entry: dict[str, Any]) -> str:
 
 def cite(case: Case, style: str = "text") -> str:
     """Write the papers behind a case."""
-    found = papers(case)
+    entries = papers(case)
     if style == "bibtex":
-        return "\n\n".join(_bibtex(key, entry) for key, entry in found.items())
+        return "\n\n".join(_bibtex(key, entry) for key, entry in entries.items())
     if style == "text":
-        return "\n".join(_text(entry) for entry in found.values())
+        return "\n".join(_text(entry) for entry in entries.values())
     raise InputError(
         f'style = "{style}"', "argument style", f"Known: {', '.join(STYLES)}", "Choose one"
     )

@@ -1,4 +1,4 @@
-"""What one case comes to: its mesh, system and motion, from which series and figures are taken."""
+"""Computed mesh, system and motion of a case, from which series and figures are derived."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @record
 class Coupling(Record):
-    """How load, film, friction and stiffness of a case came to agree.
+    """Convergence of load, film, friction and stiffness of a case.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Coupling(Record):
 
 @record
 class Computed(Record):
-    """A case, what was computed of it, and how that came about."""
+    """A case with its computed mesh, system and motion, and the warnings of the models."""
 
     case: Case
     mesh: MeshTable
@@ -82,8 +82,8 @@ class Computed(Record):
 
     def static_error(self, phase: Array | float) -> Array:
         """Transmission error without load: prescribed, or a column of the mesh table."""
-        own, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
-        return static_error(self.case, phase) + (0.0 if own is None else own(phase))
+        mesh_error, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
+        return static_error(self.case, phase) + (0.0 if mesh_error is None else mesh_error(phase))
 
     def transmission_error_at_rest(self, phase: Array | float | None = None) -> Array:
         """Lag of the driven gear under load at rest [m], with the prescribed error of the case."""

@@ -1,4 +1,4 @@
-"""What an engineer checks first: oil at work, pitch line, load, losses, and the natural modes."""
+"""Quick checks of a case: oil in operation, pitch line, load, losses and natural modes."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 #: Elastic natural frequencies in a summary.
 _MODES = 12
-#: Systems whose natural frequencies are kept, and loads whose figures are.
-_KEPT = 256
+#: Number of systems whose natural frequencies are cached, and of loads whose figures are.
+_CACHE_SIZE = 256
 #: Figures of the mesh force that have a dynamic factor.
 _FACTORS = ("peak", "rms")
 
 
 def operating_figures(case: Case) -> dict[str, float]:
-    """Speed and force at the pitch line, power, and the oil at its working temperature."""
+    """Speed and force at the pitch line, power, and the oil at its operating temperature."""
     torque, speed = case.pinion_torque, case.pinion_speed
     figures = {"input_power": torque * speed}
     if case.gears.kind == "spur":
@@ -53,17 +53,17 @@ def operating_figures(case: Case) -> dict[str, float]:
 
 
 def load_figures(case: Case, mesh: MeshTable, figures: Mapping[str, float]) -> dict[str, float]:
-    """Dynamic factors, efficiency, and the mesh stiffness of the standard beside the computed."""
+    """Dynamic factors, efficiency, and the mesh stiffness of ISO 6336-1 for comparison."""
     lost, power = figures["mean_friction_power"], figures["input_power"]
     if case.operation.torque_balance == "load":
         power += lost  # the driver brings up the friction
-    found = {
+    loads = {
         "gear_power_loss": lost,
         "input_power": power,
         "efficiency": 1.0 - lost / power,
         **_dynamic_factors(figures),
     } | gearbox_figures(case, lost)
-    return found | (standard_figures(case) if case.gears.kind == "spur" else {})
+    return loads | (standard_figures(case) if case.gears.kind == "spur" else {})
 
 
 def _dynamic_factors(figures: Mapping[str, float]) -> dict[str, float]:
@@ -76,7 +76,7 @@ def _dynamic_factors(figures: Mapping[str, float]) -> dict[str, float]:
 
 
 def gearbox_losses_of(case: Case, lost: Any, **point: Any) -> GearboxLosses:
-    """Losses of the gearbox of a case whose teeth lose so much, at its own point or at others."""
+    """Losses of the gearbox of a case for given tooth losses, at its own or another point."""
     from tribodyn.losses import Gearbox, gearbox_losses
 
     point = {"pinion_torque": case.pinion_torque, "pinion_speed": case.pinion_speed, **point}
@@ -91,31 +91,31 @@ def gearbox_losses_of(case: Case, lost: Any, **point: Any) -> GearboxLosses:
 
 
 def gearbox_figures(case: Case, lost: float) -> dict[str, float]:
-    """Losses of shafts and oil, where the case has them, and the efficiency with them."""
+    """Losses of shafts and oil, if the case has them, and the total efficiency."""
     if case.gearbox is None:
         return {}
-    found = gearbox_losses_of(case, lost)
-    bearings = found.total_of("bearing_rolling", "bearing_sliding", "bearing_seal", "bearing_drag")
+    losses = gearbox_losses_of(case, lost)
+    bearings = losses.total_of("bearing_rolling", "bearing_sliding", "bearing_seal", "bearing_drag")
     figures = {
         "bearing_power_loss": bearings,
-        "seal_power_loss": found.seal,
-        "churning_power_loss": found.churning,
-        "windage_power_loss": found.windage,
-        "total_power_loss": found.total,
-        "total_efficiency": found.efficiency,
+        "seal_power_loss": losses.seal,
+        "churning_power_loss": losses.churning,
+        "windage_power_loss": losses.windage,
+        "total_power_loss": losses.total,
+        "total_efficiency": losses.efficiency,
     }
     return {name: float(value[0, 0]) for name, value in figures.items()}
 
 
 def standard_figures(case: Case) -> dict[str, float]:
-    """``b c_gamma_alpha`` of ISO 6336-1, and what of the computed deflection the bodies make."""
+    """``b c_gamma_alpha`` of ISO 6336-1, and the share of the gear bodies in the deflection."""
 
     def under() -> Callable[[float], dict[str, float]]:
         settings = loaded_settings(case)
         bored = chosen_options(case, "stiffness").get("reference") == "bore"
-        return lru_cache(_KEPT)(partial(_standard_figures, case.gear_pair, settings, bored))
+        return lru_cache(_CACHE_SIZE)(partial(_standard_figures, case.gear_pair, settings, bored))
 
-    # The same at every speed: a study asks for it under the same loads again.
+    # The same at every speed, so a study reuses it for the same loads.
     tables = ("gears", "dynamics", "material", "stiffness")
     return case._once("standard_figures", tables, under)(case.pinion_torque)
 
@@ -138,46 +138,46 @@ def _standard_figures(
 
 
 def mode_figures(system: System, mesh_frequency: float, speed: float) -> dict[str, float]:
-    """Elastic natural frequencies, and where the mesh frequency meets that of the mesh."""
-    elastic, own = _frequencies(system)
+    """Elastic natural frequencies, and the speed at which the mesh mode is excited."""
+    elastic, mesh_mode = _frequencies(system)
     figures = {f"natural_frequency_{k}": f for k, f in enumerate(elastic[:_MODES], 1)}
-    if own:
+    if mesh_mode:
         figures |= {
-            "mesh_natural_frequency": own,
-            "resonance_speed": speed * own / mesh_frequency,
-            "resonance_ratio": mesh_frequency / own,
+            "mesh_natural_frequency": mesh_mode,
+            "resonance_speed": speed * mesh_mode / mesh_frequency,
+            "resonance_ratio": mesh_frequency / mesh_mode,
         }
     return figures
 
 
-#: Elastic natural frequencies, and that of the mesh, of what is known of systems: the same at every
-#: speed, as friction does not count.
-_known_frequencies: dict[object, tuple[Array, float]] = {}
+#: Cached elastic natural frequencies and that of the mesh, by system without friction: they are the
+#: same at every speed.
+_frequency_cache: dict[object, tuple[Array, float]] = {}
 
 
 def _frequencies(system: System) -> tuple[Array, float]:
-    """Elastic natural frequencies [Hz], and that of the mesh; none where it is not stable."""
+    """Elastic natural frequencies [Hz] and that of the mesh; none if the system is unstable."""
     from tribodyn.dynamics import natural_modes
 
     key = _without_friction(system)
-    if (known := _known_frequencies.get(key)) is not None:
-        return known
+    if (cached := _frequency_cache.get(key)) is not None:
+        return cached
     try:
         modes = natural_modes(system)
     except InputError:
         return np.zeros(0), 0.0  # a structure that is not stable about its static load has none
-    elastic, own = modes.frequency[modes.rigid :], 0.0
+    elastic, mesh_mode = modes.frequency[modes.rigid :], 0.0
     if elastic.size and modes.contacts:
-        own = float(modes.frequency[int(np.argmax(modes.contact_share))])
+        mesh_mode = float(modes.frequency[int(np.argmax(modes.contact_share))])
     if key is not None:
-        if len(_known_frequencies) >= _KEPT:
-            _known_frequencies.clear()
-        _known_frequencies[key] = elastic, own
-    return elastic, own
+        if len(_frequency_cache) >= _CACHE_SIZE:
+            _frequency_cache.clear()
+        _frequency_cache[key] = elastic, mesh_mode
+    return elastic, mesh_mode
 
 
 def _without_friction(system: System) -> object:
-    """All that natural modes of one closed contact depend on, in bytes; None of other systems."""
+    """Cache key of the natural modes with one closed contact; None for other systems."""
     from tribodyn.mesh.grid import PhaseFunction
 
     if len(system.contacts) != 1 or system.frictions:

@@ -1,4 +1,4 @@
-"""From the structure of a case to its motion: engine, steps, steady state or transient."""
+"""Motion of the structure of a case: engine, steps, steady state or transient."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
-#: Engine whose orbits are found directly.
+#: Engine whose periodic orbits are solved directly.
 _ORBITS = "runge-kutta-4"
 #: Change of the compression from one period to the next, over its size, that counts as none.
 _REPEATS = 1e-8
-#: Periods marched between two looks at that change, and mesh cycles marched at most.
-_AT_ONCE, _MOST_CYCLES = 32, 4096
-#: Steps of a transient that are kept in memory.
+#: Periods between two checks of that change, and largest number of mesh cycles.
+_CYCLES_PER_CHECK, _MOST_CYCLES = 32, 4096
+#: Steps of a transient that are stored in memory.
 _MOST_ROWS = 2**19
 #: Mesh cycles after which a steady motion may repeat.
 _PERIODS = (1, 2, 3, 4)
@@ -51,32 +51,32 @@ def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progr
 def motions_of(
     points: Sequence[tuple[Case, System, float]],
 ) -> list[Callable[[], Response] | None]:
-    """Motions of cases at mesh frequencies, side by side; None where one is found by itself."""
+    """Find motions of cases in batches; None for those that must be computed separately."""
     from tribodyn.dynamics.equations.batched_tables import cache_rates, group_by_structure
     from tribodyn.dynamics.orbits.batched_orbits import orbits_in_touch
 
     for group in group_by_structure([system for _, system, _ in points]):
         with suppress(InputError), collected():
             cache_rates([points[number][1] for number in group])
-    alike: dict[int, list[int]] = {}
+    by_steps: dict[int, list[int]] = {}
     for number, (case, system, frequency) in enumerate(points):
         if case.solver.method == "steady" and case.solver.engine == _ORBITS:
-            with suppress(InputError), collected():  # told where it is found by itself
+            with suppress(InputError), collected():  # its separate run reports the error
                 if engine_arguments(case).get("backend") in (None, "cpu"):
-                    alike.setdefault(steps_of(case, system, frequency), []).append(number)
-    found: list[Callable[[], Response] | None] = [None] * len(points)
-    for steps, numbers in alike.items():
+                    by_steps.setdefault(steps_of(case, system, frequency), []).append(number)
+    samplers: list[Callable[[], Response] | None] = [None] * len(points)
+    for steps, numbers in by_steps.items():
         systems, frequencies = zip(*(points[number][1:] for number in numbers), strict=True)
         orbits = orbits_in_touch(systems, np.array(frequencies), steps)
         for number, orbit in zip(numbers, orbits, strict=True):
-            found[number] = orbit
-    return found
+            samplers[number] = orbit
+    return samplers
 
 
 def _transient(
     case: Case, system: System, mesh_frequency: float, steps: int, progress: Progress
 ) -> Response:
-    """March from the static equilibrium; a balancing torque is that of the steady state."""
+    """Simulate from the static equilibrium; a balancing torque is that of the steady state."""
     from tribodyn.dynamics import simulate, steady_state
     from tribodyn.dynamics.equations.compiled import compile_for
     from tribodyn.dynamics.orbits.coordinates import static_start
@@ -88,12 +88,13 @@ def _transient(
             extra = steady_state(system, mesh_frequency, steps=steps).extra_force
     state = static_start(compile_for(system, mesh_frequency, steps))
     start = (state[: system.size], state[system.size :])
-    kept = max(1, _MOST_ROWS // steps)
-    if kept < cycles:
+    stored_cycles = max(1, _MOST_ROWS // steps)
+    if stored_cycles < cycles:
         warn(
             "transient-kept",
-            f"of {cycles} mesh cycles of {steps} steps the last {kept} are kept; the summary is "
-            f"taken over {kept - kept // 2} of them. A shorter run is kept whole",
+            f"the last {stored_cycles} of {cycles} mesh cycles with {steps} steps are stored; the "
+            f"summary covers {stored_cycles - stored_cycles // 2} of them. A shorter run is stored "
+            "completely",
         )
     return simulate(
         system,
@@ -102,14 +103,14 @@ def _transient(
         start,
         steps=steps,
         extra_force=extra,
-        kept=kept,
+        kept=stored_cycles,
         progress=progress,
         **engine_arguments(case),
     )
 
 
 def engine_arguments(case: Case) -> dict[str, Any]:
-    """The engine of a case and its options, as :func:`tribodyn.dynamics.simulate` has them."""
+    """Engine of a case and its options, as arguments of :func:`tribodyn.dynamics.simulate`."""
     from tribodyn.dynamics import ENGINES
 
     engine, values = ENGINES[case.solver.engine], effective(case)
@@ -117,16 +118,16 @@ def engine_arguments(case: Case) -> dict[str, Any]:
 
 
 def _steady(system: System, mesh_frequency: float, steps: int, progress: Progress) -> Response:
-    """Search orbits of one to four mesh cycles; the first that is found is the answer."""
+    """Return the first stable orbit among those of one to four mesh cycles."""
     from tribodyn.dynamics import steady_state
 
     for periods in _PERIODS:
-        with collected() as found:
+        with collected() as model_warnings:
             orbit = steady_state(
                 system, mesh_frequency, steps=steps, periods=periods, progress=progress
             )
         if orbit.converged and orbit.stable:
-            _pass_on(found)
+            _repeat_warnings(model_warnings)
             if periods > 1:
                 warn("subharmonic", f"the motion repeats only after {periods} mesh cycles")
             return orbit
@@ -136,7 +137,7 @@ def _steady(system: System, mesh_frequency: float, steps: int, progress: Progres
 def _marched_orbit(
     case: Case, system: System, orbit: Response, steps: int, progress: Progress
 ) -> Response:
-    """March on from an orbit with the engine of the case until its own motion repeats."""
+    """Continue from an orbit with the engine of the case until its motion repeats."""
     from tribodyn.dynamics import simulate
 
     frequency, cycles = orbit.mesh_frequency, orbit.periods
@@ -146,14 +147,14 @@ def _marched_orbit(
         motion = simulate(
             system,
             frequency,
-            _AT_ONCE * cycles,
+            _CYCLES_PER_CHECK * cycles,
             state,
             steps=steps,
             extra_force=extra,
             progress=progress,
             **engine_arguments(case),
         )
-        marched += _AT_ONCE * cycles
+        marched += _CYCLES_PER_CHECK * cycles
         last, before = motion.deflection[-cycles * steps :], motion.deflection[: -cycles * steps]
         size = float(np.abs(last).max())
         change = float(np.abs(last - before[-cycles * steps :]).max()) / size
@@ -183,14 +184,14 @@ def _restless(case: Case, cycles: int, change: float) -> Problem:
         f'the motion still changes by {change:.2e} of its size after {cycles} mesh cycles of "'
         f'{engine}"',
         "solver.engine",
-        "This engine is marched from the orbit of Runge and Kutta until its own motion repeats",
+        "This engine continues from the Runge-Kutta orbit until its motion repeats",
         f'Take the orbit itself with engine = "{_ORBITS}", add damping, or choose method = '
         '"transient"',
     )
 
 
-def _pass_on(found: list[ModelWarning]) -> None:
-    for warning in found:
+def _repeat_warnings(model_warnings: list[ModelWarning]) -> None:
+    for warning in model_warnings:
         warn(warning.code, warning.message, stacklevel=3)
 
 
@@ -206,14 +207,14 @@ def _lost(orbit: Response) -> Problem:
 
 
 def _warn_of_tension(case: Case, response: Response) -> None:
-    """A mesh without backlash pulls where real flanks would part."""
+    """Warn of tension in a mesh without backlash, where real flanks would separate."""
     least = float(response.contact_force.sum(axis=1).min())
     if case.backlash == 0.0 and least < 0.0:
         linear = mesh_law_of(case) != "force-law"
-        kept = "makes the mesh linear" if linear else "lets the back flanks push at once"
+        consequence = "makes the mesh linear" if linear else "lets the back flanks push at once"
         warn(
             "mesh-tension",
-            f"backlash 0 {kept}, and its force falls to {least:.4g} N: real flanks "
+            f"backlash 0 {consequence}, and its force falls to {least:.4g} N: real flanks "
             "part below 0 N. Give dynamics.backlash, for example 0.05 mm",
         )
 
@@ -224,7 +225,7 @@ _MARGIN = 1.05
 
 
 def steps_of(case: Case, system: System, mesh_frequency: float) -> int:
-    """Steps per mesh cycle that were asked for, else those that follow the fastest motion."""
+    """Return the requested steps per mesh cycle, or those that resolve the fastest motion."""
     from tribodyn.dynamics.equations.step_limit import LIMIT, accurate_steps, rate_on_grid
 
     spec = Solver.spec(_STEPS)

@@ -1,4 +1,4 @@
-"""The result: everything that came of one case, ready to be read, drawn, saved and cited."""
+"""Result of a case: summary, figures, files and citations."""
 
 from __future__ import annotations
 
@@ -48,15 +48,15 @@ class Result(Computed):
     damping : Damping
         Damping in force [N*s/m].
     warnings : tuple of ModelWarning
-        What the models said on the way.
+        Warnings of the models.
     friction : MeshFriction, optional
         Friction over the load, where it follows the dynamic load of the teeth.
     nominal_friction_response : Response, optional
         The motion with the friction of the nominal load, to compare with.
     coupling : Coupling, optional
-        How load, film, friction and stiffness came to agree, where ``solver.coupling`` asks for it.
+        Convergence of load, film, friction and stiffness, if ``solver.coupling`` is set.
     heat : HeatBalance, optional
-        How gears and oil came to their temperature, where ``lubricant.heat_transfer`` is given.
+        Heat balance of gears and oil, if ``lubricant.heat_transfer`` is given.
     """
 
     @cached_property
@@ -69,7 +69,7 @@ class Result(Computed):
         Returns
         -------
         dict of str to float
-            In SI; :data:`tribodyn.study.SUMMARY` tells unit and meaning of each.
+            In SI; :data:`tribodyn.study.SUMMARY` has unit and meaning of each.
         """
         return dict(self._summary)
 
@@ -91,7 +91,7 @@ class Result(Computed):
         """Load, film and friction in every cell of a hypoid pair at rest; None of other gears."""
         from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of
 
-        with collected():  # The run has said what there was to say.
+        with collected():  # The run has raised the warnings.
             return None if self.case.hypoid_flanks is None else hypoid_friction_of(self.case)
 
     @cached_property
@@ -191,13 +191,13 @@ class Result(Computed):
         """Find ``plot_<name>`` among the figures that draw a run."""
         if not name.startswith(_PLOT):
             raise AttributeError(f"Result has no attribute {name!r}")
-        figure, known = name.removeprefix(_PLOT), figures_of(self)
-        if figure in known:
+        figure, figures = name.removeprefix(_PLOT), figures_of(self)
+        if figure in figures:
             return partial(draw, self, figure)
         if figure in FIGURES:
             other: Any = FIGURES[figure]
             raise AttributeError(f"Result has no {name}. {other.missing(self)}")
-        listed = ", ".join(f"{_PLOT}{each}" for each in known)
+        listed = ", ".join(f"{_PLOT}{each}" for each in figures)
         raise AttributeError(f"Result has no figure {name!r}; it has {listed}")
 
     def __dir__(self) -> list[str]:

@@ -86,7 +86,7 @@ def _strangers(target: Path) -> str:
 
 @contextmanager
 def new_directory(target: Path, *, force: bool = False) -> Iterator[Path]:
-    """Fill a directory beside its place and move it there when it is complete."""
+    """Fill a directory next to its target and move it there when it is complete."""
     clear_leftovers(target)
     check_target(target, force)
     with atomic_write(target, folder=True) as place:

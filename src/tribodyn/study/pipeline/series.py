@@ -1,4 +1,4 @@
-"""The motion of a result as labelled series: all that its figures draw, with units and meanings."""
+"""Motion of a result as labelled series with units and meanings, for figures and files."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.computed import Computed
 
 
-#: Distance from an event that tells its two sides apart [mesh cycles].
+#: Distance from an event that separates its two sides [mesh cycles].
 _SIDE = 1e-11
-#: What structures with shafts call the directions across and along the line of action.
+#: Coordinates of structures with shafts across and along the line of action.
 _LETTERS = {"x": "v", "y": "w"}
 
 
 def is_steady(response: Response) -> bool:
-    """Tell a periodic orbit from a transient."""
+    """Whether a response is a periodic orbit, not a transient."""
     return response.floquet_multipliers.size > 0
 
 
 def centre_column(names: Sequence[str], gear: str, axis: str) -> int | None:
-    """Find the coordinate of a gear's centre."""
-    known = [f"{gear}_{letter}" for letter in (axis, _LETTERS.get(axis, axis))]
-    return next((column for column, name in enumerate(names) if name in known), None)
+    """Return the column of a coordinate of a gear's centre, or None if there is none."""
+    candidates = [f"{gear}_{letter}" for letter in (axis, _LETTERS.get(axis, axis))]
+    return next((column for column, name in enumerate(names) if name in candidates), None)
 
 
 def measured(response: Response) -> FineSamples:
-    """Samples over which the figures of a summary are taken."""
+    """Return the samples from which the figures of a summary are computed."""
     fine = response.fine
     if is_steady(response):
         return replace(fine, weight=fine.weight / fine.weight.sum())
@@ -49,7 +49,7 @@ def measured(response: Response) -> FineSamples:
 
 
 def one_sided_phase(samples: FineSamples) -> Array:
-    """Phase of each sample moved by a hair into its own step, so that events have two sides."""
+    """Phase of each sample, moved slightly into its step so that events have two sides."""
     steps = samples.phase.reshape(-1, 3) + np.array([_SIDE, 0.0, -_SIDE])
     return np.asarray(steps.reshape(-1))
 
@@ -66,7 +66,7 @@ def compression(samples: FineSamples) -> Array:
 
 
 def first_touch(system: System, samples: FineSamples) -> Array:
-    """Compression at which the driving flanks touch; its negative is that of the others."""
+    """Compression at which the driving flanks touch; its negative is that of the back flanks."""
     gap = system.contacts[0].gap
     values = gap(one_sided_phase(samples)) if callable(gap) else gap
     return np.broadcast_to(np.asarray(values, dtype=float), samples.phase.shape)
@@ -108,12 +108,14 @@ def support_force(system: System, samples: FineSamples, number: int) -> Array:
 
 
 def support_forces(system: System, samples: FineSamples, numbers: Sequence[int]) -> Array:
-    """The same of several coordinates, one row for each."""
-    springs, dampers = (np.asarray(each)[numbers] for each in (system.stiffness, system.damping))
+    """Forces of the bodies on the supports of several coordinates, a row for each."""
+    springs, dampers = (
+        np.asarray(matrix)[numbers] for matrix in (system.stiffness, system.damping)
+    )
     return np.asarray(springs @ samples.position.T + dampers @ samples.velocity.T)
 
 
-#: Most that the series of a motion take in a file [bytes].
+#: Largest size of the series of a motion in a file [bytes].
 LARGEST = 64_000_000
 #: Highest mesh harmonic that is stored.
 _HIGHEST = 80
@@ -126,7 +128,7 @@ _IN_SPACE = {
 
 
 def directions_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """Letters of the coordinates in the names of figures: axis, and what it is in words."""
+    """Directions in the names of figures, each with its coordinate and its description."""
     return _IN_SPACE if "pinion_z" in names else _IN_PLANE
 
 
@@ -137,18 +139,18 @@ _STATES = {
 }
 
 
-def _told(unit: str, words: str) -> dict[str, str]:
-    return {"units": unit, "long_name": words}
+def _attributes_of(unit: str, meaning: str) -> dict[str, str]:
+    return {"units": unit, "long_name": meaning}
 
 
 def _sided(samples: Any) -> Array:
-    """Phase of samples, of which the fine ones know the side of an event on which they stand."""
+    """Phase of samples; fine samples are on their side of an event."""
     fine = hasattr(samples, "weight")
     return one_sided_phase(samples) if fine else np.asarray(samples.phase)
 
 
 def friction_forces(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]:
-    """Friction force of all pairs, and what of it films and asperities cause where that is told."""
+    """Friction force of all pairs, and its parts from films and asperities if split."""
     from tribodyn.mesh.functions import ASPERITIES
 
     force, phase, law = mesh_force(samples), _sided(samples), result.friction
@@ -160,18 +162,22 @@ def friction_forces(result: Computed, samples: Any) -> dict[str, tuple[Array, st
     else:
         rubbing = law.value("friction_sum", phase, force) * force
         metal = law.value(ASPERITIES, phase, force) * force if law.splits else None
-    found = {"friction_force": (rubbing, "N", "friction force of all tooth pairs")}
+    forces = {"friction_force": (rubbing, "N", "friction force of all tooth pairs")}
     if metal is not None:
-        found["film_friction_force"] = (rubbing - metal, "N", "part of it that the oil films cause")
-        found["asperity_friction_force"] = (metal, "N", "part of it that the asperities cause")
-    return found
+        forces["film_friction_force"] = (
+            rubbing - metal,
+            "N",
+            "part of it that the oil films cause",
+        )
+        forces["asperity_friction_force"] = (metal, "N", "part of it that the asperities cause")
+    return forces
 
 
 def signals(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]:
-    """Signals that figures draw, on the samples: values, unit and meaning by name."""
+    """Signals of figures on the samples: values, unit and meaning by name."""
     force, phase = mesh_force(samples), _sided(samples)
     static = result.transmission_error_at_rest(phase)
-    found = {
+    series = {
         "mesh_force": (force, "N", "force along the line of action of all tooth pairs"),
         "dynamic_transmission_error": (
             transmission_error(result, samples),
@@ -183,19 +189,19 @@ def signals(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]
     }
     if (in_space := tooth_force(result, phase, force)) is not None:
         for axis, values in zip("xyz", in_space.T, strict=True):
-            told = f"force of the teeth on the wheel along the {axis} axis of the pinion"
-            found[f"mesh_force_{axis}"] = (values, "N", told)
+            meaning = f"force of the teeth on the wheel along the {axis} axis of the pinion"
+            series[f"mesh_force_{axis}"] = (values, "N", meaning)
     for gear in ("pinion", "wheel"):
-        for direction, (axis, words) in directions_of(result.response.names).items():
+        for direction, (axis, direction_text) in directions_of(result.response.names).items():
             column = centre_column(result.response.names, gear, axis)
             if column is not None:
-                told = f"force of the {gear} on its bearing {words}"
+                meaning = f"force of the {gear} on its bearing {direction_text}"
                 force = support_force(result.system, samples, column)
-                found[f"bearing_force_{direction}_{gear}"] = (force, "N", told)
-                told = f"acceleration of the {gear}'s centre {words}"
+                series[f"bearing_force_{direction}_{gear}"] = (force, "N", meaning)
+                meaning = f"acceleration of the {gear}'s centre {direction_text}"
                 signal = samples.acceleration[:, column]
-                found[f"acceleration_{direction}_{gear}"] = (signal, "m/s^2", told)
-    return found
+                series[f"acceleration_{direction}_{gear}"] = (signal, "m/s^2", meaning)
+    return series
 
 
 def parts_of(result: Computed, summary: dict[str, float]) -> Parts:
@@ -204,31 +210,41 @@ def parts_of(result: Computed, summary: dict[str, float]) -> Parts:
     turns = np.array(["theta" in name for name in response.names])
     variables: dict[str, Any] = {}
     coordinates: dict[str, Any] = {
-        "time": ("time", response.time, _told("s", "time")),
-        "phase": ("time", response.phase, _told("1", "mesh phase")),
+        "time": ("time", response.time, _attributes_of("s", "time")),
+        "phase": ("time", response.phase, _attributes_of("1", "mesh phase")),
         "coordinate": ("coordinate", list(response.names)),
     }
-    for name, (straight, turning, words) in _STATES.items():
-        told = {"long_name": f"{words} of every coordinate, in the unit named by {name}_unit"}
-        variables[name] = (("time", "coordinate"), getattr(response, name), told)
+    for name, (straight, turning, meaning) in _STATES.items():
+        attributes = {
+            "long_name": f"{meaning} of every coordinate, in the unit named by {name}_unit"
+        }
+        variables[name] = (("time", "coordinate"), getattr(response, name), attributes)
         coordinates[f"{name}_unit"] = ("coordinate", np.where(turns, turning, straight))
     pressed, force = _contacts(response)
     variables["deflection"] = (
         ("time", "contact"),
         pressed,
-        _told(
+        _attributes_of(
             "m",
             "compression of every contact, counted from the middle of the play: its flanks touch "
             "at the attribute half_backlash",
         ),
     )
-    variables["contact_force"] = (("time", "contact"), force, _told("N", "force of every contact"))
-    for name, (values, unit, words) in signals(result, response).items():
-        if not name.startswith("acceleration_"):  # they stand under acceleration
-            variables[name] = ("time", values, _told(unit, words))
+    variables["contact_force"] = (
+        ("time", "contact"),
+        force,
+        _attributes_of("N", "force of every contact"),
+    )
+    for name, (values, unit, meaning) in signals(result, response).items():
+        if not name.startswith("acceleration_"):  # the variable acceleration holds them
+            variables[name] = ("time", values, _attributes_of(unit, meaning))
     if is_steady(response):
         variables |= _spectra(result)
-        coordinates["order"] = ("order", variables.pop("order"), _told("1", "mesh harmonic"))
+        coordinates["order"] = (
+            "order",
+            variables.pop("order"),
+            _attributes_of("1", "mesh harmonic"),
+        )
     variables |= _ends(result)
     return Parts(variables, coordinates, _facts(result, summary))
 
@@ -247,22 +263,26 @@ def _spectra(result: Computed) -> dict[str, Any]:
 
     response = result.response
     highest = min(_HIGHEST, response.time.size // response.periods // 8)
-    found: dict[str, Any] = {}
-    for name, (values, unit, words) in signals(result, response.fine).items():
+    spectra: dict[str, Any] = {}
+    for name, (values, unit, meaning) in signals(result, response.fine).items():
         if name == "static_transmission_error":
             continue
         spectrum = amplitude_spectrum(response, values, highest=highest)
-        told = _told(unit, f"peak amplitude of the harmonics: {words}")
-        found[f"{name}_spectrum"] = ("order", spectrum.amplitude, told)
-        found["order"] = spectrum.order
-        found["frequency"] = ("order", spectrum.frequency, _told("Hz", "frequency of a harmonic"))
-    return found
+        attributes = _attributes_of(unit, f"peak amplitude of the harmonics: {meaning}")
+        spectra[f"{name}_spectrum"] = ("order", spectrum.amplitude, attributes)
+        spectra["order"] = spectrum.order
+        spectra["frequency"] = (
+            "order",
+            spectrum.frequency,
+            _attributes_of("Hz", "frequency of a harmonic"),
+        )
+    return spectra
 
 
 def _ends(result: Computed) -> dict[str, Any]:
-    """What a motion is built from again, beside its states at the steps."""
+    """Values from which a motion is rebuilt, in addition to its states at the steps."""
     response, friction = result.response, result.friction
-    found: dict[str, Any] = {
+    variables: dict[str, Any] = {
         f"end_{name}": (
             "coordinate",
             getattr(response.fine, name)[-1],
@@ -272,26 +292,30 @@ def _ends(result: Computed) -> dict[str, Any]:
     }
     multipliers = response.floquet_multipliers
     if response.extra_force.size:
-        told = {"long_name": "force or torque that balances the friction [N or N*m]"}
-        found["extra_force"] = ("coordinate", response.extra_force, told)
+        attributes = {"long_name": "force or torque that balances the friction [N or N*m]"}
+        variables["extra_force"] = ("coordinate", response.extra_force, attributes)
     if multipliers.size:
-        both = np.stack((multipliers.real, multipliers.imag))
-        told = _told("1", "Floquet multipliers: real and imaginary part")
-        found["floquet_multipliers"] = (("part", "multiplier"), both, told)
+        components = np.stack((multipliers.real, multipliers.imag))
+        attributes = _attributes_of("1", "Floquet multipliers: real and imaginary part")
+        variables["floquet_multipliers"] = (("part", "multiplier"), components, attributes)
     if friction is not None:
-        told = {"long_name": "friction over powers of the load: force [1], moments [m]"}
+        attributes = {"long_name": "friction over powers of the load: force [1], moments [m]"}
         dims = ("knot", "power", "channel")
-        found["friction_coefficients"] = (dims, friction.coefficients, told)
+        variables["friction_coefficients"] = (dims, friction.coefficients, attributes)
     if (coupling := result.coupling) is not None:
-        told = _told("1", "change of each quantity from one pass of the coupling to the next")
-        found |= {
-            f"coupling_{each.name}": ("pass", getattr(coupling, each.name), told)
-            for each in fields(coupling)
-            if each.name.endswith("_change")
+        attributes = _attributes_of(
+            "1", "change of each quantity from one pass of the coupling to the next"
+        )
+        variables |= {
+            f"coupling_{field.name}": ("pass", getattr(coupling, field.name), attributes)
+            for field in fields(coupling)
+            if field.name.endswith("_change")
         }
-        told = _told("1", "force of all pairs over that of the torque alone, by phase of the mesh")
-        found["coupling_loading"] = ("knot", coupling.loading, told)
-    return found
+        attributes = _attributes_of(
+            "1", "force of all pairs over that of the torque alone, by phase of the mesh"
+        )
+        variables["coupling_loading"] = ("knot", coupling.loading, attributes)
+    return variables
 
 
 def _facts(result: Computed, summary: dict[str, float]) -> dict[str, Any]:
@@ -303,7 +327,7 @@ def _facts(result: Computed, summary: dict[str, float]) -> dict[str, Any]:
         "omega_max_dt": response.step_number,
         "title": result.case.title,
         "half_backlash": result.half_backlash,
-        "warnings": json.dumps([[each.code, each.message] for each in result.warnings]),
+        "warnings": json.dumps([[warning.code, warning.message] for warning in result.warnings]),
         **{
             name: int(getattr(response, name))
             for name in ("converged", "cycles_used", "search_cycles", "period")
@@ -321,51 +345,55 @@ def _facts(result: Computed, summary: dict[str, float]) -> dict[str, Any]:
     return {**facts, **summary}
 
 
-def _kept(response: Response) -> int:
-    """Last mesh cycles whose series stay below ``LARGEST``, but at least one."""
+def _stored_cycles(response: Response) -> int:
+    """Number of last mesh cycles whose series stay below ``LARGEST``, at least one."""
     columns = 3 * len(response.names) + 2 * _contacts(response)[0].shape[1] + 10
     cycle = 8 * columns * response.time.size // response.periods
     return int(min(response.periods, max(1, LARGEST // cycle)))
 
 
 def stored(parts: Parts, response: Response) -> Parts:
-    """Parts of a result as they are saved: of a long run the last mesh cycles."""
-    periods, kept = int(response.periods), _kept(response)
-    first = response.time.size // periods * (periods - kept)
+    """Return the parts of a result that are saved: of a long run, the last mesh cycles."""
+    periods, cycles = int(response.periods), _stored_cycles(response)
+    first = response.time.size // periods * (periods - cycles)
 
     def last(named: dict[str, Any]) -> dict[str, Any]:
         return {
-            name: (dims, values[first:] if np.atleast_1d(dims)[0] == "time" else values, *told)
-            for name, (dims, values, *told) in named.items()
+            name: (
+                dims,
+                values[first:] if np.atleast_1d(dims)[0] == "time" else values,
+                *attributes,
+            )
+            for name, (dims, values, *attributes) in named.items()
         }
 
-    facts = {**parts.attributes, "periods": kept, "computed_mesh_cycles": periods}
+    facts = {**parts.attributes, "periods": cycles, "computed_mesh_cycles": periods}
     return Parts(last(parts.variables), last(parts.coordinates), facts)
 
 
-def told_cycles(response: Response) -> str:
-    """How much of the motion is in the file, for whoever reads the report."""
-    computed, kept = int(response.periods), _kept(response)
-    if kept == computed:
-        return f"all {computed} mesh cycles" if computed > 1 else "the whole mesh cycle"
+def describe_stored_cycles(response: Response) -> str:
+    """Describe which mesh cycles of the motion the file contains."""
+    computed, stored_count = int(response.periods), _stored_cycles(response)
+    if stored_count == computed:
+        return f"all {computed} mesh cycles" if computed > 1 else "the complete mesh cycle"
     return (
-        f"the last {kept} of {computed} mesh cycles, which are {LARGEST / 1e6:g} MB; the "
-        "figures of the summary are those of the whole run"
+        f"the last {stored_count} of {computed} mesh cycles, which are {LARGEST / 1e6:g} MB; the "
+        "figures of the summary are those of the complete run"
     )
 
 
 def to_csv(parts: Parts) -> str:
-    """Series over the time as comma-separated values in SI, units in the first line."""
+    """Write the time series as comma-separated values in SI, units in the first line."""
     import io
 
     heads, columns = [], []
     axes = parts.coordinates
-    for name, (dims, values, told) in {"time": axes["time"], **parts.variables}.items():
+    for name, (dims, values, attributes) in {"time": axes["time"], **parts.variables}.items():
         if np.atleast_1d(dims)[0] != "time":
             continue
         rows = values.reshape(len(values), -1)
         for number, column in enumerate(rows.T):
-            unit, label = told.get("units", ""), name
+            unit, label = attributes.get("units", ""), name
             if "coordinate" in dims:
                 label = f"{name}_{axes['coordinate'][1][number]}"
                 unit = str(axes[f"{name}_unit"][1][number])

@@ -1,4 +1,4 @@
-"""The figures of a result: their names and meaning, and how geometry, mesh and motion give them."""
+"""Summary figures of a result: names, meanings, and their computation from mesh and motion."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class SummaryFigure:
     unit: str
     display_unit: str
     meaning: str  #: one line
-    topic: str = "Other"  #: under which it stands in tables
+    topic: str = "Other"  #: heading in tables
 
     def show(self, value: float) -> str:
         """Write the value in the display unit with six digits."""
@@ -60,10 +60,10 @@ class SummaryFigure:
         return f"{float(number):.6g} {unit}"
 
 
-def _figure(name: str, quantity: str, *words: str) -> SummaryFigure:
-    known = QUANTITIES[quantity] if quantity else None
-    unit, shown = (known.unit, known.display_unit) if known else ("", "")
-    return SummaryFigure(name, unit, shown, *words)
+def _figure(name: str, quantity: str, *meaning_topic: str) -> SummaryFigure:
+    entry = QUANTITIES[quantity] if quantity else None
+    unit, display_unit = (entry.unit, entry.display_unit) if entry else ("", "")
+    return SummaryFigure(name, unit, display_unit, *meaning_topic)
 
 
 def _read() -> dict[str, SummaryFigure]:
@@ -83,9 +83,9 @@ MEASURES: Registry[Measure] = Registry("summary figure", "tribodyn.summary")
 
 def by_topic(names: Iterable[str]) -> dict[str, list[str]]:
     """Names of figures under their topics, both in the order of :data:`SUMMARY`."""
-    asked, topics = set(names), dict[str, list[str]]()
+    selected, topics = set(names), dict[str, list[str]]()
     for name, figure in SUMMARY.items():
-        if name in asked:
+        if name in selected:
             topics.setdefault(figure.topic, []).append(name)
     return topics
 
@@ -178,7 +178,7 @@ def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
 
 
 def _stiffness_apart(mesh: MeshTable) -> dict[str, Any]:
-    """Mean stiffness of the teeth and of the oil films, where these are in series."""
+    """Mean stiffness of the teeth and of the oil films, if these are in series."""
     if mesh.tooth_transmission_error is None:
         return {}
     figures = {"mean_mesh_stiffness_teeth": mesh.grid.mean(mesh.tooth_mesh_stiffness)}
@@ -189,7 +189,7 @@ def _stiffness_apart(mesh: MeshTable) -> dict[str, Any]:
 
 
 def _error_apart(mesh: MeshTable) -> dict[str, Any]:
-    """Transmission error at rest of the teeth alone, and what oil films in series change of it."""
+    """Transmission error at rest of the teeth alone, and its change by oil films in series."""
     teeth = mesh.tooth_transmission_error
     if teeth is None:
         return {}
@@ -224,13 +224,13 @@ def _static_error_figures(result: Computed) -> dict[str, Any]:
         error, grid = result.transmission_error_at_rest(), result.mesh.grid
         figures = (grid.mean(error), np.ptp(error), grid._harmonics(error, _HARMONICS))
     mean, most, amplitudes = figures
-    apart = _error_apart(result.mesh)
-    if apart and result.case.gear_pair.teeth_differ:
+    parts = _error_apart(result.mesh)
+    if parts and result.case.gear_pair.teeth_differ:
         # The loaded contact of all teeth has no film.
-        apart |= {f"mean_{name}_teeth": mean, f"peak_to_peak_{name}_teeth": most}
-        mean = mean + apart[f"mean_{name}_film"]
+        parts |= {f"mean_{name}_teeth": mean, f"peak_to_peak_{name}_teeth": most}
+        mean = mean + parts[f"mean_{name}_film"]
     return {
-        **apart,
+        **parts,
         f"mean_{name}": mean,
         f"peak_to_peak_{name}": most,
         **{f"{name}_harmonic_{order}": size for order, size in enumerate(amplitudes, 1)},
@@ -238,7 +238,7 @@ def _static_error_figures(result: Computed) -> dict[str, Any]:
 
 
 def _film_figures(mesh: MeshTable) -> dict[str, Any]:
-    """What the film model gives: least values over the path, and the pair at the pitch point."""
+    """Film figures: least values along the path of contact, and those at the pitch point."""
     least = {
         "central_film": mesh.central_film,
         "minimum_film_over_path": mesh.minimum_film,
@@ -260,17 +260,17 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
 
 
 def _motion_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
-    """Figures of all signals of a motion, which are averaged together."""
+    """Figures of all signals of a motion, averaged in one pass."""
     from tribodyn.signals.indicators import extremes, mesh_harmonics, moments
 
     name, figures = "dynamic_transmission_error", dict[str, Any]()
     signals, every = zip(*_signals(result, samples), strict=True)
     averages = (part.tolist() for part in moments(samples, np.array(every).T))
-    both = [every[signals.index(each)] for each in ("mesh_force", name)]
-    (least, lowest), (greatest, highest) = extremes(np.array(both).T)
+    motions = [every[signals.index(each)] for each in ("mesh_force", name)]
+    (least, lowest), (greatest, highest) = extremes(np.array(motions).T)
     figures |= {"peak_mesh_force": greatest, "minimum_mesh_force": least}
     figures[f"peak_to_peak_{name}"] = highest - lowest
-    for order, size in enumerate(np.abs(mesh_harmonics(samples, both[1], _HARMONICS)), 1):
+    for order, size in enumerate(np.abs(mesh_harmonics(samples, motions[1], _HARMONICS)), 1):
         figures[f"{name}_harmonic_{order}"] = size
     for signal, mean, swing in zip(signals, *averages, strict=True):
         if signal == name:
@@ -289,15 +289,15 @@ def _motion_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
     return figures
 
 
-#: Signals of gear centres and shafts, whose mean may be a figure beside their alternating rms.
+#: Signals of gear centres and shafts: their rms excludes the mean, which is a separate figure.
 _OF_CENTRES = ("bearing_force_", "acceleration_", "torque_shaft")
 
 
 def _signals(result: Computed, samples: FineSamples) -> Iterator[tuple[str, Array]]:
     force, touch = mesh_force(samples), first_touch(result.system, samples)
     yield "mesh_force", force
-    apart = (compression(samples) <= touch) & (touch > 0.0)
-    yield "contact_loss", apart.astype(float)
+    separated = (compression(samples) <= touch) & (touch > 0.0)
+    yield "contact_loss", separated.astype(float)
     yield "dynamic_transmission_error", transmission_error(result, samples)
     phase = one_sided_phase(samples)
     yield "friction_power", _friction_power(result, phase, force)
@@ -347,7 +347,7 @@ def _support_signals(result: Computed, samples: FineSamples) -> Iterator[tuple[s
 
 
 def _hypoid_figures(result: Computed, in_space: bool) -> dict[str, Any]:
-    """Both transmission errors at rest on the line of action, of gears in space."""
+    """Unloaded and loaded transmission error of gears in space, on the line of action."""
     error = result.mesh.unloaded_transmission_error
     if not in_space or error is None:
         return {}
@@ -370,12 +370,12 @@ def _comparison(result: Computed) -> dict[str, Any]:
         "rms_friction_force",
         "mean_friction_power",
     )
-    found = {f"{name}_nominal_friction": figures[name] for name in names}
-    return found | {"friction_fit_error": result.friction.fit_error}
+    compared = {f"{name}_nominal_friction": figures[name] for name in names}
+    return compared | {"friction_fit_error": result.friction.fit_error}
 
 
 def _line_of_action(figures: Mapping[str, Any]) -> dict[str, Any]:
-    """How much the force on a support of the pinion moves across the line of action."""
+    """Ratio of the bearing force of the pinion across the line of action to that along it."""
     from tribodyn.signals.indicators import across_over_along
 
     along, across = (figures.get(f"rms_bearing_force_{way}_pinion") for way in ("loa", "oloa"))

@@ -1,4 +1,4 @@
-"""The tooth contact of a case: its models and options, its mesh, its friction under any load."""
+"""Tooth contact of a case: models and options, mesh table, friction under any load."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 #: Load over the nominal load below which friction may be missing.
 _LIGHT = 0.3
-#: Tables of a case that its tooth contact depends on, beside speed and load.
+#: Tables of a case that its tooth contact depends on, in addition to speed and load.
 _OF_CONTACT = ("gears", "material", "lubricant", "film", "stiffness", "friction")
 #: Phase intervals of a rehearsal.
 _FEWEST = 16
 
 
 def model_settings(case: Case) -> dict[str, Any]:
-    """Material, oil, stiffness and film of a case, as the mesh asks for them."""
+    """Material, oil, stiffness and film of a case, as arguments of the mesh functions."""
     return {
         "material": case.material_properties,
         "stiffness_model": case.stiffness.model,
@@ -66,7 +66,7 @@ def mesh_of(
 ) -> MeshTable:
     """Compute the tooth contact of a case over one mesh cycle.
 
-    A rehearsal has few places and a film by formula: only what is refused matters.
+    A rehearsal has few phases and a film by formula: it only has to raise the input errors.
     """
     from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
@@ -89,8 +89,8 @@ def mesh_of(
         if law.needs_film:
             other = LAWS[law.rehearsal]
             options = settings.friction_options.items()
-            known = {name: value for name, value in options if name in other.options}
-            settings = replace(settings, friction_law=other.name, friction_options=known)
+            shared_options = {name: value for name, value in options if name in other.options}
+            settings = replace(settings, friction_law=other.name, friction_options=shared_options)
     return mesh_table(
         case.gear_pair,
         settings,
@@ -103,7 +103,7 @@ def mesh_of(
 
 
 def teeth_contact_ratio(case: Case) -> float | None:
-    """Contact ratio under load on the knots of a run; None where a mesh table alone knows it."""
+    """Contact ratio under load on the grid points of a run; None if only a mesh table has it."""
     from tribodyn.mesh.build import known_teeth
     from tribodyn.mesh.loaded_intervals import contact_ratio
 
@@ -116,27 +116,27 @@ def teeth_contact_ratio(case: Case) -> float | None:
 
 
 def film_group(case: Case) -> object:
-    """What cases share whose tooth contacts differ by speed and load alone; None of others."""
+    """Key of cases whose tooth contacts differ in speed and load alone; None for other cases."""
     if case.gears.kind != "spur" or case._named_files():
         return None
     try:
         return case.gear_pair, contact_settings(case), mesh_law_of(case)
     except InputError:
-        return None  # told when it is begun
+        return None  # preparing the run reports the error
 
 
 def meshes_of(cases: Sequence[Case]) -> list[Callable[[], MeshTable]]:
-    """Mesh tables of such cases from one pass; none where each has to be computed by itself."""
+    """Mesh tables of cases with the same key from one pass; empty if none can be shared."""
     from tribodyn.mesh.operating_points import mesh_tables
 
     first, points = cases[0], [(case.pinion_speed, case.pinion_torque) for case in cases]
     law = mesh_law_of(first) == "force-law"
-    found = mesh_tables(first.gear_pair, contact_settings(first), points, force_law=law)
-    return [partial(_told, *each) for each in found]
+    tables = mesh_tables(first.gear_pair, contact_settings(first), points, force_law=law)
+    return [partial(_repeat_warnings, *entry) for entry in tables]
 
 
-def _told(table: MeshTable, said: Sequence[ModelWarning]) -> MeshTable:
-    for warning in said:
+def _repeat_warnings(table: MeshTable, model_warnings: Sequence[ModelWarning]) -> MeshTable:
+    for warning in model_warnings:
         warn(warning.code, warning.message)
     return table
 
@@ -197,7 +197,7 @@ _PHASES = 64  #: phases of a mesh cycle
 
 
 def loaded_settings(case: Case) -> dict[str, Any]:
-    """Provider, its options and the material of a case, as the loaded tooth contact has them."""
+    """Provider, its options and material of a case, as arguments of the loaded tooth contact."""
     settings = model_settings(case)
     options = dict(settings["stiffness_options"])
     return {
@@ -223,10 +223,10 @@ def loaded_contact(
     Parameters
     ----------
     case : Case
-        From :func:`tribodyn.load_case`; its ``[stiffness]`` says how the teeth give way.
+        From :func:`tribodyn.load_case`; its ``[stiffness]`` sets the compliance of the teeth.
     torque : float, str or list, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
-        That of the case where absent.
+        By default that of the case.
     phases : int or array (p,)
         Evenly spaced phases of a mesh cycle, or the phases themselves.
 

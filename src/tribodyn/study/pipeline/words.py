@@ -1,4 +1,4 @@
-"""Names of summary figures in words: as the head of a row, and within a sentence."""
+"""Labels of summary figures: as the head of a row, and within a sentence."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _STATISTICS = {
     "maximum": "greatest",
     "minimum": "least",
 }
-#: Names whose words do not follow from their parts.
-_WORDS = {
+#: Labels that do not follow from the parts of the name.
+_LABELS = {
     "omega_max_dt": "omega_max dt",
     "minimum_film_over_path": "Minimum film over the path of contact",
     "line_of_action_indicator": "Bearing force across over along the line of action",
@@ -25,7 +25,7 @@ _WORDS = {
     "gear_body_share": "Share of the gear bodies in the deflection",
 }
 _START = re.compile(rf"^({'|'.join(_STATISTICS)})_")
-#: End of a name, its words in a row and in a sentence.
+#: End of a name, and its label in a row and in a sentence.
 _ENDINGS = (
     (re.compile(r"_nominal_friction$"), "friction of the nominal load", "{}"),
     (re.compile(r"_harmonic_(\d+)$"), "mesh harmonic {}", "in {}"),
@@ -40,31 +40,31 @@ _ENDINGS = (
 
 
 def _parts(name: str) -> tuple[str, str, list[tuple[str, str]]]:
-    """Statistic, quantity and endings, each of these in both ways."""
+    """Split a name into statistic, quantity and endings, each as in a row and in a sentence."""
     ends: list[tuple[str, str]] = []
     start = _START.match(name) if name not in QUANTITIES else None
-    rest = name[start.end() :] if start else name
-    for pattern, words, within in _ENDINGS:
-        end = pattern.search(rest)
+    quantity = name[start.end() :] if start else name
+    for pattern, row_form, within in _ENDINGS:
+        end = pattern.search(quantity)
         if end:
-            rest = rest[: end.start()]
-            row = words.format(*end.groups())
+            quantity = quantity[: end.start()]
+            row = row_form.format(*end.groups())
             ends.insert(0, (row, within.format(row)))
-    return _STATISTICS[start.group(1)] if start else "", rest.replace("_", " "), ends
+    return _STATISTICS[start.group(1)] if start else "", quantity.replace("_", " "), ends
 
 
 def in_words(name: str) -> str:
-    """Write the name of a summary figure in words, the quantity first."""
-    if name in _WORDS:
-        return _WORDS[name]
-    statistic, rest, ends = _parts(name)
-    said = [statistic, *(row for row, _ in ends)]
-    return ", ".join([rest[:1].upper() + rest[1:], *filter(None, said)])
+    """Return the label of a summary figure for a row, the quantity first."""
+    if name in _LABELS:
+        return _LABELS[name]
+    statistic, quantity, ends = _parts(name)
+    qualifiers = [statistic, *(row for row, _ in ends)]
+    return ", ".join([quantity[:1].upper() + quantity[1:], *filter(None, qualifiers)])
 
 
 def in_a_sentence(name: str) -> str:
-    """Write the name of a summary figure as it stands within a sentence, the statistic first."""
-    if name in _WORDS:
-        return _WORDS[name][:1].lower() + _WORDS[name][1:]
-    statistic, rest, ends = _parts(name)
-    return " ".join(filter(None, [statistic, rest, *(within for _, within in ends)]))
+    """Return the label of a summary figure within a sentence, the statistic first."""
+    if name in _LABELS:
+        return _LABELS[name][:1].lower() + _LABELS[name][1:]
+    statistic, quantity, ends = _parts(name)
+    return " ".join(filter(None, [statistic, quantity, *(within for _, within in ends)]))
