@@ -1,4 +1,4 @@
-"""One mesh cycle of the steady motion of every lane, and its signals."""
+"""Signals over a mesh cycle of the steady motion of every lane."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tribodyn.types import Array, Index
 
 #: Most mesh cycles before a motion repeats, certified distance to the motion that does, lanes of a
 #: block, and lanes whose cycle is held at a time.
-_TRANSIENT, _TOLERANCE, _WIDTH, _HELD = 3000, 1e-7, 16, 32
+_TRANSIENT, _TOLERANCE, _WIDTH, _LANES_PER_RECORD = 3000, 1e-7, 16, 32
 #: Signals that every structure with two gears has, with their units.
 SIGNALS = {
     "mesh_force": "N",
@@ -46,7 +46,7 @@ class Cycles(NamedTuple):
 
 
 def steady_cycles(lanes: Lanes, places: int, progress: Progress = SILENT) -> Cycles:
-    """March every lane until it repeats, and take one mesh cycle of it."""
+    """Integrate every lane until it repeats, and return one mesh cycle of it."""
     with marching_on(engine_arguments(lanes.members[0].case).get("backend")):
         return _steady_cycles(lanes, places, progress)
 
@@ -69,19 +69,19 @@ def _steady_cycles(lanes: Lanes, places: int, progress: Progress) -> Cycles:
             what = f"{lost} of {lanes.count} variants grew beyond all bounds"
             raise ComputationError(what, "", "", "Narrow the inputs, or add damping")
         restless += int(np.sum(motions.period != 1))
-        for begin in range(0, group.size, _HELD):
-            part = np.arange(begin, min(begin + _HELD, group.size))
+        for begin in range(0, group.size, _LANES_PER_RECORD):
+            part = np.arange(begin, min(begin + _LANES_PER_RECORD, group.size))
             to, member = group[part], lanes.members[int(group[0])]
             states = np.empty((compiled.grid.steps + 1, 2 * points.size, part.size))
             motions.march(part, motions.state[part], 1, motions.force[part], record=states)
             width = compiled.grid.width / lanes.mesh_frequency[to][:, None]
             q, v = with_middles(width, np.moveaxis(states, -1, 0))
             nodes, beat = compiled.nodes, lanes.mesh_frequency[to][:, None, None, None]
-            own, extra = scales[to], motions.force[part][:, None, None, :]
+            lane_scales, extra = scales[to], motions.force[part][:, None, None, :]
             law = forces(
-                compiled.system, nodes, beat, q, v, scales=Scales.of_lanes(own), extra=extra
+                compiled.system, nodes, beat, q, v, scales=Scales.of_lanes(lane_scales), extra=extra
             )
-            for name, values in _signals(member, nodes, law, own).items():
+            for name, values in _signals(member, nodes, law, lane_scales).items():
                 _put(values, nodes, phase, signals[name], figures[name], to)
         progress.advance(group.size)
     progress.finish()
@@ -89,7 +89,7 @@ def _steady_cycles(lanes: Lanes, places: int, progress: Progress) -> Cycles:
         warn(
             "ensemble-period",
             f"{restless} of {lanes.count} variants do not repeat after one "
-            "mesh cycle; one cycle of their motion was taken.",
+            "mesh cycle; the result has one cycle of their motion.",
             stacklevel=4,
         )
     return Cycles(phase, signals, figures)
@@ -98,14 +98,14 @@ def _steady_cycles(lanes: Lanes, places: int, progress: Progress) -> Cycles:
 def _put(values: Array, nodes: Nodes, phase: Array, to: Array, figures: Any, lanes: Index) -> None:
     """Signals at even phases, and their figures by Simpson's rule."""
     values = np.broadcast_to(values, (lanes.size, *nodes.phase.shape))
-    whole = [
+    statistics = [
         np.einsum("rs,brs->b", nodes.weight, values),
         np.sqrt(np.einsum("rs,brs->b", nodes.weight, values**2)),
         values.min(axis=(1, 2)),
         values.max(axis=(1, 2)),
     ]
-    for column, answer in zip(figures, whole, strict=True):
-        column[lanes] = answer
+    for column, values_of_lanes in zip(figures, statistics, strict=True):
+        column[lanes] = values_of_lanes
     # Both sides of an event have the same phase; the side after it counts.
     left = nodes.phase.reshape(-1).copy()
     left[0::3], left[2::3] = left[0::3] + 1e-13, left[2::3] - 1e-13
@@ -125,17 +125,17 @@ def signals_at(
     stiffness, _, friction, error, gap, _ = np.moveaxis(scales, -1, 0)
     spring = stiffness[..., None] * rows.stiffness * np.abs(law.side)
     elastic = spring * (law.deflection - law.side * gap[..., None] * rows.gap)
-    total, known = spring.sum(axis=-1), error * rows.error[..., 0]
+    total, prescribed = spring.sum(axis=-1), error * rows.error[..., 0]
     column = centre_column(tuple(system.names), "pinion", "y")
-    one = 0 if column is None else column
+    coordinate = 0 if column is None else column
     return {
         "mesh_force": law.contact.sum(axis=-1),
-        "dynamic_transmission_error": law.deflection[..., 0] + known,
-        "acceleration": law.acceleration[..., one],
+        "dynamic_transmission_error": law.deflection[..., 0] + prescribed,
+        "acceleration": law.acceleration[..., coordinate],
         "mesh_stiffness": total,
         "friction_coefficient": friction * _coefficient(mesh, rows.phase),
         "backlash_function": elastic.sum(axis=-1) / np.where(total > 0.0, total, 1.0),
-        "transmission_error": known,
+        "transmission_error": prescribed,
     }
 
 

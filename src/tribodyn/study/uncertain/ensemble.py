@@ -1,4 +1,4 @@
-"""What spread inputs do to forces and motion: one mesh cycle of many variants, with bands."""
+"""Effect of spread inputs on forces and motion: a mesh cycle of many variants, with bands."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.result import Result
 
-#: Places of a mesh cycle, and most variants whose whole results are computed.
-_PLACES, _WHOLE = 256, 32
+#: Phases of a mesh cycle, and largest number of variants whose full results are computed.
+_PHASES, _MAX_RESULTS = 256, 32
 
 
 @record
@@ -36,7 +36,7 @@ class CaseEnsemble(Record):
     input : (k,) array of str
         Keys of the case, or factors, that were spread.
     value : (n, k) array
-        What was drawn, in SI.
+        Sampled values, in SI.
     phase : (p,) array
         Mesh phase.
     mesh_frequency : (n,) array
@@ -68,7 +68,7 @@ class CaseEnsemble(Record):
 
     @cached_property
     def results(self) -> tuple[Result, ...]:
-        """Whole results: of the middle of all inputs, and of up to 32 variants evenly among all.
+        """Full results at the median of all inputs, and of up to 32 variants evenly among all.
 
         Raises
         ------
@@ -82,18 +82,18 @@ class CaseEnsemble(Record):
         factors = [key for key in keys if "." not in key]
         if self.case is None or factors:
             why = f"{', '.join(factors) or 'It'}: of no case"
-            raise InputError("no whole results of this ensemble", "", why, "Spread keys")
+            raise InputError("no full results of this ensemble", "", why, "Spread keys")
         count = len(self.value)
-        chosen = np.unique(np.linspace(0, count - 1, min(count, _WHOLE)).round().astype(int))
-        # The case has its own values; what others spread is taken in the middle of the draws.
-        drawn = zip(keys, np.median(self.value, axis=0), strict=True)
-        middle = {key: float(value) for key, value in drawn if key not in self.case.uncertain}
+        chosen = np.unique(np.linspace(0, count - 1, min(count, _MAX_RESULTS)).round().astype(int))
+        # The case has its own values; other spread inputs are at the median of the sample.
+        medians = zip(keys, np.median(self.value, axis=0), strict=True)
+        middle = {key: float(value) for key, value in medians if key not in self.case.uncertain}
         rows = [dict(zip(keys, map(float, row), strict=True)) for row in self.value[chosen]]
         cases = [self.case.replace(row) if row else self.case for row in (middle, *rows)]
-        found: dict[int, Result] = {}
+        results_by_number: dict[int, Result] = {}
         with quiet():
-            over_cases(computed, cases, found)
-        return tuple(found[number] for number in range(len(cases)))
+            over_cases(computed, cases, results_by_number)
+        return tuple(results_by_number[number] for number in range(len(cases)))
 
     def plot(self, name: str = "", *arguments: Any, **options: Any) -> Any:
         """Draw the spread of the motion, or any figure of a run with bands of the variants.
@@ -110,22 +110,22 @@ class CaseEnsemble(Record):
         -------
         plotly.graph_objects.Figure
         """
-        own = not name or name in figures_of(self)
-        if not own:
+        is_figure = not name or name in figures_of(self)
+        if not is_figure:
             return drawn(self, "bands", name)
         return drawn(self, name or "ensemble", *arguments, **options)
 
     def figures(self) -> dict[str, Array]:
-        """Figures of the summary of every whole result, in SI.
+        """Figures of the summary of every full result, in SI.
 
         Returns
         -------
         dict of str to (n,) array
-            First that of the middle of all inputs, then those of the variants.
+            First that at the median of all inputs, then those of the variants.
         """
-        each = [result.summary() for result in self.results]
-        shared = [name for name in each[0] if all(name in other for other in each)]
-        return {name: np.array([figures[name] for figures in each]) for name in shared}
+        summaries = [result.summary() for result in self.results]
+        shared = [name for name in summaries[0] if all(name in other for other in summaries)]
+        return {name: np.array([figures[name] for figures in summaries]) for name in shared}
 
     def spectrum(self, signal: str = "mesh_force", harmonics: int = 10) -> Array:
         """Amplitudes of the mesh harmonics of every variant.
@@ -187,14 +187,14 @@ class CaseEnsemble(Record):
         )
 
     def spread(self, signal: str = "mesh_force", level: float = 0.95, harmonics: int = 0) -> Array:
-        """Where a part of the variants lies, point by point.
+        """Interval that contains a given share of the variants, point by point.
 
         Parameters
         ----------
         signal : str
             As of :meth:`spectrum`.
         level : float
-            Part of the variants between both ends [-].
+            Share of the variants between both ends [-].
         harmonics : int
             As of :meth:`band`.
 
@@ -208,8 +208,8 @@ class CaseEnsemble(Record):
         return np.asarray(np.quantile(values, ends, axis=0))
 
     def _signal(self, name: str) -> Array:
-        known = ("mesh_force", "dynamic_transmission_error", "acceleration")
-        return np.asarray(getattr(self, require_one_of("signal", name, known)))
+        names = ("mesh_force", "dynamic_transmission_error", "acceleration")
+        return np.asarray(getattr(self, require_one_of("signal", name, names)))
 
     def __repr__(self) -> str:
         """One line."""
@@ -229,7 +229,7 @@ def ensemble(
     seed: int,
     progress: Progress = SILENT,
 ) -> CaseEnsemble:
-    """Compute many variants of a case with spread inputs, side by side.
+    """Compute many variants of a case with spread inputs in one batch.
 
     Parameters
     ----------
@@ -243,11 +243,11 @@ def ensemble(
     size : int
         Variants.
     method : {"monte-carlo", "latin-hypercube", "sobol"}
-        How they are drawn.
+        Sampling method.
     seed : int
         The same seed gives the same ensemble.
     progress : Progress
-        Told how far the computation has come; silent by default.
+        Receives the progress of the computation; silent by default.
 
     Raises
     ------
@@ -263,29 +263,29 @@ def ensemble(
 
     Notes
     -----
-    Variants that differ in factors, in friction of a constant law, in mesh damping, in the speed
-    where neither film nor friction asks for it, or in the torque where the tooth contact is the
-    same for the least and the greatest one, are lanes of one structure. For any other key the
-    tooth contact of every variant is built anew.
+    Variants share one structure if they differ in factors, in the coefficient of constant
+    friction, in mesh damping, in the speed if neither film nor friction depends on it, or in the
+    torque if the tooth contact is the same for the least and the greatest one. For any other key
+    the tooth contact of every variant is computed.
 
     Examples
     --------
     >>> import tribodyn
     >>> case = tribodyn.load_case("time-varying-friction")
-    >>> found = ensemble(case, {"stiffness_scale": "1 +- 2 %"}, 8, seed=1)
-    >>> found.mesh_force.shape
+    >>> variants = ensemble(case, {"stiffness_scale": "1 +- 2 %"}, 8, seed=1)
+    >>> variants.mesh_force.shape
     (8, 256)
     """
-    given = dict(case.uncertain if distributions is None else distributions)
-    if not given:
+    spread = dict(case.uncertain if distributions is None else distributions)
+    if not spread:
         why, remedy = "", 'Give {"friction.coefficient": "0.05 +- 0.83 %"}'
         raise InputError("nothing is spread", Argument("distributions"), why, remedy)
-    drawn = draw(case, given, require_whole("size", size, 3), method=method, seed=seed)
-    lanes = lanes_of(case, drawn, progress)
-    signals = steady_cycles(lanes, _PLACES, progress)
+    values = draw(case, spread, require_whole("size", size, 3), method=method, seed=seed)
+    lanes = lanes_of(case, values, progress)
+    signals = steady_cycles(lanes, _PHASES, progress)
     return CaseEnsemble(
-        input=np.array(list(drawn)),
-        value=np.stack(list(drawn.values()), axis=1),
+        input=np.array(list(values)),
+        value=np.stack(list(values.values()), axis=1),
         phase=signals.phase,
         mesh_frequency=lanes.mesh_frequency,
         mesh_force=signals.signals["mesh_force"],

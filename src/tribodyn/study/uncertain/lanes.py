@@ -1,4 +1,4 @@
-"""Variants of a case as lanes: what can be a factor of one structure is, all else is built anew."""
+"""Variants of a case as lanes: factors of a shared structure, or structures of their own."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import LaneParameters
     from tribodyn.study.case.case import Case
 
-#: Steps over those at which a single motion is accurate to about 1e-6, and the fewest.
+#: Factor by which a lane takes fewer steps than a single motion (accurate to about 1e-6), and the
+#: smallest number of steps.
 _COARSER, _FEWEST = 4, 512
 #: Steps on which two structures are compared, and the relative difference that counts as none.
 _LOOK, _SAME = 64, 1e-12
@@ -64,16 +65,17 @@ def draw(
 
 def distributions_of(case: Case, spread: Mapping[str, Any]) -> dict[str, Any]:
     """Distributions of keys of a case and of factors, each in the unit that it has there."""
-    known = {}
+    distributions = {}
     for key, text in spread.items():
         spec = None if key in SCALES else spec_of(case, str(key))
         if spec is None and key not in SCALES:
-            case.replace({str(key): text}, by="distributions")  # tells which keys there are
-        known[str(key)] = distribution(str(key), text, spec.unit if spec else "")
+            # Raises an error that lists the keys.
+            case.replace({str(key): text}, by="distributions")
+        distributions[str(key)] = distribution(str(key), text, spec.unit if spec else "")
         problem = spread_problem(spec, str(key), text) if spec and isinstance(text, str) else None
         if problem is not None:
             raise InputError(replace(problem, where=f"distributions {key}"))
-    return known
+    return distributions
 
 
 def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILENT) -> Lanes:
@@ -109,7 +111,7 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
 
 
 def check_spread_key(case: Case, key: str, column: Array) -> None:
-    """Refuse what is no number of the case, and the ends of the values where the case does."""
+    """Raise if a key is no number of the case, or its least or greatest value is out of range."""
     spec = spec_of(case, key)
     value = effective(case).get(key)
     if spec is None or isinstance(value, bool | str) or spec.kind == "file":
@@ -121,7 +123,7 @@ def check_spread_key(case: Case, key: str, column: Array) -> None:
 
 
 def _factor(case: Case, key: str, column: Array) -> str | None:
-    """Factor of the structure that stands for a key exactly; None where none does."""
+    """Return the factor of the structure that is equivalent to a key, or None."""
     nominal = effective(case).get(key)
     if not isinstance(nominal, float) or nominal == 0.0:
         return None
@@ -141,7 +143,7 @@ def _contact_without_load(case: Case, torques: Array) -> bool:
     with locate_errors(case), quiet():
         torques = np.array([np.min(torques), np.max(torques), case.operation.torque])
         systems = [
-            built(case.replace({"operation.torque": float(each)})).system for each in torques
+            built(case.replace({"operation.torque": float(torque)})).system for torque in torques
         ]
     # The structure under a torque of one, which is all that may be left of the torque.
     rows = []
@@ -149,10 +151,10 @@ def _contact_without_load(case: Case, torques: Array) -> bool:
         nodes = compile_system(system, _LOOK)[1]
         rows.append(nodes._replace(force=nodes.force / torque))
     return all(
-        one.shape == other.shape
-        and np.allclose(one, other, _SAME, _SAME * np.abs(one).max(initial=0))
-        for each in rows[1:]
-        for one, other in zip(rows[0], each, strict=True)
+        first.shape == second.shape
+        and np.allclose(first, second, _SAME, _SAME * np.abs(first).max(initial=0))
+        for row in rows[1:]
+        for first, second in zip(rows[0], row, strict=True)
     )
 
 

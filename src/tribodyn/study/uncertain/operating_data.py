@@ -1,4 +1,4 @@
-"""One row for each operating point: the steady response that a surrogate learns."""
+"""Table of the steady response at operating points, as training data of a surrogate."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribodyn.study.uncertain.vibration_data import data_set
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
-#: What is told of every point, with units.
+#: Response figures of every operating point, with units.
 RESPONSE = {
     "mean_mesh_force": "N",
     "rms_mesh_force": "N",
@@ -27,7 +27,7 @@ RESPONSE = {
     "mean_friction_coefficient": "1",
 }
 #: Range of an operating point about that of the case, and places of a mesh cycle.
-_LOW, _HIGH, _PLACES = 0.7, 1.3, 8
+_LOW, _HIGH, _PHASES = 0.7, 1.3, 8
 
 
 def default_ranges(case: Case) -> dict[str, str]:
@@ -72,7 +72,7 @@ def operating_data(
     seed : int
         The same seed gives the same points.
     progress : Progress
-        Told how far the computation has come; silent by default.
+        Receives the progress of the computation; silent by default.
 
     Returns
     -------
@@ -97,13 +97,13 @@ def operating_data(
     """
     ranges = dict(default_ranges(case) if over is None else over)
     count = require_whole("size", size)
-    drawn = draw(case, ranges, count, method="sobol", seed=seed)
-    lanes = lanes_of(case, drawn, progress)
-    cycles = steady_cycles(lanes, _PLACES, progress)
+    inputs = draw(case, ranges, count, method="sobol", seed=seed)
+    lanes = lanes_of(case, inputs, progress)
+    cycles = steady_cycles(lanes, _PHASES, progress)
     mean, rms, _, high = cycles.figures["mesh_force"]
     _, _, least, greatest = cycles.figures["dynamic_transmission_error"]
     middle, shaking, _, _ = cycles.figures["acceleration"]
-    answers = dict(zip(RESPONSE, (
+    response = dict(zip(RESPONSE, (
         mean, rms, high, greatest - least, np.sqrt(np.maximum(shaking**2 - middle**2, 0.0)),
         cycles.figures["friction_coefficient"][0],
     ), strict=True))  # fmt: skip
@@ -112,5 +112,5 @@ def operating_data(
         "size": count,
         "seed": int(seed),
     }
-    made = data_set("operating_data", case, {**drawn, **answers}, settings)
-    return DataSet(made.columns, {**made.units, **RESPONSE}, made.case, made.settings, made.version)
+    data = data_set("operating_data", case, {**inputs, **response}, settings)
+    return DataSet(data.columns, {**data.units, **RESPONSE}, data.case, data.settings, data.version)

@@ -1,4 +1,4 @@
-"""Rows of repeated runs of a case: over time as published, or over the mesh cycle."""
+"""Data set of repeated runs of a case: over time as published, or over the mesh cycle."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 #: Stiffness and friction as the source of the data set spreads them.
 SPREAD = {"stiffness_scale": "1 +- 0.83 %", "friction_scale": "1 +- 0.83 %"}
-#: Columns beside those of the motion, with their units.
-_KNOWN = {"trajectory": "1", "time": "s", "phase": "1", "cos_phase": "1", "sin_phase": "1"}
+#: Columns in addition to those of the motion, with their units.
+_TIME_COLUMNS = {"trajectory": "1", "time": "s", "phase": "1", "cos_phase": "1", "sin_phase": "1"}
 
 
 def vibration_data(
@@ -73,7 +73,7 @@ def vibration_data(
     redraw : bool
         Over time: draw factors anew for every row, not once for every run.
     progress : Progress
-        Told how far the computation has come; silent by default.
+        Receives the progress of the computation; silent by default.
 
     Returns
     -------
@@ -100,8 +100,8 @@ def vibration_data(
     count, rows = require_whole("trajectories", trajectories), require_whole("samples", samples)
     spread = dict((case.uncertain or SPREAD) if distributions is None else distributions)
     again = rows if over == "time" and redraw else 1
-    drawn = draw(case, spread, count * again, seed=seed)
-    first = {name: values.reshape(count, again)[:, 0] for name, values in drawn.items()}
+    sampled = draw(case, spread, count * again, seed=seed)
+    first = {name: values.reshape(count, again)[:, 0] for name, values in sampled.items()}
     lanes = lanes_of(case, first, progress)
     if over == "cycle":
         columns = _over_cycle(lanes, rows, progress)
@@ -113,9 +113,9 @@ def vibration_data(
                 "Give redraw=False, or spread the factors ",
             )
             raise InputError(what, Argument("redraw"), why, remedy + ", ".join(SPREAD))
-        columns = _over_time(case, lanes, drawn, (rows, float(interval)), progress)
+        columns = _over_time(case, lanes, sampled, (rows, float(interval)), progress)
     inputs = {
-        name: np.repeat(values, count * rows // values.size) for name, values in drawn.items()
+        name: np.repeat(values, count * rows // values.size) for name, values in sampled.items()
     }
     columns = {
         "trajectory": np.repeat(np.arange(count, dtype=float), rows),
@@ -140,13 +140,14 @@ def data_set(kind: str, case: Case, columns: dict[str, Array], settings: dict[st
     """Columns with their units and their origin."""
     from tribodyn.study.case.provenance import spec_of
 
-    known = {**_KNOWN, **SIGNALS}
+    signal_units = {**_TIME_COLUMNS, **SIGNALS}
     specs = {name: spec_of(case, name) for name in columns}
     units = {
-        name: known.get(name) or (spec.unit if spec else "") or "1" for name, spec in specs.items()
+        name: signal_units.get(name) or (spec.unit if spec else "") or "1"
+        for name, spec in specs.items()
     }
-    told = json.dumps({"made_by": kind, **settings}, sort_keys=True)
-    return DataSet(columns, units, case.to_toml(), told, tribodyn.__version__)
+    description = json.dumps({"made_by": kind, **settings}, sort_keys=True)
+    return DataSet(columns, units, case.to_toml(), description, tribodyn.__version__)
 
 
 def _over_cycle(lanes: Lanes, rows: int, progress: Progress) -> dict[str, Array]:
@@ -163,11 +164,11 @@ def _over_cycle(lanes: Lanes, rows: int, progress: Progress) -> dict[str, Array]
 def _over_time(
     case: Case,
     lanes: Lanes,
-    drawn: Mapping[str, Array],
+    sampled: Mapping[str, Array],
     places: tuple[int, float],
     progress: Progress,
 ) -> dict[str, Array]:
-    """March all lanes from rest, and look at them at even times."""
+    """Simulate all lanes from rest, and sample them at even times."""
     frequency = float(lanes.mesh_frequency[0])
     if np.ptp(lanes.mesh_frequency) > 0.0 or len({id(each) for each in lanes.members}) > 1:
         what, why = "runs that differ in speed or tooth contact", "Rows over time share one grid"
@@ -182,18 +183,20 @@ def _over_time(
         warn(
             "data-aliased",
             f"{interval * frequency:.3g} mesh cycles lie between two rows: the "
-            'vibration of the mesh is not seen in between. over="cycle" shows all of it.',
+            'mesh vibration between them is lost. over="cycle" resolves it.',
             stacklevel=4,
         )
     marched = _March(case, lanes)
     signals = {name: np.empty((lanes.count, rows)) for name in SIGNALS}
-    again = {name: np.asarray(values).reshape(lanes.count, -1) for name, values in drawn.items()}
+    again = {name: np.asarray(values).reshape(lanes.count, -1) for name, values in sampled.items()}
     progress.start("Rows over time", rows)
-    for row, (whole, place) in enumerate(zip(cycle, at, strict=True)):
+    for row, (cycle_number, place) in enumerate(zip(cycle, at, strict=True)):
         if again and next(iter(again.values())).shape[1] > 1:
             marched.change({name: values[:, row] for name, values in again.items()})
-        found = marched.at(int(whole), float(np.clip(place - whole, 0.0, 1.0)))
-        for name, values in found.items():
+        values_by_name = marched.at(
+            int(cycle_number), float(np.clip(place - cycle_number, 0.0, 1.0))
+        )
+        for name, values in values_by_name.items():
             signals[name][:, row] = values
         progress.advance()
     progress.finish()
@@ -207,7 +210,7 @@ def _over_time(
 
 
 class _March:
-    """Lanes of one structure that march from their static state and are looked at on the way."""
+    """Time integration of lanes of one structure from their static state, with samples."""
 
     def __init__(self, case: Case, lanes: Lanes) -> None:
         from tribodyn.dynamics import LaneParameters, steady_state
@@ -238,7 +241,7 @@ class _March:
         self.parameters = LaneParameters(**factors)
 
     def at(self, cycle: int, phase: float) -> dict[str, Array]:
-        """March to a mesh cycle, and look at its signals at a phase."""
+        """Integrate to a mesh cycle, and return its signals at a phase."""
         from tribodyn.dynamics.equations.motion import Scales, forces, rows_within
 
         self.marcher.setting = self.marcher.setting._replace(parameters=self.parameters)
@@ -259,10 +262,10 @@ class _March:
         beat = self.lanes.mesh_frequency[:, None, None]
         law = forces(system, rows, beat, q[:, None], v[:, None], scales=scales,
                      extra=self.marcher.setting.extra_force[:, None])  # fmt: skip
-        found = signals_at(system, self.member.mesh, rows, law, table[:, None, :])
+        values_by_name = signals_at(system, self.member.mesh, rows, law, table[:, None, :])
         return {
             name: np.broadcast_to(values, (self.lanes.count, 1))[:, 0]
-            for name, values in found.items()
+            for name, values in values_by_name.items()
         }
 
 
