@@ -19,9 +19,9 @@ from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.study.case.case import Case
-from tribodyn.study.case.given import Source, unsound
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.read import key_lines, parse_toml, read_text
+from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import FaultError, read_value, written
 from tribodyn.study.studies.axes import Axis, member_value, read_axis
 from tribodyn.study.studies.range_words import UnreadError, read_values, toml_value

@@ -10,17 +10,9 @@ from typing import Any, ClassVar
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case import derive
+from tribodyn.study.case.case_data import CaseData
 from tribodyn.study.case.checks import cross_problems, dropped_options
-from tribodyn.study.case.data import CaseData
 from tribodyn.study.case.gears import is_needed
-from tribodyn.study.case.given import (
-    Source,
-    UserInput,
-    plain,
-    spread_problem,
-    unsound,
-    without_spread,
-)
 from tribodyn.study.case.provenance import (
     changed_after,
     effective_values,
@@ -33,6 +25,14 @@ from tribodyn.study.case.provenance import (
     without_records,
 )
 from tribodyn.study.case.section import Table, choices, signature_of
+from tribodyn.study.case.user_input import (
+    Source,
+    UserInput,
+    plain,
+    spread_problem,
+    unsound,
+    without_spread,
+)
 from tribodyn.study.case.values import (
     FaultError,
     Plain,

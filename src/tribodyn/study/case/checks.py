@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, cast
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
 from tribodyn.study.case.gears import HYPOID_KEYS, heat_of_bodies, is_idle
-from tribodyn.study.case.given import CONFLICT_REASON, UserInput, conflicting_keys
 from tribodyn.study.case.section import Choice, SectionKeys, choices, section_at
 from tribodyn.study.case.sections import THERMAL, lubricant_problems
+from tribodyn.study.case.user_input import CONFLICT_REASON, UserInput, conflicting_keys
 
 if TYPE_CHECKING:
     from tribodyn.ehl import FilmModel

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tribodyn.losses import Gearbox
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
-    from tribodyn.study.case.data import CaseData
+    from tribodyn.study.case.case_data import CaseData
 
 
 def _gear_arguments(name: str, gear: Gear, other: Gear) -> dict[str, Any]:

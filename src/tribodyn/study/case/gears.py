@@ -11,9 +11,9 @@ from tribodyn.errors import Problem
 from tribodyn.gear.hypoid.blank import HANDS, RANGES, hypoid_blank
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
 from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, numbers
-from tribodyn.study.case.given import UserInput
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
+from tribodyn.study.case.user_input import UserInput
 
 _GUARD = "guards against a wrong unit"
 _RACK = "ISO 53 profiles lie between 0.2 and 1.4"

@@ -13,8 +13,8 @@ from typing import Any
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.case import Case
-from tribodyn.study.case.given import Source
 from tribodyn.study.case.section import file_keys
+from tribodyn.study.case.user_input import Source
 from tribodyn.validated_files import read_bytes
 
 _SPACE = " \t\r"

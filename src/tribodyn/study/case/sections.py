@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, choice, flag, integer, model_choice, number
-from tribodyn.study.case.given import UserInput, conflicting_keys
 from tribodyn.study.case.section import Section, table
+from tribodyn.study.case.user_input import UserInput, conflicting_keys
 
 if TYPE_CHECKING:
     from tribodyn.model import Registry

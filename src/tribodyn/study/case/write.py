@@ -20,7 +20,7 @@ from tribodyn.study.case.provenance import (
 from tribodyn.study.case.section import Section, Table, section_at
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.data import CaseData
+    from tribodyn.study.case.case_data import CaseData
 
 
 #: Significant digits of a number, tried in order until it reads back exactly.

@@ -11,7 +11,6 @@ from tribodyn.errors import InputError
 from tribodyn.model import text
 from tribodyn.study.case import derive
 from tribodyn.study.case.gears import Gears
-from tribodyn.study.case.given import Source, Stated, UserInput
 from tribodyn.study.case.hypoid import hypoid_flanks
 from tribodyn.study.case.section import CaseTables, flat, table
 from tribodyn.study.case.sections import (
@@ -25,6 +24,7 @@ from tribodyn.study.case.sections import (
     Solver,
     Stiffness,
 )
+from tribodyn.study.case.user_input import Source, Stated, UserInput
 
 if TYPE_CHECKING:
     from tribodyn.gear import HypoidFlanks, Material, SpurPair
