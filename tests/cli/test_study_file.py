@@ -60,7 +60,7 @@ def test_a_study_is_computed_and_told(
     assert list(state["reasons"].values()) == [2]
     (next(folder.glob("s-study/0-000/*.nc"))).unlink()
     assert call(["study", "s.toml"]) == 0
-    assert "was damaged or gone and was computed anew" in capsys.readouterr().err
+    assert "was damaged or missing and was computed again" in capsys.readouterr().err
 
 
 def test_faults_end_with_their_code(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -191,7 +191,7 @@ def grid_of_a_power_law():
 
 def test_outside_of_the_measured_points_their_border_is_held():
     table = grid_of_a_power_law()
-    with pytest.warns(ModelWarning, match=r"800 N\*m at 600 rpm lies outside"):
+    with pytest.warns(ModelWarning, match=r"800 N\*m at 600 rpm is outside"):
         beyond = measured(800.0, 600.0 * RPM, *table)
     assert beyond == pytest.approx(measured(400.0, 600.0 * RPM, *table), rel=1e-9)
 

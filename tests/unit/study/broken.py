@@ -89,7 +89,7 @@ BROKEN = (
     Broken("wrong-kind-of-unit", _MODULE, 'normal_module = "4.5 kg"', "normal_module",
            ('normal_module = "4.5 kg"', "wrong kind of quantity", "4.5 mm")),
     Broken("unknown-unit", _MODULE, 'normal_module = "4.5 furlongz"', "normal_module",
-           ("furlongz", "not a unit", "4.5 mm")),
+           ("furlongz", "not a known unit", "4.5 mm")),
     Broken("metres-for-millimetres", _DISTANCE, 'center_distance = "91.5 m"', "center_distance",
            ("91.5 m", "91500 mm", "0.1 mm to 10000 mm", "wrong unit", "Correct the value")),
     Broken("no-number", _DISTANCE, 'center_distance = "wide"', "center_distance",

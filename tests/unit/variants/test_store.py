@@ -199,7 +199,7 @@ def test_two_writers_and_other_studies_are_refused(tmp_path: Path) -> None:
     place = tmp_path / "s"
     with Store(read_study(grid()), place):
         assert study_state(place).running
-        with pytest.raises(InputError, match="Another process computes a study"):
+        with pytest.raises(InputError, match="Another process that is still active"):
             run_study(read_study(grid()), place)
     run_study(read_study(grid()), place)
     other = grid().replace("[axes]", "[set]\noperation.torque = '65 N*m'\n[axes]")
