@@ -13,7 +13,7 @@ import pytest
 import tribodyn
 from tribodyn.errors import ModelWarning
 from tribodyn.report import write_report
-from tribodyn.report.blocks import SECTIONS
+from tribodyn.report.figure_blocks import SECTIONS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 

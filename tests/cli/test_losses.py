@@ -52,7 +52,7 @@ def test_losses_are_told_over_torque_and_speed(
     }
     assert call([*words, "--force"]) == 0
     shown = capsys.readouterr().out
-    assert "Counted are teeth, shaft seals, windage." in shown
+    assert "Included losses: teeth, shaft seals, windage." in shown
     assert "400 rpm" in shown
     assert "100 N*m" in shown
 

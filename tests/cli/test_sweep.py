@@ -157,7 +157,7 @@ def test_bifurcation_tells_what_it_found(folder: Path, capsys: pytest.CaptureFix
         assert data.section.shape == (2, 2, 8)
         assert data.parameter.values == pytest.approx(np.array([1000.0, 1500.0]) * np.pi / 30.0)
     page = (place / "bifurcation.html").read_text(encoding="utf-8")
-    assert "What it says" in page
+    assert "<h2>Results</h2>" in page
 
 
 def test_bifurcation_tells_where_the_step_makes_the_motion(

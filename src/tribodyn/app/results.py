@@ -10,7 +10,7 @@ from dash import dcc, html
 from tribodyn.app.session import RUNS, Desk
 from tribodyn.app.studies import STUDIES
 from tribodyn.errors import InputError, TribodynError, collected
-from tribodyn.report.blocks import drawn_block, topic_of
+from tribodyn.report.figure_blocks import block_of_figure, topic_of
 
 if TYPE_CHECKING:
     from tribodyn.app.jobs import Job
@@ -130,12 +130,12 @@ def pair(desk: Desk) -> list[Any]:
         told = [str(caution) for caution in case_cautions(case)]
     numbers = [describe(name, value) for name, value in found.items()]
     first = [describe(name, found[name], digits=4) for name in _FIRST if name in found]
-    rows = [[n.words, f"{n.shown} {n.unit}".strip(), n.meaning] for n in numbers]
+    rows = [[n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers]
     every = [html.Summary(f"All derived values ({len(rows)})")]
     every.append(table(["Quantity", "Value", "Meaning"], rows))
     parts = [
-        cards([[n.words, n.shown, n.unit] for n in first]),
-        *notice("Take care", told),
+        cards([[n.label, n.value, n.unit] for n in first]),
+        *notice("Warnings", told),
         *_drawing(case),
         html.Details(every, className="block"),
     ]
@@ -160,7 +160,7 @@ def _drawing(case: Case) -> list[Any]:
         drawn = figure.sketch(subject)
     except InputError as error:
         return [html.Div(html.P(error.problems[0].what), className="block")]
-    block = drawn_block(figure.name, figure.heading, drawn, figure.caption_of(subject))
+    block = block_of_figure(figure.name, figure.heading, drawn, figure.caption_of(subject))
     return [_block(block.__dict__, f"pair-{figure.name}", json.loads(block.json))]
 
 
@@ -200,7 +200,7 @@ def _overview(shown: dict[str, Any]) -> list[Any]:
     """What is read first."""
     return [
         *([cards(shown["cards"])] if shown.get("cards") else []),
-        *notice("What it says", shown.get("told", [])),
+        *notice("Results", shown.get("told", [])),
         *notice("Warnings", shown.get("warnings", [])),
     ]
 

@@ -73,11 +73,11 @@ def _operation(case: Case, values: Values) -> list[list[float] | None]:
 
 
 def _of(answer: Any, kind: str, case: Case, target: Path) -> Shown:
-    from tribodyn.report.answers import save_answer
+    from tribodyn.report.study_report_data import save_study
 
-    save_answer(kind, case, target, answer)
+    save_study(kind, case, target, answer)
     table = ["Table", list(answer.head), [list(row) for row in answer.rows]]
-    return {"told": list(answer.told), "tables": [table], "figures": answer.figures}
+    return {"told": list(answer.statements), "tables": [table], "figures": answer.figures}
 
 
 def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
@@ -96,7 +96,7 @@ def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Show
 
 def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn import plot
-    from tribodyn.report.answers import pictured, save_bifurcation
+    from tribodyn.report.study_report_data import figure_with_caption, save_bifurcation
     from tribodyn.study.studies.bifurcation import Findings, bifurcation
 
     low, high, points = _read("values", values["values"], read_range)
@@ -119,30 +119,30 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
     return {
         "told": list(findings.sentences()),
         "tables": [["Table", list(head), [list(row) for row in rows]]],
-        "figures": [pictured(plot.bifurcation, found)],
+        "figures": [figure_with_caption(plot.bifurcation, found)],
     }
 
 
 def _losses(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.answers import losses_answer
+    from tribodyn.report.study_report_data import losses_report_data
 
     torque, speed = _operation(case, values)
-    return _of(losses_answer(case, torque, speed, progress), "losses", case, target)
+    return _of(losses_report_data(case, torque, speed, progress), "losses", case, target)
 
 
 def _film(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.answers import film_answer
+    from tribodyn.report.study_report_data import film_report_data
 
     torque, speed = _operation(case, values)
-    return _of(film_answer(case, torque, speed, progress), "film", case, target)
+    return _of(film_report_data(case, torque, speed, progress), "film", case, target)
 
 
 def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.answers import relief_answer
+    from tribodyn.report.study_report_data import relief_report_data
 
     progress.start("Tip relief")
     torque = _read("torque", values["torque"], read_list) if values.get("torque") else None
-    answer = relief_answer(case, torque, values.get("gears") or "both")
+    answer = relief_report_data(case, torque, values.get("gears") or "both")
     shown = _of(answer, "relief", case, target)
     gears = [values["gears"]] if values.get("gears") in _GEARS else list(_GEARS)
     reliefs = [f"gears.{g}.modification.tip_relief{part}" for g in gears for part in _RELIEF]
@@ -151,57 +151,57 @@ def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Sho
 
 
 def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.answers import harris_answer
+    from tribodyn.report.study_report_data import harris_report_data
 
     progress.start("Static transmission error")
     torque = _read("torque", values["torque"], read_list) if values.get("torque") else None
-    return _of(harris_answer(case, torque), "harris", case, target)
+    return _of(harris_report_data(case, torque), "harris", case, target)
 
 
 def _modes(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.answers import modes_answer
+    from tribodyn.report.study_report_data import modes_report_data
 
     ends = _ends("speeds", values["speeds"]) if values.get("speeds") else None
-    return _of(modes_answer(case, ends, progress), "modes", case, target)
+    return _of(modes_report_data(case, ends, progress), "modes", case, target)
 
 
 def _run_up(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.answers import run_up_answer
+    from tribodyn.report.study_report_data import run_up_report_data
 
     ends, duration = _ends("speeds", values["speeds"]), float(values.get("duration") or 10.0)
-    return _of(run_up_answer(case, ends, duration, progress=progress), "run-up", case, target)
+    return _of(run_up_report_data(case, ends, duration, progress=progress), "run-up", case, target)
 
 
 def _continuation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_answers import continuation_answer
+    from tribodyn.report.nonlinear_report_data import continuation_report_data
 
     ends, periods = _ends("ends", values["ends"]), int(values.get("periods") or 1)
     step = float(values.get("longest_step") or 0.02)
-    answer = continuation_answer(case, values["key"], ends, periods, step, "study", progress)
+    answer = continuation_report_data(case, values["key"], ends, periods, step, "study", progress)
     return _of(answer, "continuation", case, target)
 
 
 def _basins(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_answers import basins_answer
+    from tribodyn.report.nonlinear_report_data import basins_report_data
 
     error, rate = (
         _ends(name, values[name]) if values.get(name) else None
         for name in ("transmission_error", "rate")
     )
     points = int(values.get("points") or 21)
-    answer = basins_answer(case, error, rate, points, progress=progress)
+    answer = basins_report_data(case, error, rate, points, progress=progress)
     return _of(answer, "basins", case, target)
 
 
 def _lyapunov(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_answers import lyapunov_answer
+    from tribodyn.report.nonlinear_report_data import lyapunov_report_data
 
     cycles, transient = int(values.get("cycles") or 1000), int(values.get("transient") or 300)
-    return _of(lyapunov_answer(case, cycles, transient, progress), "lyapunov", case, target)
+    return _of(lyapunov_report_data(case, cycles, transient, progress), "lyapunov", case, target)
 
 
 def _sobol(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_answers import sobol_answer
+    from tribodyn.report.nonlinear_report_data import sobol_report_data
 
     pairs = (("key", "tolerance"), ("second_key", "second_tolerance"))
     spread = {values[key]: values.get(tolerance, "") for key, tolerance in pairs if values.get(key)}
@@ -214,7 +214,7 @@ def _sobol(case: Case, values: Values, progress: Progress, target: Path) -> Show
             raise InputError(what, "tolerance", why, 'Write "90 N*m +- 5 %" or "80 .. 100 N*m"')
     figures = values.get("figures", "").replace(",", " ").split()
     size = int(values.get("size") or 32)
-    answer = sobol_answer(case.replace(spread, by="study"), figures, size, 0, progress)
+    answer = sobol_report_data(case.replace(spread, by="study"), figures, size, 0, progress)
     return _of(answer, "sobol", case, target)
 
 

@@ -75,7 +75,7 @@ def _listen(orders: SimpleQueue[str]) -> None:
 def _get_ready(wanted: Callable[[], bool]) -> None:
     from tribodyn.cases.load import load_case
     from tribodyn.errors import collected
-    from tribodyn.report.blocks import figure_blocks
+    from tribodyn.report.figure_blocks import figure_blocks
     from tribodyn.study.pipeline.run import computed, rehearse
 
     with collected():
@@ -110,7 +110,7 @@ def _case(order: Mapping[str, Any]) -> Case:
 
 def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Compute a case, show it, and write the directory of ``tribodyn run``."""
-    from tribodyn.report.blocks import figure_blocks
+    from tribodyn.report.figure_blocks import figure_blocks
     from tribodyn.report.numbers import HEAD, headlines, modes_table, table
     from tribodyn.study.pipeline.run import computed
 
@@ -119,10 +119,10 @@ def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     summary = result.summary()
     modes = modes_table(result) if "natural_frequency_1" in summary else []
     tables = [["Critical speeds", list(HEAD), modes]] if modes else []
-    rows = [[n.topic, n.words, f"{n.shown} {n.unit}".strip(), n.meaning] for n in table(summary)]
+    rows = [[n.topic, n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in table(summary)]
     tables.append(["All numbers", ["Topic", "Quantity", "Value", "Meaning"], rows])
     shown = {
-        "cards": [[card.words, card.shown, card.unit] for card in headlines(summary)],
+        "cards": [[card.label, card.value, card.unit] for card in headlines(summary)],
         "told": [],
         "warnings": [str(warning) for warning in result.warnings],
         "tables": tables,
@@ -145,13 +145,13 @@ def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Lay stored results over each other."""
     from tribodyn import plot
     from tribodyn.cases.stored_result import load_result
-    from tribodyn.report.blocks import drawn_block
+    from tribodyn.report.figure_blocks import block_of_figure
     from tribodyn.study.result_comparison import compare_results, difference_rows
 
     results = [load_result(place) for place in order["results"]]
     found = compare_results(*results, names=order["names"])
     figure = plot.result_comparison
-    block = drawn_block(figure.name, figure.heading, found.plot(), figure.caption_of(found))
+    block = block_of_figure(figure.name, figure.heading, found.plot(), figure.caption_of(found))
     rows = list(difference_rows(found.values, found.figures))
     shown = {
         "told": [] if rows else ["The results are equal."],
@@ -165,13 +165,13 @@ def _study(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Compute a study, show it, and write the directory of its command."""
     from tribodyn.app.studies import STUDIES
     from tribodyn.errors import collected
-    from tribodyn.report.blocks import drawn_block
+    from tribodyn.report.figure_blocks import block_of_figure
 
     with collected() as warnings:
         study = STUDIES[order["study"]]
         shown = study.compute(_case(order), order["values"], Teller(tell), folder / "result")
     blocks = [
-        drawn_block(f"figure-{number}", heading, figure, caption)
+        block_of_figure(f"figure-{number}", heading, figure, caption)
         for number, (heading, figure, caption) in enumerate(shown.pop("figures"), 1)
     ]
     shown["warnings"] = list(dict.fromkeys(map(str, warnings)))

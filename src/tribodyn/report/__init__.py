@@ -1,4 +1,4 @@
-"""Reports: a result as one HTML file that opens by double click and asks nothing of the network."""
+"""HTML reports in one self-contained file that opens in a browser without a network."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One result as one HTML file that needs nothing else: no network, no second file."""
+"""HTML report of a result in one self-contained file that needs no network."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.drawing import report_of
-from tribodyn.report.blocks import Block, figure_blocks
+from tribodyn.report.figure_blocks import Block, figure_blocks
 from tribodyn.report.numbers import HEAD, compared_friction, headlines, modes_table, table
-from tribodyn.report.origin import operating_point, provenance, version
+from tribodyn.report.provenance import operating_point, provenance, version
 from tribodyn.study.pipeline.save import write_file
 
 if TYPE_CHECKING:
     from tribodyn.study import Result
 
-_HERE = Path(__file__).parent
+_FOLDER = Path(__file__).parent
 
 
 @lru_cache(maxsize=4)
@@ -25,7 +25,7 @@ def template(name: str) -> Any:
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     environment = Environment(
-        loader=FileSystemLoader(_HERE),
+        loader=FileSystemLoader(_FOLDER),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -38,11 +38,11 @@ def text_of(name: str) -> Any:
     """Read a file of this package."""
     from markupsafe import Markup
 
-    return Markup((_HERE / name).read_text(encoding="utf-8"))
+    return Markup((_FOLDER / name).read_text(encoding="utf-8"))
 
 
 def plotly_script() -> Any:
-    """Return the script that draws figures."""
+    """Return the plotly script for embedding."""
     from markupsafe import Markup
     from plotly.offline import get_plotlyjs
 
@@ -52,8 +52,8 @@ def plotly_script() -> Any:
 def _figures(blocks: list[Block]) -> Any:
     from markupsafe import Markup
 
-    drawn = [f'"{block.name}": {block.json}' for block in blocks if not block.missing]
-    return Markup("{\n" + ",\n".join(drawn) + "\n}")
+    entries = [f'"{block.name}": {block.json}' for block in blocks if not block.missing]
+    return Markup("{\n" + ",\n".join(entries) + "\n}")
 
 
 def render_report(result: Result) -> str:
@@ -67,7 +67,7 @@ def render_report(result: Result) -> str:
     Returns
     -------
     str
-        HTML with all scripts, styles and data within. Every text of the user is escaped.
+        HTML with embedded scripts, styles and data. User texts are escaped.
     """
     summary, blocks = result.summary(), figure_blocks(result)
     return str(
@@ -96,7 +96,7 @@ def render_report(result: Result) -> str:
 
 
 def _lines(citations: Any) -> list[str]:
-    """Citations as separate lines, whether they come as one text or as several."""
+    """Citations as separate lines, from one text or several."""
     return citations.splitlines() if isinstance(citations, str) else [str(c) for c in citations]
 
 
@@ -104,7 +104,7 @@ def _lines(citations: Any) -> list[str]:
 def write_report(result: Result, path: str | os.PathLike[str]) -> Path:
     """Write the report of a result to a file.
 
-    The file appears complete or not at all: it is written beside its place and then moved there.
+    The file is written atomically: first to a temporary file, which is then renamed.
 
     Parameters
     ----------

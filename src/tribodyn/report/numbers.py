@@ -1,4 +1,4 @@
-"""The figures of a summary in words: name, value in its display unit, value in SI, meaning."""
+"""Summary figures for a report: label, value in display unit and in SI, meaning."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tribodyn.study.pipeline.words import in_words
 from tribodyn.study.studies.modes import ORDERS, Mode, mode_rows
 from tribodyn.units import convert
 
-#: Summary figures shown on cards at the top, most wanted first.
+#: Summary figures on the cards at the top, in order of importance.
 HEADLINES = (
     "pitch_line_velocity",
     "line_load",
@@ -36,11 +36,11 @@ HEADLINES = (
 
 @dataclass(frozen=True)
 class Number:
-    """One figure ready to be printed."""
+    """One summary figure, formatted for printing."""
 
     name: str  #: key in the summary
-    words: str  #: the same in words
-    shown: str
+    label: str  #: name of the quantity
+    value: str  #: in the display unit
     unit: str
     si: str
     si_unit: str
@@ -49,13 +49,13 @@ class Number:
 
 
 def describe(name: str, value: float, digits: int = 5) -> Number:
-    """Put one figure of a summary into words."""
+    """Format a summary figure with label, units and meaning."""
     figure = SUMMARY[name]
-    shown = convert(float(value), figure.unit, figure.display_unit)
+    value_in_unit = convert(float(value), figure.unit, figure.display_unit)
     return Number(
         name,
         in_words(name),
-        *engineering(shown, readable(figure.display_unit), digits),
+        *engineering(value_in_unit, readable(figure.display_unit), digits),
         f"{value:.6g}",
         readable(figure.unit),
         figure.meaning,
@@ -64,12 +64,12 @@ def describe(name: str, value: float, digits: int = 5) -> Number:
 
 
 def table(summary: Mapping[str, float]) -> list[Number]:
-    """Put a whole summary into words, the rows of a topic together."""
+    """Format all figures of a summary, grouped by topic."""
     return [describe(n, summary[n]) for names in by_topic(summary).values() for n in names]
 
 
 def headlines(summary: Mapping[str, float]) -> list[Number]:
-    """Pick the figures that everybody asks for first."""
+    """Format the headline figures that a summary has."""
     return [describe(name, summary[name], digits=4) for name in HEADLINES if name in summary]
 
 
@@ -78,35 +78,35 @@ _ENDING = "_nominal_friction"
 
 @dataclass(frozen=True)
 class Compared:
-    """One figure with friction in the loop and without."""
+    """One summary figure with coupled and with nominal friction."""
 
-    own: Number
-    nominal: Number
+    coupled: Number  #: friction follows the dynamic load
+    nominal: Number  #: friction of the nominal load
     change: str  #: change of the former from the latter, with its sign [%]
 
 
 def compared_friction(summary: Mapping[str, float]) -> list[Compared]:
-    """Put the comparison with nominal friction into words."""
-    found = []
+    """Format the figures that have a value with nominal friction."""
+    comparisons = []
     for name, nominal in summary.items():
-        own = name.removesuffix(_ENDING)
-        if own != name and own in summary:
-            found.append(
+        coupled_name = name.removesuffix(_ENDING)
+        if coupled_name != name and coupled_name in summary:
+            comparisons.append(
                 Compared(
-                    describe(own, summary[own]),
+                    describe(coupled_name, summary[coupled_name]),
                     describe(name, nominal),
-                    _change(float(summary[own]), float(nominal)),
+                    _change(float(summary[coupled_name]), float(nominal)),
                 )
             )
-    return found
+    return comparisons
 
 
-def _change(own: float, nominal: float) -> str:
-    """Write the relative change, or a dash where there is nothing to relate it to."""
-    return f"{100.0 * (own - nominal) / abs(nominal):+.3f} %" if nominal else "–"
+def _change(coupled: float, nominal: float) -> str:
+    """Format the relative change; a dash if the nominal value is zero."""
+    return f"{100.0 * (coupled - nominal) / abs(nominal):+.3f} %" if nominal else "–"
 
 
-#: Head of the table, in reports and on the screen.
+#: Head of the table of modes, in reports and in the terminal.
 HEAD = (
     "Mode",
     f"Frequency [{display_unit('frequency')}]",
@@ -118,7 +118,7 @@ HEAD = (
 
 
 def cells(mode: Mode) -> list[str]:
-    """One mode as it is printed."""
+    """Format a mode as a table row."""
     speeds = (significant(float(displayed("speed", speed)), 4) for speed in mode.speeds)
     damping = significant(100.0 * mode.damping_ratio, 3)
     return [
@@ -132,6 +132,6 @@ def cells(mode: Mode) -> list[str]:
 
 
 def modes_table(result: Any) -> list[list[str]]:
-    """All elastic modes of a result."""
+    """Table rows of all elastic modes of a result."""
     rows = mode_rows(result.natural_modes, result.case, result.mesh.mesh_frequency)
     return [cells(row) for row in rows]

@@ -1,4 +1,4 @@
-"""What the analysis of a recorded channel answers: figures, a table, and its report."""
+"""Report of the analysis of a recorded channel: figures, table and sentences."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tribodyn.drawing import report_of
 from tribodyn.measurement.signal_analysis import MATE, SHAFT
 from tribodyn.plot.signals.analysed import seen_frequency
 from tribodyn.plot.theme.labels import readable, significant
-from tribodyn.report.answers import Answer, Picture
 from tribodyn.report.study import write_study_report
+from tribodyn.report.study_report_data import Picture, StudyReportData
 
 if TYPE_CHECKING:
     from tribodyn.drawing import Drawing
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 HEAD = ("Figure", "Value", "Unit", "Meaning")
 _RPM = 30.0 / np.pi
-#: Digits of a number in the table, and mesh harmonics that are marked in a figure.
+#: Digits of a number in the table, and number of marked mesh harmonics.
 _DIGITS, _MARKED = 5, 5
 _LEVELS = {
     "mean": ("Mean", "of all samples"),
     "rms": ("Rms", "root mean square, the mean included"),
     "alternating_rms": ("Alternating rms", "without the mean"),
-    "peak_to_peak": ("Peak to peak", "largest less smallest sample"),
+    "peak_to_peak": ("Peak to peak", "largest minus smallest sample"),
 }
 _SHAPES = {
-    "crest_factor": ("Crest factor", "largest distance from the mean over the alternating rms"),
+    "crest_factor": ("Crest factor", "largest deviation from the mean over the alternating rms"),
     "kurtosis": ("Kurtosis", "1.5 for a sine, 3 for noise, more for impacts"),
 }
 _AVERAGE = {
@@ -49,20 +49,20 @@ _AVERAGE = {
     "na4": ("NA4", "", "fourth moment of the residual: 3 or less for sound teeth"),
 }
 _SMEARED = (
-    " The speed changes: lines that turn with the shaft are smeared in this figure and come out "
+    " The speed varies: shaft-synchronous lines are smeared in this figure and too "
     "low. Read their amplitudes from the orders."
 )
 _NAMES = {SHAFT: "Shaft", MATE: "Mate"}
 
 
-def signal_answer(analysis: SignalAnalysis) -> Answer:
+def signal_report_data(analysis: SignalAnalysis) -> StudyReportData:
     """Figures, sentences, table and numbers in SI of an analysed channel."""
     numbers = analysis.figures()
     facts: dict[str, Any] = {"channel": analysis.channel, "unit": analysis.unit, **numbers}
     if analysis.speed is not None:
         facts["speed_source"] = analysis.speed.source
     facts["notes"] = [sentence(each) for each in analysis.notes]
-    return Answer(
+    return StudyReportData(
         analysis,
         _pictures(analysis),
         [_lead(analysis), *facts["notes"]],
@@ -92,12 +92,12 @@ def write_signal_report(
     InputError
         If the place cannot be written to.
     """
-    answer = signal_answer(analysis)
+    answer = signal_report_data(analysis)
     return write_study_report(
         None,
         path,
         kind="signal analysis",
-        told=answer.told,
+        told=answer.statements,
         figures=answer.figures,
         head=answer.head,
         rows=answer.rows,
@@ -107,7 +107,7 @@ def write_signal_report(
 
 
 def sentence(note: Problem) -> str:
-    """A note in one line."""
+    """Format a note as a sentence."""
     text = f"{note.what[:1].upper()}{note.what[1:]}: {note.why[:1].lower()}{note.why[1:]}."
     return f"{text} {note.remedy}." if note.remedy else text
 
@@ -146,7 +146,7 @@ def _cards(analysis: SignalAnalysis) -> list[tuple[str, str]]:
 
 
 def _rows(analysis: SignalAnalysis, numbers: dict[str, float]) -> list[list[str]]:
-    """Table of all figures."""
+    """Table of all indicators and peaks."""
     unit = readable(analysis.unit)
 
     def row(name: str, value: float, unit: str, meaning: str) -> list[str]:
@@ -198,12 +198,12 @@ def _order_rows(numbers: dict[str, float], unit: str) -> list[list[str]]:
 
 
 def _sketched(figure: Drawing, result: Any) -> Picture:
-    """Heading, figure and caption, without the classes of plotly, which take long to load."""
+    """Heading, figure and caption; sketches avoid the slow import of plotly."""
     return figure.heading, figure.sketch(result), figure.caption_of(result)
 
 
 def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
-    """Figures of all that was computed."""
+    """Figures of all computed results."""
     steady = analysis.speed is not None and not analysis.speed.varies
     frequency, teeth = analysis.mesh_frequency, analysis.teeth.get(SHAFT)
     mesh = [("mesh" if k == 1 else str(k), float(k)) for k in range(1, _MARKED + 1)]
@@ -236,8 +236,8 @@ def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
             "Envelope spectrum",
             plot.signal_spectrum.sketch(hull, marks=shafts, to=reach),
             f"The frequencies that modulate {band}; its mean of {hull.amplitude[0]:.4g} "
-            f"{readable(analysis.unit)} is left out. A line at the frequency of a shaft is a load "
-            "that changes with its rotation, a row of its multiples an impact in each revolution. "
+            f"{readable(analysis.unit)} is left out. A line at the shaft frequency indicates a "
+            "load that varies with the rotation, its multiples indicate an impact per revolution. "
             "The axis ends where the lines become small.",
         ),
     ]
@@ -245,12 +245,12 @@ def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
         top = analysis.orders.orders[-1]
         orders = [(name, k * teeth) for name, k in mesh if teeth and k * teeth < top]
         caption = plot.order_spectrum.caption_of(analysis.orders)
-        drawn = plot.order_spectrum.sketch(analysis.orders, marks=orders)
-        pictures.append(("Orders", drawn, caption))
+        sketch = plot.order_spectrum.sketch(analysis.orders, marks=orders)
+        pictures.append(("Orders", sketch, caption))
     if analysis.order_map is not None:
         pictures.append(_sketched(plot.order_map, analysis.order_map))
     for shaft, average in analysis.averages.items():
-        heading, drawn, caption = _sketched(plot.synchronous_average, average)
+        heading, sketch, caption = _sketched(plot.synchronous_average, average)
         of = "" if len(analysis.averages) == 1 else f" of the {shaft}, {average.teeth} teeth"
-        pictures.append((f"{heading}{of}", drawn, caption))
+        pictures.append((f"{heading}{of}", sketch, caption))
     return pictures

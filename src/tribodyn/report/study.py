@@ -1,4 +1,4 @@
-"""A sweep or a bifurcation diagram as one HTML file that needs nothing else."""
+"""HTML reports of sweeps, bifurcation diagrams and other studies in one file."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn import plot
 from tribodyn.drawing import report_of
-from tribodyn.report.blocks import Block, drawn_block
+from tribodyn.report.figure_blocks import Block, block_of_figure
 from tribodyn.report.html import plotly_script, template, text_of
-from tribodyn.report.origin import operating_point, provenance, version
+from tribodyn.report.provenance import operating_point, provenance, version
 from tribodyn.study.case.provenance import assumptions
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary import SUMMARY
@@ -23,24 +23,24 @@ if TYPE_CHECKING:
     from tribodyn.analysis import Bifurcation
     from tribodyn.study import Case, Sweep
 
-#: Rows of the table; more are in the files beside it.
+#: Most rows of the table; the data files contain all rows.
 _ROWS = 400
 
 
 @dataclass(frozen=True)
 class _Page:
-    """What a study puts into its report."""
+    """Contents of the report of a study."""
 
     kind: str  #: of study
-    lead: str  #: what varies, in a line
+    lead: str  #: subtitle: what varies
     varied: Sequence[str]  #: keys of the case that vary
     blocks: Sequence[Block]  #: figures
-    cards: Sequence[tuple[str, str]]  #: counts, each with its word
+    cards: Sequence[tuple[str, str]]  #: name and value of each card
     notice_heading: str
     notices: Sequence[str]
     head: Sequence[str]  #: of the table
     rows: Sequence[Sequence[str]]
-    more: str = ""  #: where rows are that the table leaves out
+    more: str = ""  #: note on rows that the table leaves out
     heading: str = ""  #: title of the report, where it is not that of the case
 
 
@@ -63,7 +63,7 @@ def write_sweep_report(found: Sweep, path: str | os.PathLike[str]) -> Path:
     names = found.shown()
     caption = plot.sweep.caption_of(found)
     blocks = [
-        drawn_block(name, in_words(name), found.plot(name), caption if name == names[0] else "")
+        block_of_figure(name, in_words(name), found.plot(name), caption if name == names[0] else "")
         for name in names
     ]
     head = [_headed(axis.name, axis.display_unit) for axis in found.axes]
@@ -72,11 +72,11 @@ def write_sweep_report(found: Sweep, path: str | os.PathLike[str]) -> Path:
     for point in found.points[:_ROWS]:
         keys = zip(found.axes, point.values, strict=True)
         cells = [axis.show(value).partition(" ")[0] for axis, value in keys]
-        shown = [
+        results = [
             SUMMARY[n].show(point.figures[n]).partition(" ")[0] if n in point.figures else ""
             for n in names
         ]
-        rows.append([*cells, *shown, point.failed])
+        rows.append([*cells, *results, point.failed])
     failed = [point for point in found.points if point.failed]
     lacking = "" if found.complete else f"Interrupted: {len(found.points)} of {found.failed.size}"
     page = _Page(
@@ -84,7 +84,7 @@ def write_sweep_report(found: Sweep, path: str | os.PathLike[str]) -> Path:
         lead=repr(found)[6:-1],
         blocks=blocks,
         varied=[axis.key for axis in found.axes],
-        notice_heading="Take care",
+        notice_heading="Warnings",
         cards=[("Values", f"{len(found.points)}"), ("Failed", f"{len(failed)}")],
         notices=[
             *([f"{lacking} values are done."] if lacking else []),
@@ -120,9 +120,9 @@ def write_bifurcation_report(
     path
         As :func:`write_report` takes it.
     lead : str
-        What varies, in a line.
+        Subtitle: what varies.
     told : sequence of str
-        What was found, in sentences.
+        Results in sentences.
     head : sequence of str
         Head of the table.
     rows : sequence of sequence of str
@@ -141,8 +141,8 @@ def write_bifurcation_report(
         kind="bifurcation diagram",
         lead=lead,
         varied=[found.parameter_name],
-        notice_heading="What it says",
-        blocks=[drawn_block("bifurcation", "Motion once per mesh cycle", found.plot(), caption)],
+        notice_heading="Results",
+        blocks=[block_of_figure("bifurcation", "Bifurcation diagram", found.plot(), caption)],
         cards=[("Motions", str(int(found.finished.sum()))), *counts],
         notices=list(told),
         head=head,
@@ -163,18 +163,18 @@ def write_study_report(
     title: str = "",
     cards: Sequence[tuple[str, str]] = (),
 ) -> Path:
-    """Write any other study of a case to a file.
+    """Write the report of any other study to a file.
 
     Parameters
     ----------
     case : Case or None
-        The case that was studied; None for a study of measurements alone.
+        The case; None for a study of measurements alone.
     path
         As :func:`write_report` takes it.
     kind : str
-        What kind of study it is.
+        Name of the kind of study.
     told : sequence of str
-        What was found, in sentences.
+        Results in sentences.
     figures : sequence of (str, figure, str)
         Heading, plotly figure and caption of each.
     head, rows : sequence of str, sequence of sequence of str
@@ -190,8 +190,8 @@ def write_study_report(
         If the place cannot be written to.
     """
     blocks = [
-        drawn_block(f"figure-{number}", heading, drawn, caption)
-        for number, (heading, drawn, caption) in enumerate(figures, 1)
+        block_of_figure(f"figure-{number}", heading, sketch, caption)
+        for number, (heading, sketch, caption) in enumerate(figures, 1)
     ]
     page = _Page(
         kind=kind,
@@ -199,7 +199,7 @@ def write_study_report(
         varied=[],
         blocks=blocks,
         cards=cards,
-        notice_heading="What it says",
+        notice_heading="Results",
         notices=list(told),
         head=head,
         rows=rows,
@@ -209,63 +209,63 @@ def write_study_report(
 
 
 @report_of("FrictionExperiment")
-def write_friction_report(found: Any, path: str | os.PathLike[str]) -> Path:
+def write_friction_report(experiment: Any, path: str | os.PathLike[str]) -> Path:
     """Write the claims and figures of a friction experiment to a file."""
     figures = (plot.friction_effect, plot.friction_claims, plot.friction_harmonics)
     blocks = [
-        drawn_block(each.name, each.heading, each(found), each.caption_of(found))
+        block_of_figure(each.name, each.heading, each(experiment), each.caption_of(experiment))
         for each in figures
-        if not each.missing(found)
+        if not each.missing(experiment)
     ]
-    failed = dict.fromkeys(point.failed for point in found.points if point.failed)
+    failed = dict.fromkeys(point.failed for point in experiment.points if point.failed)
     page = _Page(
         kind="friction experiment",
-        lead=found.lead,
+        lead=experiment.lead,
         varied=["gears.driver", "friction.law", "gears.composite_roughness"],
         blocks=blocks,
-        cards=[(claim.case, claim.verdict) for claim in found.claims],
-        notice_heading="Take care",
+        cards=[(claim.case, claim.verdict) for claim in experiment.claims],
+        notice_heading="Warnings",
         notices=[*failed],
-        head=found.CLAIM_HEAD,
-        rows=list(found.claim_rows()),
+        head=experiment.CLAIM_HEAD,
+        rows=list(experiment.claim_rows()),
         more="The figures of every steady state are in sweep.csv and sweep.nc.",
     )
-    return _write(Path(path), found.case, page)
+    return _write(Path(path), experiment.case, page)
 
 
 @report_of("PaperComparison")
-def write_paper_report(found: Any, path: str | os.PathLike[str]) -> Path:
-    """Write printed tables beside what is computed to a file."""
-    one = len(found.papers) == 1
-    counts = Counter(row["verdict"] for row in found.rows)
-    origins = zip(found.table(), found.rows, strict=True)
-    rows = [[*([] if one else [row["case"]]), *cells, row["reason"]] for cells, row in origins]
-    head = [*([] if one else ["Case"]), *found.HEAD, "Reason"]
-    odd = [
-        f"{row['case']}, {row['table']}, {row['row']}: {row['verdict']}, expected was "
+def write_paper_report(comparison: Any, path: str | os.PathLike[str]) -> Path:
+    """Write the comparison of computed with printed values to a file."""
+    single = len(comparison.papers) == 1
+    counts = Counter(row["verdict"] for row in comparison.rows)
+    origins = zip(comparison.table(), comparison.rows, strict=True)
+    rows = [[*([] if single else [row["case"]]), *cells, row["reason"]] for cells, row in origins]
+    head = [*([] if single else ["Case"]), *comparison.HEAD, "Reason"]
+    deviations = [
+        f"{row['case']}, {row['table']}, {row['row']}: {row['verdict']}, expected: "
         f"{row['expected']}"
-        for row in found.surprises
+        for row in comparison.surprises
     ]
     page = _Page(
         kind="printed and computed",
-        lead=f"{', '.join(found.papers)}: {found.lead}",
+        lead=f"{', '.join(comparison.papers)}: {comparison.lead}",
         varied=[],
         blocks=[],
         cards=[(name, str(count)) for name, count in counts.most_common()],
-        notice_heading="Not as expected",
-        notices=odd,
+        notice_heading="Unexpected results",
+        notices=deviations,
         head=head,
         rows=rows,
     )
     return _write(Path(path), None, page)
 
 
-def _headed(words: str, unit: str) -> str:
-    text = words.replace("_", " ")
+def _headed(name: str, unit: str) -> str:
+    text = name.replace("_", " ")
     return f"{text[:1].upper()}{text[1:]} [{unit}]" if unit else f"{text[:1].upper()}{text[1:]}"
 
 
-#: Keys of the case -> what the operating point calls them.
+#: Case keys and their names in the operating point.
 _CHIPS = {
     "operation.speed": "Speed",
     "operation.torque": "Torque",
@@ -282,20 +282,20 @@ _CHIPS = {
 def _write(path: Path, case: Any, page: _Page) -> Path:
     from markupsafe import Markup
 
-    gone = {_CHIPS.get(key, "") for key in page.varied}
-    drawn = ",\n".join(f'"{block.name}": {block.json}' for block in page.blocks)
+    varied_chips = {_CHIPS.get(key, "") for key in page.varied}
+    figures_json = ",\n".join(f'"{block.name}": {block.json}' for block in page.blocks)
     text = template("study.html.j2").render(
         title=page.heading or (case.title if case else page.kind.capitalize()),
         version=version(),
         operating_point=[
-            chip for chip in (operating_point(case) if case else ()) if chip[0] not in gone
+            chip for chip in (operating_point(case) if case else ()) if chip[0] not in varied_chips
         ],
         assumptions=[
             row for row in (assumptions(case) if case else ()) if row.key not in page.varied
         ],
         provenance=provenance(None),
         case_text=case.to_toml() if case else "",
-        figures=Markup("{\n" + drawn + "\n}"),
+        figures=Markup("{\n" + figures_json + "\n}"),
         style=text_of("report.css"),
         script=text_of("report.js"),
         plotly_js=plotly_script(),

@@ -12,7 +12,7 @@ from tribodyn.errors import InputError
 from tribodyn.measurement import Recording, SignalAnalysis, analyse_signal
 from tribodyn.plot import FIGURES
 from tribodyn.report import write_signal_report
-from tribodyn.report.signal_report import signal_answer
+from tribodyn.report.signal_report import signal_report_data
 from tribodyn.types import Array
 
 RATE = 6400.0
@@ -235,7 +235,7 @@ def test_it_exports_draws_and_reports_itself(tmp_path: Any) -> None:
     text = page.read_text("utf-8")
     assert "<h1>acc of rig.csv</h1>" in text
     assert "FM4 of the mate" in text
-    answer = signal_answer(analysis)
+    answer = signal_report_data(analysis)
     headings = [heading for heading, _, _ in answer.figures]
     assert headings == [
         "Signal",

@@ -22,10 +22,10 @@ def compared():
 
 def test_five_figures_in_display_units_with_their_change():
     rows = compared_friction(compared())
-    assert [row.own.name for row in rows] == list(NAMES)
+    assert [row.coupled.name for row in rows] == list(NAMES)
     assert {row.change for row in rows} == {"+25.000 %"}
-    assert (rows[2].own.shown, rows[2].own.unit, rows[2].nominal.shown) == ("10", "µm", "8")
-    assert rows[0].own.words == "Mesh force, rms"
+    assert (rows[2].coupled.value, rows[2].coupled.unit, rows[2].nominal.value) == ("10", "µm", "8")
+    assert rows[0].coupled.label == "Mesh force, rms"
 
 
 def test_a_loss_and_nothing_to_relate_to():

@@ -80,14 +80,14 @@ def test_every_summary_figure_can_be_printed() -> None:
     rows = table(dict.fromkeys(SUMMARY, 1.5))
     assert [row.name for row in rows] == list(SUMMARY)
     assert all(row.meaning for row in rows)
-    assert len({row.words for row in rows}) == len(rows)
+    assert len({row.label for row in rows}) == len(rows)
 
 
 def test_both_columns_are_the_same_value() -> None:
     for name, figure in SUMMARY.items():
         value = 300.25 if figure.unit == "K" else 0.0123  # degrees are counted from elsewhere
         row = describe(name, value)
-        shown = parse(f"{row.shown} {row.unit}".strip(), figure.unit)
+        shown = parse(f"{row.value} {row.unit}".strip(), figure.unit)
         assert shown == pytest.approx(value, rel=1e-4)
         assert float(row.si) == value
 

@@ -14,7 +14,7 @@ from tribodyn.errors import InputError, ModelWarning, collected
 from tribodyn.exchange import write_tables
 from tribodyn.gear import tooth_contact
 from tribodyn.plot import FIGURES
-from tribodyn.report.blocks import HYPOID_SECTIONS
+from tribodyn.report.figure_blocks import HYPOID_SECTIONS
 from tribodyn.study.case.read import read_case
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.citations import cite

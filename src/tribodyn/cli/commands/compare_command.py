@@ -146,7 +146,7 @@ def _with_recording(
     from tribodyn.cli.commands.study_commands import finish
     from tribodyn.measurement import compare as compared
     from tribodyn.measurement import read
-    from tribodyn.report.answers import Answer
+    from tribodyn.report.study_report_data import StudyReportData
 
     channels, sensitivity = pairs
     out, force, json = output
@@ -180,7 +180,7 @@ def _with_recording(
         return
     caption = "Spectra of the measured channels with the computed mesh harmonics on them."
     figures = [("Computed and measured", comparison.plot(), caption)]
-    answer = Answer(comparison, figures, statements, head, rows, facts)
+    answer = StudyReportData(comparison, figures, statements, head, rows, facts)
     finish("comparison", result.case, out, answer, force, json)
 
 

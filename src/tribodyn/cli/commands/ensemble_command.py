@@ -50,8 +50,8 @@ def ensemble(
     from tribodyn.errors import InputError
     from tribodyn.plot import ensemble as spread
     from tribodyn.plot.signals.bands import banded
-    from tribodyn.report.answers import Answer, pictured
-    from tribodyn.report.blocks import sections_of
+    from tribodyn.report.figure_blocks import sections_of
+    from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
     from tribodyn.study import SUMMARY
     from tribodyn.study import ensemble as compute
     from tribodyn.uncertainty import bootstrap_band
@@ -74,7 +74,7 @@ def ensemble(
             rows.append([name, *(SUMMARY[name].show(float(end)) for end in ends)])
     statements = [f"{len(result.value)} variants over {', '.join(map(str, result.input))}"]
     statements += [f"{key} = {text}" for key, text in ready.uncertain.items()]
-    figures = [pictured(spread, result)]
+    figures = [figure_with_caption(spread, result)]
     figures += banded(result, sections_of(ready))
     share = f"{_SHARE:.0%} of the variants"
     head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")
@@ -82,7 +82,7 @@ def ensemble(
         "ensemble",
         ready,
         target,
-        Answer(result, figures, statements, head, rows, facts),
+        StudyReportData(result, figures, statements, head, rows, facts),
         force,
         json,
     )
@@ -119,7 +119,7 @@ def sobol(
     """
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.errors import InputError
-    from tribodyn.report.nonlinear_answers import sobol_answer
+    from tribodyn.report.nonlinear_report_data import sobol_report_data
 
     ready, target = prepare_study("sobol", case, out, set_, force)
     if not ready.uncertain:
@@ -127,5 +127,5 @@ def sobol(
         why = "Shares of a variance need keys with tolerances"
         raise InputError("no value of the case has a tolerance", case, why, remedy)
     with progress_bar() as progress:
-        answer = sobol_answer(ready, figures, size, seed, progress)
+        answer = sobol_report_data(ready, figures, size, seed, progress)
     finish("sobol", ready, target, answer, force, json)

@@ -64,7 +64,7 @@ def losses(
     """
     from tribodyn import plot
     from tribodyn.cli.progress_bar import progress_bar
-    from tribodyn.report.answers import losses_answer, pictured
+    from tribodyn.report.study_report_data import figure_with_caption, losses_report_data
 
     ready, target = prepare_study("losses", case, out, set_, force)
     slave = _slave(ready, rig)
@@ -73,11 +73,11 @@ def losses(
     }
     with collected() as warnings:
         with progress_bar() as progress:
-            answer = losses_answer(ready, **points, progress=progress)
+            answer = losses_report_data(ready, **points, progress=progress)
         if slave is not None:
-            rig_figure = pictured(plot.power_flow, _rig(ready, slave, answer.facts))
-            statements = [*answer.told, f"{rig_figure[1].layout.title.text}."]
-            answer = answer._replace(figures=[*answer.figures, rig_figure], told=statements)
+            rig_figure = figure_with_caption(plot.power_flow, _rig(ready, slave, answer.facts))
+            statements = [*answer.statements, f"{rig_figure[1].layout.title.text}."]
+            answer = answer._replace(figures=[*answer.figures, rig_figure], statements=statements)
     finish("losses", ready, target, answer, force, json)
     show_warnings(warnings)
 
@@ -171,7 +171,7 @@ def friction_from_loss(
     from tribodyn import plot
     from tribodyn.losses import friction_from_power_loss
     from tribodyn.report import write_study_report
-    from tribodyn.report.answers import pictured
+    from tribodyn.report.study_report_data import figure_with_caption
     from tribodyn.study.pipeline.save import new_directory
     from tribodyn.validated_files import csv_text, write_dataset
 
@@ -181,7 +181,7 @@ def friction_from_loss(
         loss_table = _measured(file, case, _options(set_ or []))
         friction = friction_from_power_loss(loss_table)
     head, rows = _friction_rows(friction)
-    figure = pictured(plot.friction_from_loss, friction)
+    figure = figure_with_caption(plot.friction_from_loss, friction)
     statements = [
         f"{figure[1].layout.title.text}.",
         f"H_V = {loss_table.gear_loss_factor:.5g}. Source: {loss_table.source}.",

@@ -91,7 +91,7 @@ def bifurcation(
         findings = Findings(ready, diagram)
         with progress_bar() as progress:
             progress.start("Report")
-            from tribodyn.report.answers import save_bifurcation
+            from tribodyn.report.study_report_data import save_bifurcation
 
             save_bifurcation(diagram, ready, findings, target, force)
             progress.finish()
@@ -136,9 +136,9 @@ def continuation(
     key, ends = _branch_range(over)
     ready, target = prepare_study("continuation", case, out, set_, force)
     with progress_bar() as progress:
-        from tribodyn.report.nonlinear_answers import continuation_answer
+        from tribodyn.report.nonlinear_report_data import continuation_report_data
 
-        answer = continuation_answer(
+        answer = continuation_report_data(
             ready, key, ends, periods, longest_step, "continuation", progress
         )
     finish("continuation", ready, target, answer, force, json)
@@ -178,9 +178,9 @@ def basins(
     speed = None if rate is None else read_ends(rate, "-400000..400000 um/s")
     ready, target = prepare_study("basins", case, out, set_, force)
     with progress_bar() as progress:
-        from tribodyn.report.nonlinear_answers import basins_answer
+        from tribodyn.report.nonlinear_report_data import basins_report_data
 
-        answer = basins_answer(ready, error, speed, points, True, progress)
+        answer = basins_report_data(ready, error, speed, points, True, progress)
     finish("basins", ready, target, answer, force, json)
     return 0 if answer.facts["complete"] else INTERRUPTED
 
@@ -214,9 +214,9 @@ def lyapunov(
     _check_lengths(cycles, transient)
     ready, target = prepare_study("lyapunov", case, out, set_, force)
     with progress_bar() as progress:
-        from tribodyn.report.nonlinear_answers import lyapunov_answer
+        from tribodyn.report.nonlinear_report_data import lyapunov_report_data
 
-        answer = lyapunov_answer(ready, cycles, transient, progress)
+        answer = lyapunov_report_data(ready, cycles, transient, progress)
     finish("lyapunov", ready, target, answer, force, json)
 
 

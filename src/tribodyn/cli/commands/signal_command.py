@@ -315,9 +315,9 @@ def _written_teeth(text: Text) -> tuple[int | None, int | None]:
 
 
 def _show(file: Path, analysis: SignalAnalysis, out: Output, force: bool, json: bool) -> None:
-    from tribodyn.report.signal_report import signal_answer, write_signal_report
+    from tribodyn.report.signal_report import signal_report_data, write_signal_report
 
-    answer = signal_answer(analysis)
+    answer = signal_report_data(analysis)
     if out is not None:
         from tribodyn.study.pipeline.save import new_directory
         from tribodyn.validated_files import write_dataset
@@ -329,8 +329,8 @@ def _show(file: Path, analysis: SignalAnalysis, out: Output, force: bool, json: 
     if json:
         say_json({"file": str(file), **answer.facts})
     else:
-        say("\n".join([answer.told[0], table([answer.head, *answer.rows])]))
-        for note in answer.told[1:]:
+        say("\n".join([answer.statements[0], table([answer.head, *answer.rows])]))
+        for note in answer.statements[1:]:
             tell(f"note: {note}")
     if out is not None:
         tell(f"Report: {out / 'report.html'}")

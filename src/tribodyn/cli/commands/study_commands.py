@@ -20,7 +20,7 @@ from tribodyn.cli.settings import (
 )
 
 if TYPE_CHECKING:
-    from tribodyn.report.answers import Answer
+    from tribodyn.report.study_report_data import StudyReportData
     from tribodyn.study.case.case import Case
 
 
@@ -39,15 +39,17 @@ def stripped(texts: Sequence[str]) -> list[str]:
     return [text.strip() for text in texts]
 
 
-def finish(kind: str, case: Case, target: Path, answer: Answer, force: bool, json: bool) -> None:
+def finish(
+    kind: str, case: Case, target: Path, answer: StudyReportData, force: bool, json: bool
+) -> None:
     """Write the directory of a study and print its results."""
-    from tribodyn.report.answers import save_answer
+    from tribodyn.report.study_report_data import save_study
 
-    save_answer(kind, case, target, answer, force)
+    save_study(kind, case, target, answer, force)
     if json:
         say_json(answer.facts)
     else:
-        say("\n".join([case.title, *answer.told, table([answer.head, *answer.rows])]))
+        say("\n".join([case.title, *answer.statements, table([answer.head, *answer.rows])]))
     tell(f"Report: {target / 'report.html'}")
 
 
@@ -73,11 +75,11 @@ def modes(
         Write the modes in SI as one JSON object to stdout.
     """
     from tribodyn.cli.progress_bar import progress_bar
-    from tribodyn.report.answers import modes_answer
+    from tribodyn.report.study_report_data import modes_report_data
 
     ready, target = prepare_study("modes", case, out, set_, force)
     with progress_bar() as progress:
-        answer = modes_answer(ready, None if between is None else read_ends(between), progress)
+        answer = modes_report_data(ready, None if between is None else read_ends(between), progress)
     finish("modes", ready, target, answer, force, json)
 
 
@@ -103,10 +105,10 @@ def harris(
     json : bool
         Write transmission errors and stiffness over the torque in SI to stdout.
     """
-    from tribodyn.report.answers import harris_answer
+    from tribodyn.report.study_report_data import harris_report_data
 
     ready, target = prepare_study("harris", case, out, set_, force)
-    answer = harris_answer(ready, stripped(torque) or None)
+    answer = harris_report_data(ready, stripped(torque) or None)
     finish("harris", ready, target, answer, force, json)
 
 
@@ -135,10 +137,10 @@ def relief(
     json : bool
         Write amount, length and transmission errors in SI to stdout.
     """
-    from tribodyn.report.answers import relief_answer
+    from tribodyn.report.study_report_data import relief_report_data
 
     ready, target = prepare_study("relief", case, out, set_, force)
-    answer = relief_answer(ready, stripped(torque) or None, gears)
+    answer = relief_report_data(ready, stripped(torque) or None, gears)
     finish("relief", ready, target, answer, force, json)
 
 
@@ -170,9 +172,9 @@ def run_up(
         Write levels over the speed in SI to stdout.
     """
     from tribodyn.cli.progress_bar import progress_bar
-    from tribodyn.report.answers import run_up_answer
+    from tribodyn.report.study_report_data import run_up_report_data
 
     ready, target = prepare_study("run-up", case, out, set_, force)
     with progress_bar() as progress:
-        answer = run_up_answer(ready, read_ends(between), duration, down, progress)
+        answer = run_up_report_data(ready, read_ends(between), duration, down, progress)
     finish("run-up", ready, target, answer, force, json)

@@ -1,4 +1,4 @@
-"""Where the figures of a report come from: operating point, versions and date."""
+"""Provenance of a report: operating point, software versions and date."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def version() -> str:
     return tribodyn.__version__
 
 
-def _shown(name: str, value: float) -> str:
+def _with_unit(name: str, value: float) -> str:
     return f"{float(displayed(name, value)):.5g} {display_unit(name)}"
 
 
@@ -37,12 +37,12 @@ def _film(case: Any) -> str:
 
 
 def operating_point(case: Any) -> list[tuple[str, str]]:
-    """Speed, load, surfaces, oil and models of a case, ready to be printed."""
+    """Speed, load, surfaces, oil and models of a case as formatted (name, value) pairs."""
     gears, operation = case.gears, case.operation
     point = [
         ("Teeth", f"{gears.pinion.teeth} : {gears.wheel.teeth}"),
-        ("Speed", f"{_shown('speed', operation.speed)} ({operation.speed_of})"),
-        ("Torque", f"{_shown('torque', operation.torque)} ({operation.speed_of})"),
+        ("Speed", f"{_with_unit('speed', operation.speed)} ({operation.speed_of})"),
+        ("Torque", f"{_with_unit('torque', operation.torque)} ({operation.speed_of})"),
         ("Driver", gears.driver),
         ("Film model", _film(case)),
         ("Friction law", case.friction.law),
@@ -51,7 +51,7 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
         ("Method", case.solver.method),
     ]
     if case.composite_roughness is not None:
-        roughness = _shown("composite_roughness", case.composite_roughness)
+        roughness = _with_unit("composite_roughness", case.composite_roughness)
         point.insert(4, ("Composite roughness", roughness))
     if case.lubricant is not None and case.lubricant.name:
         point.insert(4, ("Oil", case.lubricant.name))
@@ -59,7 +59,7 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
 
 
 def provenance(result: Any) -> list[tuple[str, str]]:
-    """Versions and date that stand behind a report."""
+    """Software versions and date of a report as (name, value) pairs."""
     from tribodyn.study.pipeline.series import describe_stored_cycles
 
     packages = ", ".join(f"{name} {installed(name)}" for name in _PACKAGES)

@@ -1,4 +1,4 @@
-"""The figures of a report: drawn, or replaced by the reason why there is none."""
+"""Figure sections of a report: a figure, or the reason why it is missing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
 from tribodyn.plot.theme.style import TOP
 
-#: Figures of the report in their order, by what they are about.
+#: Figures of the report in order, by topic.
 TOPICS = {
     "Gears": ("gear_pair", "path_of_contact", "flank_modification"),
     "Stiffness": ("mesh_stiffness", "load_sharing", "static_transmission_error"),
@@ -23,7 +23,7 @@ TOPICS = {
 #: Order of the figures in the report.
 SECTIONS = tuple(name for names in TOPICS.values() for name in names)
 
-#: The same of a hypoid pair.
+#: Order of the figures in the report of a hypoid pair.
 HYPOID_SECTIONS = (
     "hypoid_pair",
     "ease_off",
@@ -42,8 +42,8 @@ HYPOID_SECTIONS = (
     "campbell",
 )
 
-#: The figures that spur gears do not have, by the same topics.
-_ELSEWHERE = {
+#: Topics of the figures that are not in TOPICS.
+_OTHER_TOPICS = {
     "hypoid_pair": "Gears",
     "ease_off": "Gears",
     "hypoid_contact": "Gears",
@@ -54,14 +54,14 @@ _ELSEWHERE = {
     "coupling": "Friction and film",
 }
 
-#: Room above the panels for marks and buttons [px].
+#: Margin above the panels for marks and buttons [px].
 _MARGIN = 44
 
 
 def topic_of(name: str) -> str:
-    """What a figure of the report is about."""
-    found = (topic for topic, names in TOPICS.items() if name in names)
-    return next(found, _ELSEWHERE.get(name, "Figures"))
+    """Topic of a figure of the report."""
+    matches = (topic for topic, names in TOPICS.items() if name in names)
+    return next(matches, _OTHER_TOPICS.get(name, "Figures"))
 
 
 @dataclass(frozen=True)
@@ -78,13 +78,13 @@ class Block:
 
 
 def script_json(text: str) -> str:
-    r"""Make JSON safe within a script element, which ends at the first closing tag it meets."""
+    r"""Escape JSON for a script element, which ends at the first closing tag."""
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
-def drawn_block(name: str, heading: str, drawn: Any, caption: str) -> Block:
-    """A section with a figure, whose title the page prints itself and can break into lines."""
-    sketch = drawn if isinstance(drawn, Sketch) else Sketch(**drawn.to_plotly_json())
+def block_of_figure(name: str, heading: str, plotted: Any, caption: str) -> Block:
+    """Build a section with a figure; the page prints its title as text, which can wrap."""
+    sketch = plotted if isinstance(plotted, Sketch) else Sketch(**plotted.to_plotly_json())
     layout, saved = dict(sketch.layout), TOP - _MARGIN
     title, margin = layout.pop("title")["text"], layout["margin"]
     layout |= {"margin": {**margin, "t": margin["t"] - saved}, "height": layout["height"] - saved}
@@ -95,30 +95,30 @@ def drawn_block(name: str, heading: str, drawn: Any, caption: str) -> Block:
 def _block(figure: Drawing, result: Any) -> Block:
     try:
         reason = figure.missing(result)
-        drawn = None if reason else figure.sketch(result)
+        sketch = None if reason else figure.sketch(result)
     except InputError as error:
-        # A mesh table of another program knows no gears.
-        told = error.problems[0]
-        reason, drawn = f"{told.what}: {told.why}", None
-    if drawn is None:
+        # Mesh tables of other programs may have no gears.
+        problem = error.problems[0]
+        reason, sketch = f"{problem.what}: {problem.why}", None
+    if sketch is None:
         return Block(figure.name, figure.heading, missing=reason)
-    return drawn_block(figure.name, figure.heading, drawn, figure.caption_of(result))
+    return block_of_figure(figure.name, figure.heading, sketch, figure.caption_of(result))
 
 
 def _joined(blocks: Iterable[Block]) -> list[Block]:
-    """Gather the headings of figures that are missing for the same reason."""
-    kept: list[Block] = []
+    """Merge the sections of figures that are missing for the same reason."""
+    joined: list[Block] = []
     place: dict[str, int] = {}
     for block in blocks:
         if block.missing in place:
-            first = kept[place[block.missing]]
+            first = joined[place[block.missing]]
             heading = f"{first.heading}, {block.heading[0].lower()}{block.heading[1:]}"
-            kept[place[block.missing]] = replace(first, heading=heading)
+            joined[place[block.missing]] = replace(first, heading=heading)
             continue
         if block.missing:
-            place[block.missing] = len(kept)
-        kept.append(block)
-    return kept
+            place[block.missing] = len(joined)
+        joined.append(block)
+    return joined
 
 
 def sections_of(case: Any) -> tuple[str, ...]:
@@ -127,7 +127,7 @@ def sections_of(case: Any) -> tuple[str, ...]:
 
 
 def figure_blocks(result: Any) -> list[Block]:
-    """Draw every figure of the report; what lacks for one reason is told once."""
+    """Draw every figure of the report and merge missing figures by reason."""
     names = [*sections_of(result.case), *(["coupling"] if result.coupling is not None else [])]
     figures = (FIGURES[name] for name in names)
     return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))

@@ -1,0 +1,268 @@
+"""Report data of the studies of a case: data set, figures, sentences and table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tribodyn import plot
+from tribodyn.progress import SILENT, Progress
+from tribodyn.report.study import write_bifurcation_report, write_study_report
+from tribodyn.study.pipeline.save import new_directory
+
+if TYPE_CHECKING:
+    from tribodyn.drawing import Drawing
+    from tribodyn.losses import GearboxLosses
+    from tribodyn.nonlinear.bifurcation import Bifurcation
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.studies.bifurcation import Findings
+
+#: Rows of the table of a run-up.
+_ROWS = 40
+_ALONE = "Tooth losses only; add [losses] to the case for bearings, seals and oil."
+
+
+#: Heading, figure and caption.
+Picture = tuple[str, Any, str]
+
+
+class StudyReportData(NamedTuple):
+    """Results of a study for its report: data, figures, sentences and a table."""
+
+    data: Any  #: result whose data set is stored
+    figures: Sequence[Picture]
+    statements: Sequence[str]  #: results in sentences
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    facts: dict[str, Any]  #: in SI
+    best: Case | None = None  #: resulting case, such as the optimum
+
+
+def figure_with_caption(figure: Drawing, result: Any) -> Picture:
+    """Heading, figure and caption of a study result."""
+    return figure.heading, figure(result), figure.caption_of(result)
+
+
+def _title(picture: Picture) -> str:
+    return str(picture[1].layout.title.text)
+
+
+def save_study(
+    kind: str, case: Case, target: Path, report: StudyReportData, force: bool = False
+) -> None:
+    """Write case, data set and report of a study to a directory."""
+    from tribodyn.validated_files import write_dataset
+
+    with new_directory(target, force=force) as place:
+        (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+        if report.best is not None:
+            (place / "best.toml").write_text(report.best.to_toml(), encoding="utf-8")
+        write_dataset(report.data.to_xarray(), place / "study.nc")
+        write_study_report(
+            case,
+            place / "report.html",
+            kind=kind,
+            told=report.statements,
+            figures=report.figures,
+            head=report.head,
+            rows=report.rows,
+        )
+
+
+def save_bifurcation(
+    diagram: Bifurcation, case: Case, findings: Findings, target: Path, force: bool = False
+) -> None:
+    """Write case, data set and report of a bifurcation diagram to a directory."""
+    from tribodyn.validated_files import write_dataset
+
+    head, rows = findings.rows()
+    with new_directory(target, force=force) as place:
+        (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+        write_dataset(diagram.to_xarray(), place / "bifurcation.nc")
+        write_bifurcation_report(
+            diagram,
+            case,
+            place / "bifurcation.html",
+            lead=findings.lead(),
+            told=findings.sentences(),
+            head=head,
+            rows=rows,
+        )
+
+
+def modes_report_data(case: Case, ends: Any, progress: Progress = SILENT) -> StudyReportData:
+    """Natural frequencies and critical speeds; ``ends`` limits the speeds [rad/s]."""
+    from tribodyn.dynamics import natural_modes
+    from tribodyn.report.numbers import HEAD, cells
+    from tribodyn.study.studies.axes import operation_values
+    from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows
+    from tribodyn.study.studies.structure import build_system
+
+    speeds = None if ends is None else operation_values("speed", ends, case)
+    system, mesh_frequency = build_system(case, progress=progress)
+    modes = natural_modes(system)
+    diagram = diagram_of(system, case, mesh_frequency, speeds)
+    rows = mode_rows(modes, case, mesh_frequency)
+    figures = [
+        figure_with_caption(plot.mode_shapes, modes),
+        figure_with_caption(plot.campbell, diagram),
+    ]
+    statements = [f"{_title(figures[1])}; speeds are those of the {case.operation.speed_of}."]
+    facts = {
+        "mesh_frequency": mesh_frequency,
+        "orders": list(ORDERS),
+        "modes": [vars(row) for row in rows],
+    }
+    return StudyReportData(modes, figures, statements, HEAD, [cells(row) for row in rows], facts)
+
+
+def harris_report_data(case: Case, torque: Sequence[Any] | None) -> StudyReportData:
+    """Static transmission error over the torque."""
+    from tribodyn.study.studies.static import harris_map
+
+    study = harris_map(case, torque)
+    columns = {
+        "torque": study.torque,
+        "mean_transmission_error": study.mean_transmission_error,
+        "peak_to_peak_transmission_error": study.peak_to_peak_transmission_error,
+        "mean_mesh_stiffness_secant": study.mean_mesh_stiffness_secant,
+    }
+    rows = [
+        [f"{t:.4g}", f"{m * 1e6:.4g}", f"{p * 1e6:.4g}", f"{k * 1e-6:.4g}"]
+        for t, m, p, k in zip(*columns.values(), strict=True)
+    ]
+    head = ["Pinion torque [N*m]", "Mean error [um]", "Peak to peak [um]", "Stiffness [N/um]"]
+    figure = figure_with_caption(plot.harris_map, study)
+    facts = {name: values.tolist() for name, values in columns.items()}
+    return StudyReportData(study, [figure], [f"{_title(figure)}."], head, rows, facts)
+
+
+def relief_report_data(case: Case, torque: Sequence[Any] | None, gears: str) -> StudyReportData:
+    """Tip relief with the least transmission error, and the case with it."""
+    from tribodyn.study.studies.static import optimize_tip_relief
+
+    optimum = optimize_tip_relief(case, torque, gears=gears)
+    before, after = optimum.peak_to_peak_before, optimum.peak_to_peak_after
+    rows = [
+        [f"{t:.4g}", f"{b * 1e6:.4g}", f"{a * 1e6:.4g}"]
+        for t, b, a in zip(optimum.torque, before, after, strict=True)
+    ]
+    head = ["Pinion torque [N*m]", "Peak to peak before [um]", "Peak to peak after [um]"]
+    statements = [
+        f"A relief of {optimum.amount * 1e6:.4g} um over {optimum.length * 1e3:.4g} mm of roll "
+        f"length; best.toml is the case with it."
+    ]
+    if optimum.on_edge:
+        statements.append(
+            "It is at the edge of the search range: a wider range may contain a better relief."
+        )
+    figures = [figure_with_caption(plot.tip_relief_map, optimum)]
+    facts = {
+        "amount": optimum.amount,
+        "length": optimum.length,
+        "torque": optimum.torque.tolist(),
+        "peak_to_peak_before": before.tolist(),
+        "peak_to_peak_after": after.tolist(),
+        "on_edge": bool(optimum.on_edge),
+    }
+    return StudyReportData(optimum, figures, statements, head, rows, facts, optimum.case)
+
+
+def run_up_report_data(
+    case: Case, ends: Any, duration: float, down: bool = False, progress: Progress = SILENT
+) -> StudyReportData:
+    """Vibration levels over the speed of a run-up."""
+    from tribodyn.analysis import overall_level
+    from tribodyn.study.studies.run_up import run_up
+    from tribodyn.units import convert
+
+    run = run_up(case, ends, duration, down=down, progress=progress)
+    level = overall_level(run, "contact_force")
+    picked = range(0, level.rms.size, max(1, level.rms.size // _ROWS))
+    rpm = convert(1.0, "rad/s", "rpm") * level.speed
+    rows = [[f"{rpm[k]:.5g}", f"{level.rms[k]:.4g}"] for k in picked]
+    figures = [figure_with_caption(plot.run_up, run), figure_with_caption(plot.run_up_map, run)]
+    facts = {"speed": level.speed.tolist(), "rms_mesh_force": level.rms.tolist()}
+    head = ["Speed [rpm]", "Mesh force, rms [N]"]
+    return StudyReportData(run, figures, [f"{_title(figures[0])}."], head, rows, facts)
+
+
+def losses_report_data(
+    case: Case, torque: Any = None, speed: Any = None, progress: Progress = SILENT
+) -> StudyReportData:
+    """Losses and efficiency over torque and speed."""
+    from tribodyn.losses.gearbox import PARTS
+    from tribodyn.study.studies.losses import loss_map
+
+    gearbox = loss_map(case, torque=torque, speed=speed, progress=progress)
+    figure = figure_with_caption(plot.losses, gearbox)
+    counted = [label for part, label in PARTS.items() if getattr(gearbox, part).any()]
+    scope = _ALONE if counted == ["teeth"] else f"Included losses: {', '.join(counted)}."
+    names = ("pinion_torque", "pinion_speed", *PARTS, "total", "gear_efficiency", "efficiency")
+    facts = {name: getattr(gearbox, name).tolist() for name in names}
+    return StudyReportData(
+        gearbox, [figure], [f"{_title(figure)}.", scope], *_losses(gearbox), facts
+    )
+
+
+def _losses(gearbox: GearboxLosses) -> tuple[list[str], list[list[str]]]:
+    """Table of the efficiency over torque and speed, or of all losses for a single row."""
+    from tribodyn.losses.gearbox import PARTS
+    from tribodyn.units import convert
+
+    torque, speed = gearbox.pinion_torque, gearbox.pinion_speed * convert(1.0, "rad/s", "rpm")
+    percent = 100.0 * gearbox.efficiency
+    if torque.size > 1 and speed.size > 1:
+        head = ["Efficiency [%]: torque of the pinion", *(f"{n:.4g} rpm" for n in speed)]
+        rows = [
+            [f"{load:.4g} N*m", *(f"{value:.5g}" for value in line)]
+            for load, line in zip(torque, percent, strict=True)
+        ]
+        return head, rows
+    parts = {label: getattr(gearbox, part) for part, label in PARTS.items()}
+    parts = {label: power for label, power in parts.items() if power.any()} | {"all": gearbox.total}
+    head = ["Torque [N*m]", "Speed [rpm]", *(f"{label} [W]" for label in parts), "Efficiency [%]"]
+    rows = [
+        [
+            f"{torque[i]:.4g}",
+            f"{speed[j]:.4g}",
+            *(f"{power[i, j]:.4g}" for power in parts.values()),
+            f"{percent[i, j]:.5g}",
+        ]
+        for i in range(torque.size)
+        for j in range(speed.size)
+    ]
+    return head, rows
+
+
+def film_report_data(
+    case: Case, torque: Any = None, speed: Any = None, progress: Progress = SILENT
+) -> StudyReportData:
+    """Minimum film and lubrication regime over torque and speed."""
+    import numpy as np
+
+    from tribodyn.study.studies.losses import STEPS
+    from tribodyn.study.studies.static import film_over_operation
+    from tribodyn.units import convert
+
+    operation = case.operation
+    torque = list(STEPS * operation.torque) if torque is None else torque
+    speed = list(STEPS * operation.speed) if speed is None else speed
+    films = film_over_operation(case, torque=torque, speed=speed, progress=progress)
+    drawings = (plot.film_over_operation, plot.lubrication_map)
+    figures = [figure_with_caption(each, films) for each in drawings if not each.missing(films)]
+    thickness = films.central_film if films.minimum_film is None else films.minimum_film
+    least = np.nanmin(np.asarray(thickness), axis=2)
+    rpm = films.pinion_speed * convert(1.0, "rad/s", "rpm")
+    head = ["Least film [um]: torque of the pinion", *(f"{n:.4g} rpm" for n in rpm)]
+    rows = [
+        [f"{load:.4g} N*m", *(f"{film * 1e6:.4g}" for film in line)]
+        for load, line in zip(films.pinion_torque, least, strict=True)
+    ]
+    facts = {
+        "pinion_torque": films.pinion_torque.tolist(),
+        "pinion_speed": films.pinion_speed.tolist(),
+        "least_film": least.tolist(),
+    }
+    return StudyReportData(films, figures, [f"{_title(figures[0])}."], head, rows, facts)
