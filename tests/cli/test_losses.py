@@ -62,7 +62,7 @@ def test_teeth_alone_are_told_as_such_and_a_rig_has_its_power_flow(
 ) -> None:
     words = ("losses", "fzg-roughness", "--torque", "90 N*m", "--speed", "900 rpm", *_SOON)
     assert call([*words, "--out", str(tmp_path / "a")]) == 0
-    assert "bearings, seals and oil are where the case has [losses]" in capsys.readouterr().out
+    assert "add [losses] to the case for bearings, seals and oil" in capsys.readouterr().out
     bearings = ("--set", "losses.pinion.bearing=NJ 406", "--set", "losses.wheel.bearing=NJ 406")
     found = _told(capsys, *words, *bearings, "--rig", "QJ 308", "--out", str(tmp_path / "b"))
     rig = found["rig"]

@@ -183,10 +183,10 @@ def test_data_cannot_close_the_script() -> None:
 
 
 def test_warnings_are_shown_only_if_there_are_any(drawable: Any, page: str) -> None:
-    assert "all models were used within their ranges" in page
+    assert "all models were used within their range of validity" in page
     result = drawable()
     result.warnings = (ModelWarning("some-code", "too fast"),)
-    assert "all models were used within their ranges" not in render_report(result)
+    assert "all models were used within their range of validity" not in render_report(result)
 
 
 def test_assumptions_and_case_are_told(drawable: Any, page: str) -> None:
