@@ -1,8 +1,8 @@
-"""One pair, three surfaces: how the roughness of the flanks shows in friction and vibration.
+"""One pair, three surfaces: effect of flank roughness on friction and vibration.
 
 Rougher flanks mean more friction. Friction acts across the line of action, so that is where the
-vibration grows first. The roughest surface lies outside the range of the friction law, which every
-run keeps among its warnings.
+vibration grows first. The roughest surface is outside the range of the friction law, which
+every run reports as a warning.
 """
 
 import warnings

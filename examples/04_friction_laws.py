@@ -1,7 +1,7 @@
-"""What each friction law makes of one tooth contact, and of less sliding.
+"""Coefficients of all friction laws for one tooth contact, also at lower sliding speed.
 
 The first contact is that of an FZG type A pair at 90 N*m and 900 rpm, in the middle of the zone
-where one tooth pair carries everything.
+where one tooth pair carries the full load.
 """
 
 import numpy as np

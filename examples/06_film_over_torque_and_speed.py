@@ -1,10 +1,10 @@
-"""Pressure and film over torque and over speed, beside what a cut-off inlet makes of them.
+"""Pressure and film over torque and over speed, compared with those of a starved inlet.
 
 The pair of an FZG rig at its pitch point, where one tooth pair carries everything and the wheel
 with 24 teeth drives. The starved film is that of the same contact with the oil supply cut off 2.5
 half widths before its centre: light loads lose most, so that the film seems to rise with torque.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import math

@@ -1,9 +1,9 @@
-"""One tooth pair from where it enters to where it leaves: pressure and film move along.
+"""Pressure and film of one tooth pair along the path of contact, animated.
 
-Every position has its own load, radius of curvature and speed. The figure has a slider and a play
-button, and needs no network.
+Load, radius of curvature and speed change along the path. The figure has a slider and a play
+button, and works offline.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import sys
@@ -28,8 +28,8 @@ columns = ("path", "load_per_width", "equivalent_radius", "entrainment_speed")
 path, load, radius, speed = (getattr(mesh, column).T[life] for column in columns)
 jumps = np.flatnonzero(np.abs(np.diff(load)) > 1e-2 * load[1:])
 even = np.linspace(0, path.size - 1, 31).round().astype(int)
-kept = np.unique(np.concatenate((even, jumps, jumps + 1)))
-path, load, radius, speed = (values[kept] for values in (path, load, radius, speed))
+positions = np.unique(np.concatenate((even, jumps, jumps + 1)))
+path, load, radius, speed = (values[positions] for values in (path, load, radius, speed))
 steel, oil = case.material_properties, case.lubricant_properties
 films = solve_line_contacts(
     load, radius, speed, oil, effective_modulus(steel, steel), nodes=513, keep_solutions=True
@@ -46,4 +46,4 @@ folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
 folder.mkdir(parents=True, exist_ok=True)
 figure.write_html(folder / "film-along-path.html", auto_play=False)
 print(f"figures in {folder.resolve()}:")
-print(*sorted(found.name for found in folder.glob("film-along-*.html")))
+print(*sorted(file.name for file in folder.glob("film-along-*.html")))

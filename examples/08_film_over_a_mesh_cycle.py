@@ -1,9 +1,9 @@
-"""A tooth pair passes through the mesh, over time: what the squeeze of the film changes.
+"""Transient film of a tooth pair over a mesh cycle: the effect of squeeze on the film.
 
 Load, radius and speed change while the pair moves from its entry to its exit. A steady film follows
-them at once; a real one takes the time that the oil needs to cross the contact.
+them instantly; the real one is delayed by the time that the oil needs to cross the contact.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import sys
@@ -52,4 +52,4 @@ over_time = film_transient(moving, steady=steady.central_film)
 over_time.write_html(folder / "film-over-time.html")
 film_over_time(moving).write_html(folder / "film-moving.html", auto_play=False)
 print(f"figures in {folder.resolve()}:")
-print(*sorted(found.name for found in folder.glob("film-*.html")))
+print(*sorted(file.name for file in folder.glob("film-*.html")))

@@ -1,10 +1,10 @@
-"""The tip relief that makes a gear pair quietest from 60 to 120 N*m, and what it does elsewhere.
+"""Optimal tip relief of a gear pair from 60 to 120 N*m, and its effect at other torques.
 
-A relief is right for one torque: below it the mesh misses what was taken away, above it the teeth
-bend by more. The search weighs a whole range of torques by the largest peak to peak transmission
-error in it.
+A relief is optimal for one torque: below it the relief exceeds the deflection of the teeth, above
+it the deflection is larger. The search minimizes the largest peak to peak transmission error in a
+range of torques.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import sys

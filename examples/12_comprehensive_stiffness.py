@@ -1,9 +1,9 @@
-"""Oil film and teeth in series over torque and speed, with two meanings of a film's stiffness.
+"""Oil film and teeth in series over torque and speed, for two definitions of film stiffness.
 
-The tangent is the slope of load over film: what slow vibrations meet. The secant is the sum of
-pressure over film: it makes the oil ten times softer, and the mesh depend on the speed.
+The tangent is the slope of load over film, the stiffness for slow vibrations. The secant is the
+sum of pressure over film: it makes the oil ten times softer, and the mesh depend on the speed.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import sys
@@ -21,21 +21,21 @@ for kind in ("tangent", "secant"):
     over_speed = td.comprehensive_stiffness(case, speed=[f"{n} rpm" for n in speeds], kind=kind)
     figures[f"{kind}-torque"], figures[f"{kind}-speed"] = over_torque, over_speed
     print(f"{kind} film stiffness, means over the mesh cycle [N/um]")
-    for found, names in (
+    for stiffness, names in (
         (over_torque, [f"{torque} N*m" for torque in torques]),
         (over_speed, [f"{speed} rpm" for speed in speeds]),
     ):
-        films = found.film_mesh_stiffness.mean(axis=2).ravel()
-        teeth, whole = found.mean_tooth_stiffness.ravel(), found.mean_mesh_stiffness.ravel()
-        for name, film, tooth, both in zip(names, films, teeth, whole, strict=True):
+        films = stiffness.film_mesh_stiffness.mean(axis=2).ravel()
+        teeth, mesh = stiffness.mean_tooth_stiffness.ravel(), stiffness.mean_mesh_stiffness.ravel()
+        for name, film, tooth, total in zip(names, films, teeth, mesh, strict=True):
             print(
                 f"  {kind} {name:>9}  films {1e-6 * film:9.0f}  teeth {1e-6 * tooth:6.2f}  "
-                f"both {1e-6 * both:6.2f}"
+                f"both {1e-6 * total:6.2f}"
             )
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
 folder.mkdir(parents=True, exist_ok=True)
-for name, found in figures.items():
-    found.plot().write_html(folder / f"comprehensive-{name}.html")
+for name, stiffness in figures.items():
+    stiffness.plot().write_html(folder / f"comprehensive-{name}.html")
 print(f"figures in {folder.resolve()}:")
 print(*sorted(path.name for path in folder.glob("comprehensive-*.html")))

@@ -1,14 +1,14 @@
-"""A bifurcation that the integration step makes: mesh stiffness up to 2.17e7 N/mm.
+"""Numerical chaos from a long time step: bifurcation over mesh stiffness up to 2.17e7 N/mm.
 
-A published diagram of this pair shows one motion per mesh cycle up to 1.731e7 N/mm, then several,
-then chaos. The same comes out here with two hundred steps per mesh cycle, and the verdict says why:
-the fastest motion of the structure turns by more than 2.7 rad in one step. With shorter steps every
-motion repeats with the mesh, and its Floquet multipliers lie well inside the unit circle.
+A published diagram of this pair shows period-1 motion up to 1.731e7 N/mm, then several periods,
+then chaos. Two hundred steps per mesh cycle reproduce it, and the verdict shows the cause:
+the fastest mode of the structure turns by more than 2.7 rad in one step. With shorter steps every
+motion has period 1, and its Floquet multipliers are well inside the unit circle.
 
-"Undecided" are motions that do repeat, while their rms of a hundredth of a micrometre depends on
-the step: the printed formula of the mesh damping gives hardly any, and ringing is not resolved.
+"Undecided" marks periodic motions whose rms of a hundredth of a micrometre depends on
+the step: the printed damping formula gives hardly any damping, and ringing is not resolved.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import sys
@@ -21,7 +21,7 @@ import tribodyn as td
 
 warnings.simplefilter("ignore", td.ModelWarning)  # of this pair
 pair = td.load_case("fzg-stiffness")
-# What the printed formula of the mesh damping gives as it stands.
+# Mesh damping by the formula as printed.
 case = pair.replace({"dynamics.mesh_damping_ratio": None, "dynamics.mesh_damping": "8 N*s/m"})
 
 diagrams = {
@@ -36,19 +36,19 @@ diagrams = {
     )
     for steps, points in ((200, 55), (800, 14))
 }
-for steps, found in diagrams.items():
-    print(f"{steps} steps:", ", ".join(f"{n} {word}" for word, n in found.verdicts().items()))
-    print(f"  greatest omega dt     {found.step_number.max():.4f}")
-    print(f"  motions not period 1  {np.count_nonzero(found.period != 1)}")
-    for words, which in (
-        ("step-limited from ", found.verdict[0] == "step-limited"),
-        ("not period 1 from ", found.period[0] != 1),
+for steps, diagram in diagrams.items():
+    print(f"{steps} steps:", ", ".join(f"{n} {word}" for word, n in diagram.verdicts().items()))
+    print(f"  greatest omega dt     {diagram.step_number.max():.4f}")
+    print(f"  motions not period 1  {np.count_nonzero(diagram.period != 1)}")
+    for label, matches in (
+        ("step-limited from ", diagram.verdict[0] == "step-limited"),
+        ("not period 1 from ", diagram.period[0] != 1),
     ):
-        if which.any():
-            first = int(np.argmax(which))
-            print(f"  {words}    {found.parameter[first] * 1e-3:.4g} N/mm, omega dt = "
-                  f"{found.step_number[first]:.4f}, period {found.refined_period[0, first]} with "
-                  f"{found.refined_steps[first]} steps")  # fmt: skip
+        if matches.any():
+            first = int(np.argmax(matches))
+            print(f"  {label}    {diagram.parameter[first] * 1e-3:.4g} N/mm, omega dt = "
+                  f"{diagram.step_number[first]:.4f}, period {diagram.refined_period[0, first]} "
+                  f"with {diagram.refined_steps[first]} steps")  # fmt: skip
 
 print("mesh damping 4 % of critical")
 print("  stiffness [N/mm]   largest multiplier")
@@ -61,4 +61,4 @@ folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
 folder.mkdir(parents=True, exist_ok=True)
 diagrams[200].plot().write_html(folder / "stiffness-bifurcation.html")
 print(f"figures in {folder.resolve()}:")
-print(*sorted(found.name for found in folder.glob("stiffness-*.html")))
+print(*sorted(file.name for file in folder.glob("stiffness-*.html")))

@@ -4,7 +4,7 @@ A published spectrum of an FZG rig has its largest line at the fifth mesh harmon
 raises by 62 %. A rig with the usual damping shows nothing of the kind. A mode 0.11 % below that
 harmonic, and hardly damped, does: then all five harmonics change with the printed signs.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import sys
@@ -55,4 +55,4 @@ folder.mkdir(parents=True, exist_ok=True)
 for (name, law), result in results.items():
     result.plot_spectrum().write_html(folder / f"fifth-{name}-{law.replace('.', '-')}.html")
 print(f"figures in {folder.resolve()}:")
-print(*sorted(found.name for found in folder.glob("fifth-*.html")))
+print(*sorted(file.name for file in folder.glob("fifth-*.html")))

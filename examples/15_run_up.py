@@ -4,7 +4,7 @@ FZG gears at 20 N*m from 400 to 3000 rpm and back, as in a published test. Mesh 
 friction are computed at a few speeds, and the speed changes while the gears vibrate. Peaks of the
 orders of the mesh lie where they meet a natural frequency.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import sys
@@ -46,4 +46,4 @@ folder.mkdir(parents=True, exist_ok=True)
 run.plot().write_html(folder / "run-up.html")
 run.plot_map().write_html(folder / "run-up-map.html")
 print(f"\nfigures in {folder.resolve()}:")
-print(*sorted(found.name for found in folder.glob("run-up*.html")))
+print(*sorted(file.name for file in folder.glob("run-up*.html")))

@@ -1,12 +1,12 @@
-"""Jump of a gear pair with backlash: two motions at one speed, and which of them comes about.
+"""Jump of a gear pair with backlash: two motions at one speed, and which start leads to which.
 
 A pair of equal spur gears of the kind on which Blankenship and Kahraman measured the jump of the
-transmission error, with plausible values: near its resonance the teeth part, the pair gets softer
-the more it vibrates, and the curve of the vibration over the speed leans over. Between two speeds
-a loud and a quiet motion exist. Which one comes about depends on where it starts: from below or
+transmission error, with plausible values: near its resonance the teeth separate, the mean
+stiffness decreases with the amplitude, and the resonance curve leans over. Between two speeds
+a loud and a quiet motion coexist. Which one develops depends on the initial state: from below or
 from above, or from any state of the plane of basins.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import math
@@ -74,8 +74,8 @@ orbit = steady_state(pair, middle, start=(loud.position[0], loud.velocity[0]))
 portrait = phase_portrait(orbit, 0, gap=0.5 * BACKLASH)
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
 folder.mkdir(parents=True, exist_ok=True)
-for name, found in (("branch", branch), ("sweeps", swept), ("basins", plane)):
-    found.plot().write_html(folder / f"jump-{name}.html")
+for name, result in (("branch", branch), ("sweeps", swept), ("basins", plane)):
+    result.plot().write_html(folder / f"jump-{name}.html")
 portrait.plot().write_html(folder / "jump-phase.html")
 print(f"figures in {folder.resolve()}:")
-print(*sorted(found.name for found in folder.glob("jump-*.html")))
+print(*sorted(file.name for file in folder.glob("jump-*.html")))

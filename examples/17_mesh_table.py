@@ -1,9 +1,9 @@
 """A mesh table of another program: its stiffness and errors, the same dynamics and reports.
 
-The file here is written by hand: the stiffness of a helical pair, a mean with a cosine at mesh
-frequency, and a transmission error without load. Any program can write such a file; what it may
-hold is told in docs/mesh-table-file.md. It needs no tooth geometry: teeth, masses and moments of
-inertia stand in the case.
+The file is written by hand: the stiffness of a helical pair, a mean with a cosine at mesh
+frequency, and a transmission error without load. Any program can write such a file, whose format
+docs/mesh-table-file.md describes. It needs no tooth geometry: teeth, masses and moments of
+inertia are in the case.
 
 Run it with a folder to keep the report: ``python examples/17_mesh_table.py report``.
 """

@@ -1,11 +1,11 @@
-"""Losses of an FZG rig: where its motor's power goes, and the friction back from measured losses.
+"""Losses of an FZG rig: power flow from the motor, and friction coefficients from measured losses.
 
 The test gearbox has bearings NJ 406, the slave gearbox QJ 308, both the same gears, seals and oil.
-A test then reads the torque loss of the test gearbox at four torques, with 0.05 N*m of scatter and
-three repeats, and friction is computed back. The run at 5 N*m counts as without load although its
-teeth rub too: that takes 5/50 off the coefficient at 50 N*m, and 5/300 at 300 N*m.
+A simulated test measures the torque loss of the test gearbox at four torques, with 0.05 N*m of
+scatter and three repeats, and friction is derived from it. The run at 5 N*m counts as no-load run
+although its teeth rub too: this lowers the coefficient by 5/50 at 50 N*m and by 5/300 at 300 N*m.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import sys
@@ -41,7 +41,7 @@ losses = td.loss_map(case, torque=torques, speed="1400 rpm")
 torque_loss = losses.total[:, 0] / losses.pinion_speed  # of the test gearbox, at the pinion
 factor = gear_loss_factor(case.gear_pair)
 bearings = losses.total[:, 0] - losses.gear[:, 0]
-more = (bearings - bearings[0]) / losses.pinion_speed  # what bearings lose more under load
+more = (bearings - bearings[0]) / losses.pinion_speed  # additional bearing loss under load
 scatter = 0.05 * np.random.default_rng(0).standard_normal(12)
 table = PowerLossTable(
     speed=np.full(12, losses.pinion_speed[0]),
@@ -50,16 +50,18 @@ table = PowerLossTable(
     other_loss=np.repeat(more, 3),
     gear_loss_factor=factor,
 )
-found = friction_from_power_loss(table)
+friction = friction_from_power_loss(table)
 print("torque [N*m]   friction   low      high    verdict")
-for row in zip(found.torque, found.friction_coefficient, found.low, found.high, strict=True):
+for row in zip(
+    friction.torque, friction.friction_coefficient, friction.low, friction.high, strict=True
+):
     print("{:8g} {:14.4f} {:8.4f} {:8.4f}".format(*row))
-print(*dict.fromkeys(found.verdict), sep="; ")
+print(*dict.fromkeys(friction.verdict), sep="; ")
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
 folder.mkdir(parents=True, exist_ok=True)
 td.loss_map(case).plot().write_html(folder / "losses.html")
 flow.plot().write_html(folder / "power-flow.html")
-found.plot().write_html(folder / "friction-from-loss.html")
+friction.plot().write_html(folder / "friction-from-loss.html")
 print(f"figures in {folder.resolve()}:")
 print("friction-from-loss.html losses.html power-flow.html")

@@ -1,11 +1,11 @@
-"""Learning a vibration: the data set of a published study, the honest one beside it, and a map.
+"""Surrogate models of a vibration: a published data set, one without leakage, and a map.
 
-The published inputs hold mesh stiffness and compression of the mesh, whose product is the force
-but for damping, and its rows meet five phases of the mesh cycle only. The honest table has the
-whole cycle, and inputs that are known before anything is computed; its runs stay together in the
-split. Then a network learns the rms of the mesh force over the operating point.
+The published inputs include mesh stiffness and compression, whose product is the mesh force
+except for damping, and its rows sample only five phases of the mesh cycle. The "honest" table has
+all phases and only inputs that are available before the computation; the split never divides a
+run. Finally a network predicts the rms mesh force over the operating point.
 
-Figures go into the folder ``figures``, or into the one that is named behind the script.
+Figures are written to the folder ``figures``, or to the folder passed as argument.
 """
 
 import sys
@@ -22,27 +22,27 @@ case = td.load_case("fzg-film").replace({"film.model": "none"})
 targets = ["acceleration", "mesh_force"]
 
 
-def tell(words, model, simpler):
-    """Print errors over the rows that were kept back."""
+def report(label, model, simpler):
+    """Print the errors over the held-out rows."""
     for name, error in model.errors.items():
         table = simpler["table"][name].determination
-        print(f"{words} {name}: R2 {error.determination:.5f} (table over the phase {table:.5f}), "
+        print(f"{label} {name}: R2 {error.determination:.5f} (table over the phase {table:.5f}), "
               f"{100 * error.mean_absolute_relative:.3g} % off on the average")  # fmt: skip
 
 
 published = td.vibration_data(case, seed=1, trajectories=40)
 published = published.where(published["time"] > 0.2)
 inputs = ["mesh_stiffness", "friction_coefficient", "backlash_function", "transmission_error"]
-asked = {"features": inputs, "targets": targets, "seed": 1}
+settings = {"features": inputs, "targets": targets, "seed": 1}
 size = surrogate.Training(hidden=(11, 11), activations=("tansig", "relu"), patience=6)
-model = surrogate.train(published, **asked, training=size)
-tell(f"published, {published.rows} rows,", model, surrogate.baselines(published, **asked))
+model = surrogate.train(published, **settings, training=size)
+report(f"published, {published.rows} rows,", model, surrogate.baselines(published, **settings))
 
 honest = td.vibration_data(case, seed=1, trajectories=20, over="cycle", samples=64)
 inputs = ["cos_phase", "sin_phase", "stiffness_scale", "friction_scale"]
-asked = {"features": inputs, "targets": targets, "seed": 1, "groups": "trajectory"}
-model = surrogate.train(honest, **asked)
-tell(f"honest, {honest.rows} rows,", model, surrogate.baselines(honest, **asked))
+settings = {"features": inputs, "targets": targets, "seed": 1, "groups": "trajectory"}
+model = surrogate.train(honest, **settings)
+report(f"honest, {honest.rows} rows,", model, surrogate.baselines(honest, **settings))
 
 over = {
     "force_scale": "0.5 .. 1.5",

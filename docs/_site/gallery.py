@@ -38,10 +38,10 @@ def written() -> dict[str, str]:
 
 def _page(title: str, name: str, picture: bool) -> str:
     code = (DOCS.parent / "examples" / f"{name}.py").read_text("utf-8")
-    told = (ast.get_docstring(ast.parse(code)) or "").replace("``", "`")
+    description = (ast.get_docstring(ast.parse(code)) or "").replace("``", "`")
     body = code.split('"""', 2)[2].lstrip("\n")
     image = f"![{title}](../../gallery/{name}.png)\n\n" if picture else ""
     printed = DOCS / "gallery" / f"{name}.txt"
     output = printed.read_text("utf-8") if printed.exists() else ""
     code = f"```python\n{body}```\n\n## What it prints\n\n```text\n{output}```\n"
-    return f"# {title}\n\n{told}\n\n{image}{code}"
+    return f"# {title}\n\n{description}\n\n{image}{code}"

@@ -18,14 +18,14 @@ _INNER = {"cli", "compiled", "files", "interrupt", "stored"}
 @cache
 def packages() -> dict[str, ModuleType]:
     """Packages of public names."""
-    found = {"tribodyn": tribodyn}
+    modules = {"tribodyn": tribodyn}
     for info in pkgutil.iter_modules(tribodyn.__path__, "tribodyn."):
         short = info.name.partition(".")[2]
         if not short.startswith("_") and short not in _INNER:
             module = importlib.import_module(info.name)
             if getattr(module, "__all__", ()):
-                found[info.name] = module
-    return found
+                modules[info.name] = module
+    return modules
 
 
 @cache
@@ -35,16 +35,16 @@ def homes() -> dict[tuple[str, str], str]:
     It is that of the top level; else of the package in which the thing is defined; else of the
     first that has it.
     """
-    found: dict[tuple[str, str], str] = {}
+    full_names: dict[tuple[str, str], str] = {}
     first: dict[int, str] = {}
     places = [(name, public) for name, package in packages().items() for public in package.__all__]
     for name, public in sorted(places, key=lambda place: not _defined_in(*place)):
-        thing = getattr(packages()[name], public)
-        if isinstance(thing, ModuleType | str | int | float | tuple):
-            found[name, public] = f"{name}.{public}"
+        value = getattr(packages()[name], public)
+        if isinstance(value, ModuleType | str | int | float | tuple):
+            full_names[name, public] = f"{name}.{public}"
         else:
-            found[name, public] = first.setdefault(id(thing), f"{name}.{public}")
-    return found
+            full_names[name, public] = first.setdefault(id(value), f"{name}.{public}")
+    return full_names
 
 
 def _defined_in(package: str, name: str) -> bool:
@@ -54,15 +54,15 @@ def _defined_in(package: str, name: str) -> bool:
 
 def described(package: ModuleType, name: str) -> str:
     """First line of a contract, or the comment on a constant."""
-    thing = getattr(package, name)
+    value = getattr(package, name)
     comment = _comments(package.__name__).get(name, "")
-    own = inspect.ismodule(thing) or not is_constant(thing)
-    told = (inspect.getdoc(thing) or "") if own else ""
-    told = told or comment
-    if hasattr(thing, "names") and not told:
-        told = f"Named choices: {', '.join(f'``{each}``' for each in thing.names())}."
-    told = told or {"__version__": "Version of the package."}.get(name, "")
-    first = told.partition("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+    documented = inspect.ismodule(value) or not is_constant(value)
+    text = (inspect.getdoc(value) or "") if documented else ""
+    text = text or comment
+    if hasattr(value, "names") and not text:
+        text = f"Named choices: {', '.join(f'``{each}``' for each in value.names())}."
+    text = text or {"__version__": "Version of the package."}.get(name, "")
+    first = text.partition("\n\n")[0].replace("\n", " ").replace("|", "\\|")
     return re.sub(r":[a-z]+:`~?([^`]*)`", r"`\1`", first).replace("``", "`")
 
 
@@ -74,11 +74,11 @@ def is_constant(thing: Any) -> bool:
 @cache
 def _comments(package: str) -> dict[str, str]:
     """Comments ``#:`` on the constants of a package."""
-    found: dict[str, str] = {}
+    comments: dict[str, str] = {}
     origin = Path(inspect.getfile(packages()[package]))
     files = origin.parent.rglob("*.py") if origin.name == "__init__.py" else [origin]
     for file in files:
         text = file.read_text("utf-8")
         for match in re.finditer(r"((?:^#: .*\n)+)^([A-Za-z]\w*)(?::| =)", text, re.MULTILINE):
-            found[match[2]] = re.sub(r"^#: ", "", match[1], flags=re.MULTILINE).strip()
-    return found
+            comments[match[2]] = re.sub(r"^#: ", "", match[1], flags=re.MULTILINE).strip()
+    return comments

@@ -59,5 +59,5 @@ def _term(quantity: Quantity) -> str:
         else "",
     ]
     symbol = [f"symbol `{quantity.symbol}`"] if quantity.symbol else []
-    told = "; ".join([quantity.meaning, *symbol, *(unit for unit in units if unit)])
-    return f"{quantity.name}\n   {told}"
+    definition = "; ".join([quantity.meaning, *symbol, *(unit for unit in units if unit)])
+    return f"{quantity.name}\n   {definition}"

@@ -23,22 +23,24 @@ def written() -> dict[str, str]:
     index += ["| package | what it holds |", "|---|---|"]
     pages = {}
     for name, package in packages().items():
-        told = _markdown(inspect.getdoc(package) or "")
-        first = " ".join(told.partition("\n\n")[0].split())
+        docstring = _markdown(inspect.getdoc(package) or "")
+        first = " ".join(docstring.partition("\n\n")[0].split())
         index.append(f"| [`{name}`]({name}.md) | {first} |")
-        pages[f"api/{name}.md"] = _page(name, package, told)
+        pages[f"api/{name}.md"] = _page(name, package, docstring)
     tree = ["", "```{toctree}", ":hidden:", "", *packages(), "```", ""]
     return {"api/index.md": "\n".join([*index, *tree]), **pages}
 
 
-def _page(name: str, package: Any, told: str) -> str:
+def _page(name: str, package: Any, docstring: str) -> str:
     names = sorted(package.__all__, key=str.casefold)
     rows = [f"| {{py:obj}}`{n} <{homes()[name, n]}>` | {described(package, n)} |" for n in names]
     mine = [n for n in names if homes()[name, n] == f"{name}.{n}"]
     entries = "\n".join(_entry(package, n) for n in mine)
-    told = re.sub(r"^>>> (?:.+\n?)+", _code, told, flags=re.MULTILINE)
+    docstring = re.sub(r"^>>> (?:.+\n?)+", _code, docstring, flags=re.MULTILINE)
     table = "\n".join(["| name | what it is |", "|---|---|", *rows])
-    return f"# {name}\n\n{told}\n\n{table}\n\n## Contracts\n\n````{{eval-rst}}\n{entries}\n````\n"
+    return (
+        f"# {name}\n\n{docstring}\n\n{table}\n\n## Contracts\n\n````{{eval-rst}}\n{entries}\n````\n"
+    )
 
 
 def _code(found: re.Match[str]) -> str:
@@ -51,18 +53,18 @@ def _markdown(text: str) -> str:
 
 def _entry(package: Any, name: str) -> str:
     """Directive that writes the contract of one name."""
-    thing, full = getattr(package, name), f"{package.__name__}.{name}"
-    if inspect.isclass(thing):
+    value, full = getattr(package, name), f"{package.__name__}.{name}"
+    if inspect.isclass(value):
         options = ["   :members:", "   :show-inheritance:"]
-        bases = [base for base in thing.__mro__[1:] if base.__module__.startswith("tribodyn")]
-        foreign = [base.__name__ for base in thing.__mro__[1:] if base not in bases]
+        bases = [base for base in value.__mro__[1:] if base.__module__.startswith("tribodyn")]
+        foreign = [base.__name__ for base in value.__mro__[1:] if base not in bases]
         options += [f"   :inherited-members: {', '.join(foreign)}"] if bases else []
         return "\n".join([f".. autoclass:: {full}", *options, ""])
-    if inspect.isroutine(thing) or hasattr(thing, "py_func"):
+    if inspect.isroutine(value) or hasattr(value, "py_func"):
         return f".. autofunction:: {full}\n"
-    if hasattr(thing, "draw"):
-        contract = str(SphinxDocString(inspect.getdoc(thing.draw) or ""))
-        head = f".. py:function:: {full}{inspect.signature(thing.draw)}"
+    if hasattr(value, "draw"):
+        contract = str(SphinxDocString(inspect.getdoc(value.draw) or ""))
+        head = f".. py:function:: {full}{inspect.signature(value.draw)}"
         return f"{head}\n\n{textwrap.indent(contract, '   ')}\n"
     text = described(package, name)
     return f".. py:data:: {full}\n\n   {text.replace('`', '``')}\n"
@@ -115,8 +117,8 @@ def exists(target: str) -> bool:
     for parts in range(target.count(".") + 1, 0, -1):
         names = target.split(".")
         with contextlib.suppress(ImportError):
-            thing = importlib.import_module(".".join(names[:parts]))
-            return all((thing := getattr(thing, name, None)) is not None for name in names[parts:])
+            value = importlib.import_module(".".join(names[:parts]))
+            return all((value := getattr(value, name, None)) is not None for name in names[parts:])
     return False
 
 
@@ -126,7 +128,7 @@ class NamesInCode(SphinxPostTransform):
     default_priority = 5
 
     def run(self, **_: Any) -> None:
-        """Link every name of one meaning that stands by itself."""
+        """Link every unambiguous name."""
         objects = self.env.get_domain("py").objects
         terms = self.env.get_domain("std").objects
         for literal in list(self.document.findall(nodes.literal)):

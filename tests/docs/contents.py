@@ -11,9 +11,9 @@ from pages import ROOT
 DATA = ROOT / "tests" / "docs" / "contents.toml"
 HEAD = """# What the sources contain
 
-On this page you can look up how tribodyn covers every law, table, figure and number of the sources of its built-in
-cases: the test that checks it, the figure that shows it, the published table that `tribodyn paper CASE`
-[recomputes](papers.md), or the reason why it is missing.
+On this page you can look up how tribodyn covers every law, table, figure and number of the
+sources of its built-in cases: the test that checks it, the figure that shows it, the published
+table that `tribodyn paper CASE` [recomputes](papers.md), or the reason why it is missing.
 """
 
 
