@@ -78,21 +78,21 @@ class Motions:
         self._lock = threading.Lock()
 
     def kept_by(self, members: Members, names: Sequence[str]) -> None:
-        """Take what an earlier process has finished, and keep every motion from now on."""
+        """Restore the motions that an earlier process finished, and store each new one."""
         self.members, self.names = members, list(names)
         for index, name in enumerate(names):
-            if (kept := members.get(name)) is not None:
-                self._restore(index, kept)
+            if (stored := members.get(name)) is not None:
+                self._restore(index, stored)
 
-    def _restore(self, index: int, kept: Any) -> None:
-        self.start[index], self.state[index], self.force[index] = kept[:3]
-        self.period[index], self.change[index], self.rate[index] = kept[3:6]
+    def _restore(self, index: int, stored: Any) -> None:
+        self.start[index], self.state[index], self.force[index] = stored[:3]
+        self.period[index], self.change[index], self.rate[index] = stored[3:6]
         if len(self.recent):
-            self.recent[index] = kept[6]
+            self.recent[index] = stored[6]
         self.finished[index] = True
 
-    def _kept(self, index: int) -> list[Any]:
-        """What is kept of a motion."""
+    def _stored(self, index: int) -> list[Any]:
+        """Return the stored values of a motion."""
         recent = self.recent[index] if len(self.recent) else None
         return [
             self.start[index],
@@ -105,18 +105,18 @@ class Motions:
         ]
 
     def queue(self, indices: Any) -> None:
-        """Say which motions are to be marched."""
+        """Queue motions for time integration."""
         self._waiting = iter([int(i) for i in indices])
 
     def take(self, count: int) -> list[int]:
         """Take motions out of the queue."""
         with self._lock:
-            taken = []
+            jobs = []
             for item in self._waiting:
-                taken.append(item)
-                if len(taken) == count:
+                jobs.append(item)
+                if len(jobs) == count:
                     break
-            return taken
+            return jobs
 
     def store(self, index: int, state: Array, facts: tuple[int, float, Array, Array]) -> int:
         """Keep what became of a motion."""
@@ -126,7 +126,7 @@ class Motions:
             self.recent[index] = recent
         self.finished[index] = True
         if self.names:
-            self.members.keep(self.names[index], self._kept(index))
+            self.members.keep(self.names[index], self._stored(index))
         with self._lock:
             self.progress.advance()
         return -1
@@ -222,7 +222,7 @@ class _Block:
             self.force -= more
             shift = np.abs(more).max(axis=1)
         self.part += 1
-        self._look(c.reduce(states), shift <= self.tolerance * self.scale)
+        self._find_periods(c.reduce(states), shift <= self.tolerance * self.scale)
 
     def _last_cycles(self, index: Index, state: Array) -> tuple[Array, Array]:
         """March the last 8 mesh cycles of a part; also returns all states, (9, lanes, 2 n)."""
@@ -230,19 +230,19 @@ class _Block:
         options: dict[str, Any] = {"width": self.lanes, "threads": 1}
         if self.record is not None:
             options["record"] = self.record
-            kept = np.empty((LONGEST_PERIOD + 1, *state.shape))
+            states_by_cycle = np.empty((LONGEST_PERIOD + 1, *state.shape))
             for first in range(0, self.width, self.lanes):
-                own = slice(first, first + self.lanes)
-                m.march(index[own], state[own], LONGEST_PERIOD, self.force[own], **options)
-                kept[:, own] = np.moveaxis(self.record[:: self.steps], 2, 1)
-            return kept[-1], kept
+                lanes = slice(first, first + self.lanes)
+                m.march(index[lanes], state[lanes], LONGEST_PERIOD, self.force[lanes], **options)
+                states_by_cycle[:, lanes] = np.moveaxis(self.record[:: self.steps], 2, 1)
+            return states_by_cycle[-1], states_by_cycle
         states = [state]
         for _ in range(LONGEST_PERIOD):
             states.append(m.march(index, states[-1], 1, self.force, **options))
         return states[-1], np.array(states)
 
-    def _look(self, states: Array, balanced: Mask) -> None:
-        """Look which lanes repeat; ``states`` are (9, lanes, k), the last of them the present."""
+    def _find_periods(self, states: Array, balanced: Mask) -> None:
+        """Find the lanes that repeat; ``states`` are (9, lanes, k), the last is the current one."""
         size = np.maximum(np.abs(states[-1]).max(axis=1, initial=0.0), self.least)
         change = np.abs(states[-1] - states[-2::-1]).max(axis=2, initial=0.0) / size
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
@@ -251,8 +251,8 @@ class _Block:
             certified = change / (1.0 - rate) <= self.tolerance
         repeats = ((certified & np.isfinite(self.before)) | (change <= _ROUNDING)) & balanced
         period = np.where(repeats.any(axis=0), repeats.argmax(axis=0) + 1, 0)
-        # Turning states come near after several cycles first: the shortest of its divisors counts,
-        # and while they still come nearer after fewer cycles, it is too early to tell.
+        # Rotating states first come near after several cycles: the shortest divisor counts, and
+        # while they still come nearer after fewer cycles, the period is undecided.
         for lane in np.flatnonzero(period > 1):
             shorter = [p for p in range(1, period[lane]) if period[lane] % p == 0]
             period[lane] = next((p for p in shorter if change[p - 1, lane] <= _SAME), period[lane])
@@ -274,13 +274,13 @@ class _Block:
             self._begin(int(lane), m.store(int(self.job[lane]), self.state[lane], facts))
 
     def _drop_lost(self, index: Index) -> None:
-        """Take out the lanes that grow beyond all bounds; the others try again."""
+        """Remove the lanes that grow beyond all bounds; the others are repeated."""
         m = self.motions
         lost = []
         for lane in np.flatnonzero(self.job >= 0):
-            one = slice(lane, lane + 1)
+            single = slice(lane, lane + 1)
             with suppress(ComputationError), marching_on("cpu"):
-                m.march(index[one], self.state[one], _PART, self.force[one], threads=1)
+                m.march(index[single], self.state[single], _PART, self.force[single], threads=1)
                 continue
             lost.append(int(lane))
         # A lane on the edge may pass alone: then the farthest one goes.
@@ -301,18 +301,18 @@ def settle(
     width: int = 16,
     progress: Progress = SILENT,
 ) -> None:
-    """March motions until they repeat, or over the whole transient."""
+    """Integrate motions until they repeat, or over the full transient."""
     width = min(len(indices), _MANY_LANES) if on_gpu() else width
     motions.queue(indices)
     motions.progress = progress
-    one = on_gpu() or (width == 1 and len(indices) == 1)
-    count = 1 if one else os.cpu_count() or 1
+    single_block = on_gpu() or (width == 1 and len(indices) == 1)
+    count = 1 if single_block else os.cpu_count() or 1
     blocks = [_Block(motions, transient, tolerance, width) for _ in range(count)]
     in_threads(_Block.run, blocks, count)
 
 
 def still_settles(states: Array, earlier: Array, period: int) -> bool:
-    """Tell whether a motion comes nearer after fewer cycles than whole periods ago."""
+    """Whether a motion still comes nearer after fewer cycles than its period."""
     back = period * -(-_PART // period) - _PART
     for fewer in range(1, period):
         if period % fewer == 0:

@@ -109,12 +109,14 @@ def basins(
     compiled = compile_for(system, mesh_frequency, steps)
     plane = start_plane(compiled, float(mesh_frequency), coordinates)
     axes = _axes(between, points, cycles)
-    rest = static_start(compiled) if start is None else read_start(system, start)
-    starts = plane.starts(axes, rest)
+    rest_state = static_start(compiled) if start is None else read_start(system, start)
+    starts = plane.starts(axes, rest_state)
     force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     name = signal_name(system, signal)
-    kept = signal if system.contacts else name
-    survey = Survey(cycles, max(64, cycles), 2, kept, keep_partial, tolerance=_NEAR, width=_WIDTH)
+    quantity = signal if system.contacts else name
+    survey = Survey(
+        cycles, max(64, cycles), 2, quantity, keep_partial, tolerance=_NEAR, width=_WIDTH
+    )
     catalogue = Catalogue(survey, _REST * float(np.abs(starts[:, : system.size]).max()))
     progress.start("Motions", len(starts) * (1 + bool(verdict)))
     beat = float(mesh_frequency)
@@ -191,7 +193,7 @@ def _attractor(
 
 
 def _judged(attractors: list[Attractor], fine: Catalogue, step_number: float) -> list[Attractor]:
-    """Attractors with what half the step says of them."""
+    """Attractors with the verdict of a repetition with half the step."""
     return [
         replace(
             each,
@@ -203,19 +205,19 @@ def _judged(attractors: list[Attractor], fine: Catalogue, step_number: float) ->
     ]
 
 
-def _labels_again(fine: Catalogue, again: Motions, known: int) -> Index:
-    """Which attractor every start comes to with shorter steps; -2 for one that is new."""
+def _labels_again(fine: Catalogue, again: Motions, count: int) -> Index:
+    """Attractor of every start with shorter steps; -2 for a new one."""
     if not again.finished.all():
         return np.full(again.frequency.size, -3)
     refined = fine.label(again)
-    refined[refined >= known] = -2
+    refined[refined >= count] = -2
     return refined
 
 
 def _renumbered(label: Index, rank: Index) -> Index:
-    known = label >= 0
+    labelled = label >= 0
     out = label.copy()
-    out[known] = rank[label[known]]
+    out[labelled] = rank[label[labelled]]
     return out
 
 

@@ -115,11 +115,11 @@ class Catalogue:
         return label
 
     def _number(self, new: MarchedAttractor, size: float) -> int:
-        """Number of an attractor; that of a known one if both come to the same states."""
+        """Number of an attractor; that of an existing one if both have the same states."""
         for number, attractor in enumerate(self.known):
             if attractor.period == new.period:
-                apart = np.abs(attractor.states - new.states[0]).max(axis=1)
-                if apart.min() <= _SAME * size:
+                distance = np.abs(attractor.states - new.states[0]).max(axis=1)
+                if distance.min() <= _SAME * size:
                     return number
         self.known.append(new)
         return len(self.known) - 1
@@ -137,22 +137,22 @@ class Catalogue:
         if not attractor.period:
             return
         for state in attractor.states:
-            near = np.abs(reduced - state).max(axis=1) <= _SAME * size
+            close = np.abs(reduced - state).max(axis=1) <= _SAME * size
             settled = (motions.period > 0) | (motions.change <= _WILD)
-            label[near & settled & (label < 0) & motions.finished] = number
+            label[close & settled & (label < 0) & motions.finished] = number
 
     def _trace(self, motions: Motions, index: Index) -> MarchedAttractor:
         """Follow one motion over its period, or over the cycles of the statistics."""
         period = int(motions.period[index[0]])
         if period:
-            one = Motions(
+            single = Motions(
                 motions.compiled,
                 motions.frequency[index],
                 motions.state[index],
                 motions.force[index],
             )
-            settle(one, [0], self.survey.cycles, tolerance=_EXACT, width=1)
-            motions, index = one, np.array([0])
+            settle(single, [0], self.survey.cycles, tolerance=_EXACT, width=1)
+            motions, index = single, np.array([0])
             shorter = int(motions.period[0])
             period = shorter if shorter and period % shorter == 0 else period
         path = follow(
@@ -179,11 +179,11 @@ class Catalogue:
         rms = measure(motions, wild, self.survey).rms
         open_ = np.isfinite(rms)
         while open_.any() and len(self.known) < _MOST:
-            known = [n for n, f in enumerate(self.known) if not f.period]
-            for number in known:
-                near = np.abs(rms - self.known[number].rms) <= _IRREGULAR * self.known[number].rms
-                label[wild[open_ & near]] = number
-                open_ &= ~near
+            irregular = [n for n, f in enumerate(self.known) if not f.period]
+            for number in irregular:
+                close = np.abs(rms - self.known[number].rms) <= _IRREGULAR * self.known[number].rms
+                label[wild[open_ & close]] = number
+                open_ &= ~close
             if not open_.any():
                 break
             middle = np.flatnonzero(open_)[np.argsort(rms[open_])[np.count_nonzero(open_) // 2]]

@@ -142,7 +142,7 @@ def bifurcation(
     """
     require_one_of("sweep", sweep, _BRANCHES)
     values = _read_values(systems, mesh_frequency, steps)
-    given = _read_parameter(parameter, values)
+    parameter_values = _read_parameter(parameter, values)
     name = signal_name(values.systems[0], signal)
     survey = _read_survey(
         Survey(
@@ -173,7 +173,7 @@ def bifurcation(
         finer,
         rows,
         fine,
-        parameter=given,
+        parameter=parameter_values,
         parameter_name=parameter_name,
         parameter_unit=parameter_unit,
         branches=branches,
@@ -183,7 +183,7 @@ def bifurcation(
 
 
 def _begin(values: Points, row: Outcomes, keep: int) -> Outcomes:
-    """The repetition with its starts: the motion itself, unless the step has made it."""
+    """Initial states of the repetition: the motion itself, unless its step is too long."""
     fine = Outcomes(values.count, keep, values.size, f"{row.name} finer")
     sound = (values.step_number <= LIMIT) & np.all(np.isfinite(row.last), axis=1)
     fine.first[:] = np.where(sound[:, None], row.last, row.first)
@@ -193,9 +193,9 @@ def _begin(values: Points, row: Outcomes, keep: int) -> Outcomes:
 def _diagram(
     values: Points, finer: Points, rows: list[Outcomes], fine: list[Outcomes], **facts: Any
 ) -> Bifurcation:
-    """Judge every motion and put all of them together."""
+    """Judge every motion and combine them into a diagram."""
 
-    def both(name: str, of: list[Outcomes]) -> Any:
+    def stack_rows(name: str, of: list[Outcomes]) -> Any:
         return np.array([getattr(row, name) for row in of])
 
     verdicts = [
@@ -204,54 +204,58 @@ def _diagram(
     ]
     return Bifurcation(
         mesh_frequency=values.mesh_frequency,
-        section=both("section", rows),
-        period=both("period", rows),
-        rms=both("rms", rows),
-        contact_loss_share=both("contact_loss_share", rows),
+        section=stack_rows("section", rows),
+        period=stack_rows("period", rows),
+        rms=stack_rows("rms", rows),
+        contact_loss_share=stack_rows("contact_loss_share", rows),
         step_number=values.step_number,
         steps=values.steps,
         verdict=np.array(verdicts, dtype="<U12"),
-        refined_period=both("period", fine),
-        refined_rms=both("rms", fine),
+        refined_period=stack_rows("period", fine),
+        refined_rms=stack_rows("rms", fine),
         refined_steps=finer.steps,
-        finished=both("finished", rows),
+        finished=stack_rows("finished", rows),
         **facts,
     )
 
 
 def _read_parameter(parameter: ArrayLike | None, values: Points) -> Array:
-    given = values.mesh_frequency if parameter is None else np.asarray(parameter, dtype=float)
-    if given.shape not in ((), (values.count,)):
-        what = f"parameter has the shape {given.shape}, and there are {values.count} values"
+    axis = values.mesh_frequency if parameter is None else np.asarray(parameter, dtype=float)
+    if axis.shape not in ((), (values.count,)):
+        what = f"parameter has the shape {axis.shape}, and there are {values.count} values"
         why = "Each value of the parameter has a place on the axis"
         raise InputError(what, "argument parameter", why, "Give one finite value for each system")
-    return np.broadcast_to(given, (values.count,)).copy()
+    return np.broadcast_to(axis, (values.count,)).copy()
 
 
 def _read_values(
     systems: System | Sequence[System], mesh_frequency: ArrayLike, steps: ArrayLike
 ) -> Points:
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    given = [systems] if isinstance(systems, System) else list(systems)
+    system_list = [systems] if isinstance(systems, System) else list(systems)
     try:
-        shapes = np.broadcast_shapes(np.shape(mesh_frequency), np.shape(steps), (len(given),))
+        shapes = np.broadcast_shapes(np.shape(mesh_frequency), np.shape(steps), (len(system_list),))
         (count,) = shapes
     except ValueError as error:
         raise InputError(
-            f"{len(given)} systems, {np.shape(mesh_frequency)} mesh frequencies and "
+            f"{len(system_list)} systems, {np.shape(mesh_frequency)} mesh frequencies and "
             f"{np.shape(steps)} steps",
             where="argument systems",
             why="Each is one, or one for each value of the parameter",
             remedy="Give one of each, or one of each for every value",
         ) from error
-    if not given or np.any(np.asarray(steps) < 1):
-        what = "no system" if not given else f"steps = {np.min(np.asarray(steps))}"
+    if not system_list or np.any(np.asarray(steps) < 1):
+        what = "no system" if not system_list else f"steps = {np.min(np.asarray(steps))}"
         why = "There is one time grid for each value"
         remedy = "Give one number of steps, or one for each value"
-        raise InputError(what, "argument systems" if not given else "argument steps", why, remedy)
+        raise InputError(
+            what, "argument systems" if not system_list else "argument steps", why, remedy
+        )
     frequency = np.broadcast_to(np.asarray(mesh_frequency, dtype=float), (count,)).copy()
-    whole = np.broadcast_to(np.asarray(steps).astype(np.int64), (count,)).copy()
-    return Points(given * count if len(given) == 1 else given, frequency, whole)
+    step_counts = np.broadcast_to(np.asarray(steps).astype(np.int64), (count,)).copy()
+    return Points(
+        system_list * count if len(system_list) == 1 else system_list, frequency, step_counts
+    )
 
 
 def _read_survey(survey: Survey) -> Survey:
@@ -263,16 +267,18 @@ def _read_survey(survey: Survey) -> Survey:
 
 
 def _announce(values: Points, cycles: int) -> None:
-    """Say beforehand how long many steps take, by the time of one mesh cycle of them."""
+    """Announce the duration of a long computation, estimated from one mesh cycle."""
     steps = float(values.steps.sum()) * cycles
     if steps < _MANY:
         return
     system, count = values.systems[0], int(values.steps[0])
-    rest = np.zeros(system.size)
+    rest_state = np.zeros(system.size)
     for _ in range(2):  # the first time compiles
         begin = perf_counter()
         with suppress(ComputationError):
-            simulate(system, float(values.mesh_frequency[0]), 1, (rest, rest), steps=count)
+            simulate(
+                system, float(values.mesh_frequency[0]), 1, (rest_state, rest_state), steps=count
+            )
     minutes = steps * (perf_counter() - begin) / count / 60.0
     announce(
         f"following {values.count} motions with up to {values.steps.max()} steps in each mesh "

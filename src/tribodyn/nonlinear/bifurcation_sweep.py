@@ -59,16 +59,16 @@ class Stretches(Motions):
         self.met = np.zeros(all_of_them.size, dtype=bool)
         self.joining = False
 
-    def _kept(self, index: int) -> list[Any]:
-        return [*super()._kept(index), bool(self.halved[index])]
+    def _stored(self, index: int) -> list[Any]:
+        return [*super()._stored(index), bool(self.halved[index])]
 
-    def _restore(self, index: int, kept: Any) -> None:
-        super()._restore(index, kept)
-        self.halved[index] = kept[7]
+    def _restore(self, index: int, stored: Any) -> None:
+        super()._restore(index, stored)
+        self.halved[index] = stored[7]
 
     def places(self) -> list[int]:
-        """Where every stretch begins, or goes on after the motions that were finished before."""
-        found = []
+        """First value of every stretch, or the first after the motions finished before."""
+        starts = []
         for number, cut in enumerate(self.stretches):
             parts: list[list[int]] = []
             for part in cut:
@@ -84,11 +84,11 @@ class Stretches(Motions):
                 self.begun[part[: done + 1]] = True
                 if 0 < done < len(part):
                     self.enter(part[done], part[done - 1])
-                found += part[done : done + 1]
-        return found
+                starts += part[done : done + 1]
+        return starts
 
     def store(self, index: int, state: Array, facts: tuple[int, float, Array, Array]) -> int:
-        """Keep a motion and go on with the next value of its stretch."""
+        """Store a motion and continue with the next value of its stretch."""
         self.met[index] = self.joining and self._same(index, facts)
         if self.joining:  # Only whole stretches can be joined: joints are sought anew.
             self.names = []
@@ -104,14 +104,14 @@ class Stretches(Motions):
 
     def take(self, count: int) -> list[int]:
         """Take motions out of the queue, then halves of what is left of the longest stretches."""
-        taken = super().take(count)
+        jobs = super().take(count)
         with self._lock:
-            while len(taken) < count and not self.joining:
+            while len(jobs) < count and not self.joining:
                 item = self._halve_longest()
                 if item < 0:
                     break
-                taken.append(item)
-        return taken
+                jobs.append(item)
+        return jobs
 
     def _halve_longest(self) -> int:
         """Cut the stretch with most values ahead in two; its new first value, or -1."""
@@ -131,13 +131,13 @@ class Stretches(Motions):
         return part[at]
 
     def enter(self, index: int, before: int) -> None:
-        """Let a motion begin where another ended; at rest if that one was lost."""
+        """Start a motion at the end of another, or at rest if that one diverged."""
         alive = np.all(np.isfinite(self.state[before]))
         self.start[index] = self.state[before] if alive else self.rest
         self.force[index] = self.force[before] if alive else 0.0
 
     def _same(self, index: int, facts: tuple[int, float, Array, Array]) -> bool:
-        """Whether a motion is the one that is there already."""
+        """Whether a motion equals the stored one."""
         period, change, _, recent = facts
         old = self.recent[index]
         if np.isnan(recent).any() or np.isnan(old).any():
@@ -146,11 +146,11 @@ class Stretches(Motions):
             return False
         if not period and min(change, self.change[index]) > _NEARLY:
             return True  # Neither repeats: the states say nothing.
-        apart = np.abs(old - recent[-1]).max(axis=1)[-max(period, 1) :]
+        distance = np.abs(old - recent[-1]).max(axis=1)[-max(period, 1) :]
         if not period:
-            apart = np.abs(old - recent[-1]).max(axis=1)
+            distance = np.abs(old - recent[-1]).max(axis=1)
         limit = (_SAME if period else _NEARLY) * np.abs(recent).max()
-        return bool(apart.min() <= limit)
+        return bool(distance.min() <= limit)
 
 
 def march_stretches(sweeps: Stretches, transient: int, progress: Progress) -> None:

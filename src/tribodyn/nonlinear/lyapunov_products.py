@@ -24,13 +24,15 @@ def share_in(directions: Array, disturbances: Array) -> Array:
 
 
 def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:
-    """Tell after how many mesh cycles the matrices repeat."""
-    known = np.asarray(cycles)
-    size = np.linalg.norm(known, axis=(-2, -1))
-    for period in range(1, min(_PERIODS, len(known) // 2) + 1):
-        apart = np.linalg.norm(known[period:] - known[:-period], axis=(-2, -1)) / size[period:]
-        if apart.max() <= _REPEATS:
-            return period, float(apart.max())
+    """Return the number of mesh cycles after which the matrices repeat, and the difference."""
+    matrices = np.asarray(cycles)
+    size = np.linalg.norm(matrices, axis=(-2, -1))
+    for period in range(1, min(_PERIODS, len(matrices) // 2) + 1):
+        distance = (
+            np.linalg.norm(matrices[period:] - matrices[:-period], axis=(-2, -1)) / size[period:]
+        )
+        if distance.max() <= _REPEATS:
+            return period, float(distance.max())
     return 0, float("nan")
 
 

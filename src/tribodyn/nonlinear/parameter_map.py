@@ -142,11 +142,11 @@ def parameter_map(
     begin = None if start is None else read_start(systems[0], start)
     shape = (axes.first.size, axes.second.size)
     points, number = _points(systems, axes, mesh_frequency, steps)
-    kept = signal if systems[0].contacts else name
-    survey = map_survey(transient, cycles, kept, keep_partial)
+    quantity = signal if systems[0].contacts else name
+    survey = map_survey(transient, cycles, quantity, keep_partial)
     progress.start("Motions", points.count * (1 + bool(verdict)))
     with marching_on(backend):
-        outcomes, words = surveyed(points, number, survey, begin, verdict, progress)
+        outcomes, verdicts = surveyed(points, number, survey, begin, verdict, progress)
     progress.finish()
     return ParameterMap(
         names=axes.names,
@@ -158,7 +158,7 @@ def parameter_map(
         contact_loss_share=outcomes.contact_loss_share.reshape(shape),
         steps=points.steps.reshape(shape),
         step_number=number.reshape(shape),
-        verdict=words.reshape(shape),
+        verdict=verdicts.reshape(shape),
         signal=name,
         finished=outcomes.finished.reshape(shape),
     )
@@ -167,7 +167,7 @@ def parameter_map(
 def map_survey(
     transient: int = 300, cycles: int = 24, signal: int | str = 0, keep_partial: bool = False
 ) -> Survey:
-    """How the motions of a map are marched."""
+    """Settings of the time integration for the motions of a map."""
     keep = max(2, cycles)
     return Survey(transient, cycles, keep, signal, keep_partial, tolerance=_NEAR, width=_WIDTH)
 
@@ -180,14 +180,14 @@ def surveyed(
     verdict: bool = True,
     progress: Progress = SILENT,
 ) -> tuple[Outcomes, NDArray[np.str_]]:
-    """March motions from rest, or from where they begin, and judge each of them."""
+    """Integrate motions from rest or from given states, and judge each of them."""
     outcomes = Outcomes(points.count, survey.keep, points.size)
     outcomes.first[:] = np.nan if begin is None else begin
     march_points(points, survey, (outcomes, None), progress=progress)
-    words: NDArray[np.str_] = np.full(points.count, "", dtype="<U12")
+    verdicts: NDArray[np.str_] = np.full(points.count, "", dtype="<U12")
     if verdict and not survey.stop.is_set():
-        words = _judged(points, step_number, outcomes, survey, progress)
-    return outcomes, words
+        verdicts = _judged(points, step_number, outcomes, survey, progress)
+    return outcomes, verdicts
 
 
 def _points(
@@ -216,27 +216,27 @@ def stepped(
 def _judged(
     points: Points, step_number: Array, outcomes: Outcomes, survey: Survey, progress: Progress
 ) -> NDArray[np.str_]:
-    """Judge by half the step: by one period where that is enough, else by marching anew."""
-    words = np.full(points.count, "", dtype="<U12")
+    """Judge by half the step: over one period if that suffices, else by a new integration."""
+    verdicts = np.full(points.count, "", dtype="<U12")
     finer = points.refined(2 * points.steps)
     same = comes_back(finer, outcomes)
-    words[same] = "physical"
+    verdicts[same] = "physical"
     progress.advance(int(same.sum()))
     alive = np.all(np.isfinite(outcomes.settled), axis=1)
-    words[outcomes.finished & ~alive] = "undecided"
+    verdicts[outcomes.finished & ~alive] = "undecided"
     again = Outcomes(points.count, survey.keep, points.size)
     again.first[:], again.force[:] = outcomes.settled, outcomes.force
     chosen = outcomes.finished & alive & ~same
     march_points(finer, survey, (again, chosen), progress=progress)
     for n in np.flatnonzero(again.finished):
-        words[n] = step_verdict(
+        verdicts[n] = step_verdict(
             float(step_number[n]),
             int(outcomes.period[n]),
             float(outcomes.rms[n]),
             int(again.period[n]),
             float(again.rms[n]),
         )
-    return words
+    return verdicts
 
 
 def _rates(systems: list[System], factors: dict[str, Array]) -> Array:
@@ -270,37 +270,48 @@ def _read_axes(
     units: tuple[str, str] | None,
 ) -> _Axes:
     try:
-        (one, first), (two, second) = over
+        (first_name, first), (second_name, second) = over
         values = [np.atleast_1d(np.asarray(each, dtype=float)) for each in (first, second)]
     except (TypeError, ValueError) as error:
         remedy = 'Write over=(("mesh_frequency", values), ("force_scale", values))'
         raise InputError(
             f"over = {over!r}", where="argument over", why="Two names with values", remedy=remedy
         ) from error
-    known = ("mesh_frequency", *SCALES)
-    own = not isinstance(system, System)
-    if two not in known or (one not in known and not own) or one == two:
-        why = f"Two different ones of {', '.join(known)}"
+    names = ("mesh_frequency", *SCALES)
+    is_function = not isinstance(system, System)
+    if (
+        second_name not in names
+        or (first_name not in names and not is_function)
+        or first_name == second_name
+    ):
+        why = f"Two different ones of {', '.join(names)}"
         remedy = "A system that depends on another value is given as a function of the first one"
-        raise InputError(f"over {one} and {two}", where="argument over", why=why, remedy=remedy)
-    if own and one in known:
-        what, remedy = f"{one} with a function", "Give a system and a name, or a function alone"
+        raise InputError(
+            f"over {first_name} and {second_name}", where="argument over", why=why, remedy=remedy
+        )
+    if is_function and first_name in names:
+        what, remedy = (
+            f"{first_name} with a function",
+            "Give a system and a name, or a function alone",
+        )
         raise InputError(what, "argument over", "The function takes that value", remedy)
-    if own and units is None:
-        what, why = f"{one} without its unit", "Axes show values with their units"
+    if is_function and units is None:
+        what, why = f"{first_name} without its unit", "Axes show values with their units"
         raise InputError(what, "argument units", why, "Give one unit for each parameter")
     if any(each.ndim != 1 or not np.all(np.isfinite(each)) for each in values):
         what, why = "values that are no list of numbers", "Each axis of the map has its values"
         raise InputError(what, "argument over", why, "Give (name, values) for each of the two axes")
-    if "mesh_frequency" in (one, two):
-        require_positive("mesh_frequency", values[(one, two).index("mesh_frequency")], "Hz")
+    if "mesh_frequency" in (first_name, second_name):
+        require_positive(
+            "mesh_frequency", values[(first_name, second_name).index("mesh_frequency")], "Hz"
+        )
     elif mesh_frequency is None:
         why = "The time of one mesh cycle follows from it"
-        remedy = "Give mesh_frequency in Hz, or return it beside the system"
+        remedy = "Give mesh_frequency in Hz, or return it with the system"
         raise InputError("no mesh frequency", "argument mesh_frequency", why, remedy)
     else:
         require_positive("mesh_frequency", mesh_frequency, "Hz")
-    return _Axes((one, two), values[0], values[1])
+    return _Axes((first_name, second_name), values[0], values[1])
 
 
 def _unit(name: str) -> str:

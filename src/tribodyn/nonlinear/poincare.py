@@ -157,9 +157,9 @@ def poincare(
     )
     if not verdict:
         return section
-    known = (compiled.step_number, section.period, _path_rms(path))
+    reference = (compiled.step_number, section.period, _path_rms(path))
     judged = judge_section(
-        motion, mesh_frequency, (state, force), 2 * steps, transient, cycles, known
+        motion, mesh_frequency, (state, force), 2 * steps, transient, cycles, reference
     )
     return replace(section, verdict=judged)
 
@@ -198,7 +198,7 @@ def judge_section(
     steps: int,
     transient: int,
     cycles: int,
-    known: tuple[float, int, float],
+    reference: tuple[float, int, float],
 ) -> Verdict:
     """Judge a section by one with shorter steps."""
     compiled = compile_for(system, mesh_frequency, steps)
@@ -206,7 +206,7 @@ def judge_section(
         path = _march(compiled, float(mesh_frequency), start, transient, cycles)
     except ComputationError:
         return "step-limited"
-    number, period, rms = known
+    number, period, rms = reference
     refined = _period(compiled, float(mesh_frequency), path)
     return step_verdict(number, period, rms, refined, _path_rms(path))
 
@@ -222,7 +222,7 @@ def alternating_rms(signal: Array, weight: Array) -> float:
 def _judged_response(
     response: Response, section: PoincareSection, transient: int, system: System | None
 ) -> PoincareSection:
-    """Judge a motion that is known already, if its system is given."""
+    """Judge an existing motion, if its system is given."""
     if system is None:
         return section
     orbit = bool(response.floquet_multipliers.size)
@@ -232,7 +232,7 @@ def _judged_response(
     rows = fine.phase >= skipped
     signal = fine.deflection if fine.deflection.shape[1] else fine.position
     state = np.concatenate((response.position[skipped * steps], response.velocity[skipped * steps]))
-    known = (
+    reference = (
         response.step_number,
         section.period,
         alternating_rms(signal[rows, 0], fine.weight[rows]),
@@ -245,13 +245,13 @@ def _judged_response(
         2 * steps,
         _ORBIT if orbit and response.stable else 0,
         2 * response.periods if orbit else response.periods - skipped,
-        known,
+        reference,
     )
     return replace(section, verdict=judged)
 
 
 def _section_of(response: Response, transient: int) -> PoincareSection:
-    """Points of a motion that is known already."""
+    """Section of an existing motion."""
     steps = len(response.position) // response.periods
     skipped = transient if response.periods > transient else 0
     if response.floquet_multipliers.size:
@@ -259,7 +259,7 @@ def _section_of(response: Response, transient: int) -> PoincareSection:
     rows = slice(skipped * steps, None, steps)
     deflection = response.deflection[rows]
     place = deflection if deflection.shape[1] else response.position[rows]
-    known = response.floquet_multipliers.size and response.converged
+    is_orbit = response.floquet_multipliers.size and response.converged
     size = float(np.linalg.norm(place, axis=1).max()) or 1.0
     return PoincareSection(
         position=response.position[rows],
@@ -267,7 +267,7 @@ def _section_of(response: Response, transient: int) -> PoincareSection:
         deflection=deflection,
         names=response.names,
         mesh_frequency=response.mesh_frequency,
-        period=closed_period(place, size) if known else open_period(place),
+        period=closed_period(place, size) if is_orbit else open_period(place),
     )
 
 
@@ -353,9 +353,9 @@ def phase_portrait(
     (1, 6.2832)
     """
     cycles = motion.periods - transient
-    known = isinstance(of, str) and of in motion.names
+    is_coordinate = isinstance(of, str) and of in motion.names
     contact = not isinstance(of, str) and 0 <= of < motion.deflection.shape[1]
-    if cycles < 1 or not (known or contact):
+    if cycles < 1 or not (is_coordinate or contact):
         raise InputError(
             f"{of!r} after {transient} of {motion.periods} mesh cycles",
             where="argument of",

@@ -73,15 +73,15 @@ class Surveyed(Record):
 
     def verdicts(self) -> dict[str, int]:
         """Count the verdicts that occur."""
-        words, counts = np.unique(self.verdict, return_counts=True)
-        return {str(w): int(c) for w, c in zip(words, counts, strict=True) if w}
+        names, counts = np.unique(self.verdict, return_counts=True)
+        return {str(w): int(c) for w, c in zip(names, counts, strict=True) if w}
 
     def _ending(self) -> str:
-        """Verdicts in words, for the end of a line."""
-        words = [f"{count} {word}" for word, count in self.verdicts().items()]
-        words += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
+        """Counts of the verdicts, for the end of a line."""
+        counts = [f"{count} {verdict}" for verdict, count in self.verdicts().items()]
+        counts += [f"{lost} ran away"] if (lost := int(self.ran_away.sum())) else []
         return (
-            f"{': ' if words else ''}{', '.join(words)}{'' if self.complete else ', interrupted'}"
+            f"{': ' if counts else ''}{', '.join(counts)}{'' if self.complete else ', interrupted'}"
         )
 
 
