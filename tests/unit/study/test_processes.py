@@ -85,11 +85,11 @@ def test_points_of_a_sweep_are_the_same_in_another_process() -> None:
     case = td.load_case("fzg-roughness").replace(
         {"film.model": "none", "solver.steps_per_mesh_cycle": 512}
     )
-    asked = partial(studied._asked_at, case, ("operation.speed", "operation.torque"))
+    asked = partial(studied._pending_at, case, ("operation.speed", "operation.torque"))
     # The second is refused, with its reason.
     places = [[(100.0, 50.0)], [(1e-6, 90.0)], [(200.0, 70.0), (200.0, 90.0)]]
     here = partial(studied._points, asked)
-    found = _each(pickle.loads(studied._abroad(asked)), places, here)
+    found = _each(pickle.loads(studied._pickled(asked)), places, here)
     assert found == [here(place) for place in places]
     assert [bool(point.failed) for points in found for point in points] == [0, 1, 0, 0]
 
@@ -126,13 +126,13 @@ def test_an_error_here_ends_all() -> None:
 
 def test_a_law_that_a_script_registers_stays_in_its_process() -> None:
     case = td.load_case("fzg-roughness")
-    asked = partial(studied._asked_at, case, ("operation.speed",))
+    asked = partial(studied._pending_at, case, ("operation.speed",))
     assert known_elsewhere()
-    assert studied._abroad(asked)
+    assert studied._pickled(asked)
     with as_before():
         LAWS.define("of-a-script", source="a script")(lambda contact: contact.load_per_width)
         assert not known_elsewhere()
-        assert not studied._abroad(asked)
+        assert not studied._pickled(asked)
     with as_before():
         VARIANTS.register("of-a-script")(0.01)  # a number, which has no module
         assert not known_elsewhere()
