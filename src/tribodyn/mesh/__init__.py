@@ -1,4 +1,4 @@
-"""The mesh table: what happens in the tooth contact over one mesh cycle, made, kept and drawn."""
+"""Mesh tables: the tooth contact over one mesh cycle, computed, stored and plotted."""
 
 from tribodyn.arguments import guard
 from tribodyn.mesh.build import build

@@ -87,7 +87,7 @@ def build(
         with their load; else it is their stiffness times the deflection. That of pairs which are
         solved together is always fitted.
     progress : Progress
-        Told how many oil films are solved.
+        Receives the number of solved oil films.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def build(
     Notes
     -----
     Loads are quasi-static: those of the loaded tooth contact where the stiffness model couples
-    the pairs or flanks are modified; else pairs deflect alike, so each carries a share in
+    the pairs or flanks are modified; else pairs deflect equally, so each carries a share in
     proportion to its secant stiffness. A tip corner that touches beyond the path of contact has
     the friction of the end that is next to it, and no film of its own. Hertz pressure, film and
     friction of a pair come from its own share. A film that is solved is solved at some positions
@@ -265,7 +265,7 @@ def loaded_mesh(
     pinion_speed, pinion_torque = operation
     require_positive("pinion_speed", pinion_speed, "rad/s")
     require_positive("pinion_torque", pinion_torque, "N*m")
-    cycle, teeth = known_teeth(pair, settings, pinion_torque, steps, loading)
+    cycle, teeth = teeth_under_load(pair, settings, pinion_torque, steps, loading)
     motion = cycle.motion(pinion_speed)
     pairs = pairs_in_contact(cycle, motion, settings.lubricant, settings.material)
     loads = quasi_static_loads(cycle, teeth, pairs, settings, pinion_speed, progress)
@@ -273,38 +273,41 @@ def loaded_mesh(
     return LoadedMesh(pair, settings, cycle, pairs, motion, teeth, loads, *operation, force_law)
 
 
-def known_teeth(
+def teeth_under_load(
     pair: Gears, settings: ToothContact, torque: float, steps: int | None, loading: Array | None
 ) -> tuple[MeshCycle, Teeth]:
-    """Teeth under load over one mesh cycle: the same object at every speed and with every oil."""
+    """Teeth under load over one mesh cycle, cached across speeds and oils.
+
+    The result is the same object for equal pair, tooth model, torque and number of steps.
+    """
     usual = _steps(pair, settings.stiffness_model)  # registers the models of others, too
     steps = steps or usual
-    given = (pair, settings.teeth, torque, steps)
+    arguments = (pair, settings.teeth, torque, steps)
     try:
-        hash(given)
+        hash(arguments)
     except TypeError:  # an option is an array
-        return _loaded_teeth(*given, loading)
+        return _loaded_teeth(*arguments, loading)
     if loading is not None:
-        return _loaded_teeth(*given, loading)
-    cycle, teeth, told = _known_teeth(*given, MODELS.version)
-    for warning in told:
+        return _loaded_teeth(*arguments, loading)
+    cycle, teeth, warnings = _cached_teeth(*arguments, MODELS.version)
+    for warning in warnings:
         warn(warning.code, warning.message, stacklevel=4)
     return cycle, teeth
 
 
-#: Loads at which the teeth of a case are remembered: those of one axis of an operating map.
+#: Number of loads in the cache of teeth: enough for one axis of an operating map.
 _LOADS = 128
 
 
 @lru_cache(maxsize=_LOADS)
-def _known_teeth(*given: Any) -> tuple[MeshCycle, Teeth, list[ModelWarning]]:
-    with collected() as told:
-        return (*_loaded_teeth(*given[:-1]), told)
+def _cached_teeth(*arguments: Any) -> tuple[MeshCycle, Teeth, list[ModelWarning]]:
+    with collected() as warnings:
+        return (*_loaded_teeth(*arguments[:-1]), warnings)
 
 
 @lru_cache(maxsize=8)
 def _cycle(pair: Gears, steps: int) -> MeshCycle:
-    """Pairs over the mesh cycle: the same object under every load."""
+    """Pairs over the mesh cycle, cached: the same object under every load."""
     return mesh_cycle(path_of_contact(pair), steps)
 
 
@@ -334,11 +337,11 @@ def _motion_columns(motion: Kinematics, direction: Array) -> dict[str, Array]:
     }
 
 
-def _spread(known: dict[str, Array], in_contact: Mask) -> dict[str, Any]:
-    """Put the values of the touching pairs in their places, with zeros elsewhere."""
+def _spread(contact_values: dict[str, Array], in_contact: Mask) -> dict[str, Any]:
+    """Spread the values of the touching pairs over all pairs, with zeros elsewhere."""
     columns: dict[str, Any] = dict.fromkeys((*FILM_COLUMNS, *MIXED_COLUMNS))
     places = np.flatnonzero(in_contact)
-    for name, values in known.items():
+    for name, values in contact_values.items():
         column = np.zeros((*values.shape[:-1], in_contact.size))
         column[..., places] = values
         columns[name] = column.reshape(*values.shape[:-1], *in_contact.shape)

@@ -75,13 +75,13 @@ class MeshColumns(Record):
     film_pressure : array (n, pairs) [Pa] or None
         Greatest pressure in the film, where it is solved.
     film_stiffness : array (n, pairs) [N/m] or None
-        Stiffness of the film of the pair, of the kind asked for. A film that does not fall with
+        Stiffness of the film of the pair, of the requested kind. A film that does not fall with
         the load counts as rigid: its stiffness has a bound.
     maximum_single_pair_stiffness : float [N/m]
         Greatest stiffness of one pair that carries the whole load alone.
     gear_pair : Gears
-        Both gears in their working position. A table of another program has none: there whatever
-        asks for it is told so.
+        Both gears in their working position. A table of another program has none and raises when
+        they are accessed.
     pinion_speed : float [rad/s]
         Speed of the pinion.
     pinion_torque : float [N*m]
@@ -91,7 +91,7 @@ class MeshColumns(Record):
     stiffness_model, friction_law, film_model : str
         Which models made the table.
     film_stiffness_kind : str
-        Film stiffness asked for: all but ``"none"`` and ``"seed"`` are in series with the teeth,
+        Kind of film stiffness: all but ``"none"`` and ``"seed"`` are in series with the teeth,
         ``"none"`` and ``"seed"`` are not.
     mesh_order : int
         Mesh cycles in one turn of the pinion; by default its number of teeth.
@@ -112,7 +112,7 @@ class MeshColumns(Record):
         Part of the load of the pair on its film: as the friction law has it, or that of
         :func:`tribodyn.ehl.film_load_share` at the film ratio.
     asperity_friction_coefficient : array (n, pairs) or None
-        Part of the friction coefficient that the asperities cause, where the friction law tells.
+        Part of the friction coefficient that asperities cause, where the friction law has it.
     tooth_load_share, tooth_corner_share : array (n, pairs), (n, 2) or None
         ``load_share`` and ``corner_share`` of the teeth alone, without the oil film. None where no
         film is in series with the teeth: there they are the same.
@@ -325,9 +325,9 @@ class MeshColumns(Record):
 
 def whole_stiffness(stiffness: Array, share: Array, corners: Array) -> Array:
     """Stiffness of all pairs together (n,), tip corners included, from those on the path."""
-    known, columns = sum_of_few(stiffness), (corners, share)
+    pair_stiffness, columns = sum_of_few(stiffness), (corners, share)
     carried, on_path = map(sum_of_few, columns)
-    return np.asarray(known + known * carried / on_path)
+    return np.asarray(pair_stiffness + pair_stiffness * carried / on_path)
 
 
 def sum_of_few(columns: Array) -> Array:

@@ -138,7 +138,7 @@ def pairs_in_contact(
     )
 
 
-#: Number of positions that can be asked for.
+#: Least and greatest number of positions.
 LEAST, MOST = 8, 200
 #: A zone with fewer points is not worth a polynomial.
 _LEAST_IN_ZONE = 4
@@ -146,7 +146,7 @@ _LEAST_IN_ZONE = 4
 _ROUNDING = 1e-9
 #: A bend this near to an edge is left to it [mesh cycles].
 _NARROW = 0.01
-#: Distance from the end of a zone that tells its two sides apart [mesh cycles].
+#: Distance from the end of a zone that separates its two sides [mesh cycles].
 _SIDE = 1e-10
 
 
@@ -194,12 +194,12 @@ class PathPositions:
 
     def interpolate(self, values: Array, age: Array, zone: Index) -> Array:
         """Evaluate the polynomial through the positions of a zone."""
-        found = np.zeros(age.shape + values.shape[1:])
+        interpolated = np.zeros(age.shape + values.shape[1:])
         for number, part in enumerate(self.zones):
-            here = zone == number
-            matrix = lobatto_polynomial(self.age[part], age[here])
-            found[here] = np.tensordot(matrix, values[part], axes=(1, 0))
-        return found
+            in_zone = zone == number
+            matrix = lobatto_polynomial(self.age[part], age[in_zone])
+            interpolated[in_zone] = np.tensordot(matrix, values[part], axes=(1, 0))
+        return interpolated
 
 
 def lobatto_points(count: int) -> Array:
@@ -224,15 +224,17 @@ def path_positions(
     """Spread positions over the zones of the path of contact."""
     require_between("positions", positions, LEAST, MOST)
     ratio = contact.contact_ratio
-    found = [0.0, ratio]
+    path_points = [0.0, ratio]
     for number in range(1, contact.pairs):
-        found += [float(number), ratio - number]
-    found.append(pitch_point_age(contact))
+        path_points += [float(number), ratio - number]
+    path_points.append(pitch_point_age(contact))
     for number in range(contact.pairs):
         wide = [number + bend for bend in bends]
-        found += [age for age in wide if np.min(np.abs(np.array(found) - age)) > _NARROW]
+        path_points += [
+            age for age in wide if np.min(np.abs(np.array(path_points) - age)) > _NARROW
+        ]
     edges = [0.0]
-    for edge in sorted(edge for edge in found if 0.0 < edge <= ratio):
+    for edge in sorted(edge for edge in path_points if 0.0 < edge <= ratio):
         if edge - edges[-1] > _ROUNDING:
             edges.append(edge)
     edges[-1] = ratio
@@ -243,10 +245,10 @@ def _shares(lengths: Array, total: int) -> tuple[int, ...]:
     """Whole numbers in proportion to the lengths, at least four each, by the largest remainder."""
     free = np.maximum(total * lengths / lengths.sum(), _LEAST_IN_ZONE)
     wide = free > _LEAST_IN_ZONE
-    room = total - _LEAST_IN_ZONE * int(np.sum(~wide))
-    if not np.any(wide) or room < _LEAST_IN_ZONE * int(np.sum(wide)):
+    shared_total = total - _LEAST_IN_ZONE * int(np.sum(~wide))
+    if not np.any(wide) or shared_total < _LEAST_IN_ZONE * int(np.sum(wide)):
         return (_LEAST_IN_ZONE,) * lengths.size
-    wanted = np.where(wide, room * lengths / lengths[wide].sum(), _LEAST_IN_ZONE)
+    wanted = np.where(wide, shared_total * lengths / lengths[wide].sum(), _LEAST_IN_ZONE)
     counts = np.maximum(np.floor(wanted), _LEAST_IN_ZONE).astype(int)
     for index in np.argsort(counts - wanted)[: max(total - int(counts.sum()), 0)]:
         counts[index] += 1

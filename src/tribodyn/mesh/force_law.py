@@ -173,8 +173,8 @@ class MeshForceLaw:
         tuple of array
             Deflections [m] and stiffnesses [N/m], shape of ``phase`` followed by the ramps.
         """
-        both = self._columns(phase)
-        return both[..., 0], both[..., 1]
+        ramp_columns = self._columns(phase)
+        return ramp_columns[..., 0], ramp_columns[..., 1]
 
     def force(self, phase: Array | float, deflection: Array | float) -> Array:
         """Force of the driving flanks.
@@ -251,14 +251,14 @@ class MeshForceLaw:
         """Column that begins lowest and carries at every knot; None if no one does."""
         first = self.knot_first_touch
         always = (self.knot_stiffness > 0.0) & (self.knot_deflection <= first[:, None])
-        found = np.flatnonzero(always.all(axis=0))
-        return int(found[0]) if found.size else None
+        candidates = np.flatnonzero(always.all(axis=0))
+        return int(candidates[0]) if candidates.size else None
 
     @cached_property
     def knot_first_touch(self) -> Array:
         """Deflection at which the first pair touches, at every knot [m]."""
-        there = np.where(self.knot_stiffness > 0.0, self.knot_deflection, np.inf)
-        return np.asarray(there.min(axis=1))
+        starts = np.where(self.knot_stiffness > 0.0, self.knot_deflection, np.inf)
+        return np.asarray(starts.min(axis=1))
 
     def first_touch(self, phase: Array | float) -> Array:
         """Deflection at which the first pair touches.
@@ -293,8 +293,8 @@ def _inverse(place: Array, stiffness: Array, force: Array) -> Array:
     # A convex law is the largest of its straight pieces, its inverse the smallest of theirs.
     carries = total > _FAINT * total[..., -1:]
     soft = np.where(carries, total, 1.0)
-    reached = np.where(carries, place + (force[..., None] - risen) / soft, np.inf)
-    return np.asarray(reached.min(axis=-1))
+    deflections = np.where(carries, place + (force[..., None] - risen) / soft, np.inf)
+    return np.asarray(deflections.min(axis=-1))
 
 
 def at_rest(place: Array, stiffness: Array, force: float) -> tuple[Array, Array]:

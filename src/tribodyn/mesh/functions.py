@@ -97,7 +97,7 @@ class MeshFunctions:
 
 #: The sums of a mesh table that act on a structure, in this order.
 CHANNELS = ("friction_sum", "friction_moment_pinion", "friction_moment_wheel")
-#: Part of the first of them that asperities cause, where the friction law tells.
+#: Part of the first of them that asperities cause, where the friction law has such a part.
 ASPERITIES = "asperity_friction_sum"
 #: Loads over the nominal load at which a mesh is looked at: dense where friction laws bend.
 LOADS = (0.04, 0.12, 0.27, 0.48, 0.74, 1.0, 1.3, 1.65, 2.05, 2.45, 2.8, 3.0)
@@ -167,10 +167,10 @@ class MeshFriction:
         array
             Over the normal force; moments in m.
         """
-        found = self.channel(name)(np.asarray(phase, dtype=float))
+        coefficients = self.channel(name)(np.asarray(phase, dtype=float))
         ratio = np.clip(np.abs(np.asarray(normal_force, dtype=float)) / self.load, 0.0, self.limit)
-        powers = ratio[..., None] ** np.arange(found.shape[-1])
-        return np.asarray((found * powers).sum(axis=-1))
+        powers = ratio[..., None] ** np.arange(coefficients.shape[-1])
+        return np.asarray((coefficients * powers).sum(axis=-1))
 
     def __repr__(self) -> str:
         """One line."""
@@ -224,10 +224,10 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
     by_force = np.linalg.lstsq(
         ratio[:, None] * powers, ratio[:, None] * sums.reshape(ratio.size, -1), rcond=None
     )[0]
-    apart = ratio[:, None] * (powers @ by_force - sums.reshape(ratio.size, -1))
+    residual = ratio[:, None] * (powers @ by_force - sums.reshape(ratio.size, -1))
     force = ratio[:, None, None] * sums
     largest = np.abs(force).max(axis=(0, 2))[None, :, None]
-    fit = np.abs(apart.reshape(force.shape)) / np.where(largest > 0.0, largest, 1.0)
+    fit = np.abs(residual.reshape(force.shape)) / np.where(largest > 0.0, largest, 1.0)
     fit = fit[:, : len(CHANNELS)]
     return MeshFriction(
         grid=nominal.grid,

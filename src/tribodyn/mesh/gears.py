@@ -50,7 +50,7 @@ def lever(direction: Array, coordinate: str, grid: PhaseGrid) -> float:
 
 
 class NoGears:
-    """What stands for the gear pair in a table of another program: it says that there is none."""
+    """Placeholder for the gear pair in a mesh table of another program, which has none."""
 
     def __getattr__(self, name: str) -> NoReturn:
         """Answer every question about the gears with one sentence."""
@@ -65,7 +65,7 @@ class NoGears:
         return "no gear pair"
 
 
-#: What the gears of a table are; a :class:`NoGears` stands in for them where there are none.
+#: Gears of a table, or :class:`NoGears` where there are none.
 Gears = SpurPair
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
 _LEAST_INTERVALS = 4
 #: Sets of phases whose knots are remembered, and their sizes.
-_KEPT, _FEWEST_KEPT, _MOST_KEPT = 8, 512, 65536
+_CACHED_MATRICES, _FEWEST_CACHED, _MOST_CACHED = 8, 512, 65536
 #: Values of a knot from which on it pays to read them together.
 _WIDE = 12
 
@@ -76,28 +76,28 @@ class PhaseGrid:
         return starts, counts, np.diff(starts, append=1.0), np.cumsum(counts + 1) - counts - 1
 
     def _interpolated(self, phase: Array, columns: Array) -> Array:
-        """Values (c, ...) of columns (n, c) at phases: the cubic through the four knots about each.
+        """Values (c, ...) of columns (n, c) at phases by the cubic through the four nearest knots.
 
-        Those of each column lie side by side.
+        The values of each column are contiguous.
         """
-        if phase.size < _FEWEST_KEPT:
+        if phase.size < _FEWEST_CACHED:
             knots, weights = self._located(phase)
             return np.asarray(np.einsum("k...,k...c->c...", weights, columns[knots]))
-        if phase.size <= _MOST_KEPT:
-            # The tables of one case, and of all its operating points, are asked at the same phases.
-            matrix = self._known.get((phase,), lambda: self._matrix(phase))
+        if phase.size <= _MOST_CACHED:
+            # Tables of one case and of all its operating points are evaluated at the same phases.
+            matrix = self._matrices.get((phase,), lambda: self._matrix(phase))
         else:
             matrix = self._matrix(phase)
         if columns.shape[1] == 1:
-            found = matrix @ columns[:, 0]
+            interpolated = matrix @ columns[:, 0]
         elif columns.shape[1] < _WIDE:
-            found = np.array([matrix @ column for column in np.ascontiguousarray(columns.T)])
-        else:  # which reads all values of a knot at a time
-            found = (matrix @ columns).T
-        return np.ascontiguousarray(found).reshape(-1, *phase.shape)
+            interpolated = np.array([matrix @ column for column in np.ascontiguousarray(columns.T)])
+        else:  # reads all values of a knot at once
+            interpolated = (matrix @ columns).T
+        return np.ascontiguousarray(interpolated).reshape(-1, *phase.shape)
 
     def _matrix(self, phase: Array) -> csr_matrix:
-        """Matrix by which values at the knots become values at phases."""
+        """Matrix of interpolation from the knots to phases."""
         from scipy.sparse import csr_matrix
 
         knots, weights = (each.reshape(4, -1).T.ravel() for each in self._located(phase))
@@ -106,8 +106,8 @@ class PhaseGrid:
         )
 
     @cached_property
-    def _known(self) -> Memo[csr_matrix]:
-        return Memo(_KEPT)
+    def _matrices(self) -> Memo[csr_matrix]:
+        return Memo(_CACHED_MATRICES)
 
     def _located(self, phase: Array) -> tuple[Index, Array]:
         folded = np.mod(phase, 1.0)
@@ -147,13 +147,13 @@ class PhaseGrid:
         return np.asarray(2.0 * np.abs(self._weights @ waves))
 
     def _waves(self, count: int) -> ComplexArray:
-        if count not in self._known_waves:
+        if count not in self._cached_waves:
             orders = np.arange(1, count + 1)
-            self._known_waves[count] = np.exp(-2j * np.pi * np.outer(self.phase, orders))
-        return self._known_waves[count]
+            self._cached_waves[count] = np.exp(-2j * np.pi * np.outer(self.phase, orders))
+        return self._cached_waves[count]
 
     @cached_property
-    def _known_waves(self) -> dict[int, ComplexArray]:
+    def _cached_waves(self) -> dict[int, ComplexArray]:
         return {}
 
     @cached_property
@@ -193,13 +193,13 @@ class PhaseFunction:
     def __call__(self, phase: Array | float) -> Array:
         """Interpolate with the cubic through four knots; on an event the value after it."""
         at = np.asarray(phase, dtype=float)
-        found = self.grid._interpolated(at, self.values.reshape(len(self.values), -1))
-        found = np.moveaxis(found, 0, -1).reshape(at.shape + self.values.shape[1:])
-        return found if self.onto is None else times(found, self.onto.T)
+        interpolated = self.grid._interpolated(at, self.values.reshape(len(self.values), -1))
+        interpolated = np.moveaxis(interpolated, 0, -1).reshape(at.shape + self.values.shape[1:])
+        return interpolated if self.onto is None else times(interpolated, self.onto.T)
 
 
 def phase_grid(event_phases: tuple[float, ...], steps: int = 512) -> PhaseGrid:
-    """Lay about ``steps`` intervals over one mesh cycle, with knots on every event.
+    """Divide one mesh cycle into about ``steps`` intervals, with knots on every event.
 
     Parameters
     ----------
@@ -281,7 +281,7 @@ class MonotonePhaseFunction:
         return self.grid.event_phases
 
     def _of_columns(self, columns: Array) -> MonotonePhaseFunction:
-        """Several such functions on the same knots as one, which looks them up together."""
+        """Several such functions on the same knots as one function with columns."""
         return MonotonePhaseFunction(self.grid, columns)
 
     @cached_property
@@ -294,9 +294,9 @@ class MonotonePhaseFunction:
         """Interpolate; exactly on an event the value after it is returned."""
         folded = np.mod(np.asarray(phase, dtype=float), 1.0)
         segment = np.searchsorted(np.array(self.grid.event_phases), folded, side="right") - 1
-        found = np.empty(folded.shape + self.values.shape[1:])
+        interpolated = np.empty(folded.shape + self.values.shape[1:])
         for number, piece in enumerate(self._pieces):
-            here = segment == number
-            if np.any(here):
-                found[here] = piece(folded[here])
-        return found
+            in_segment = segment == number
+            if np.any(in_segment):
+                interpolated[in_segment] = piece(folded[in_segment])
+        return interpolated

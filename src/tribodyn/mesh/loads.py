@@ -78,10 +78,10 @@ def _under_load(
 def reported_films(films: Films, loads: Loads, least_load: Array | float) -> Films:
     """Leave out pairs that hardly touch, and what is not known well enough."""
     loads.film_at.warn_of_doubt()
-    films, known = loads.film_at.reported(films, loads.tribological)
-    known = (loads.load_per_width > least_load) & known
+    films, certain = loads.film_at.reported(films, loads.tribological)
+    certain = (loads.load_per_width > least_load) & certain
     columns: dict[str, Any] = {}
-    for row, name in zip(known, QUANTITIES, strict=True):
+    for row, name in zip(certain, QUANTITIES, strict=True):
         column = getattr(films, name)
         columns[name] = None if column is None else np.where(row, column, np.nan)
     return replace(films, **columns)
@@ -259,9 +259,9 @@ def _settle_together(
 
 def _secant(moved: Array, change: Array, slope: Array, bounds: tuple[float, float]) -> Array:
     """Fall of the step over the share, within bounds that neither stop it nor let it jump."""
-    told = np.abs(moved) > _TOLD
-    fall = -change / np.where(told, moved, 1.0)
-    return np.where(told, np.clip(fall, *bounds), slope)
+    significant = np.abs(moved) > _TOLD
+    fall = -change / np.where(significant, moved, 1.0)
+    return np.where(significant, np.clip(fall, *bounds), slope)
 
 
 def _still_moving(change: Array, where: Callable[[int, int], str]) -> ComputationError:

@@ -1,4 +1,4 @@
-"""Mesh tables of several operating points of one pair, whose contacts are looked at in one pass."""
+"""Mesh tables of several operating points of one gear pair, computed in one batch."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ModelWarning, TribodynError, collected, require_positive
 from tribodyn.friction import LAWS, FrictionParts, pitch_point
-from tribodyn.mesh.build import columns_of, known_teeth, table_of
+from tribodyn.mesh.build import columns_of, table_of, teeth_under_load
 from tribodyn.mesh.cycle import MeshCycle, pairs_in_contact
 from tribodyn.mesh.film.path_film import FormulaFilm, Friction
 from tribodyn.mesh.gears import Gears
@@ -21,18 +21,18 @@ from tribodyn.mesh.loads import Loads, reported_films, tribological_contact
 from tribodyn.mesh.sharing import Teeth, ToothContact, shared_load_columns
 from tribodyn.mesh.table import MeshTable
 
-#: A mesh table, and what the models said of it.
-Told = tuple[MeshTable, list[ModelWarning]]
+#: A mesh table, and the warnings of its models.
+TableWithWarnings = tuple[MeshTable, list[ModelWarning]]
 
 
 class _Point(NamedTuple):
-    """An operating point with its teeth, and what was said of them."""
+    """An operating point with its teeth and the warnings of their models."""
 
     speed: float
     torque: float
     cycle: MeshCycle
     teeth: Teeth
-    told: list[ModelWarning]
+    warnings: list[ModelWarning]
 
 
 def mesh_tables(
@@ -41,11 +41,11 @@ def mesh_tables(
     operations: Sequence[tuple[float, float]],
     *,
     force_law: bool = False,
-) -> list[Told]:
-    """Mesh tables at several speeds and torques.
+) -> list[TableWithWarnings]:
+    """Compute the mesh tables at several speeds and torques in one batch.
 
-    None at all where films are solved or are springs, or where a point cannot be computed: then
-    each table has to be computed by itself.
+    Return an empty list where films are solved numerically or are springs, or where a point cannot
+    be computed: the caller then computes each table separately.
     """
     if FILM_MODELS[settings.film_model].method or settings.film_in_series or len(operations) < 2:
         return []
@@ -54,25 +54,25 @@ def mesh_tables(
         columns = _columns(pair, settings, points)
     except TribodynError:
         return []
-    tables: list[Told] = []
-    for row, (speed, torque, cycle, teeth, told) in enumerate(points):
+    tables: list[TableWithWarnings] = []
+    for row, (speed, torque, cycle, teeth, warnings) in enumerate(points):
         with collected() as also:
             shared = shared_load_columns(teeth, teeth.shared_load(), None, force_law=force_law)
-        own = {name: c[row] if np.ndim(c) == 3 else c for name, c in columns.items()}
-        table = table_of(pair, settings, cycle, (speed, torque), shared | own)
-        tables.append((table, [*told, *also]))
+        row_columns = {name: c[row] if np.ndim(c) == 3 else c for name, c in columns.items()}
+        table = table_of(pair, settings, cycle, (speed, torque), shared | row_columns)
+        tables.append((table, [*warnings, *also]))
     return tables
 
 
 def _point(pair: Gears, settings: ToothContact, speed: float, torque: float) -> _Point:
     require_positive("pinion_torque", torque, "N*m")
-    with collected() as told:
-        cycle, teeth = known_teeth(pair, settings, torque, None, None)
-    return _Point(speed, torque, cycle, teeth, told)
+    with collected() as warnings:
+        cycle, teeth = teeth_under_load(pair, settings, torque, None, None)
+    return _Point(speed, torque, cycle, teeth, warnings)
 
 
 def _columns(pair: Gears, settings: ToothContact, points: Sequence[_Point]) -> dict[str, Any]:
-    """Columns of all points, each in its row, or without rows where they are the same."""
+    """Columns of all points, one row each, or without rows where they are the same."""
     cycle = points[0].cycle
     motion = cycle.motion(np.array([[point.speed] for point in points]))
     pairs = pairs_in_contact(cycle, motion, settings.lubricant, settings.material)
@@ -83,57 +83,57 @@ def _columns(pair: Gears, settings: ToothContact, points: Sequence[_Point]) -> d
     loads = Loads(shared, load, np.maximum(load, least), film_at, None)
 
     def films_of(row: int) -> Films:
-        own: FormulaFilm = replace(_row(film_at, row), pairs=_row(pairs, row))
-        return own(loads.tribological[row])
+        film_of_row: FormulaFilm = replace(_row(film_at, row), pairs=_row(pairs, row))
+        return film_of_row(loads.tribological[row])
 
-    films: Films = _asked(points, lambda: film_at(loads.tribological), films_of)
+    films: Films = _compute_rows(points, lambda: film_at(loads.tribological), films_of)
     roughness = settings.composite_roughness
     contact = tribological_contact(motion, pairs, loads.tribological, roughness, None, films)
 
     def friction_of(row: int) -> Friction:
         pitch = pitch_point(pair, points[row].speed, points[row].torque)
-        own = replace(_row(contact, row), pitch=pitch)
-        return film_at.friction(own, motion, settings)
+        contact_of_row = replace(_row(contact, row), pitch=pitch)
+        return film_at.friction(contact_of_row, motion, settings)
 
     together = LAWS[settings.friction_law].together
     all_at_once = partial(film_at.friction, contact, motion, settings) if together else None
-    friction = _asked(points, all_at_once, friction_of)
+    friction = _compute_rows(points, all_at_once, friction_of)
     reported = reported_films(films, loads, least)
     return columns_of(cycle, motion, loads, contact, reported, friction)
 
 
-def _asked(
+def _compute_rows(
     points: Sequence[_Point],
-    together: Callable[[], Any] | None,
-    alone: Callable[[int], Any],
+    compute_together: Callable[[], Any] | None,
+    compute_row: Callable[[int], Any],
 ) -> Any:
-    """Ask about all rows at a time, or one after the other where what is told may differ."""
-    if together is not None:
-        with collected() as told:
-            found = together()
-        if not told:
-            return found
-    each = []
+    """Compute all rows in one call, or one by one where their warnings may differ."""
+    if compute_together is not None:
+        with collected() as warnings:
+            results = compute_together()
+        if not warnings:
+            return results
+    row_results = []
     for row, point in enumerate(points):
-        with collected() as told:
-            each.append(alone(row))
-        point.told.extend(told)
-    return _stacked(each)
+        with collected() as warnings:
+            row_results.append(compute_row(row))
+        point.warnings.extend(warnings)
+    return _stacked(row_results)
 
 
 def _row(bundle: Any, row: int) -> Any:
-    """One row of all that is in rows."""
-    known = {each.name: getattr(bundle, each.name) for each in fields(bundle)}
-    own = {name: value[row] for name, value in known.items() if np.ndim(value) == 2}
-    return replace(bundle, **own)
+    """Return a copy of a dataclass with one row of each column that has rows."""
+    values = {each.name: getattr(bundle, each.name) for each in fields(bundle)}
+    row_values = {name: value[row] for name, value in values.items() if np.ndim(value) == 2}
+    return replace(bundle, **row_values)
 
 
-def _stacked(each: Sequence[Any]) -> Any:
-    """What was found of every row, in rows."""
-    first: Any = each[0]
+def _stacked(row_results: Sequence[Any]) -> Any:
+    """Stack the results of the rows."""
+    first: Any = row_results[0]
     if isinstance(first, np.ndarray):
-        return np.stack(each)
+        return np.stack(row_results)
     if not isinstance(first, Films | FrictionParts):
         return first
     names = [part.name for part in fields(first)]
-    return replace(first, **{n: _stacked([getattr(one, n) for one in each]) for n in names})
+    return replace(first, **{n: _stacked([getattr(row, n) for row in row_results]) for n in names})

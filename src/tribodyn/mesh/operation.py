@@ -129,7 +129,7 @@ def film_over_operation(
     pinion_torque : float or array (torques,) [N*m]
         Magnitudes of the torque on the pinion.
     progress : Progress
-        Told how many films are solved.
+        Receives the number of solved films.
 
     Raises
     ------
@@ -169,7 +169,7 @@ def film_over_operation(
     )
     share = _shares(pair, settings, places, torque)
     total_load = torque / (pair.pinion.base_radius * pair.common_face_width)
-    # A pair that its relief keeps apart has no film; the solver is given a little load instead.
+    # A pair that its relief separates has no film; the solver gets a small load instead.
     load = total_load[:, None] * np.maximum(share, LEAST_SHARE)
     touches = (share > LEAST_SHARE)[:, None, :]
     motion = contact.kinematics(path, speed[:, None])
@@ -184,8 +184,8 @@ def film_over_operation(
 
     with film_places(place):
         contacts = load[:, None, :], motion.equivalent_radius, motion.entrainment_speed
-        given = {"length": pair.common_face_width, "progress": progress, **options}
-        films = model.films(*contacts, lubricant, modulus, **given)
+        model_options = {"length": pair.common_face_width, "progress": progress, **options}
+        films = model.films(*contacts, lubricant, modulus, **model_options)
     return FilmOverOperation(
         pinion_torque=torque,
         pinion_speed=speed,
@@ -213,12 +213,12 @@ def _shares(pair: Gears, settings: ToothContact, places: PathPositions, torque: 
     number = np.floor(age).astype(int)
     phase = age - number
     path, in_contact = contact.pair_paths(phase)
-    found = []
+    shares = []
     for force in torque / pair.pinion.base_radius:
         teeth = teeth_of(contact, (phase, path, in_contact), settings.teeth, force)
         share = teeth.shared_load().share[np.arange(age.size), number]
-        found.append(share)
-    return np.array(found)
+        shares.append(share)
+    return np.array(shares)
 
 
 _OF_A_PAIR = ("film_stiffness", "tooth_stiffness", "pair_stiffness", "load_share")
@@ -355,7 +355,7 @@ def comprehensive_stiffness(
     steps : int
         Phase intervals of a mesh cycle.
     progress : Progress
-        Told how many films are solved.
+        Receives the number of solved films.
 
     Raises
     ------
@@ -425,26 +425,26 @@ def comprehensive_stiffness(
 def _columns(table: MeshTable, kind: str) -> dict[str, Array]:
     """Values of one pair in the order of its way, and of the mesh over the phase."""
     film, teeth = np.asarray(table.film_stiffness), table.tooth_stiffness
-    whole, pair_stiffness = table.mesh_stiffness, table.stiffness
+    comprehensive, pair_stiffness = table.mesh_stiffness, table.stiffness
     if kind == "seed":
         film = film * table.hertz_pressure  # its pressures are over the Hertzian one
     on_corners = table.mesh_stiffness / table.stiffness.sum(axis=1)
-    found = {
+    pair_columns = {
         "film_mesh_stiffness": np.nansum(film, axis=1),
         "tooth_mesh_stiffness": teeth.sum(axis=1) * on_corners,
     }
     if kind == "seed":
-        each, total = found.values()
+        each, total = pair_columns.values()
         touch = table.in_contact & np.isfinite(film)
         pair_stiffness = np.zeros(film.shape)
         pair_stiffness[touch] = 1.0 / (1.0 / film[touch] + 1.0 / teeth[touch])
-        whole = each * total / (each + total)
+        comprehensive = each * total / (each + total)
     of_a_pair = (film, teeth, pair_stiffness, table.load_share)
     ordered = (_in_order(table, column) for column in of_a_pair)
     return {
         **dict(zip(_OF_A_PAIR, ordered, strict=True)),
-        **found,
-        "comprehensive_mesh_stiffness": whole,
+        **pair_columns,
+        "comprehensive_mesh_stiffness": comprehensive,
     }
 
 

@@ -76,7 +76,7 @@ class ToothContact:
         return self.film["stiffness"] in IN_SERIES
 
 
-#: A pair that is kept apart has the film and the friction of this part of the load of all.
+#: Part of the total load for which a separated pair has its film and friction.
 LEAST_SHARE = 1e-3
 #: Largest error of the force over the force, from a tenth of the load to three times of it, and
 #: the one where flanks vary over the face, so that pairs begin to carry gradually.
@@ -154,7 +154,7 @@ class Teeth:
         on_path = np.where(self.in_contact, inner, 0.0)
         deflection = solved.approach[0] - problem.least_gap
         if film is not None and film.lead is not None:
-            # The approach is counted from the first film. Each pair stands off by its own film: the
+            # The approach is counted from the first film. Each pair is offset by its own film: the
             # load deflects teeth and films from where the flanks touch, each pair by its share.
             lead = self._of_all(film.lead)
             stand_off = (force * lead).sum(axis=1) / np.ravel(self.force)
@@ -257,7 +257,7 @@ class Teeth:
 
 @dataclass(frozen=True, eq=False)
 class SpringTeeth(Teeth):
-    """Teeth of pairs that are springs of their own and deflect alike."""
+    """Teeth whose pairs are independent springs with a common deflection."""
 
     stiffness: Array  #: secant stiffness of each pair [N/m]
 
@@ -291,9 +291,9 @@ class SpringTeeth(Teeth):
         """Force law as ramps; one with the stiffness of all pairs unless it is to be fitted."""
         if fitted:
             return super().ramps(shared, film, fitted=True)
-        whole = shared.stiffness.sum(axis=1)
-        first = shared.transmission_error - np.ravel(self.force) / whole
-        return first[:, None], whole[:, None]
+        total_stiffness = shared.stiffness.sum(axis=1)
+        first = shared.transmission_error - np.ravel(self.force) / total_stiffness
+        return first[:, None], total_stiffness[:, None]
 
     @cached_property
     def bends(self) -> tuple[float, ...]:
@@ -312,13 +312,13 @@ def teeth_of(
     model, options = settings.name, dict(settings.options)
     chosen, pair = MODELS[model], contact.pair
     phase, path, in_contact = places
-    given = {**chosen.options, **options}
+    model_options = {**chosen.options, **options}
     problem = mesh_problem(
         pair,
         provider=model,
         places=places,
         total_force=normal_force,
-        extended_contact=bool(given.get("extended_contact", False)),
+        extended_contact=bool(model_options.get("extended_contact", False)),
         material=settings.material,
         options=options,
     )
@@ -368,8 +368,8 @@ def force_ramps(problem: ContactProblem, total_force: float) -> tuple[Array, Arr
     parts = problem.compliance
     if parts.logarithm == 0.0 and not problem.places.contact.pair.has_modification:
         # Springs that all touch at once: one ramp, exactly.
-        whole = problem.tangent_at(np.where(problem.places.on_path, 1.0, 0.0))
-        return problem.least_gap[:, None], whole[:, None], 0.0
+        total_stiffness = problem.tangent_at(np.where(problem.places.on_path, 1.0, 0.0))
+        return problem.least_gap[:, None], total_stiffness[:, None], 0.0
     last = problem.at_loads(np.array([_LAST * total_force]))
     first = problem.least_gap
     approach = first + _LOOKED_AT[:, None] * (last.approach[0] - first)
@@ -393,8 +393,8 @@ def _kinks(problem: ContactProblem, most: Array) -> tuple[Array, Array]:
     """Deflection (n, kinks) at which each pair begins to carry in a slice, and the force there."""
     order = np.argsort(problem.gaps.mean(axis=(0, 2)))
     slices = order[np.unique(np.linspace(0, order.size - 1, _SLICES).round().astype(int))]
-    found = [replace(problem, gaps=problem.gaps[:, [s]]).pickups(most) for s in slices]
-    pairs = np.concatenate(found, axis=1)
+    pickups = [replace(problem, gaps=problem.gaps[:, [s]]).pickups(most) for s in slices]
+    pairs = np.concatenate(pickups, axis=1)
     # Pairs that never come into play within the range would be points without use.
     pairs = pairs[:, (pairs < most[:, None] * (1.0 - _SAME)).any(axis=0)]
     return pairs, problem.at_approach(pairs.T)[0].T
@@ -408,8 +408,8 @@ def _chords(first: Array, points: Array, forces: Array, last_slope: Array) -> tu
     x, y = np.take_along_axis(place, order, 1), np.take_along_axis(force, order, 1)
     slope = np.zeros_like(x)
     width, rise = np.diff(x, axis=1), np.diff(y, axis=1)
-    apart = width > _SAME * (x[:, -1:] - x[:, :1])
-    slope[:, :-1] = np.where(apart, rise / np.where(apart, width, 1.0), np.nan)
+    distinct = width > _SAME * (x[:, -1:] - x[:, :1])
+    slope[:, :-1] = np.where(distinct, rise / np.where(distinct, width, 1.0), np.nan)
     slope[:, -1] = last_slope
     # Of several points in one place the first has the slope of the chord that follows.
     for column in range(x.shape[1] - 2, -1, -1):

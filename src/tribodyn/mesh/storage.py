@@ -26,13 +26,13 @@ from tribodyn.validated_files import read_bytes, read_dataset
 if TYPE_CHECKING:
     import xarray
 
-#: What the attribute ``format`` of a file says; earlier versions cannot read one without gears.
+#: Values of the attribute ``format`` of a file; earlier versions cannot read files without gears.
 FORMAT, FORMAT_WITHOUT_GEARS = "tribodyn mesh table 3", "tribodyn mesh table 4"
 #: Tables of independent pairs, as they were written before; the first without a film in series.
 _EARLIER = ("tribodyn mesh table 1", "tribodyn mesh table 2")
-#: Films that are not known everywhere, and all that a table of another program has to know.
+#: Columns of films, which may hold NaN.
 FILMS = (*FILM_COLUMNS, *MIXED_COLUMNS)
-#: What only tables have whose films are in series with the teeth.
+#: Columns of tables whose films are in series with the teeth only.
 OF_TEETH_ALONE = ("tooth_load_share", "tooth_corner_share", "tooth_transmission_error")
 _OF_THE_FORCE = (
     "stiffness", "tooth_stiffness", "corner_share", "static_transmission_error", "ramp_deflection",
@@ -50,7 +50,7 @@ def is_mesh_table(path: Path) -> bool:
     try:
         with h5py.File(io.BytesIO(read_bytes(path, "netcdf"))) as file:
             return str(file.attrs.get("format", "")).startswith("tribodyn mesh table")
-    except Exception:  # HDF5 tells of a damaged file in many ways.
+    except Exception:  # HDF5 reports damaged files by many exceptions.
         return False
 
 
@@ -67,30 +67,30 @@ def stored_values(path: str | PathLike[str]) -> dict[str, Any]:
         if data.attrs["format"] in _EARLIER:
             values = _earlier(values)
         _check(values)
-    # What a damaged file holds makes its readers stumble in many ways.
+    # Damaged files raise many exceptions.
     except Exception as error:
-        told = error.args[0] if isinstance(error, KeyError) and error.args else error
-        raise _unreadable(path, f"It is damaged: {told or type(error).__name__}") from None
+        reason = error.args[0] if isinstance(error, KeyError) and error.args else error
+        raise _unreadable(path, f"It is damaged: {reason or type(error).__name__}") from None
     return values
 
 
 def _values(data: xarray.Dataset) -> dict[str, Any]:
-    """Fields of a table as a data set has them."""
+    """Read the fields of a table from a data set."""
     if absent := [name for name in ("event_phase", "intervals") if name not in data.variables]:
         raise ValueError(f"{absent[0]} is missing")
     grid = PhaseGrid(
         tuple(float(value) for value in data["event_phase"].values),
         tuple(int(value) for value in data["intervals"].values),
     )
-    told = data.attrs.get("gear_pair")
-    if told is None and data.attrs["format"] != FORMAT_WITHOUT_GEARS:
+    stored_pair = data.attrs.get("gear_pair")
+    if stored_pair is None and data.attrs["format"] != FORMAT_WITHOUT_GEARS:
         raise ValueError("gear_pair is missing")
-    pair = read_pair(told) if told is not None else NoGears()
+    pair = read_pair(stored_pair) if stored_pair is not None else NoGears()
     values: dict[str, Any] = {"grid": grid, "gear_pair": pair}
     for field in fields(MeshColumns):
         if field.name in data.variables:
             values[field.name] = data[field.name].values
-        elif field.name not in values and (told is None or _is_required(field)):
+        elif field.name not in values and (stored_pair is None or _is_required(field)):
             values[field.name] = _plain(data.attrs.get(field.name))
         if field.name == "film_offset":
             # Tables of earlier versions count from the flanks.
@@ -99,7 +99,7 @@ def _values(data: xarray.Dataset) -> dict[str, Any]:
 
 
 def _check(values: Mapping[str, Any]) -> None:
-    """Refuse what is missing, has another shape, or is not finite where it has to be."""
+    """Raise for missing fields, wrong shapes, and values that have to be finite but are not."""
     _check_grid(values["grid"])
     count = len(coordinates_of(*(np.shape(values.get("direction", 0.0))[-1:] or (0,))))
     sizes = {"knot": values["grid"].phase.size, "end": 2, "coordinate": count}
@@ -155,24 +155,24 @@ def _is_required(field: Field[Any]) -> bool:
 
 
 def _earlier(values: dict[str, Any]) -> dict[str, Any]:
-    """Add what earlier tables did not have: their pairs were independent springs."""
-    whole = values["stiffness"].sum(axis=1)
+    """Add the fields that earlier formats lack: their pairs were independent springs."""
+    total_stiffness = values["stiffness"].sum(axis=1)
     force = values["pinion_torque"] / values["gear_pair"].pinion.base_radius
     new = {
         "tooth_stiffness": values["stiffness"],
         "film_stiffness_kind": "none",
-        "corner_share": np.zeros((whole.size, 2)),
-        "static_transmission_error": force / whole,
-        "mesh_stiffness_tangent": whole,
+        "corner_share": np.zeros((total_stiffness.size, 2)),
+        "static_transmission_error": force / total_stiffness,
+        "mesh_stiffness_tangent": total_stiffness,
         "maximum_single_pair_stiffness": float(values["stiffness"].max()),
-        "ramp_deflection": np.zeros((whole.size, 1)),
-        "ramp_stiffness": whole[:, None],
+        "ramp_deflection": np.zeros((total_stiffness.size, 1)),
+        "ramp_stiffness": total_stiffness[:, None],
     }
     return {**values, **{k: v for k, v in new.items() if values.get(k) is None}}
 
 
 def _plain(value: Any) -> Any:
-    """NetCDF attributes come back as NumPy scalars."""
+    """Convert a netCDF attribute, read as NumPy scalar, to a Python value."""
     return value.item() if isinstance(value, np.generic) else value
 
 
@@ -181,7 +181,7 @@ def _unreadable(path: str | PathLike[str], reason: str) -> InputError:
     return InputError(what, "argument path", reason, "Give a file that MeshTable.save wrote")
 
 
-#: Columns of a text file that stand once, for each ramp, for each contact, for each coordinate.
+#: Columns of a text file: one for the mesh, one per ramp, per contact, per coordinate.
 OF_THE_MESH = (
     "phase",
     "static_transmission_error",
@@ -200,7 +200,7 @@ UNITS = {"phase": ""} | {
     name: QUANTITIES[_LABELS[name].of or name if name in _LABELS else name].unit
     for name in (*OF_THE_MESH[1:], *OF_RAMPS, *OF_CONTACTS, *DIRECTIONS)
 }
-#: What holds for the whole file.
+#: Values in the head of a file, which apply to all rows.
 _OF_THE_FILE = (
     "base_radius_pinion",
     "base_radius_wheel",
@@ -213,13 +213,13 @@ FACTS = {name: QUANTITIES[name].unit for name in _OF_THE_FILE}
 
 
 def facts_of(table: MeshColumns) -> dict[str, float]:
-    """What holds for the whole table; without films in series there is no offset of them."""
+    """Values that apply to all rows of a table; the film offset only if films are in series."""
     facts = {name: float(getattr(table, name)) for name in FACTS}
     return {name: value for name, value in facts.items() if name != "film_offset" or value > 0.0}
 
 
 def write_csv(table: MeshColumns, path: str | PathLike[str]) -> None:
-    """Write a mesh table as CSV, of which :mod:`tribodyn.mesh.table_file` makes an equal one."""
+    """Write a mesh table as CSV, which :mod:`tribodyn.mesh.table_file` reads back unchanged."""
     place = Path(path)
     if place.exists():
         why = "An existing file is never overwritten"

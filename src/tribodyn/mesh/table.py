@@ -77,9 +77,9 @@ class MeshTable(MeshColumns):
         """
         if self.tooth_transmission_error is None or self.film_stiffness is None:
             return None
-        known = (self.load_share > 0.0) & np.nan_to_num(self.film_stiffness > 0.0)
-        film = np.where(known, self.film_stiffness, 1.0)
-        compliance = np.where(known, self.load_share**2 / film, 0.0).sum(axis=1)
+        finite_film = (self.load_share > 0.0) & np.nan_to_num(self.film_stiffness > 0.0)
+        film = np.where(finite_film, self.film_stiffness, 1.0)
+        compliance = np.where(finite_film, self.load_share**2 / film, 0.0).sum(axis=1)
         return np.asarray(1.0 / compliance)
 
     @property
@@ -89,7 +89,7 @@ class MeshTable(MeshColumns):
 
     @property
     def mean_asperity_friction_coefficient(self) -> float | None:
-        """Part of the mean friction coefficient from asperities; None where no law tells it."""
+        """Part of the mean friction coefficient from asperities; None if the law has none."""
         part = self.asperity_friction_coefficient
         return None if part is None else float(self.grid.mean(self.by_share(part)))
 
@@ -219,18 +219,18 @@ class MeshTable(MeshColumns):
         return MeshForceLaw(self.grid, self.ramp_deflection, self.ramp_stiffness)
 
     def _parts(self) -> Parts:
-        """Columns with those that follow from them, and what tells the file from others."""
+        """Columns of the file, with derived ones and the attribute that identifies the format."""
         parts = super()._parts()
         attributes = {"format": FORMAT, **parts.attributes}
         if self.gears is None:
             attributes["format"] = FORMAT_WITHOUT_GEARS
             dims = ("knot", "coordinate")[-self.direction.ndim :]
-            told = self._attributes("direction", Labels(dims))
-            parts.variables["direction"] = (dims, self.direction, told)
+            labels_and_units = self._attributes("direction", Labels(dims))
+            parts.variables["direction"] = (dims, self.direction, labels_and_units)
         else:
             attributes["gear_pair"] = self.gears.written()
-        told = self._attributes("mesh_phase", Labels(("event",)))
-        parts.coordinates["event_phase"] = ("event", np.array(self.event_phases), told)
+        labels_and_units = self._attributes("mesh_phase", Labels(("event",)))
+        parts.coordinates["event_phase"] = ("event", np.array(self.event_phases), labels_and_units)
         parts.coordinates["intervals"] = ("event", np.array(self.grid.intervals))
         return parts._replace(attributes=attributes)
 

@@ -1,4 +1,4 @@
-"""Mesh tables of other programs: a CSV or netCDF file with contacts, read and checked."""
+"""Read and check mesh tables of other programs: CSV or netCDF files with contacts."""
 
 from __future__ import annotations
 
@@ -42,25 +42,25 @@ from tribodyn.mesh.table import MeshTable
 from tribodyn.types import Array
 from tribodyn.validated_files import file_kind, plain_number, read_bytes, read_dataset
 
-#: Columns that only tell of the contact and may hold NaN.
-_TOLD = (*FILMS, "hertz_pressure", "path")
+#: Columns that the force law does not need and that may hold NaN.
+_MAY_BE_NAN = (*FILMS, "hertz_pressure", "path")
 _SPEEDS = ("sliding_speed", "entrainment_speed")
 _FRICTION = ("sliding_direction", "pinion_curvature_radius", "wheel_curvature_radius")
 _HEADER = re.compile(r"([a-z_]+?)(?:_([1-9][0-9]{0,2}))?\s*(?:\[([^\]]*)\])?")
 _FACT = re.compile(r"#\s*(\w+)\s*[=:]\s*(.+)")
-#: Phases nearer than this are one; knots this even are left as they are [mesh cycles].
+#: Phases closer than this are the same; rows this evenly spaced are not resampled [mesh cycles].
 _SAME, _EVEN = 1e-9, 1e-9
-#: Knots that take the place of uneven rows, at least.
-_KNOTS = 512
+#: Least number of even grid points that replace uneven rows.
+_GRID_POINTS = 512
 #: Events of a mesh cycle, at most.
 _MOST_EVENTS = 200
-#: Torques nearer than this are the same, relative to them.
+#: Relative difference up to which torques are the same.
 _SAME_TORQUE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class TableFile:
-    """A mesh table that another program wrote: columns in SI on a phase grid."""
+    """Mesh table from a file of another program: columns in SI on a phase grid."""
 
     path: str
     grid: PhaseGrid
@@ -132,7 +132,7 @@ class TableFile:
         )
 
     def _complete(self, columns: dict[str, Any], normal_force: float) -> dict[str, Any]:
-        """Fill in what follows from what the file gives."""
+        """Add the columns that follow from those of the file."""
         stiffness = columns["stiffness"]
         count, shape = stiffness.shape[0], stiffness.shape
         ramps = (columns["ramp_deflection"], columns["ramp_stiffness"])
@@ -163,8 +163,8 @@ class TableFile:
         columns.setdefault("unloaded_transmission_error", None)  # type: ignore[arg-type]
         most = self.facts.get("maximum_single_pair_stiffness", float(columns["stiffness"].max()))
         names.remove("direction")
-        kept = {name: value for name, value in columns.items() if name in names}
-        return {"maximum_single_pair_stiffness": most, **kept}
+        table_columns = {name: value for name, value in columns.items() if name in names}
+        return {"maximum_single_pair_stiffness": most, **table_columns}
 
     def _same_torque(self, normal_force: float) -> bool:
         stated = self.facts.get("pinion_torque")
@@ -176,7 +176,7 @@ class TableFile:
         if stated is None or self.has_force_law or abs(torque - stated) <= _SAME_TORQUE * stated:
             return
         what = f"pinion_torque = {torque:.6g} N*m, and the mesh table belongs to {stated:.6g} N*m"
-        why = "Its stiffness holds for that load alone: it has no force law"
+        why = "Its stiffness is valid at that load only: it has no force law"
         remedy = f"Keep {stated:.6g} N*m, or add ramp_deflection and ramp_stiffness to the table"
         raise InputError(what, "argument pinion_torque", why, remedy)
 
@@ -192,19 +192,21 @@ class TableFile:
 
 
 def read_table_file(path: str | os.PathLike[str]) -> TableFile:
-    """Read and check the mesh table of another program, or one that this library wrote."""
+    """Read and check a mesh table of another program or of this library."""
     place = Path(path)
     kind = file_kind(place)
     if kind != "file":
         what = "the mesh table " + ("is no regular file" if kind else "does not exist")
         _refuse(path, what, "It is a CSV or netCDF file", "Correct the path")
     if place.suffix.lower() in (".nc", ".nc4", ".netcdf", ".h5"):
-        return _own(place) if is_mesh_table(place) else _checked(path, *_netcdf(place), [])
+        return (
+            _library_table(place) if is_mesh_table(place) else _checked(path, *_netcdf(place), [])
+        )
     facts, columns, events = _csv(place)
     return _checked(path, facts, columns, events)
 
 
-def _own(place: Path) -> TableFile:
+def _library_table(place: Path) -> TableFile:
     table = MeshTable.load(place)
     columns = {
         field.name: value
@@ -225,58 +227,61 @@ def _refuse(path: Any, what: str, why: str, remedy: str, where: str = "") -> NoR
 def _checked(
     path: Any, facts: dict[str, float], columns: dict[str, Array], events: list[float]
 ) -> TableFile:
-    """Check columns in SI and lay them on a phase grid."""
+    """Check columns in SI and put them on a phase grid."""
     if "phase" not in columns:
         _refuse(path, "the column phase is missing", "Rows are mesh phases", "Add it, from 0 to 1")
     if "stiffness" not in columns and "ramp_stiffness" not in columns:
         why = "A contact carries by a stiffness or by the ramps of a force law"
         remedy = "Add stiffness, or ramp_deflection and ramp_stiffness"
         _refuse(path, "the column stiffness is missing", why, remedy)
-    for one, other in (OF_RAMPS, OF_RAMPS[::-1]):
-        if one in columns and other not in columns:
+    for column, other in (OF_RAMPS, OF_RAMPS[::-1]):
+        if column in columns and other not in columns:
             _refuse(path, f"the column {other} is missing", "Each ramp has both", f"Add {other}")
     radii = [f"base_radius_{gear}" for gear in ("pinion", "wheel")]
     if "direction" not in columns and not all(name in facts for name in radii):
         missing = next(name for name in radii if name not in facts)
-        why = "The forces of the teeth turn the gears: they need levers"
+        why = "The moments of the tooth forces need levers"
         _refuse(path, f"{missing} is missing", why, "Add both base radii, or direction columns")
     if any(name in columns for name in _SPEEDS) and "pinion_speed" not in facts:
         why = "Speeds of the contact belong to a speed of the pinion"
-        _refuse(path, "pinion_speed is missing", why, "Add it to what holds for the whole file")
+        _refuse(path, "pinion_speed is missing", why, "Add it to the head of the file")
     _check_values(path, columns)
-    grid, columns = _gridded(path, columns, events)
+    grid, columns = _on_phase_grid(path, columns, events)
     if "ramp_stiffness" not in columns:
-        whole = columns["stiffness"].sum(axis=1)[:, None]
-        columns |= {"ramp_deflection": np.zeros_like(whole), "ramp_stiffness": whole}
+        total_stiffness = columns["stiffness"].sum(axis=1)[:, None]
+        columns |= {
+            "ramp_deflection": np.zeros_like(total_stiffness),
+            "ramp_stiffness": total_stiffness,
+        }
     if "stiffness" not in columns:
         columns["stiffness"] = columns["ramp_stiffness"].sum(axis=1)[:, None]
-    found = TableFile(str(path), grid, columns, facts)
-    if found.has_friction:
-        found._need_friction_columns()
-    return found
+    table_file = TableFile(str(path), grid, columns, facts)
+    if table_file.has_friction:
+        table_file._need_friction_columns()
+    return table_file
 
 
 def _check_values(path: Any, columns: Mapping[str, Array]) -> None:
     for name, values in columns.items():
         bad = ~np.isfinite(values)
-        if name not in _TOLD and bad.any():
+        if name not in _MAY_BE_NAN and bad.any():
             row = int(np.argwhere(bad)[0][0])
             why = "Every row of a mesh table has a number in every column of the force law"
             _refuse(path, f"{name} is {values[bad][0]} in row {row + 1}", why, "Complete it", name)
         if name in ("stiffness", "ramp_stiffness", "load_share") and np.any(values < 0.0):
-            why = "Teeth that are pressed together push back more"
+            why = "The force of pressed teeth grows with the deflection"
             what = f"{name} falls to {values.min():.4g}"
             _refuse(path, what, why, "Correct the sign", name)
-    whole = columns.get("ramp_stiffness", columns.get("stiffness"))
-    if whole is not None and np.any(whole.sum(axis=1) == 0.0):
-        row = int(np.argmin(whole.sum(axis=1)))
+    ramp_stiffness = columns.get("ramp_stiffness", columns.get("stiffness"))
+    if ramp_stiffness is not None and np.any(ramp_stiffness.sum(axis=1) == 0.0):
+        row = int(np.argmin(ramp_stiffness.sum(axis=1)))
         _refuse(path, f"nothing carries in row {row + 1}", "Some contact is always there", "Add it")
 
 
-def _gridded(
+def _on_phase_grid(
     path: Any, columns: dict[str, Array], events: list[float]
 ) -> tuple[PhaseGrid, dict[str, Array]]:
-    """Rows between two events as one smooth piece each; uneven rows get even knots."""
+    """Put the smooth pieces between events on a phase grid; resample unevenly spaced rows."""
     phase = columns.pop("phase").reshape(-1)
     steps = np.diff(phase)
     if np.any(steps < 0.0):
@@ -289,8 +294,8 @@ def _gridded(
         _refuse(path, what, why, "Let it run from 0 to 1", "phase")
     doubled = steps == 0.0
     if np.any(doubled[1:] & doubled[:-1]) or doubled[[0, -1]].any():
-        why = "A phase stands twice at an event inside of the cycle: before and after it"
-        _refuse(path, "a phase stands three times", why, "Keep two rows at most", "phase")
+        why = "Only an event inside the cycle has two rows of one phase: before and after it"
+        _refuse(path, "a phase is repeated", why, "Write two rows per event at most", "phase")
     cuts = {int(row) + 1 for row in np.flatnonzero(doubled)}
     pieces = [(a, b) for a, b in zip([0, *sorted(cuts)], [*sorted(cuts), phase.size], strict=True)]
     for event in events:
@@ -307,7 +312,7 @@ def _gridded(
     if even:
         rows = np.concatenate([np.arange(a, b) for a, b in pieces])
         return PhaseGrid(edges, intervals), {n: values[rows] for n, values in columns.items()}
-    grid = phase_grid(edges, max(_KNOTS, 2 * phase.size))
+    grid = phase_grid(edges, max(_GRID_POINTS, 2 * phase.size))
     joined = {
         name: np.concatenate(
             [
@@ -323,10 +328,10 @@ def _gridded(
 def _cut(
     path: Any, pieces: list[tuple[int, int]], phase: Array, event: float
 ) -> Iterator[tuple[int, int]]:
-    """Cut the piece in which an event lies; both parts keep its row."""
+    """Split the piece that contains an event; both parts include the row of the event."""
     if np.min(np.abs(phase - event)) > _SAME:
         why = "Columns jump at events, so each of them is a row, or two with both values"
-        _refuse(path, f"the event {event:.6g} is on no row", why, "Add the row", "events")
+        _refuse(path, f"no row has the phase of the event {event:.6g}", why, "Add it", "events")
     for a, b in pieces:
         inside = a + 1 + np.flatnonzero(np.abs(phase[a + 1 : b - 1] - event) <= _SAME)
         if inside.size:
@@ -337,16 +342,16 @@ def _cut(
 
 
 def _between(phase: Array, values: Array, at: Array) -> Array:
-    """Monotone curve through the rows of a piece: it swings beyond none of them."""
-    if not np.isfinite(values).all():  # What is not known everywhere stays so.
+    """Interpolate the rows of a piece by a monotone cubic, which does not overshoot."""
+    if not np.isfinite(values).all():  # NaN stays NaN
         columns = values.reshape(phase.size, -1).T
-        known = np.stack([np.interp(at, phase, column) for column in columns], axis=1)
-        return known.reshape(at.size, *values.shape[1:])
+        interpolated = np.stack([np.interp(at, phase, column) for column in columns], axis=1)
+        return interpolated.reshape(at.size, *values.shape[1:])
     return monotone_cubic(phase, values)(np.clip(at, phase[0], phase[-1]))
 
 
 def _in_si(path: Any, name: str, unit: str, values: Array) -> Array:
-    """Column in SI; a unit of another kind is refused."""
+    """Convert a column to SI, or raise if its unit has another dimension."""
     if unit in ("", "-", "1"):
         unit = ""
     if unit == UNITS[name] or (name in DIRECTIONS and unit in ("", "m")):
@@ -355,7 +360,7 @@ def _in_si(path: Any, name: str, unit: str, values: Array) -> Array:
         return np.asarray(values * units.convert(1.0, unit, UNITS[name]))
     except units.UnitProblemError:
         what = f"the unit of {name} [{unit or '1'}] does not fit"
-        why = f"It is given in {UNITS[name] or '1'}, or in a unit of the same kind"
+        why = f"Its unit is {UNITS[name] or '1'}, or another one of the same dimension"
         _refuse(path, what, why, "Correct the unit", name)
 
 
@@ -400,12 +405,12 @@ def _csv(place: Path) -> tuple[dict[str, float], dict[str, Array], list[float]]:
                 what, why = f'"{entry}" in row {number + 1} is no number', "Numbers have a point"
                 _refuse(place, what, why, "Correct it", names[column])
             values[number, column] = value
-    facts = {n: _fact(place, n, told.strip()) for n, told in stated if n in FACTS}
-    events = [_event(place, e) for n, told in stated if n == "events" for e in told.split(",")]
+    facts = {n: _fact(place, n, text.strip()) for n, text in stated if n in FACTS}
+    events = [_event(place, e) for n, text in stated if n == "events" for e in text.split(",")]
     if len(events) > _MOST_EVENTS:
         why = f"A mesh cycle has at most {_MOST_EVENTS}"
         _refuse(place, f"there are {len(events)} events", why, "Keep those where columns jump")
-    return facts, _gathered(place, names, values), events
+    return facts, _columns_by_name(place, names, values), events
 
 
 def _event(place: Path, text: str) -> float:
@@ -415,21 +420,26 @@ def _event(place: Path, text: str) -> float:
     return value
 
 
-def _gathered(place: Path, names: list[str], values: Array) -> dict[str, Array]:
-    """Columns by name: those of contacts, ramps and coordinates side by side."""
-    found: dict[str, dict[tuple[int, str], Array]] = {}
+def _columns_by_name(place: Path, names: list[str], values: Array) -> dict[str, Array]:
+    """Columns by name, with contacts, ramps and coordinates stacked in arrays."""
+    parts_by_name: dict[str, dict[tuple[int, str], Array]] = {}
     for column, header in enumerate(names):
         name, number, unit, coordinate = _column_name(header)
         if name not in UNITS:
-            known = ", ".join(UNITS)
-            _refuse(place, f'the column "{header}" is unknown', f"Known are {known}", "Rename it")
+            known_names = ", ".join(UNITS)
+            _refuse(
+                place, f'the column "{header}" is unknown', f"Known are {known_names}", "Rename it"
+            )
         at = (int(number or 1) - 1, coordinate)
-        if at in found.setdefault(name, {}):
-            _refuse(place, f'the column "{header}" stands twice', "Each stands once", "Remove one")
-        found[name][at] = _in_si(place, name, (unit or "").strip(), values[:, column])
-    told = {coordinate for parts in found.values() for _, coordinate in parts if coordinate}
-    space = coordinates_of(len(SPATIAL_COORDINATES) if told.difference(COORDINATES) else 0)
-    return {name: _stacked(place, name, parts, space) for name, parts in found.items()}
+        if at in parts_by_name.setdefault(name, {}):
+            what = f'the column "{header}" appears twice'
+            _refuse(place, what, "Column names are unique", "Remove one")
+        parts_by_name[name][at] = _in_si(place, name, (unit or "").strip(), values[:, column])
+    coordinates = {
+        coordinate for parts in parts_by_name.values() for _, coordinate in parts if coordinate
+    }
+    space = coordinates_of(len(SPATIAL_COORDINATES) if coordinates.difference(COORDINATES) else 0)
+    return {name: _stacked(place, name, parts, space) for name, parts in parts_by_name.items()}
 
 
 def _column_name(header: str) -> tuple[str, str | None, str | None, str]:
@@ -451,10 +461,10 @@ def _stacked(
     if name in OF_THE_MESH:
         return parts[0, ""]
     if name in DIRECTIONS:
-        whole = np.zeros((rows, count, len(space)))
+        directions = np.zeros((rows, count, len(space)))
         for (contact, coordinate), values in parts.items():
-            whole[:, contact, space.index(coordinate)] = values
-        return whole[:, 0] if name == "direction" else whole
+            directions[:, contact, space.index(coordinate)] = values
+        return directions[:, 0] if name == "direction" else directions
     if len(parts) != count:
         why = "Contacts and ramps are counted from 1"
         _refuse(place, f"the column {name}_{len(parts)} is missing", why, "Number them")

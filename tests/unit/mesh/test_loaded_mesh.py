@@ -190,6 +190,6 @@ def test_tables_at_all_speeds_share_the_teeth_and_nothing_that_changes(monkeypat
         table(pair, pinion_torque=91.0, **given)
         assert len(loaded) == 2
         assert ["iso6336-range" in str(each.message) for each in told] == 4 * [True]
-        sys.modules["tribodyn.mesh.build"]._known_teeth.cache_clear()
+        sys.modules["tribodyn.mesh.build"]._cached_teeth.cache_clear()
         assert tables[2] == table(pair, pinion_speed=200.0, **given)
         assert len(loaded) == 3

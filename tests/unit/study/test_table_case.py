@@ -264,7 +264,7 @@ def broken(name):
         ("end", "runs from 0 to 0.9"),
         ("unit", "unit of stiffness \\[kg\\]"),
         ("unknown", '"stifness" is unknown'),
-        ("event", "event 0.2 is on no row"),
+        ("event", "no row has the phase of the event 0.2"),
         ("ramp", "ramp_deflection is missing"),
         ("negative", "stiffness falls to"),
         ("torque unit", "pinion_torque = 90 m"),

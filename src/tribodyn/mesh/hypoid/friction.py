@@ -34,7 +34,7 @@ from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Record, drawn, fact, quantity, record
 from tribodyn.types import Array, Mask
 
-#: Film of the elliptical contact that each line is; other models are those of line contacts.
+#: Film model of each line as an elliptical contact; the other models are for line contacts.
 ELLIPTICAL = "hamrock-dowson"
 #: Deflections of the points of the force law, over that at the load of the table.
 _POINTS = np.array([0.0, 0.03, 0.06, *np.geomspace(0.1, 1.0, 13), 1.2, 1.5, 1.9, 2.4, 3.0])
@@ -218,23 +218,23 @@ def hypoid_friction(
     def rubbed(which: Mask) -> tuple[TribologicalContact, FrictionParts]:
         film = _film(loaded, motion, which, lubricant, film_model)
         contact = _contact(loaded, motion, which, film, lubricant, roughness)
-        told = law.told(contact, friction_options)
-        if isinstance(told, FrictionParts):
-            return contact, told
-        return contact, FrictionParts(told, np.zeros(told.shape), np.ones(told.shape))
+        friction = law.told(contact, friction_options)
+        if isinstance(friction, FrictionParts):
+            return contact, friction
+        return contact, FrictionParts(friction, np.zeros(friction.shape), np.ones(friction.shape))
 
     width = loaded.line_force / cells.length
-    rubbed(width >= JUDGED_LOAD * width.max())  # for what film and law have to say of them
+    rubbed(width >= JUDGED_LOAD * width.max())  # for the warnings of the film and the law
     with quiet():
-        contact, told = rubbed(width > 0.0)
+        contact, parts = rubbed(width > 0.0)
     return HypoidFriction(
         phase=loaded.phase,
         sliding_speed=cells.spread(motion.sliding_speed),
         entrainment_speed=cells.spread(motion.entrainment_speed),
         equivalent_radius=cells.spread(motion.equivalent_radius),
         friction_direction=cells.spread(motion.friction_direction),
-        **_of_the_law(cells, width > 0.0, contact, told),
-        **_sums(loaded, motion, width > 0.0, told.coefficient),
+        **_of_the_law(cells, width > 0.0, contact, parts),
+        **_sums(loaded, motion, width > 0.0, parts.coefficient),
         pinion_speed=speed,
         composite_roughness=roughness,
         friction_law=friction_law,
@@ -245,21 +245,21 @@ def hypoid_friction(
 
 
 def _of_the_law(
-    cells: ContactCells, carry: Mask, contact: TribologicalContact, told: FrictionParts
+    cells: ContactCells, carry: Mask, contact: TribologicalContact, parts: FrictionParts
 ) -> dict[str, Array]:
-    """Film and friction of the cells that carry, laid out over all."""
-    known = {
+    """Film and friction of the loaded cells, spread over all cells."""
+    line_values = {
         "minimum_film": (contact.known("film_thickness"), 0.0),
         "film_ratio": (contact.film_ratio, np.inf),
-        "friction_coefficient": (told.coefficient, 0.0),
-        "film_load_share": (told.film_load_share, 1.0),
+        "friction_coefficient": (parts.coefficient, 0.0),
+        "film_load_share": (parts.film_load_share, 1.0),
     }
-    found = {}
-    for name, (values, empty) in known.items():
-        whole = np.full(carry.shape, empty)
-        whole[carry] = values
-        found[name] = cells.spread(whole, empty)
-    return found
+    columns = {}
+    for name, (values, empty) in line_values.items():
+        all_lines = np.full(carry.shape, empty)
+        all_lines[carry] = values
+        columns[name] = cells.spread(all_lines, empty)
+    return columns
 
 
 def _sums(
@@ -288,9 +288,9 @@ def _film(
     cells, modulus = loaded.cells, effective_modulus(loaded.material, loaded.material)
     radius, speed = motion.equivalent_radius[carry], motion.entrainment_speed[carry]
     if model == ELLIPTICAL:
-        whole = np.broadcast_to(loaded.line_force.sum(axis=1)[:, None], carry.shape)[carry]
+        line_force = np.broadcast_to(loaded.line_force.sum(axis=1)[:, None], carry.shape)[carry]
         return hamrock_dowson_minimum(
-            whole,
+            line_force,
             radius,
             cells.side_radius[carry],
             speed,
@@ -316,7 +316,7 @@ def _contact(
     oil: Lubricant,
     roughness: float,
 ) -> TribologicalContact:
-    """Cells that carry, as friction laws see them."""
+    """Loaded cells as a contact of the friction laws."""
     cells = loaded.cells
     return TribologicalContact(
         load_per_width=(loaded.line_force / cells.length)[carry],
@@ -374,11 +374,11 @@ def _table_of(rubbed: HypoidFriction) -> MeshTable:
 
 
 def _contact_columns(rubbed: HypoidFriction) -> dict[str, Any]:
-    """Columns that tell of the cells of each pair: means by their force, and least films."""
+    """Columns of each pair from its cells: means weighted by force, and least films."""
     loaded, touch = rubbed.loaded, rubbed.loaded.cells.in_contact
     force, carries = loaded.cell_force, loaded.cell_force > 0.0
     rubs = force * rubbed.friction_coefficient
-    found = {
+    columns = {
         name: _mean(getattr(rubbed, name), weight)
         for name, weight in (
             ("sliding_speed", rubs),
@@ -389,11 +389,11 @@ def _contact_columns(rubbed: HypoidFriction) -> dict[str, Any]:
     }
     for name in ("minimum_film", "film_ratio"):
         least = np.where(carries, getattr(rubbed, name), np.inf).min(axis=2)
-        found[name] = np.where(np.isfinite(least), least, np.nan)
-    entrained = np.where(touch, found["entrainment_speed"], 1.0)
-    found["slide_to_roll_ratio"] = found["sliding_speed"] / entrained
-    found["sliding_direction"] = np.where(touch, 1.0, 0.0)
-    return found
+        columns[name] = np.where(np.isfinite(least), least, np.nan)
+    entrained = np.where(touch, columns["entrainment_speed"], 1.0)
+    columns["slide_to_roll_ratio"] = columns["sliding_speed"] / entrained
+    columns["sliding_direction"] = np.where(touch, 1.0, 0.0)
+    return columns
 
 
 def _force_law(loaded: HypoidLoadedContact) -> MeshForceLaw:
@@ -406,7 +406,7 @@ def _force_law(loaded: HypoidLoadedContact) -> MeshForceLaw:
 
 
 def _friction_columns(rubbed: HypoidFriction) -> dict[str, Any]:
-    """Coefficient of each pair, what a newton of its friction does, and the levers of that.
+    """Coefficient of each pair, the wrench of a unit friction force, and its levers.
 
     Without any friction the direction is that of one coefficient in all cells.
     """
@@ -433,6 +433,6 @@ def _friction_columns(rubbed: HypoidFriction) -> dict[str, Any]:
 
 
 def _mean(values: Array, weight: Array) -> Array:
-    """Weighted mean over the cells of each pair; of cells alike where the weights are zero."""
+    """Weighted mean over the cells of each pair; the plain mean where all weights are zero."""
     weight = np.where(np.any(weight > 0.0, axis=2, keepdims=True), weight, 1.0)
     return np.asarray((weight * values).sum(axis=2) / weight.sum(axis=2))

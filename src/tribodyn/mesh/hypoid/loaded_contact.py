@@ -63,10 +63,10 @@ class ContactCells:
         return total
 
     def spread(self, values: Array, empty: float = 0.0) -> Array:
-        """Lay values of the lines (lines, ...) out over phases and pairs."""
-        whole = np.full((*self.in_contact.shape, *values.shape[1:]), empty)
-        whole[self.in_contact] = values
-        return whole
+        """Spread values of the lines (lines, ...) over phases and pairs (phase, pair, ...)."""
+        spread_values = np.full((*self.in_contact.shape, *values.shape[1:]), empty)
+        spread_values[self.in_contact] = values
+        return spread_values
 
 
 def contact_cells(
@@ -81,8 +81,8 @@ def contact_cells(
     turn = first + pitch * (phase[:, None] + np.arange(pairs))
     in_contact = turn < last
     rotation = sense * turn[in_contact]
-    ends, there = lines.ends(rotation)
-    in_contact[in_contact], rotation, ends = there, rotation[there], ends[there]
+    ends, meets = lines.ends(rotation)
+    in_contact[in_contact], rotation, ends = meets, rotation[meets], ends[meets]
     # Ends and centres of cells in one line.
     station = ends[:, :1] + np.linspace(0.0, 1.0, 2 * count + 1) * np.ptp(ends, axis=1)[:, None]
     touch = lines.touch(rotation[:, None], station)
@@ -112,7 +112,7 @@ class HypoidLoadedContact(Record):
     """One mesh cycle of a hypoid pair under load; made by :func:`hypoid_loaded_contact`.
 
     Pair ``i`` came into contact ``i`` cycles before phase 0. What belongs to pairs that are not in
-    contact is zero. Forces and levers are told in the frames of both gears: x along the common
+    contact is zero. Forces and levers are in the frames of both gears: x along the common
     perpendicular, y along the axis of the gear so that its running sense is positive, z across.
 
     Parameters
@@ -316,11 +316,11 @@ def _required_torque(pinion_torque: float) -> float:
 def _lines(
     flanks: HypoidFlanks, misalignment: Misalignment, grid: PhaseGrid, cells: int
 ) -> ContactCells:
-    """Contact lines, which know no torque: those found last stay with the flanks."""
+    """Contact lines, which do not depend on the torque: the flanks cache the last ones."""
     key = (misalignment, grid.phase.size, cells)
-    known, kept = vars(flanks).get("_lines_found_last", (None, None))
-    if isinstance(kept, ContactCells) and known == key:
-        return kept
+    cached_key, cached_lines = vars(flanks).get("_lines_found_last", (None, None))
+    if isinstance(cached_lines, ContactCells) and cached_key == key:
+        return cached_lines
     lines = contact_cells(flanks, misalignment, grid.phase, cells)
     vars(flanks)["_lines_found_last"] = (key, lines)
     return lines
@@ -329,16 +329,16 @@ def _lines(
 def carried(cells: ContactCells, line_stiffness: float, lag: Array) -> tuple[Array, Array, Array]:
     """Forces of the cells of a wheel that lags (p,) [rad], its torque, and the slope of that."""
     over = cells.edge_lever * lag[cells.row, None] - cells.edge_gap
-    one, two = over[:, :-1], over[:, 1:]
+    first, second = over[:, :-1], over[:, 1:]
     with np.errstate(divide="ignore", invalid="ignore"):
-        turn = one / (one - two)
+        turn = first / (first - second)
     # The closed part of the cell, between shares of its length.
-    begin = np.where(one >= 0.0, 0.0, np.where(two > 0.0, turn, 1.0))
-    end = np.where(two >= 0.0, 1.0, np.where(one > 0.0, turn, begin))
+    begin = np.where(first >= 0.0, 0.0, np.where(second > 0.0, turn, 1.0))
+    end = np.where(second >= 0.0, 1.0, np.where(first > 0.0, turn, begin))
     closed, middle = end - begin, 0.5 * (begin + end)
     spring = line_stiffness * cells.length * closed
     lever = cells.edge_lever
-    force = spring * np.maximum(one + (two - one) * middle, 0.0)
+    force = spring * np.maximum(first + (second - first) * middle, 0.0)
     slope = spring * (lever[:, :-1] + (lever[:, 1:] - lever[:, :-1]) * middle)
     arm = cells.touch.lever
     torque, rate = (cells.summed((each * arm).sum(axis=1)) for each in (force, slope))
@@ -377,8 +377,8 @@ def lag_under(cells: ContactCells, line_stiffness: float, wheel_torque: float) -
     if not left < _REFUSED:
         raise ComputationError(
             f"a torque of {wheel_torque:.4g} N m on the wheel is balanced within {left:.2g} only",
-            why="It is too small beside the gaps of ease-off and misalignment",
-            remedy="Give more torque, or read the tooth contact without load",
+            why="It is too small for the gaps by ease-off and misalignment",
+            remedy="Increase the torque, or compute the tooth contact without load",
         )
     return lag
 

@@ -104,13 +104,13 @@ def mesh_of(
 
 def teeth_contact_ratio(case: Case) -> float | None:
     """Contact ratio under load on the grid points of a run; None if only a mesh table has it."""
-    from tribodyn.mesh.build import known_teeth
+    from tribodyn.mesh.build import teeth_under_load
     from tribodyn.mesh.loaded_intervals import contact_ratio
 
     if case.gears.kind != "spur" or not case.gear_pair.has_profile_modification:
         return None
     settings = contact_settings(case)
-    cycle, teeth = known_teeth(case.gear_pair, settings, case.pinion_torque, None, None)
+    cycle, teeth = teeth_under_load(case.gear_pair, settings, case.pinion_torque, None, None)
     shared = teeth.shared_load()
     return contact_ratio(cycle.grid, shared.share, shared.corner_share)
 
