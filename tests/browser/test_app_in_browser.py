@@ -98,7 +98,7 @@ def test_a_case_is_changed_run_laid_over_and_saved(visit: Visit, folder: Path) -
     tab.click("[aria-label='Overlay Run 1']")
     tab.click("[aria-label='Overlay Run 2']")
     visit.wait("[aria-label='Overlay Run 2'][aria-pressed=true]")
-    tab.click("text=Lay over each other")
+    tab.click("text=Overlay runs")
     visit.wait("#bench h3", "Comparison of results")
     tab.wait_for_selector("#bench .main-svg")
     tab.click("text=What differs")
@@ -131,7 +131,7 @@ def test_a_wrong_value_is_told_beside_its_field(visit: Visit) -> None:
     assert refused.value.problems[0].what in told
     assert tab.get_attribute("#case-operation-speed", "aria-invalid") == "true"
     tab.click("#run")
-    visit.wait("#notice", "Correct what is marked")
+    visit.wait("#notice", "Correct the marked fields")
     visit.fill("operation.speed", "900")
     tab.wait_for_selector("#case-operation-speed[aria-invalid=false]")
 
@@ -146,7 +146,7 @@ def test_a_wrong_value_dims_the_figures_and_marks_its_closed_box(visit: Visit) -
     mark = "getComputedStyle(document.querySelector('#case-table-operation .title'), '::after')"
     assert tab.evaluate(f"{mark}.content") == "none"
     tab.click("#case-table-operation")
-    tab.wait_for_function(f"{mark}.content.includes('not in order')")
+    tab.wait_for_function(f"{mark}.content.includes('invalid')")
     badge = tab.locator("#case-values-operation")
     assert (badge.inner_text(), badge.is_visible()) == ("4 values", True)
     tab.click("#case-table-operation")

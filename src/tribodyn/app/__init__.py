@@ -1,18 +1,18 @@
-"""A page in the browser for the whole job: the case as a form, runs, studies, results side by side.
+"""Browser page for editing a case, running it and studies, and comparing the results.
 
-``tribodyn app`` serves it; Dash and Flask are loaded by ``server`` and ``page`` alone.
+``tribodyn app`` serves it; only ``server`` and ``results`` load Dash and Flask.
 
-============  =========================================================================
-module        what it does
-============  =========================================================================
-``form``      fields of a case file as data, made of the options of the models
-``desk``      one tab of the browser: its case, its runs, what it looks at
-``folder``    the folder that the page may read and write, and nothing beyond it
-``jobs``      processes that compute, each of which may end without harm to the page
-``worker``    what such a process does
-``guard``     who may ask: token, sessions, host and origin of a request
-``page``      what stands on the page
-``results``   how what was computed stands there
-``server``    requests to all of it, and the server
-============  =========================================================================
+==================  ===================================================================
+module              what it does
+==================  ===================================================================
+``case_form``       fields of a case file as data, from the options of the models
+``session``         one tab of the browser: its case, its runs and the current view
+``workspace``       the folder to which the page has access, and no other
+``jobs``            computations in worker processes, isolated from the page
+``worker``          main program of a worker process
+``authentication``  token, sessions, host and origin of a request
+``studies``         studies that the page offers
+``results``         layout of case, results and studies on the page
+``server``          the web server and its requests
+==================  ===================================================================
 """

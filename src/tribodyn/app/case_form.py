@@ -1,4 +1,4 @@
-"""Fields of a case file as data: made of the options of the models, as ``explain`` is."""
+"""Form of a case file as data, from the options of the models."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribodyn.study.case.section import Section, Table
 from tribodyn.study.pipeline.citations import sources_of
 from tribodyn.units import UnitProblemError, convert, split, usual_units
 
-#: What a user has typed and no case holds yet: text by key.
+#: Typed text by key that is not part of the case yet.
 Typed = Mapping[str, str]
 
 #: Greek letters of symbols.
@@ -27,18 +27,18 @@ _GREEK = {
     "sigma": "σ", "tau": "τ", "phi": "φ", "omega": "ω", "Delta": "Δ",
 }  # fmt: skip
 _TITLES = {"dynamics": "Structure", "operation": "Speed and load"}
-#: Tables that stand open at first.
+#: Tables that are expanded at first.
 _OPEN = ("gears", "lubricant", "operation")
 
 
-def words(key: str) -> str:
-    """The last part of a key as words."""
+def key_label(key: str) -> str:
+    """Label of a key: its last part with spaces, capitalised."""
     text = key.rpartition(".")[2].replace("_", " ")
     return text[:1].upper() + text[1:]
 
 
 def symbol(text: str) -> list[str]:
-    """A symbol as it is printed: its letter, and its index."""
+    """Letter and index of a symbol as printed."""
     head, _, index = text.partition("_")
     return [_GREEK.get(head, head), " ".join(_GREEK.get(p, p) for p in index.split("_"))]
 
@@ -54,14 +54,14 @@ def essential() -> frozenset[str]:
             else:
                 yield f"{prefix}{name}"
 
-    # What has an inner table is a table, and the two ways to give a roughness are one.
+    # The centre distance is not in the short file, but is essential as well.
     return frozenset({*walk(tomllib.loads(start_toml()), ""), "gears.center_distance"})
 
 
 def field_of(
     key: str, option: Option, text: str = "", default: Any = None, unit: str = ""
 ) -> dict[str, Any]:
-    """One value as the page shows it: ``text`` as typed, ``default`` in SI where it is empty."""
+    """Data of one form field: ``text`` as typed, ``default`` in SI for an empty field."""
     units = usual_units(option.unit) if option.unit else []
     if option.display_unit and option.display_unit not in units:
         units.append(option.display_unit)
@@ -71,7 +71,7 @@ def field_of(
         units += [] if chosen in units or not option.unit else [chosen]
     return {
         "key": key,
-        "label": words(key),
+        "label": key_label(key),
         "symbol": symbol(option.symbol) if option.symbol else [],
         "kind": "choice" if option.names or option.kind == "flag" else option.kind,
         "value": text,
@@ -85,7 +85,7 @@ def field_of(
 
 
 def _parted(text: str, option: Option, unit: str) -> tuple[str, str]:
-    """Number and unit of a text; the whole text where it is no plain quantity."""
+    """Split a text into number and unit; return the full text if it is no quantity."""
     try:
         number, written = split(text)
         if not written or not option.unit:
@@ -99,19 +99,21 @@ def _parted(text: str, option: Option, unit: str) -> tuple[str, str]:
 
 
 def _names(option: Option, default: Any) -> list[list[str]]:
-    """Values of a choice with what they mean; the empty one is the default."""
+    """Values of a choice with their labels; the empty value is the default."""
     if option.kind == "flag":
-        known = {"true": "yes", "false": "no"}
-        shown = {None: "not given", True: "yes", False: "no"}[default]
+        choices = {"true": "yes", "false": "no"}
+        default_label = {None: "not given", True: "yes", False: "no"}[default]
     elif option.names is not None:
-        known = {name: name for name in option.names()}
-        shown = "not given" if default is None else str(default)
+        choices = {name: name for name in option.names()}
+        default_label = "not given" if default is None else str(default)
     else:
         return []
     first = (
-        [] if option.required else [["", f"{shown} (default)" if default is not None else shown]]
+        []
+        if option.required
+        else [["", f"{default_label} (default)" if default is not None else default_label]]
     )
-    return [*first, *([name, text] for name, text in known.items())]
+    return [*first, *([name, text] for name, text in choices.items())]
 
 
 def _placeholder(option: Option, default: Any, unit: str) -> str:
@@ -125,19 +127,19 @@ def _placeholder(option: Option, default: Any, unit: str) -> str:
 
 
 def _help(key: str, option: Option) -> str:
-    """Meaning, range with its origin, and equation."""
+    """Help text of a field: meaning, range with its origin, and equation."""
     equations = explanations()["equations"]
     limits = ""
     if option.names is None and option.kind in ("number", "numbers", "integer"):
         limits = f"Allowed: {option.allowed()}" + (f" ({option.origin})" if option.origin else "")
     basis = f"Where it is left empty: from {option.basis}" if option.basis else ""
-    found = equations.get(key, equations.get(key.rpartition(".")[2], ""))
-    parts = (option.meaning[:1].upper() + option.meaning[1:], limits, basis, found)
+    equation = equations.get(key, equations.get(key.rpartition(".")[2], ""))
+    parts = (option.meaning[:1].upper() + option.meaning[1:], limits, basis, equation)
     return ". ".join(part for part in parts if part)
 
 
 class CaseForm:
-    """The form of a case, with what was typed since and is not in it yet."""
+    """Form of a case, with typed text that is not part of the case yet."""
 
     def __init__(self, case: Case, typed: Typed, units: Mapping[str, str]) -> None:
         self.case, self.typed, self.units = case, typed, units
@@ -145,42 +147,42 @@ class CaseForm:
         self._origins = provenance(case)
 
     def groups(self) -> list[dict[str, Any]]:
-        """All tables with their fields: those that are needed first, the others folded."""
-        found = [self._group("", Case, "Case", "")]
+        """All tables with their fields: the essential ones first, the others collapsed."""
+        case_groups = [self._group("", Case, "Case", "")]
         for name, table in Case.fields.items():
             if isinstance(table, Table) and self._is_used(name):
-                found.append(self._group(name, table.kind, words(name), table.meaning))
-        return found
+                case_groups.append(self._group(name, table.kind, key_label(name), table.meaning))
+        return case_groups
 
     def options(self) -> dict[str, Option]:
-        """All options that the case may give, by key."""
-        found: dict[str, Option] = {}
+        """All options of the case by key."""
+        options_by_key: dict[str, Option] = {}
         pending: list[tuple[str, type[Section]]] = [("", Case)]
         for prefix, section in pending:
             for name, option in self._options(prefix, section):
-                found[name] = option
+                options_by_key[name] = option
             for name, table in section.fields.items():
                 if isinstance(table, Table) and self._is_used(f"{prefix}{name}"):
                     pending.append((f"{prefix}{name}.", table.kind))
-        return found
+        return options_by_key
 
     def _idle(self, key: str) -> bool:
         return is_idle(key, self._chosen("gears.kind"))
 
     def _is_used(self, table: str) -> bool:
-        """Whether a table says something; of those of gears their keys tell."""
+        """Whether a table has an effect; tables of gears are filtered by key."""
         return table.startswith("gears") or not self._idle(table)
 
     def _chosen(self, key: str) -> Any:
         return self.typed.get(key) or self._effective.get(key)
 
     def _options(self, prefix: str, section: type[Section]) -> Iterator[tuple[str, Option]]:
-        """Own options of a table, and those of the model that it names."""
-        known = {name: o for name, o in section.fields.items() if isinstance(o, Option)}
+        """Options of a table and of the model that it names."""
+        section_options = {name: o for name, o in section.fields.items() if isinstance(o, Option)}
         if section.selector:
             named = self._chosen(f"{prefix}{section.selector}")
-            known |= case_options(prefix.removesuffix("."), named)
-        for name, option in known.items():
+            section_options |= case_options(prefix.removesuffix("."), named)
+        for name, option in section_options.items():
             if not self._idle(f"{prefix}{name}"):
                 yield f"{prefix}{name}", option
 
@@ -188,10 +190,10 @@ class CaseForm:
         prefix = f"{key}." if key else ""
         fields = [(name, self._field(name, o)) for name, o in self._options(prefix, section)]
         chosen = f"{prefix}{section.selector}" if section.selector else ""
-        given = [name for name, field in fields if field["value"]]
-        first = {*essential(), *given, chosen, *(n for n, f in fields if f["required"])}
+        filled = [name for name, field in fields if field["value"]]
+        first = {*essential(), *filled, chosen, *(n for n, f in fields if f["required"])}
         inner = [
-            self._group(f"{key}.{name}", table.kind, words(name), table.meaning)
+            self._group(f"{key}.{name}", table.kind, key_label(name), table.meaning)
             for name, table in section.fields.items()
             if isinstance(table, Table) and key
         ]
@@ -200,7 +202,7 @@ class CaseForm:
             "title": _TITLES.get(key, title),
             "meaning": meaning,
             "note": str(self._chosen(chosen)) if chosen else "",
-            "values": len({*given} - {chosen}) + sum(group["values"] for group in inner),
+            "values": len({*filled} - {chosen}) + sum(group["values"] for group in inner),
             "open": key.partition(".")[0] in _OPEN and not key.endswith("modification"),
             "fields": [field for name, field in fields if name in first],
             "more": [field for name, field in fields if name not in first],
@@ -221,7 +223,7 @@ class CaseForm:
         return field
 
     def _as_typed(self, key: str, unit: str) -> tuple[str, str]:
-        """What was typed, as it was typed, beside the unit that was chosen."""
+        """The typed text without its unit, and the chosen unit."""
         text = self.typed[key]
         return (text.removesuffix(unit).strip() if unit else text), unit
 
@@ -239,7 +241,7 @@ class CaseForm:
         return f"{value:.12g}" if isinstance(value, float) else str(value)
 
     def _choice_help(self, key: str) -> str:
-        """What the chosen name means, and who published it."""
+        """Meaning and sources of the chosen name."""
         name = str(self._chosen(key))
         sources = sources_of(key.partition(".")[0], name)
         return " ".join(

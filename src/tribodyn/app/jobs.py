@@ -1,8 +1,8 @@
-"""Computations in processes of their own: one may be stopped, or break, and the page goes on.
+"""Computations in separate processes, which can be stopped or crash without harm to the page.
 
-A process is begun ahead of its job, so that all is loaded when somebody asks. It reads one order
-as a line of JSON, tells its progress as lines of JSON, and writes what it finds into the folder
-of the job. Stopping a job ends its process; nothing else is touched by that.
+A process starts ahead of its job, so that all modules are loaded when a job begins. It reads one
+order as a line of JSON, reports its progress as lines of JSON, and writes its results into the
+folder of the job. Stopping a job ends its process only.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
-#: Computations at a time, and those that wait.
+#: Limits of concurrent and of waiting computations.
 _AT_A_TIME, _WAITING = 2, 12
-#: Characters of a line that a process tells, and of what it writes besides.
-_LINE, _TOLD = 100_000, 2000
-#: What has ended.
+#: Characters of a progress message, and of the error stream, that are read.
+_LINE, _ERROR_LENGTH = 100_000, 2000
+#: Final states of a job.
 ENDED = ("done", "failed", "stopped")
 
 
 @dataclass
 class Job:
-    """One computation, as far as it has come."""
+    """State of one computation."""
 
     number: int
     kind: str
@@ -41,29 +41,29 @@ class Job:
     task: str = ""
     done: int = 0
     total: int | None = None
-    begun: float = field(default_factory=time.monotonic)
-    shown: dict[str, Any] = field(default_factory=dict)  #: what there is to see
+    started: float = field(default_factory=time.monotonic)
+    content: dict[str, Any] = field(default_factory=dict)  #: of the page
     saved: bool = False  #: whether its directory of results is complete
     problems: list[str] = field(default_factory=list)
-    version: int = 0  #: rises with all that is told
+    version: int = 0  #: increases with every message
 
     @property
     def ended(self) -> bool:
-        """Whether there is no more to wait for."""
+        """Whether it is done, failed or stopped."""
         return self.state in ENDED
 
     @property
     def settled(self) -> bool:
-        """Whether nothing of it changes any more."""
+        """Whether it has ended and its files are complete."""
         return self.ended and (self.state != "done" or self.saved or self.kind == "overlay")
 
     @property
     def seconds(self) -> int:
-        """How long it has been waiting and running."""
-        return int(time.monotonic() - self.begun)
+        """Seconds since it was started, waiting included."""
+        return int(time.monotonic() - self.started)
 
     def figure(self, name: str) -> Any:
-        """One of its figures."""
+        """Return one of its figures."""
         return json.loads((self.folder / f"{name}.json").read_text("utf-8"))
 
     @property
@@ -73,7 +73,7 @@ class Job:
 
 
 class _Process:
-    """A process that waits for one order."""
+    """Worker process that waits for one order."""
 
     def __init__(self) -> None:
         command = [sys.executable, "-W", "ignore", "-m", "tribodyn.app.worker"]
@@ -83,13 +83,13 @@ class _Process:
         )
 
     def order(self, order: Mapping[str, Any]) -> None:
-        """Give it what it has to compute."""
+        """Send the order to the process."""
         assert self._process.stdin is not None
         self._process.stdin.write(json.dumps(order).encode() + b"\n")
         self._process.stdin.flush()
 
     def lines(self) -> Any:
-        """What it tells, until it ends."""
+        """Yield its messages until it ends."""
         assert self._process.stdout is not None
         while line := self._process.stdout.readline(_LINE):
             yield json.loads(line)
@@ -98,11 +98,11 @@ class _Process:
         """Whether it still runs."""
         return self._process.poll() is None
 
-    def last_words(self) -> str:
-        """How it ended, and the end of what it wrote to its error stream."""
+    def exit_reason(self) -> str:
+        """Exit code and the last line of its error stream."""
         code = self._process.wait()
         self._errors.seek(0)
-        lines = self._errors.read()[-_TOLD:].decode("utf-8", "replace").strip().splitlines()
+        lines = self._errors.read()[-_ERROR_LENGTH:].decode("utf-8", "replace").strip().splitlines()
         return f"It ended with code {code}. {lines[-1] if lines else ''}".strip()
 
     def stop(self) -> None:
@@ -110,7 +110,7 @@ class _Process:
         self._process.kill()
 
     def end(self) -> None:
-        """Stop it and let go of it."""
+        """Stop it and close its streams."""
         self.stop()
         self._process.wait()
         self._errors.close()
@@ -133,7 +133,7 @@ class Jobs:
     def start(
         self, kind: str, title: str, order: Mapping[str, Any], case: Any = None
     ) -> Job | None:
-        """Begin a job, or let it wait; None where too many wait already."""
+        """Start or queue a job; return None if the queue is full."""
         with self._lock:
             if self._closed or len(self._waiting) >= _WAITING:
                 return None
@@ -157,34 +157,34 @@ class Jobs:
             self._spare = _Process()
 
     def _follow(self, job: Job, process: _Process) -> None:
-        """Take down what a process tells, until it ends."""
+        """Record the messages of a process until it ends."""
         try:
             process.order({**job.order, "folder": str(job.folder)})
-            for told in process.lines():
-                self._note(job, told)
-        except (OSError, ValueError):  # It was stopped, or told what is no JSON.
+            for message in process.lines():
+                self._update(job, message)
+        except (OSError, ValueError):  # It was stopped, or a message is no JSON.
             pass
         with self._lock:
             process.stop()
             if not job.ended:
-                why = f"The process that computed it ended. {process.last_words()}"
+                why = f"The process that computed it ended. {process.exit_reason()}"
                 job.state, job.problems = "failed", [why]
             job.version += 1
             process.end()
             self._running.pop(job.number, None)
             self._next()
 
-    def _note(self, job: Job, told: Mapping[str, Any]) -> None:
+    def _update(self, job: Job, message: Mapping[str, Any]) -> None:
         with self._lock:
             if job.state == "stopped":
                 return
-            for name in ("state", "task", "done", "total", "shown", "saved", "problems"):
-                if name in told:
-                    setattr(job, name, told[name])
+            for name in ("state", "task", "done", "total", "content", "saved", "problems"):
+                if name in message:
+                    setattr(job, name, message[name])
             job.version += 1
 
     def stop(self, job: Job) -> None:
-        """Stop a job, wherever it is."""
+        """Stop a waiting or running job."""
         with self._lock:
             if job in self._waiting:
                 self._waiting.remove(job)
@@ -195,18 +195,18 @@ class Jobs:
             process.stop()
 
     def forget(self, job: Job) -> None:
-        """Stop a job and clear all that it left."""
+        """Stop a job and delete its files."""
         self.stop(job)
         shutil.rmtree(job.folder, ignore_errors=True)
 
     def close(self) -> None:
-        """Stop everything and clear up."""
+        """Stop all jobs and delete their files."""
         with self._lock:
             self._closed = True
             running, spare = list(self._running.values()), self._spare
             self._waiting.clear()
         for process in running:
-            process.stop()  # who follows it lets go of it
+            process.stop()  # its thread closes it
         if spare is not None:
             spare.end()
         shutil.rmtree(self._home, ignore_errors=True)

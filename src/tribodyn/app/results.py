@@ -1,4 +1,4 @@
-"""How the case and what was computed stand on the page."""
+"""Layout of the case, results and studies on the page."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dash import dcc, html
 
-from tribodyn.app.session import RUNS, Desk
+from tribodyn.app.session import RUNS, TabSession
 from tribodyn.app.studies import STUDIES
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.report.figure_blocks import block_of_figure, topic_of
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tribodyn.app.jobs import Job
     from tribodyn.study.case.case import Case
 
-#: Figures of the geometry that stand first.
+#: Derived values of the geometry that are displayed as cards.
 _FIRST = (
     "transverse_contact_ratio",
     "center_distance",
@@ -39,17 +39,17 @@ _STATES = {"done": "done", "failed": "failed", "stopped": "stopped", "waiting": 
 
 
 def button(text: Any, do: str, of: str = "", **more: Any) -> html.Button:
-    """A button that says what it does; ``more`` are attributes with underscores for dashes."""
+    """Button with its action; ``more`` are attributes with underscores for dashes."""
     data = {name.replace("_", "-"): value for name, value in more.items() if "_" in name}
     plain = {name: value for name, value in more.items() if "_" not in name}
     return html.Button(text, type="button", **{"data-do": do, "data-of": of, **data}, **plain)
 
 
 def graph(name: str, figure: dict[str, Any], title: str) -> html.Div:
-    """A figure, for eyes and for screen readers."""
+    """Figure with a label for screen readers."""
     height = figure["layout"].get("height", 420)
-    drawn = dcc.Graph(figure=figure, config=_CONFIG, id=name, style={"height": f"{height}px"})
-    return html.Div(drawn, className="figure", role="group", **{"aria-label": title})
+    plot = dcc.Graph(figure=figure, config=_CONFIG, id=name, style={"height": f"{height}px"})
+    return html.Div(plot, className="figure", role="group", **{"aria-label": title})
 
 
 def table(head: list[str], rows: list[list[str]]) -> html.Div:
@@ -60,40 +60,40 @@ def table(head: list[str], rows: list[list[str]]) -> html.Div:
 
 
 def cards(rows: list[list[str]]) -> html.Div:
-    """The figures that everybody asks for first."""
+    """Key values as cards."""
     return html.Div(
         [
             html.Div(
-                [html.P(words, className="name"), html.P([shown, " ", html.Span(unit)])],
+                [html.P(label, className="name"), html.P([value, " ", html.Span(unit)])],
                 className="card",
             )
-            for words, shown, unit in rows
+            for label, value, unit in rows
         ],
         className="cards",
     )
 
 
 def notice(heading: str, lines: list[str]) -> list[Any]:
-    """Sentences that are to be seen; nothing where there are none."""
+    """Highlighted list of sentences; empty without any."""
     if not lines:
         return []
     items = html.Ul([html.Li(line) for line in lines])
     return [html.Div([html.H3(heading), items], className="notice")]
 
 
-def rail(desk: Desk) -> list[Any]:
-    """What can be looked at, one tab each, and the runs that are kept."""
+def rail(desk: TabSession) -> list[Any]:
+    """Tabs of all views, and the list of runs."""
     views = [("pair", "Gear pair"), ("files", "Open and save"), ("studies", "Studies")]
     tabs = [_tab(desk, view, text) for view, text in views]
-    for job in desk.jobs_here():
+    for job in desk.all_jobs():
         tabs.append(_tab(desk, f"job-{job.number}", [job.title, _mark(job)]))
     parts = [html.Div(tabs, role="tablist", className="tabs", **{"aria-label": "Views"})]
     return [*parts, _runs(desk)] if desk.runs else parts
 
 
-def _tab(desk: Desk, view: str, text: Any) -> html.Button:
-    here = desk.view == view
-    more = {"aria_selected": str(here).lower(), "aria_controls": "bench"}
+def _tab(desk: TabSession, view: str, text: Any) -> html.Button:
+    selected = desk.view == view
+    more = {"aria_selected": str(selected).lower(), "aria_controls": "bench"}
     return button(text, "view", view, role="tab", id=f"tab-{view}", **more)
 
 
@@ -102,23 +102,25 @@ def _mark(job: Job) -> html.Span:
     return html.Span(text, className=f"state {text}")
 
 
-def _runs(desk: Desk) -> html.Div:
-    """The runs side by side: what differs, and which are laid over each other."""
+def _runs(desk: TabSession) -> html.Div:
+    """List of runs with the differences of their cases and the selection for the overlay."""
     rows = []
     for job in desk.runs:
         picked = job.number in desk.picked
-        told = ", ".join(desk.changes(job)) or ("as the first" if job is not desk.runs[0] else "")
+        differences = ", ".join(desk.changes(job)) or (
+            "as the first" if job is not desk.runs[0] else ""
+        )
         more = {"aria_pressed": str(picked).lower(), "aria_label": f"Overlay {job.title}"}
         pick = button("✓" if picked else "+", "pick", str(job.number), **more, className="pick")
-        rows.append(html.Li([pick, html.Strong(job.title), " ", html.Span(told)]))
+        rows.append(html.Li([pick, html.Strong(job.title), " ", html.Span(differences)]))
     ready = len(desk.picked) > 1
-    over = button("Lay over each other", "overlay", className="plain", disabled=not ready)
-    text = f"{len(desk.runs)} of {RUNS} runs are kept; pick two or more with +."
+    over = button("Overlay runs", "overlay", className="plain", disabled=not ready)
+    text = f"{len(desk.runs)} of at most {RUNS} runs; select two or more with +."
     return html.Div([html.Ul(rows), html.P([over, " ", html.Span(text)])], className="runs")
 
 
-def pair(desk: Desk) -> list[Any]:
-    """Drawing and figures of the case as it stands."""
+def pair(desk: TabSession) -> list[Any]:
+    """Drawing and derived values of the current case."""
     from tribodyn.report.numbers import describe
     from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions
@@ -126,28 +128,28 @@ def pair(desk: Desk) -> list[Any]:
 
     case = desk.case
     with collected():
-        found = {n: float(v) for n, v in (geometry(case) | operating_figures(case)).items()}
-        told = [str(caution) for caution in case_cautions(case)]
-    numbers = [describe(name, value) for name, value in found.items()]
-    first = [describe(name, found[name], digits=4) for name in _FIRST if name in found]
+        figures = {n: float(v) for n, v in (geometry(case) | operating_figures(case)).items()}
+        cautions = [str(caution) for caution in case_cautions(case)]
+    numbers = [describe(name, value) for name, value in figures.items()]
+    first = [describe(name, figures[name], digits=4) for name in _FIRST if name in figures]
     rows = [[n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers]
     every = [html.Summary(f"All derived values ({len(rows)})")]
     every.append(table(["Quantity", "Value", "Meaning"], rows))
     parts = [
         cards([[n.label, n.value, n.unit] for n in first]),
-        *notice("Warnings", told),
+        *notice("Warnings", cautions),
         *_drawing(case),
         html.Details(every, className="block"),
     ]
     return [*_outdated(desk), html.Div(parts, className="outdated" if desk.faults else "")]
 
 
-def _outdated(desk: Desk) -> list[Any]:
-    """Say that drawing and figures are not those of the form while a value is not in order."""
+def _outdated(desk: TabSession) -> list[Any]:
+    """Notice that drawing and values do not match the form while it has an invalid value."""
     if not desk.faults:
         return []
     labels = ", ".join(dict.fromkeys(fault["label"] or "Case" for fault in desk.faults))
-    line = f"They belong to the last case in order. To bring them up to date, correct: {labels}."
+    line = f"They belong to the last valid case. To update them, correct: {labels}."
     return notice("Drawing and figures are out of date", [line])
 
 
@@ -157,10 +159,10 @@ def _drawing(case: Case) -> list[Any]:
     figure = plot.hypoid_pair if case.gears.kind == "hypoid" else plot.gear_pair
     try:
         subject = case.hypoid_flanks if case.gears.kind == "hypoid" else case.gear_pair
-        drawn = figure.sketch(subject)
+        sketch = figure.sketch(subject)
     except InputError as error:
         return [html.Div(html.P(error.problems[0].what), className="block")]
-    block = block_of_figure(figure.name, figure.heading, drawn, figure.caption_of(subject))
+    block = block_of_figure(figure.name, figure.heading, sketch, figure.caption_of(subject))
     return [_block(block.__dict__, f"pair-{figure.name}", json.loads(block.json))]
 
 
@@ -175,17 +177,17 @@ def _block(block: Any, name: str, figure: Any) -> html.Section:
     return html.Section(inner, className="block", id=f"block-{name}")
 
 
-def result(desk: Desk, job: Job) -> list[Any]:
-    """A job: how far it is, why it failed, or what came of it."""
+def result(desk: TabSession, job: Job) -> list[Any]:
+    """Progress, failure or results of a job."""
     if job.state in ("waiting", "running"):
         return [_progress(job)]
     if job.state != "done":
         lines = job.problems or ["It was stopped."]
         return notice(f"{job.title} {job.state}", lines)
-    topics = _topics(job.shown)
+    topics = _topics(job.content)
     topic = desk.topic if desk.topic in topics else next(iter(topics))
     tabs = [_topic_tab(name, topic) for name in topics]
-    head = _overview(job.shown) if topic == next(iter(topics)) else []
+    head = _overview(job.content) if topic == next(iter(topics)) else []
     return [
         html.Div(tabs, role="tablist", className="tabs topics", **{"aria-label": "Results"}),
         html.Div([*head, *(_part(job, each) for each in topics[topic])], role="tabpanel"),
@@ -196,25 +198,25 @@ def _topic_tab(name: str, chosen: str) -> html.Button:
     return button(name, "topic", name, role="tab", aria_selected=str(name == chosen).lower())
 
 
-def _overview(shown: dict[str, Any]) -> list[Any]:
-    """What is read first."""
+def _overview(content: dict[str, Any]) -> list[Any]:
+    """Cards, statements and warnings at the top of a result."""
     return [
-        *([cards(shown["cards"])] if shown.get("cards") else []),
-        *notice("Results", shown.get("told", [])),
-        *notice("Warnings", shown.get("warnings", [])),
+        *([cards(content["cards"])] if content.get("cards") else []),
+        *notice("Results", content.get("sentences", [])),
+        *notice("Warnings", content.get("warnings", [])),
     ]
 
 
-def _topics(shown: dict[str, Any]) -> dict[str, list[Any]]:
-    """What is read first, figures by what they are about, and the tables."""
-    drawn = [block for block in shown.get("blocks", []) if not block["missing"]]
-    first = [block for block in drawn if block["name"] == "mesh_force"]
-    found: dict[str, list[Any]] = {"Overview": first or drawn}
-    for block in shown.get("blocks", []) if first else []:
-        found.setdefault(topic_of(block["name"]), []).append(block)
-    for heading, head, rows in shown.get("tables", []):
-        found[heading] = [{"heading": heading, "head": head, "rows": rows}]
-    return found
+def _topics(content: dict[str, Any]) -> dict[str, list[Any]]:
+    """Overview, figures by topic, and tables of a result."""
+    drawn_blocks = [block for block in content.get("blocks", []) if not block["missing"]]
+    first = [block for block in drawn_blocks if block["name"] == "mesh_force"]
+    topics: dict[str, list[Any]] = {"Overview": first or drawn_blocks}
+    for block in content.get("blocks", []) if first else []:
+        topics.setdefault(topic_of(block["name"]), []).append(block)
+    for heading, head, rows in content.get("tables", []):
+        topics[heading] = [{"heading": heading, "head": head, "rows": rows}]
+    return topics
 
 
 def _part(job: Job, part: dict[str, Any]) -> html.Section:
@@ -226,10 +228,10 @@ def _part(job: Job, part: dict[str, Any]) -> html.Section:
 
 
 def _progress(job: Job) -> html.Div:
-    known = job.total is not None and job.total > 0
+    has_total = job.total is not None and job.total > 0
     text = job.task or ("Waiting for a free place" if job.state == "waiting" else "Beginning")
-    count = f"{min(job.done, job.total or 0)} of {job.total}" if known else ""
-    bar = {"value": str(job.done), "max": str(job.total)} if known else {}
+    count = f"{min(job.done, job.total or 0)} of {job.total}" if has_total else ""
+    bar = {"value": str(job.done), "max": str(job.total)} if has_total else {}
     line = [html.Strong(text), " ", html.Span(count), " ", html.Span(f"{job.seconds} s")]
     return html.Div(
         [
@@ -241,8 +243,8 @@ def _progress(job: Job) -> html.Div:
     )
 
 
-def tools(desk: Desk) -> list[Any]:
-    """What can be done with the job that is looked at."""
+def tools(desk: TabSession) -> list[Any]:
+    """Actions for the job in view."""
     job = desk.job_in_view
     if job is None or not job.ended:
         return []
@@ -257,7 +259,7 @@ def tools(desk: Desk) -> list[Any]:
         parts.append(html.A("Report", href=f"report/{number}", target="_blank"))
     elif job.state == "done" and job.kind != "overlay":
         parts.append(html.Span("The files are being written …"))
-    if job.state == "done" and job.shown.get("relief"):
+    if job.state == "done" and job.content.get("relief"):
         text = "Take this relief into my case"
         parts.append(button(text, "take-relief", number, className="main"))
     if job.kind == "run":
@@ -266,17 +268,17 @@ def tools(desk: Desk) -> list[Any]:
     return [html.Div(parts, className="tools")]
 
 
-def _folder_name(desk: Desk, job: Job) -> str:
+def _folder_name(desk: TabSession, job: Job) -> str:
     stem = desk.name.removesuffix(".toml") or "my-gears"
     return f"{stem}-{job.title.lower().replace(' ', '-')}"
 
 
-def files(desk: Desk) -> list[Any]:
-    """Cases that can be opened, and where to save this one."""
+def files(desk: TabSession) -> list[Any]:
+    """Cases to open, and the form to save this one."""
     from tribodyn.cases.catalogue import cases
 
-    here = desk.folder.cases()
-    own = [html.Li(button(name, "open", f"file:{name}", className="link")) for name in here]
+    case_names = desk.folder.cases()
+    links = [html.Li(button(name, "open", f"file:{name}", className="link")) for name in case_names]
     built = [
         html.Li([button(name, "open", f"case:{name}", className="link"), " ", html.Span(title)])
         for name, title in cases().items()
@@ -295,13 +297,13 @@ def files(desk: Desk) -> list[Any]:
             className="block tools",
         ),
         html.Section(
-            [html.H3("Open a case of the folder"), html.Ul(own) if own else empty],
+            [html.H3("Open a case of the folder"), html.Ul(links) if links else empty],
             className="block",
         ),
         html.Section([html.H3("Built-in cases"), html.Ul(built)], className="block"),
         html.Section(
             [
-                html.H3("Begin anew"),
+                html.H3("New case"),
                 html.P(button("A short case to fill in", "open", "new:", className="plain")),
             ],
             className="block",
@@ -309,8 +311,8 @@ def files(desk: Desk) -> list[Any]:
     ]
 
 
-def studies(desk: Desk) -> list[Any]:
-    """Kinds of studies, and the values of the one that is chosen."""
+def studies(desk: TabSession) -> list[Any]:
+    """Kinds of studies, and the form of the selected one."""
     kinds = [
         html.Li(
             [
@@ -328,12 +330,12 @@ def studies(desk: Desk) -> list[Any]:
     return parts
 
 
-def bench(desk: Desk) -> list[Any]:
-    """What is looked at; a case that cannot be drawn says why."""
+def bench(desk: TabSession) -> list[Any]:
+    """The current view, or the reason why it cannot be displayed."""
     if desk.view in ("files", "studies"):
         return files(desk) if desk.view == "files" else studies(desk)
     job = desk.job_in_view
     try:
         return pair(desk) if job is None else result(desk, job)
     except TribodynError as error:
-        return notice("This cannot be shown", [str(problem) for problem in error.problems])
+        return notice("This cannot be displayed", [str(problem) for problem in error.problems])

@@ -13,15 +13,21 @@ from dash import ClientsideFunction, Input, Output, State, dcc, html
 from werkzeug.serving import BaseWSGIServer, WSGIRequestHandler, make_server
 
 from tribodyn.app import results
-from tribodyn.app.authentication import LARGEST, Guard, RefusalError, Session, headers
+from tribodyn.app.authentication import (
+    LARGEST,
+    Authenticator,
+    BrowserSession,
+    RefusalError,
+    headers,
+)
 from tribodyn.app.jobs import Jobs
-from tribodyn.app.session import Desk, at_start
-from tribodyn.app.workspace import Folder
+from tribodyn.app.session import TabSession, initial_case
+from tribodyn.app.workspace import Workspace
 from tribodyn.errors import InputError, TribodynError
 from tribodyn.report.html import text_of
 
 _PARTS = ("form", "rail", "tools", "bench", "notice", "title")
-#: Policy of a report, which is a page by itself and asks nothing of anybody.
+#: Content security policy of a report, which is a self-contained page without requests.
 _OF_REPORT = (
     "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; "
     "img-src data: blob:; sandbox allow-scripts allow-downloads"
@@ -40,12 +46,12 @@ class Page:
     def __init__(self, folder: Path, case: str = "", host: str = "127.0.0.1", port: int = 0):
         if not folder.is_dir():
             raise InputError(f"there is no folder {folder}", "--folder", "", "Create it first")
-        self._folder = Folder(folder)
-        self._begin = at_start(self._folder, case)
+        self._folder = Workspace(folder)
+        self._begin = initial_case(self._folder, case)
         self.server = _bound(host, port, _application)
         self.port = self.server.server_port
         self.host = host
-        self._guard = Guard(host, self.port)
+        self._guard = Authenticator(host, self.port)
         self._jobs = Jobs()
         self.server.app = self._flask()
 
@@ -53,8 +59,8 @@ class Page:
     def address(self) -> str:
         """Where the page is, with the token that opens it."""
         host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(self.host, self.host)
-        shown = f"[{host}]" if ":" in host else host
-        return f"http://{shown}:{self.port}/?token={self._guard.token}"
+        host_text = f"[{host}]" if ":" in host else host
+        return f"http://{host_text}:{self.port}/?token={self._guard.token}"
 
     def serve(self) -> None:
         """Answer requests until somebody interrupts or closes it."""
@@ -69,8 +75,8 @@ class Page:
         self._jobs.close()
         self.server.server_close()
 
-    def _new_desk(self) -> Desk:
-        return Desk(self._folder, self._jobs, *self._begin)
+    def _new_desk(self) -> TabSession:
+        return TabSession(self._folder, self._jobs, *self._begin)
 
     def _flask(self) -> flask.Flask:
         application = flask.Flask("tribodyn.app")
@@ -91,11 +97,11 @@ class Page:
         )
         page.layout = _layout()
         self._connect(page)
-        told = headers(page.csp_hashes())
+        response_headers = headers(page.csp_hashes())
 
         @application.after_request
         def leave(answer: flask.Response) -> flask.Response:
-            for name, value in told.items():
+            for name, value in response_headers.items():
                 answer.headers.setdefault(name, value)
             if not flask.request.path.startswith(("/assets/", "/_dash-component-suites/")):
                 answer.headers["Cache-Control"] = "no-store"
@@ -103,11 +109,11 @@ class Page:
 
         return application
 
-    def _session(self) -> Session:
+    def _session(self) -> BrowserSession:
         return self._guard.session(flask.request)
 
     def _enter(self) -> flask.typing.ResponseReturnValue | None:
-        """Let a request pass, begin a session, or give a new tab its desk."""
+        """Check a request, begin a session, or create the state of a new tab."""
         request = flask.request
         self._guard.check(request)
         token = request.args.get("token", "")
@@ -151,20 +157,22 @@ class Page:
             State("seen", "data"),
         )(self._answer)
 
-    def _answer(self, path: str, edits: Any, act: Any, tick: Any, seen: Any) -> list[Any]:
-        """Do what is asked, and tell what of the page has changed by it."""
+    def _answer(
+        self, path: str, edits: Any, act: Any, tick: Any, client_versions: Any
+    ) -> list[Any]:
+        """Perform the requested action and return the changed parts of the page."""
         desk = self._guard.desk(self._session(), str(path).split("/")[2])
         with desk.lock:
             _do(desk, edits or (), act)
-            now, drawn = _versions(desk), []
+            now, parts = _versions(desk), []
             for name in _PARTS:
-                same = isinstance(seen, dict) and seen.get(name) == now[name]
-                drawn.append(dash.no_update if same else _DRAW[name](desk))
-            return [*drawn, now, {"busy": desk.busy, "count": int(tick or 0)}]
+                same = isinstance(client_versions, dict) and client_versions.get(name) == now[name]
+                parts.append(dash.no_update if same else _DRAW[name](desk))
+            return [*parts, now, {"busy": desk.busy, "count": int(tick or 0)}]
 
 
 def _bound(host: str, port: int, application: Any) -> BaseWSGIServer:
-    """A server at its address, or why there is none."""
+    """Bind a server to its address, or raise with the reason."""
     try:
         return make_server(host, port, application, threaded=True, request_handler=_Quiet)
     except (OSError, SystemExit) as error:
@@ -195,7 +203,7 @@ def _refused(error: RefusalError) -> flask.typing.ResponseReturnValue:
 
 
 def _layout() -> html.Div:
-    """What stands on the page before a desk fills it."""
+    """Layout of the page before the state of a tab fills it."""
     run = results.button("Run", "run", id="run", title="Compute the case (Ctrl+Enter)")
     return html.Div(
         [
@@ -232,8 +240,8 @@ def _layout() -> html.Div:
     )
 
 
-def _do(desk: Desk, edits: Any, act: Any) -> None:
-    """Take down edits, then do what was pressed; each once."""
+def _do(desk: TabSession, edits: Any, act: Any) -> None:
+    """Apply edits, then the action of a button, each once."""
     try:
         for edit in edits:
             desk.edit(edit)
@@ -246,11 +254,11 @@ def _do(desk: Desk, edits: Any, act: Any) -> None:
         desk.tell(str(error), bad=True)
 
 
-def _view(desk: Desk, of: str, _: str) -> None:
+def _view(desk: TabSession, of: str, _: str) -> None:
     desk.view, desk.topic = of, ""
 
 
-def _topic(desk: Desk, of: str, _: str) -> None:
+def _topic(desk: TabSession, of: str, _: str) -> None:
     desk.topic = of
 
 
@@ -258,14 +266,14 @@ def _number(of: str) -> int:
     return int(of) if of.isascii() and of.isdigit() else -1
 
 
-_ACTS: dict[str, Callable[[Desk, str, str], None]] = {
+_ACTS: dict[str, Callable[[TabSession, str, str], None]] = {
     "view": _view,
     "topic": _topic,
     "run": lambda desk, of, text: desk.run(),
     "stop": lambda desk, of, text: desk.stop(_number(of)),
     "remove": lambda desk, of, text: desk.remove(_number(of)),
     "pick": lambda desk, of, text: desk.pick(_number(of)),
-    "overlay": lambda desk, of, text: desk.lay_over(),
+    "overlay": lambda desk, of, text: desk.overlay_runs(),
     "open": lambda desk, of, text: desk.open(of),
     "save": lambda desk, of, text: desk.save(text, force=False),
     "replace": lambda desk, of, text: desk.save(text, force=True),
@@ -277,31 +285,37 @@ _ACTS: dict[str, Callable[[Desk, str, str], None]] = {
 }
 
 
-def _versions(desk: Desk) -> dict[str, Any]:
-    """By part of the page something that changes with it."""
+def _versions(desk: TabSession) -> dict[str, Any]:
+    """Version of each part of the page, which changes with its content."""
     job = desk.job_in_view
-    jobs = [[j.number, j.state] for j in desk.jobs_here()]
+    jobs = [[j.number, j.state] for j in desk.all_jobs()]
     moving = [job.version, job.seconds] if job is not None and not job.ended else []
     at = [job.number, job.state, *moving] if job is not None else desk.edits
     return {
         "form": [desk.edits, desk.study],
         "rail": [desk.view, desk.picked, jobs],
         "tools": [desk.view, *([job.state, job.saved] if job else [])],
-        "bench": [desk.view, desk.topic, at, desk.told if desk.view == "files" else 0, desk.study],
-        "notice": desk.told,
+        "bench": [
+            desk.view,
+            desk.topic,
+            at,
+            desk.notice_count if desk.view == "files" else 0,
+            desk.study,
+        ],
+        "notice": desk.notice_count,
         "title": desk.edits,
     }
 
 
-def _notice(desk: Desk) -> Any:
-    """The last message; its number lets the same text appear anew."""
+def _notice(desk: TabSession) -> Any:
+    """Last message; its number makes a repeated text appear again."""
     if not desk.notice:
         return ""
     kind = "bad" if desk.bad else "good"
-    return html.P(desk.notice, className=kind, **{"data-number": str(desk.told)})
+    return html.P(desk.notice, className=kind, **{"data-number": str(desk.notice_count)})
 
 
-_DRAW: dict[str, Callable[[Desk], Any]] = {
+_DRAW: dict[str, Callable[[TabSession], Any]] = {
     "form": lambda desk: desk.forms(),
     "rail": results.rail,
     "tools": results.tools,

@@ -1,4 +1,4 @@
-"""One tab of the browser: its case, what was typed and is not in it yet, and its computations."""
+"""State of one browser tab: its case, typed text that is not valid yet, and its jobs."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.app.case_form import CaseForm, words
+from tribodyn.app.case_form import CaseForm, key_label
 from tribodyn.app.jobs import Job, Jobs
 from tribodyn.app.studies import STUDIES, first_values, form_of, numeric_keys
-from tribodyn.app.workspace import Folder
+from tribodyn.app.workspace import Workspace
 from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
@@ -23,38 +23,38 @@ from tribodyn.validated_files import plain_number
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
-#: Runs, and studies, that a desk keeps.
+#: Greatest number of runs, and of studies, of a tab.
 RUNS = 6
 #: Characters that a value may have.
 _LONGEST = 10_000
 #: Amount and length of a tip relief.
 _GEARS = ("pinion", "wheel")
 _RELIEF = ("tip_relief", "tip_relief_length")
-#: Who asks for a change, in messages.
+#: Origin of a change, in messages.
 _BY = "form"
 
 
-class Desk:
-    """What one tab works on. Every request holds the lock while it reads or changes it."""
+class TabSession:
+    """State of one tab; every request holds the lock while it reads or changes the state."""
 
-    def __init__(self, folder: Folder, jobs: Jobs, case: Case, name: str = "") -> None:
+    def __init__(self, folder: Workspace, jobs: Jobs, case: Case, name: str = "") -> None:
         self.lock = threading.RLock()
         self.folder, self.jobs = folder, jobs
         self.runs: list[Job] = []
         self.studies: list[Job] = []
         self.overlay: Job | None = None
-        self.picked: list[int] = []  #: runs that are laid over each other
+        self.picked: list[int] = []  #: runs that are selected for the overlay
         self.view, self.topic, self.study = "pair", "", ""
         self.values: dict[str, dict[str, str]] = {}  #: of studies, by kind
         self._acted = 0
-        self.notice, self.bad = "", False  #: what the last request came to
-        self.told = 0  #: notices so far
+        self.notice, self.bad = "", False  #: of the last request
+        self.notice_count = 0  #: notices so far
         self.edits = 0  #: changes of the form so far
         self._numbers: dict[str, int] = {}
         self.take(case, name)
 
     def take(self, case: Case, name: str) -> None:
-        """Put another case on the desk."""
+        """Replace the case and clear the form."""
         self.case, self.name = case, name
         self.typed: dict[str, str] = {}
         self.units: dict[str, str] = {}
@@ -68,34 +68,34 @@ class Desk:
 
     @property
     def job_in_view(self) -> Job | None:
-        """The job that is looked at."""
-        return next((j for j in self.jobs_here() if self.view == f"job-{j.number}"), None)
+        """Job in the current view."""
+        return next((j for j in self.all_jobs() if self.view == f"job-{j.number}"), None)
 
-    def edit(self, told: Mapping[str, Any]) -> None:
-        """Take down what was typed into a field, and check the case with it."""
-        key, number = str(told.get("key", "")), int(told.get("number", 0))
-        if told.get("form") == "study":
-            if self.study and key in STUDIES[self.study].options and "value" in told:
-                self.values[self.study][key] = str(told["value"])[:_LONGEST].strip()
+    def edit(self, event: Mapping[str, Any]) -> None:
+        """Apply an edit of a form field and check the case with it."""
+        key, number = str(event.get("key", "")), int(event.get("number", 0))
+        if event.get("form") == "study":
+            if self.study and key in STUDIES[self.study].options and "value" in event:
+                self.values[self.study][key] = str(event["value"])[:_LONGEST].strip()
             return
         option = self.form.options().get(key)
         if option is None or number <= self._numbers.get(key, -1):
-            return  # It belongs to another model, or a later one has overtaken it.
+            return  # The field belongs to another model, or a later edit came first.
         self._numbers[key] = number
         self.edits += 1
-        unit = str(told.get("unit") or option.display_unit)
-        if "value" in told:
-            self.typed[key] = _with_unit(option, str(told["value"])[:_LONGEST].strip(), unit)
+        unit = str(event.get("unit") or option.display_unit)
+        if "value" in event:
+            self.typed[key] = _with_unit(option, str(event["value"])[:_LONGEST].strip(), unit)
             if unit:
                 self.units[key] = unit
         elif option.unit:
             self._switch(key, option, unit)
-        shown = self.form.options()
-        self.typed = {each: text for each, text in self.typed.items() if each in shown}
-        self._judge(shown)
+        form_options = self.form.options()
+        self.typed = {each: text for each, text in self.typed.items() if each in form_options}
+        self._check_typed(form_options)
 
     def fresh(self, number: int) -> bool:
-        """Whether an act has not been done yet; from now on it has."""
+        """Whether an action is new; mark it as done."""
         newer = number > self._acted
         self._acted = max(number, self._acted)
         return newer
@@ -103,25 +103,26 @@ class Desk:
     def forms(self) -> dict[str, Any]:
         """The forms of the page as data."""
         form = self.form
-        shown: dict[str, Any] = {"case": {"groups": form.groups(), "faults": self.faults}}
+        form_data: dict[str, Any] = {"case": {"groups": form.groups(), "faults": self.faults}}
         if self.study:
             keys = numeric_keys(form.options())
-            shown["study"] = form_of(self.study, self.values[self.study], keys)
-        return shown
+            form_data["study"] = form_of(self.study, self.values[self.study], keys)
+        return form_data
 
     def choose_study(self, kind: str) -> None:
-        """Choose what kind of study to start."""
+        """Select a kind of study."""
         if kind in STUDIES:
             self.study = kind
             self.values.setdefault(kind, first_values(kind, self.case))
 
     def start_study(self) -> None:
-        """Start the study that is chosen."""
+        """Start the selected study."""
         self._refuse_faults()
         if not self.study:
             raise InputError("no study is chosen", "", "", "Choose one from the list")
         if len(self.studies) >= RUNS:
-            what, remedy = f"{RUNS} studies are kept already", "Remove one that you no longer need"
+            what = f"the limit of {RUNS} studies is reached"
+            remedy = "Remove one that you no longer need"
             raise InputError(what, "", "", remedy)
         order = {
             "case": self.case.to_toml(),
@@ -133,7 +134,7 @@ class Desk:
         self.view = f"job-{job.number}"
 
     def case_of(self, number: int) -> None:
-        """Go on with the case of a run."""
+        """Edit the case of a run."""
         job = self.job(number)
         if job is not None:
             self.take(job.case, self.name)
@@ -141,9 +142,9 @@ class Desk:
             self.tell(f"This is the case of {job.title}.")
 
     def take_relief(self, number: int) -> None:
-        """Put the tip relief of a study into the case; its other values stay as they are."""
+        """Apply the tip relief of a study to the case; its other values stay the same."""
         job = self.job(number)
-        relief = job.shown.get("relief") if job is not None else None
+        relief = job.content.get("relief") if job is not None else None
         if not relief:
             return
         self._refuse_faults()
@@ -155,11 +156,11 @@ class Desk:
         values = [relief[f"gears.{gears[0]}.modification.{name}"] for name in _RELIEF]
         of = " over ".join(values)
         self.tell(
-            f"The case has a tip relief of {of} now: {' and '.join(gears)}. Save it to keep it."
+            f"The case has a tip relief of {of} now: {' and '.join(gears)}. It is not saved yet."
         )
 
     def _switch(self, key: str, option: Option, unit: str) -> None:
-        """Show a value in another unit; the value stays what it is."""
+        """Display a value in another unit without changing it."""
         self.units[key] = unit
         text = self.typed.get(key)
         if text:
@@ -169,13 +170,13 @@ class Desk:
                 number = text.partition(" ")[0]
                 self.typed[key] = f"{number} {unit}"
 
-    def _judge(self, options: Mapping[str, Option]) -> None:
-        """Check the case with all that was typed; where it holds, it is the case from now on."""
+    def _check_typed(self, options: Mapping[str, Option]) -> None:
+        """Check the case with all typed values; if valid, it replaces the current case."""
         changes: dict[str, Any] = {}
         self.faults = []
         for key, text in self.typed.items():
             try:
-                changes[key] = self._meant(options[key], text)
+                changes[key] = self._case_value(options[key], text)
             except InputError as error:
                 self.faults.append(_fault(key, error))
         if self.faults:
@@ -190,8 +191,8 @@ class Desk:
                 key = key if key in options else ""
                 self.faults.append(_fault(key, InputError(problem)))
 
-    def _meant(self, option: Option, text: str) -> Any:
-        """The value of a case file that a text stands for."""
+    def _case_value(self, option: Option, text: str) -> Any:
+        """Convert typed text to the value of a case file."""
         if not text:
             return None
         if option.kind == "file":
@@ -203,17 +204,17 @@ class Desk:
         return _plain(option, text) if option.kind in ("number", "integer") else text
 
     def tell(self, text: str, bad: bool = False) -> None:
-        """Say what came of a request."""
+        """Display a message about the last request."""
         self.notice, self.bad = text, bad
-        self.told += 1
+        self.notice_count += 1
 
     def open(self, name: str) -> None:
-        """Take a built-in case, or one of the folder."""
+        """Open a built-in case or one of the folder."""
         kind, _, place = name.partition(":")
         if kind == "file":
             self.take(self.folder.load(place), place)
         elif place in case_files() or not place:
-            self.take(at_start(self.folder, place)[0], "")
+            self.take(initial_case(self.folder, place)[0], "")
         else:
             raise InputError(f'no built-in case is called "{place}"')
         self.view = "pair"
@@ -223,7 +224,7 @@ class Desk:
         """Write the case into the folder."""
         self._refuse_faults()
         place = self.folder.save_case(self.case, name, force)
-        self.name = self.folder.shown(place)
+        self.name = self.folder.relative_name(place)
         self.tell(f"The case is saved as {self.name}.")
 
     def save_job(self, number: int, name: str) -> None:
@@ -231,24 +232,24 @@ class Desk:
         job = self.job(number)
         if job is None or not job.saved:
             why = "Its files are still being written" if job and job.state == "done" else ""
-            raise InputError("there are no files of it yet", "", why, "Try again in a moment")
+            raise InputError("the job has no files yet", "", why, "Try again in a moment")
         place = self.folder.save_result(job.result, name)
-        self.tell(f"Saved in {self.folder.shown(place)}.")
+        self.tell(f"Saved in {self.folder.relative_name(place)}.")
 
     def run(self) -> None:
         """Compute the case."""
         self._refuse_faults()
         if len(self.runs) >= RUNS:
             remedy = "Remove one that you no longer need"
-            raise InputError(f"{RUNS} runs are kept already", "", "", remedy)
+            raise InputError(f"the limit of {RUNS} runs is reached", "", "", remedy)
         order = {"case": self.case.to_toml()}
-        job = self._start("run", f"Run {self._free()}", order)
+        job = self._start("run", f"Run {self._unused_number()}", order)
         self.runs.append(job)
         self.view = f"job-{job.number}"
 
-    def _free(self) -> int:
-        taken = {job.title for job in self.runs}
-        return next(n for n in range(1, RUNS + 2) if f"Run {n}" not in taken)
+    def _unused_number(self) -> int:
+        used_titles = {job.title for job in self.runs}
+        return next(n for n in range(1, RUNS + 2) if f"Run {n}" not in used_titles)
 
     def _start(self, kind: str, title: str, order: Mapping[str, Any]) -> Job:
         job = self.jobs.start(kind, title, order, self.case)
@@ -257,8 +258,8 @@ class Desk:
             raise InputError("this cannot be computed now", "", why, "Stop one of them, or wait")
         return job
 
-    def lay_over(self) -> None:
-        """Lay the runs that are picked over each other."""
+    def overlay_runs(self) -> None:
+        """Overlay the selected runs."""
         runs = [job for job in self.runs if job.number in self.picked]
         if len(runs) < 2 or not all(job.saved for job in runs):
             why = "" if len(runs) < 2 else "The files of one of them are still being written"
@@ -271,7 +272,7 @@ class Desk:
         self.view = f"job-{self.overlay.number}"
 
     def pick(self, number: int) -> None:
-        """Pick a run for the overlay, or leave it out."""
+        """Select a run for the overlay, or deselect it."""
         if number in self.picked:
             self.picked.remove(number)
         elif any(job.number == number for job in self.runs):
@@ -284,7 +285,7 @@ class Desk:
             self.jobs.stop(job)
 
     def remove(self, number: int) -> None:
-        """Stop a job and forget it."""
+        """Stop a job and delete it."""
         job = self.job(number)
         if job is None:
             return
@@ -296,52 +297,54 @@ class Desk:
         self.view = "pair"
 
     def job(self, number: int) -> Job | None:
-        """One of its jobs."""
-        return next((job for job in self.jobs_here() if job.number == number), None)
+        """Return the job with a number, or None."""
+        return next((job for job in self.all_jobs() if job.number == number), None)
 
-    def jobs_here(self) -> list[Job]:
+    def all_jobs(self) -> list[Job]:
         """All its jobs."""
         return [*self.runs, *self.studies, *([self.overlay] if self.overlay else [])]
 
     @property
     def busy(self) -> bool:
-        """Whether something is still to come."""
-        return any(not job.settled for job in self.jobs_here())
+        """Whether a job is still running or writing files."""
+        return any(not job.settled for job in self.all_jobs())
 
     def changes(self, job: Job) -> list[str]:
-        """What the case of a run has that the first run has not."""
+        """Differences of the case of a run from that of the first run."""
         if job not in self.runs[1:]:
             return []
-        found = differing([dict(each.case.values()) for each in (self.runs[0], job)])
-        told = []
-        for key, (_, value) in found.items():
+        differences = differing([dict(each.case.values()) for each in (self.runs[0], job)])
+        texts = []
+        for key, (_, value) in differences.items():
             option = spec_of(self.case, key)
-            shown = "default" if value is None else option.show(value) if option else str(value)
-            told.append(f"{words(key)} {shown}")
-        return told
+            value_text = (
+                "default" if value is None else option.show(value) if option else str(value)
+            )
+            texts.append(f"{key_label(key)} {value_text}")
+        return texts
 
     def close(self) -> None:
-        """Stop and forget all its jobs."""
-        for job in self.jobs_here():
+        """Stop and delete all its jobs."""
+        for job in self.all_jobs():
             self.jobs.forget(job)
 
     def _refuse_faults(self) -> None:
         if self.faults:
             count = len(self.faults)
-            what = f"{count} value{'s are' if count > 1 else ' is'} not in order"
-            raise InputError(what, "", "", "Correct what is marked first")
+            what = f"{count} value{'s are' if count > 1 else ' is'} invalid"
+            raise InputError(what, "", "", "Correct the marked fields first")
 
 
 def _fault(key: str, error: TribodynError) -> dict[str, str]:
-    """One fault as the page tells it beside its field."""
+    """Data of an error message at its form field."""
     problem = error.problems[0]
     parts = (p.rstrip(".") for p in (problem.what, problem.why, problem.remedy) if p)
     text = " ".join(p if p.endswith("?") else f"{p}." for p in parts)
-    return {"key": key, "label": words(key) if key else "", "text": text}
+    return {"key": key, "label": key_label(key) if key else "", "text": text}
 
 
 def _with_unit(option: Option, text: str, unit: str) -> str:
-    """A number with the unit that stands beside its field, unless it has one of its own."""
+    """Append the unit of the field to a number without unit."""
     if option.kind != "number" or not option.unit or not text:
         return text
     try:
@@ -351,27 +354,27 @@ def _with_unit(option: Option, text: str, unit: str) -> str:
 
 
 def _plain(option: Option, text: str) -> Any:
-    """A number without dimension as a number; anything else as text, which the check reads."""
+    """Convert a number without dimension; return anything else as text for the check."""
     if option.unit:
         return text
     number = plain_number(text)
-    whole = number is not None and option.kind == "integer" and float(number).is_integer()
-    return int(number) if whole and number is not None else text if number is None else number
+    is_integer = number is not None and option.kind == "integer" and float(number).is_integer()
+    return int(number) if is_integer and number is not None else text if number is None else number
 
 
-def at_start(folder: Folder, asked: str) -> tuple[Case, str]:
-    """The case that ``tribodyn app`` was given: built-in, or a file of the folder."""
+def initial_case(folder: Workspace, requested: str) -> tuple[Case, str]:
+    """Load the case of ``tribodyn app``: built-in, a file of the folder, or a new one."""
     from tribodyn.study.case.read import read_case
     from tribodyn.study.case.reference import start_toml
 
-    if not asked:
+    if not requested:
         return read_case(start_toml(), "case.toml"), ""
-    if asked in case_files() or not Path(asked).exists():
-        return load_case(asked), ""  # which tells what there is where there is no such case
-    place = Path(asked).resolve()
+    if requested in case_files() or not Path(requested).exists():
+        return load_case(requested), ""  # raises with a list of cases if the name is unknown
+    place = Path(requested).resolve()
     if not place.is_relative_to(folder.root):
-        why = f"The page reads and writes in {folder.root} alone"
+        why = f"The page reads and writes only in {folder.root}"
         remedy = f'Start it with --folder "{place.parent}"'
-        raise InputError(f"{asked} lies outside of the folder", "CASE", why, remedy)
-    name = folder.shown(place)
+        raise InputError(f"{requested} lies outside of the folder", "CASE", why, remedy)
+    name = folder.relative_name(place)
     return folder.load(name), name

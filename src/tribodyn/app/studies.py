@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 #: Values of a study as text, by name.
 Values = Mapping[str, str]
-#: What a study shows: ``told``, ``tables``, and figures as (heading, figure, caption).
+#: What a study shows: ``sentences``, ``tables``, and figures as (heading, figure, caption).
 Shown = dict[str, Any]
 
 #: Gears that may have a tip relief, and the ends of the keys of one.
@@ -48,24 +48,24 @@ def _varied(values: Values) -> Iterator[tuple[str, Any]]:
             yield values[key], _read(name, values.get(name, ""), read_values)
 
 
-def _read(name: str, words: str, read: Callable[[str], Any]) -> Any:
-    """A range or a list as the commands take it."""
+def _read(name: str, text: str, read: Callable[[str], Any]) -> Any:
+    """Parse a range or a list in the syntax of the commands."""
     try:
-        return read(words)
+        return read(text)
     except UnreadError as fault:
-        raise InputError(f'cannot read "{words}"', name, str(fault), f"Write {_RANGE}") from None
+        raise InputError(f'cannot read "{text}"', name, str(fault), f"Write {_RANGE}") from None
 
 
-def _ends(name: str, words: str) -> tuple[Any, Any]:
-    low, high, _ = _read(name, f"{words}:2", read_range)
+def _ends(name: str, text: str) -> tuple[Any, Any]:
+    low, high, _ = _read(name, f"{text}:2", read_range)
     return low, high
 
 
-def _points(case: Case, key: str, words: str) -> list[float] | None:
-    """Torques or speeds, read as the keys of the case."""
+def _points(case: Case, key: str, text: str) -> list[float] | None:
+    """Parse torques or speeds like the keys of the case."""
     from tribodyn.study.studies.axes import points_of
 
-    return points_of(case, key, _read(key, words, read_values), by="study") if words else None
+    return points_of(case, key, _read(key, text, read_values), by="study") if text else None
 
 
 def _operation(case: Case, values: Values) -> list[list[float] | None]:
@@ -77,7 +77,7 @@ def _of(answer: Any, kind: str, case: Case, target: Path) -> Shown:
 
     save_study(kind, case, target, answer)
     table = ["Table", list(answer.head), [list(row) for row in answer.rows]]
-    return {"told": list(answer.statements), "tables": [table], "figures": answer.figures}
+    return {"sentences": list(answer.statements), "tables": [table], "figures": answer.figures}
 
 
 def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
@@ -85,13 +85,17 @@ def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Show
     from tribodyn.study.pipeline.words import in_words
     from tribodyn.study.studies.sweep import sweep
 
-    found = sweep(case, dict(_varied(values)), by="study", progress=progress)
-    found.save(target)
-    names = found.shown()
-    figures = [(in_words(name), found.plot(name), "") for name in names]
-    figures[:1] = [(*figures[0][:2], plot.sweep.caption_of(found))] if figures else []
-    failed = dict.fromkeys(point.failed for point in found.points if point.failed)
-    return {"told": [f"{len(found.points)} values.", *failed], "tables": [], "figures": figures}
+    result = sweep(case, dict(_varied(values)), by="study", progress=progress)
+    result.save(target)
+    names = result.shown()
+    figures = [(in_words(name), result.plot(name), "") for name in names]
+    figures[:1] = [(*figures[0][:2], plot.sweep.caption_of(result))] if figures else []
+    failed = dict.fromkeys(point.failed for point in result.points if point.failed)
+    return {
+        "sentences": [f"{len(result.points)} values.", *failed],
+        "tables": [],
+        "figures": figures,
+    }
 
 
 def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
@@ -102,7 +106,7 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
     low, high, points = _read("values", values["values"], read_range)
     cycles = int(values.get("cycles") or 64)
     options: dict[str, Any] = {"cycles": cycles, "keep": min(48, cycles)}
-    found = bifurcation(
+    result = bifurcation(
         case,
         values["key"],
         (low, high),
@@ -113,13 +117,13 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
         transient=int(values.get("transient") or 300),
         **options,
     )
-    findings = Findings(case, found)
-    save_bifurcation(found, case, findings, target)
+    findings = Findings(case, result)
+    save_bifurcation(result, case, findings, target)
     head, rows = findings.rows()
     return {
-        "told": list(findings.sentences()),
+        "sentences": list(findings.sentences()),
         "tables": [["Table", list(head), [list(row) for row in rows]]],
-        "figures": [figure_with_caption(plot.bifurcation, found)],
+        "figures": [figure_with_caption(plot.bifurcation, result)],
     }
 
 
@@ -143,11 +147,11 @@ def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Sho
     progress.start("Tip relief")
     torque = _read("torque", values["torque"], read_list) if values.get("torque") else None
     answer = relief_report_data(case, torque, values.get("gears") or "both")
-    shown = _of(answer, "relief", case, target)
+    content = _of(answer, "relief", case, target)
     gears = [values["gears"]] if values.get("gears") in _GEARS else list(_GEARS)
     reliefs = [f"gears.{g}.modification.tip_relief{part}" for g in gears for part in _RELIEF]
-    given = answer.best.given if answer.best is not None else {}
-    return {**shown, "relief": {key: given[key] for key in reliefs if key in given}}
+    changes = answer.best.given if answer.best is not None else {}
+    return {**content, "relief": {key: changes[key] for key in reliefs if key in changes}}
 
 
 def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Shown:

@@ -1,4 +1,4 @@
-"""What a process of :mod:`tribodyn.app.jobs` does: one order, read from its standard input."""
+"""Worker process of :mod:`tribodyn.app.jobs`: carries out one order from its standard input."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 #: Shortest time between two messages about progress [s].
 _PAUSE = 0.15
-#: Case that is computed while nobody asks, so that all is loaded when somebody does.
+#: Case that is computed while the process waits, so that all modules are loaded.
 _FIRST = "fzg-roughness"
 
 Tell = Callable[..., None]
 
 
 class Teller:
-    """Progress as messages."""
+    """Progress reporter that writes messages."""
 
     def __init__(self, tell: Tell) -> None:
         self._tell, self._next = tell, 0.0
@@ -38,7 +38,7 @@ class Teller:
         self._tell(task=task, done=0, total=total)
 
     def advance(self, steps: int = 1) -> None:
-        """Tell how much is done, now and then."""
+        """Report the progress, at most once per pause."""
         self._done += steps
         now = time.monotonic()
         if now >= self._next:
@@ -57,8 +57,8 @@ def main() -> None:
     orders: SimpleQueue[str] = SimpleQueue()
     threading.Thread(target=_listen, args=(orders,), daemon=True).start()
 
-    def tell(**told: Any) -> None:
-        channel.write(json.dumps(told, allow_nan=False) + "\n")
+    def tell(**message: Any) -> None:
+        channel.write(json.dumps(message, allow_nan=False) + "\n")
         channel.flush()
 
     _get_ready(lambda: not orders.empty())
@@ -66,7 +66,7 @@ def main() -> None:
 
 
 def _listen(orders: SimpleQueue[str]) -> None:
-    """Hand on the order; when the page has gone, this process goes too."""
+    """Pass on the order; exit when the page closes the stream."""
     for line in sys.stdin:
         orders.put(line)
     os._exit(1)
@@ -109,7 +109,7 @@ def _case(order: Mapping[str, Any]) -> Case:
 
 
 def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
-    """Compute a case, show it, and write the directory of ``tribodyn run``."""
+    """Compute a case, send its contents, and write the directory of ``tribodyn run``."""
     from tribodyn.report.figure_blocks import figure_blocks
     from tribodyn.report.numbers import HEAD, headlines, modes_table, table
     from tribodyn.study.pipeline.run import computed
@@ -121,20 +121,20 @@ def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     tables = [["Critical speeds", list(HEAD), modes]] if modes else []
     rows = [[n.topic, n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in table(summary)]
     tables.append(["All numbers", ["Topic", "Quantity", "Value", "Meaning"], rows])
-    shown = {
+    content = {
         "cards": [[card.label, card.value, card.unit] for card in headlines(summary)],
-        "told": [],
+        "sentences": [],
         "warnings": [str(warning) for warning in result.warnings],
         "tables": tables,
         "blocks": _written(figure_blocks(result), folder),
     }
-    tell(state="done", shown=shown, task="")
+    tell(state="done", content=content, task="")
     result.save(folder / "result")
     tell(saved=True)
 
 
 def _written(blocks: Any, folder: Path) -> list[dict[str, Any]]:
-    """Figures as files of a folder, and what is said about them."""
+    """Write figures as files of a folder and return their descriptions."""
     for block in blocks:
         if block.json:
             (folder / f"{block.name}.json").write_text(block.json, encoding="utf-8")
@@ -142,40 +142,42 @@ def _written(blocks: Any, folder: Path) -> list[dict[str, Any]]:
 
 
 def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
-    """Lay stored results over each other."""
+    """Overlay stored results."""
     from tribodyn import plot
     from tribodyn.cases.stored_result import load_result
     from tribodyn.report.figure_blocks import block_of_figure
     from tribodyn.study.result_comparison import compare_results, difference_rows
 
     results = [load_result(place) for place in order["results"]]
-    found = compare_results(*results, names=order["names"])
+    comparison = compare_results(*results, names=order["names"])
     figure = plot.result_comparison
-    block = block_of_figure(figure.name, figure.heading, found.plot(), figure.caption_of(found))
-    rows = list(difference_rows(found.values, found.figures))
-    shown = {
-        "told": [] if rows else ["The results are equal."],
-        "tables": [["What differs", ["", *found.names, "change"], rows]] if rows else [],
+    block = block_of_figure(
+        figure.name, figure.heading, comparison.plot(), figure.caption_of(comparison)
+    )
+    rows = list(difference_rows(comparison.values, comparison.figures))
+    content = {
+        "sentences": [] if rows else ["The results are equal."],
+        "tables": [["What differs", ["", *comparison.names, "change"], rows]] if rows else [],
         "blocks": _written([block], folder),
     }
-    tell(state="done", shown=shown, task="")
+    tell(state="done", content=content, task="")
 
 
 def _study(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
-    """Compute a study, show it, and write the directory of its command."""
+    """Compute a study, send its contents, and write the directory of its command."""
     from tribodyn.app.studies import STUDIES
     from tribodyn.errors import collected
     from tribodyn.report.figure_blocks import block_of_figure
 
     with collected() as warnings:
         study = STUDIES[order["study"]]
-        shown = study.compute(_case(order), order["values"], Teller(tell), folder / "result")
+        content = study.compute(_case(order), order["values"], Teller(tell), folder / "result")
     blocks = [
         block_of_figure(f"figure-{number}", heading, figure, caption)
-        for number, (heading, figure, caption) in enumerate(shown.pop("figures"), 1)
+        for number, (heading, figure, caption) in enumerate(content.pop("figures"), 1)
     ]
-    shown["warnings"] = list(dict.fromkeys(map(str, warnings)))
-    tell(state="done", shown={**shown, "blocks": _written(blocks, folder)}, task="", saved=True)
+    content["warnings"] = list(dict.fromkeys(map(str, warnings)))
+    tell(state="done", content={**content, "blocks": _written(blocks, folder)}, task="", saved=True)
 
 
 _KINDS: dict[str, Callable[[Mapping[str, Any], Path, Tell], None]] = {

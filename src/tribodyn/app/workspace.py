@@ -19,14 +19,14 @@ _LONGEST, _LISTED, _DEEP = 120, 200, 3
 _PART = re.compile(r"[^\W_][\w .+,()=@-]*", re.UNICODE)
 
 
-class Folder:
-    """A folder and all that lies in it."""
+class Workspace:
+    """Folder of the page, with checked access to its files."""
 
     def __init__(self, root: Path) -> None:
         self.root = root.resolve()
 
     def inside(self, name: str, suffix: str = "") -> Path:
-        """The place of a name such as ``gears/my.toml``; one beyond the folder is refused."""
+        """Path of a name such as ``gears/my.toml``; raise if it is outside the folder."""
         text = name.strip()
         if suffix and text and not text.endswith(suffix):
             text += suffix
@@ -37,75 +37,81 @@ class Folder:
             raise InputError(f'"{name}" is no name of a file here', "", why, "Write my-gears")
         place = (self.root / text).resolve()
         if not place.is_relative_to(self.root) or place == self.root:
-            raise self._beyond(name)
+            raise self._outside(name)
         return place
 
-    def _beyond(self, name: str) -> InputError:
+    def _outside(self, name: str) -> InputError:
         why = f"The page was started in {self.root.name} and stays there"
         return InputError(f'"{name}" lies outside of the folder', "", why, "Copy it there")
 
-    def shown(self, place: Path | str) -> str:
-        """A place as it is called within the folder."""
+    def relative_name(self, place: Path | str) -> str:
+        """Path relative to the folder, as text."""
         return str(place).replace(f"{self.root}/", "")
 
     def cases(self) -> list[str]:
         """Case files in the folder, the nearest first."""
-        found: list[str] = []
+        names: list[str] = []
         levels = [self.root]
         for _ in range(_DEEP):
             inner: list[Path] = []
             for folder in levels:
                 entries = sorted(folder.iterdir()) if folder.is_dir() else []
                 inner += [e for e in entries if e.is_dir() and not e.is_symlink()]
-                found += [self.shown(e) for e in entries if e.suffix == ".toml" and self._ours(e)]
+                names += [
+                    self.relative_name(e)
+                    for e in entries
+                    if e.suffix == ".toml" and self._is_accessible(e)
+                ]
             levels = [folder for folder in inner if _PART.fullmatch(folder.name)]
-            if len(found) >= _LISTED:
+            if len(names) >= _LISTED:
                 break
-        return found[:_LISTED]
+        return names[:_LISTED]
 
-    def _ours(self, place: Path) -> bool:
+    def _is_accessible(self, place: Path) -> bool:
         try:
-            return self.inside(self.shown(place)).is_file()
+            return self.inside(self.relative_name(place)).is_file()
         except InputError:
             return False
 
     def load(self, name: str) -> Case:
-        """Read a case file; what it names besides has to lie in the folder too."""
+        """Read a case file; files that it names have to be in the folder too."""
         place = self.inside(name, ".toml")
         if not place.is_file():
             raise InputError(f'there is no file "{name}"', "", "", "Choose one from the list")
         return self.read(read_text(place), place)
 
     def read(self, text: str, place: Path) -> Case:
-        """Check the text of a case that belongs into a place of the folder."""
-        for _, named in named_files(text, self.shown(place)):
+        """Read a case from text as a file of the folder."""
+        for _, named in named_files(text, self.relative_name(place)):
             if not (place.parent / named).resolve().is_relative_to(self.root):
-                raise self._beyond(named)
+                raise self._outside(named)
         return read_case(text, str(place))
 
     def save_case(self, case: Case, name: str, force: bool = False) -> Path:
-        """Write a case file; an existing one is replaced only where that is asked for."""
+        """Write a case file; replace an existing one only with ``force``."""
         from tribodyn.study.pipeline.save import write_file
 
         place = self.inside(name, ".toml")
         if place.exists() and (place.is_dir() or not force):
             remedy = "Choose another name, or save once more to replace it"
-            raise OutputExistsError(f'"{self.shown(place)}" exists already', "", "", remedy)
+            raise OutputExistsError(f'"{self.relative_name(place)}" exists already', "", "", remedy)
         self._parent(place)
         write_file(place, case.to_toml())
         return place
 
-    def save_result(self, made: Path, name: str) -> Path:
+    def save_result(self, directory: Path, name: str) -> Path:
         """Copy a directory of results to a new place."""
         from tribodyn.study.pipeline.save import new_directory
 
         place = self.inside(name)
         self._parent(place)
         with new_directory(place) as new:
-            shutil.copytree(made, new, dirs_exist_ok=True)
+            shutil.copytree(directory, new, dirs_exist_ok=True)
         return place
 
     def _parent(self, place: Path) -> None:
         if not place.parent.is_dir():
-            shown = self.shown(place.parent)
-            raise InputError(f'there is no folder "{shown}"', "", "", "Create it, or leave it out")
+            parent_name = self.relative_name(place.parent)
+            raise InputError(
+                f'there is no folder "{parent_name}"', "", "", "Create it, or leave it out"
+            )

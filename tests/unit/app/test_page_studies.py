@@ -41,7 +41,7 @@ def test_every_study_shows_and_saves_what_it_finds(kind: str, tmp_path: Path) ->
         case = case.replace({"stiffness.model": "analytic", "friction.law": "none"})
     values = first_values(kind, case) | _FEW.get(kind, {})
     shown = STUDIES[kind].compute(case, values, SILENT, tmp_path / "result")
-    assert shown["told"]
+    assert shown["sentences"]
     assert all(figure.data for _, figure, _ in shown["figures"])
     assert shown["figures"]
     assert all(len(row) == len(head) for _, head, rows in shown["tables"] for row in rows)

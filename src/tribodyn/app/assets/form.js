@@ -1,5 +1,5 @@
 // The form of a case, drawn from data: every field with its label, unit, help and message. What is
-// typed goes to the server a moment later, and what the server says is set beside the field.
+// typed goes to the server a moment later, and the server returns the messages of each field.
 const PAUSE = 250; // ms
 let last = 0;
 const number = () => (last = Math.max(last + 1, Date.now()));
@@ -164,14 +164,14 @@ class Form {
 
   tellFaults(faults) {
     const text = JSON.stringify(faults);
-    if (this.faults.dataset.told === text) return;
-    this.faults.dataset.told = text;
+    if (this.faults.dataset.faults === text) return;
+    this.faults.dataset.faults = text;
     const items = faults.map((fault) => {
       const to = make("button", { type: "button", class: "link" }, fault.label || "Case");
       to.addEventListener("click", () => this.show(fault.key));
       return make("li", {}, to, " ", fault.text);
     });
-    const count = faults.length === 1 ? "One value is not in order" : `${faults.length} values are not in order`;
+    const count = faults.length === 1 ? "One value is invalid" : `${faults.length} values are invalid`;
     this.faults.replaceChildren(...(items.length ? [make("p", {}, count), make("ul", {}, ...items)] : []));
   }
 
@@ -220,7 +220,7 @@ const awaitNotice = new MutationObserver(() => {
 });
 awaitNotice.observe(document.documentElement, { childList: true, subtree: true });
 
-// Everything that can be pressed says what it does; a text beside it goes with it.
+// Everything that can be pressed says what it does; the text of a related field is sent with it.
 const act = (button) => {
   const { do: what, of, from } = button.dataset;
   const text = from ? document.getElementById(from)?.value ?? "" : "";
