@@ -142,12 +142,12 @@ def thinned(solution: Any, points: int) -> NDArray[np.intp]:
     bend[1:-1] = np.max(np.abs(np.diff(curves, 2)), axis=0)
     density = np.sqrt(bend)
     density += 0.15 * np.mean(density) + 1e-300
-    reached = np.concatenate(([0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))))
+    cumulative = np.concatenate(([0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))))
     slopes = np.sign(np.diff(curves))
     turns = 1 + np.flatnonzero(np.any(slopes[:, 1:] != slopes[:, :-1], axis=0))
     turns = turns[np.argsort(bend[turns])[::-1][: points // 4]]
-    even = np.linspace(0.0, reached[-1], points - len(turns) - 2)
-    chosen = np.searchsorted(reached, even * (1.0 - 1e-15)).clip(0, n - 1)
+    even = np.linspace(0.0, cumulative[-1], points - len(turns) - 2)
+    chosen = np.searchsorted(cumulative, even * (1.0 - 1e-15)).clip(0, n - 1)
     return np.unique(np.concatenate((chosen, turns, [0, n - 1])))
 
 

@@ -86,17 +86,17 @@ def _loss_parts(gearbox: GearboxLosses) -> Row:
     name = "speed" if over_speed else "torque"
     x = displayed(name, getattr(gearbox, f"pinion_{name}"))
     traces: list[Trace] = []
-    for (part, words), color in zip(PARTS.items(), _COLORS, strict=True):
+    for (part, text), color in zip(PARTS.items(), _COLORS, strict=True):
         power: Array = getattr(gearbox, part)
         values = power[-1] if over_speed else power[:, -1]
         if np.any(values):
-            curve = line(x, values, words, color, unit="W", width=1.0)
+            curve = line(x, values, text, color, unit="W", width=1.0)
             traces.append({**curve, "stackgroup": "loss", "fillcolor": color})
     torque = f"{displayed('torque', gearbox.pinion_torque)[-1]:.4g} N·m"
     label = axis_label(name, "Speed of the pinion" if over_speed else "Torque on the pinion")
-    words = f"Loss under {torque} [W]" if over_speed else "Loss [W]"
+    text = f"Loss under {torque} [W]" if over_speed else "Loss [W]"
     return Row(
-        label, Panel(words, traces, {"rangemode": "tozero"}, 1.2), {"range": [x.min(), x.max()]}
+        label, Panel(text, traces, {"rangemode": "tozero"}, 1.2), {"range": [x.min(), x.max()]}
     )
 
 

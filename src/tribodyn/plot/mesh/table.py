@@ -150,12 +150,12 @@ def life_with_corners(mesh: MeshTable) -> tuple[Array, Array]:
     ratio = mesh.transverse_contact_ratio
     before, after = mesh.corner_share.T
     coming = before > _LOADED
-    gone = mesh.phase + np.ceil(ratio - mesh.phase - 1e-9)
+    exit_age = mesh.phase + np.ceil(ratio - mesh.phase - 1e-9)
     # The grid point at E has both sides of the event.
-    order = np.argsort(gone, kind="stable")
+    order = np.argsort(exit_age, kind="stable")
     order = order[after[order] > _LOADED]
     return (
-        np.concatenate((mesh.phase[coming] - 1.0, age, gone[order])),
+        np.concatenate((mesh.phase[coming] - 1.0, age, exit_age[order])),
         np.concatenate((before[coming], share, after[order])),
     )
 

@@ -84,11 +84,11 @@ def _bars(labels: Any, order: Array, band: Array, name: str, color: str) -> Trac
 
 def _wrapped_name(name: str) -> str:
     """Name of a summary figure, wrapped at 20 characters."""
-    words, lines = name.split("_"), [""]
-    for word in words:
-        if len(lines[-1]) + len(word) > 20:
+    parts, lines = name.split("_"), [""]
+    for part in parts:
+        if len(lines[-1]) + len(part) > 20:
             lines.append("")
-        lines[-1] = f"{lines[-1]} {word}".strip()
+        lines[-1] = f"{lines[-1]} {part}".strip()
     return "<br>".join(lines)
 
 
@@ -96,8 +96,8 @@ def _title(figures: list[str], inputs: list[str], total: Array) -> str:
     largest = [int(row.argmax()) for row in total]
     share = f"{100.0 * min(max(total[0, largest[0]], 0.0), 1.0):.0f} %"
     if len(figures) == 1:
-        words = figures[0].replace("_", " ")
-        return f"{share} of the variance of the {words} comes from {inputs[largest[0]]}"
+        quantity = figures[0].replace("_", " ")
+        return f"{share} of the variance of the {quantity} comes from {inputs[largest[0]]}"
     if len(set(largest)) == 1:
         return f"Most of the spread comes from {inputs[largest[0]]}"
     return f"The spread comes from {len(set(largest))} inputs, by figure"
