@@ -24,7 +24,7 @@ _TOLERANCE, _MAX_PASSES = 5e-7, 40
 
 _DEFAULT_AMBIENT = 293.15  # default temperature of the surroundings [K]
 
-Extra = TypeVar("Answer")
+Extra = TypeVar("Extra")
 
 
 @record
