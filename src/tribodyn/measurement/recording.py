@@ -1,4 +1,4 @@
-"""A record of a test rig: channels that were sampled together, with their units."""
+"""Recording of a test rig: simultaneously sampled channels with their units."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean, require_positive, shortened
-from tribodyn.measurement.readers.content import MEASURED, Content, rate_of
-from tribodyn.measurement.readers.recognised import content_of
+from tribodyn.measurement.readers.detect_format import read_recording_data
+from tribodyn.measurement.readers.recording_data import MEASURED, RecordingData, rate_of
 from tribodyn.record import Parts, Record, fact, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array
@@ -23,29 +23,29 @@ _SENSITIVITY = re.compile(r"\s*([0-9.eE+-]+)\s*([^/]+)/\s*(.+?)\s*")
 
 @record
 class Recording(Record):
-    """Channels of a test rig, sampled together at one rate.
+    """Channels of a test rig, sampled simultaneously at one rate.
 
     Parameters
     ----------
     channels : mapping of str to (n,) array
-        Samples by the name of the channel, in its unit.
+        Samples of each channel by its name, in its unit.
     sample_rate : float
         Samples per second [Hz].
     units : mapping of str to str
-        Unit of each channel; a channel that is not named has none.
+        Unit of each channel; a channel that is missing has no unit.
 
     Raises
     ------
     InputError
-        If there is no channel, a sample is no finite number, or the channels differ in length.
+        If there is no channel, a sample is not finite, or the channels differ in length.
 
     Examples
     --------
     >>> time = np.arange(2000) / 1000.0
-    >>> made = Recording({"acc": np.sin(2 * np.pi * 50.0 * time)}, 1000.0, {"acc": "m/s^2"})
-    >>> made
+    >>> recording = Recording({"acc": np.sin(2 * np.pi * 50.0 * time)}, 1000.0, {"acc": "m/s^2"})
+    >>> recording
     Recording(acc [m/s^2], 2000 samples at 1000 Hz, 2 s)
-    >>> made.cut(0.5, 1.0)["acc"].size
+    >>> recording.cut(0.5, 1.0)["acc"].size
     500
     """
 
@@ -55,22 +55,28 @@ class Recording(Record):
 
     def __post_init__(self) -> None:
         require_positive("sample_rate", self.sample_rate, "Hz")
-        named = isinstance(self.channels, Mapping) and isinstance(self.units, Mapping)
-        if not named or not self.channels or not all(isinstance(n, str) for n in self.channels):
+        are_mappings = isinstance(self.channels, Mapping) and isinstance(self.units, Mapping)
+        if (
+            not are_mappings
+            or not self.channels
+            or not all(isinstance(n, str) for n in self.channels)
+        ):
             what = f"channels = {shortened(repr(self.channels))}"
-            why = "A recording is a mapping of names to samples, and one of names to units"
+            why = "Expected a mapping of names to samples and one of names to units"
             remedy = 'Write Recording({"acc": samples}, 51200.0, {"acc": "m/s^2"})'
             raise InputError(what, Argument("channels"), why, remedy)
-        read = {n: checked_signal(v, 1, f"channel {n}") for n, v in self.channels.items()}
-        sizes = {values.size for values in read.values()}
+        samples = {n: checked_signal(v, 1, f"channel {n}") for n, v in self.channels.items()}
+        sizes = {values.size for values in samples.values()}
         if len(sizes) > 1:
-            told = ", ".join(f"{name} {values.size}" for name, values in read.items())
+            sizes_by_channel = ", ".join(
+                f"{name} {values.size}" for name, values in samples.items()
+            )
             what = "the channels have different numbers of samples"
-            why = f"All were sampled together: {told}"
-            remedy = "Take channels of one length, as with channels=[...] of read"
+            why = f"Channels of one recording have equal length: {sizes_by_channel}"
+            remedy = "Select channels of equal length, as with channels=[...] of read"
             raise InputError(what, Argument("channels"), why, remedy)
-        units = {name: str(self.units.get(name, "")) for name in read}
-        object.__setattr__(self, "channels", MappingProxyType(read))
+        units = {name: str(self.units.get(name, "")) for name in samples}
+        object.__setattr__(self, "channels", MappingProxyType(samples))
         object.__setattr__(self, "units", MappingProxyType(units))
         object.__setattr__(self, "sample_rate", float(self.sample_rate))
 
@@ -82,17 +88,17 @@ class Recording(Record):
 
     @property
     def time(self) -> Array:
-        """Time of each sample from the first [s]."""
+        """Time of each sample after the first one [s]."""
         size = next(iter(self.channels.values())).size
         return np.arange(size) / self.sample_rate
 
     @property
     def duration(self) -> float:
-        """Number of samples over the sampling rate [s]."""
+        """Number of samples divided by the sampling rate [s]."""
         return float(next(iter(self.channels.values())).size / self.sample_rate)
 
     def cut(self, start: float, end: float) -> Recording:
-        """Part of the recording.
+        """Part of the recording between two times.
 
         Parameters
         ----------
@@ -102,23 +108,23 @@ class Recording(Record):
         Returns
         -------
         Recording
-            The samples from the start on, up to but without the end.
+            Samples from the start up to, but excluding, the end.
 
         Raises
         ------
         InputError
-            If the times are not within the recording, one after the other.
+            If the times are outside the recording or not in ascending order.
         """
         if not 0.0 <= start < end <= self.duration * (1.0 + 1e-12):
             why = f"The recording lasts {self.duration:g} s"
-            remedy = "Give two times within it, the earlier first"
+            remedy = "Pass two times within it, the earlier first"
             raise InputError(f"from {start:g} to {end:g} s", "arguments start and end", why, remedy)
-        kept = slice(*(int(np.ceil(at * self.sample_rate - 1e-9)) for at in (start, end)))
-        parts = {name: values[kept] for name, values in self.channels.items()}
+        window = slice(*(int(np.ceil(at * self.sample_rate - 1e-9)) for at in (start, end)))
+        parts = {name: values[window] for name, values in self.channels.items()}
         return Recording(parts, self.sample_rate, self.units)
 
     def __repr__(self) -> str:
-        """One line."""
+        """Channels, size, rate and duration in one line."""
         names = [f"{name} [{unit}]" if unit else name for name, unit in self.units.items()]
         more = [*names[:6], f"{len(names) - 6} more"] if len(names) > 7 else names
         size = next(iter(self.channels.values())).size
@@ -148,29 +154,29 @@ def read(
     Parameters
     ----------
     path : str or path
-        The file. What it is is told by its content; text may be compressed (``.gz``).
+        Path of the file. The format is detected from its content; text may be compressed (``.gz``).
     channels : iterable of str, optional
         Channels to read; all by default.
     sample_rate : float, optional
-        Samples per second [Hz], where the file has no column of times and no rate.
+        Samples per second [Hz], if the file has neither a time column nor a rate.
     units : mapping of str to str, optional
-        Units of channels, where the file has none or a wrong one.
+        Units of channels, if the file has none or a wrong one.
     sensitivity : mapping of str to str, optional
         Sensitivity of the sensor of a channel that holds its voltage, such as ``"100 mV/g"``:
-        the channel comes back in the SI unit of what was measured.
+        the channel is converted to the SI unit of the measured quantity.
 
     Raises
     ------
     InputError
-        If the file cannot be read, is not what its name says, is cut short, holds samples that
-        are no finite numbers, times that are not evenly spaced, or no sampling rate.
+        If the file cannot be read, contradicts its suffix, is truncated, or has samples that are
+        not finite, times that are not evenly spaced, or no sampling rate.
 
     Notes
     -----
-    A CSV file may begin with lines of any text. Its columns are parted by comma, semicolon, tab
-    or blanks; the decimal sign may be a comma where the columns are not parted by one. The unit
-    of a column stands in brackets behind its name, or in a line of its own. Full scale of a WAV
-    file of whole numbers is 1. UFF and TDMS files need ``pip install "tribodyn[io]"``.
+    A CSV file may begin with header lines. Its columns are delimited by commas, semicolons, tabs
+    or blanks; the decimal sign may be a comma unless commas delimit the columns. The unit of a
+    column follows its name in brackets, or is in a separate line. Integer samples of a WAV file
+    are scaled to a full scale of 1. UFF and TDMS files need ``pip install "tribodyn[io]"``.
 
     Examples
     --------
@@ -180,93 +186,93 @@ def read(
     >>> read(file)
     Recording(acc [m/s^2], 3 samples at 500 Hz, 0.006 s)
     """
-    found = content_of(path)
-    names = list(found.channels) if channels is None else _chosen(channels)
+    data = read_recording_data(path)
+    names = list(data.channels) if channels is None else _requested_names(channels)
     for name in [*names, *(units or {}), *(sensitivity or {})]:
-        if name not in found.channels:
-            raise _no_channel(name, found.channels)
-    kept = {name: found.channels[name] for name in names}
-    told = {name: found.units.get(name, "") for name in names} | dict(units or {})
+        if name not in data.channels:
+            raise _no_channel(name, data.channels)
+    samples = {name: data.channels[name] for name in names}
+    channel_units = {name: data.units.get(name, "") for name in names} | dict(units or {})
     for name, text in (sensitivity or {}).items():
-        if name in kept:
-            factor, told[name] = _from_sensor(text, told[name] or "V", name)
-            kept[name] = kept[name] * factor
-    return Recording(kept, _rate(found, names, sample_rate, path), told)
+        if name in samples:
+            factor, channel_units[name] = _from_sensor(text, channel_units[name] or "V", name)
+            samples[name] = samples[name] * factor
+    return Recording(samples, _rate(data, names, sample_rate, path), channel_units)
 
 
-def _chosen(channels: Iterable[str]) -> list[str]:
+def _requested_names(channels: Iterable[str]) -> list[str]:
     names = [channels] if isinstance(channels, str) else list(channels)
     if not names:
-        what, why = "no channel is asked for", "A recording without channels has nothing to compare"
-        raise InputError(what, Argument("channels"), why, "Leave it out for all")
+        what, why = "channels is empty", "A recording needs at least one channel"
+        raise InputError(what, Argument("channels"), why, "Omit it to read all channels")
     return names
 
 
-def _rate(found: Content, names: list[str], given: float | None, path: Any) -> float:
-    """Sampling rate of the chosen channels: of the file, or as given."""
-    rates = {name: found.rates[name] for name in names if name in found.rates}
-    if given is not None:
-        require_positive("sample_rate", given, "Hz")
-        rates["argument sample_rate"] = float(given)
-    clocks = {id(found.times[name]): name for name in names if name in found.times}
+def _rate(data: RecordingData, names: list[str], user_rate: float | None, path: Any) -> float:
+    """Sampling rate of the selected channels, from the file or from the user [Hz]."""
+    rates = {name: data.rates[name] for name in names if name in data.rates}
+    if user_rate is not None:
+        require_positive("sample_rate", user_rate, "Hz")
+        rates["argument sample_rate"] = float(user_rate)
+    clocks = {id(data.times[name]): name for name in names if name in data.times}
     for name in clocks.values():
-        time, size = found.times[name], found.channels[name].size
+        time, size = data.times[name], data.channels[name].size
         if time.size != size:
-            what = f"channel {name} has {size} samples, its times are {time.size}"
-            why, remedy = "Each sample has its own time", "Correct the file, or leave the times out"
+            what = f"channel {name} has {size} samples and {time.size} times"
+            why, remedy = "Each sample needs one time", "Correct the file, or remove the times"
             raise InputError(what, str(path), why, remedy)
-        rates[f"times of {name}"] = rate_of(time, path, given)
+        rates[f"times of {name}"] = rate_of(time, path, user_rate)
     if not rates:
-        why, remedy = "It has neither a column named time nor a rate", "Give sample_rate in hertz"
-        raise InputError(f"{path} tells no sampling rate", Argument("sample_rate"), why, remedy)
+        why, remedy = "It has neither a time column nor a rate", "Pass sample_rate in hertz"
+        raise InputError(f"{path} has no sampling rate", Argument("sample_rate"), why, remedy)
     first = next(iter(rates.values()))
     if any(abs(rate - first) > 1e-5 * first for rate in rates.values()):
-        told = ", ".join(f"{name} {rate:.7g} Hz" for name, rate in rates.items())
-        remedy = "Read channels of one rate with channels=[...], or leave sample_rate out"
-        raise InputError("the sampling rates differ", str(path), told, remedy)
+        rate_list = ", ".join(f"{name} {rate:.7g} Hz" for name, rate in rates.items())
+        remedy = "Select channels of one rate with channels=[...], or omit sample_rate"
+        raise InputError("the sampling rates differ", str(path), rate_list, remedy)
     return first
 
 
 def _from_sensor(text: str, unit: str, name: str) -> tuple[float, str]:
-    """Factor from the voltage of a sensor to what it measures, and its unit in SI."""
+    """Factor from sensor voltage to the measured quantity, and its SI unit."""
     match = _SENSITIVITY.fullmatch(str(text))
     where = Argument(f"sensitivity of channel {name}")
-    wrong = Problem(
+    problem = Problem(
         f'sensitivity = "{text}"',
         where,
-        f"Wanted: volts, or what the channel holds ({unit}), over the unit that is measured",
+        f"Expected volts, or the unit of the channel ({unit}), per unit of the measured quantity",
         'Write "100 mV/g", "10 mV/N" or "0.5 V/(N*m)"',
     )
     if match is None:
-        raise InputError(wrong)
-    below = match[3].strip().removeprefix("(").removesuffix(")")
+        raise InputError(problem)
+    measured_unit = match[3].strip().removeprefix("(").removesuffix(")")
     try:
         volts = float(match[1]) * convert(1.0, match[2].strip(), unit)
     except (InputError, ValueError):
-        raise InputError(wrong) from None
+        raise InputError(problem) from None
     if not (np.isfinite(volts) and volts != 0.0):
-        raise InputError(wrong)
+        raise InputError(problem)
     for si in MEASURED:
         try:
-            return convert(1.0, below, si) / volts, si
+            return convert(1.0, measured_unit, si) / volts, si
         except (InputError, UnitProblemError):
             continue
-    raise InputError(wrong)
+    raise InputError(problem)
 
 
 def in_si(values: Array, unit: str) -> tuple[Array, str]:
-    """A channel in the SI unit of what it measures; as it is where its unit is not known."""
+    """Convert a channel to the SI unit of its quantity; unchanged if the unit is unknown."""
     for si in MEASURED:
         try:
-            zero = convert(0.0, unit, si)  # of temperatures in degC
+            zero = convert(0.0, unit, si)  # offset of temperatures in degC
             return values * (convert(1.0, unit, si) - zero) + zero, si
         except (InputError, UnitProblemError):
             continue
     return values, unit
 
 
-def _no_channel(name: object, known: Iterable[str]) -> InputError:
-    names = list(known)
+def _no_channel(name: object, channels: Iterable[str]) -> InputError:
+    available = list(channels)
     what = f"there is no channel {shortened(repr(name))}"
-    why = f"It has {', '.join(names[:20])} {did_you_mean(name, names)}".rstrip()
-    return InputError(what, Argument("channels"), why, "Write the name as it stands there")
+    why = f"It has {', '.join(available[:20])} {did_you_mean(name, available)}".rstrip()
+    return InputError(what, Argument("channels"), why, "Use one of these names")

@@ -311,13 +311,13 @@ def test_a_table_of_matlab_names_the_way_out(tmp_path: Path, monkeypatch) -> Non
 
 
 BAD = [
-    ("a,b\n1,2\n3,x\n", {}, '"x" is no number in row 2'),
+    ("a,b\n1,2\n3,x\n", {}, '"x" is not a number in row 2'),
     ("a,b\n1,2\n3\n", {}, "1 columns"),
-    ("a,b\n1,2\n3,nan\n", {}, '"nan" is no number'),
-    ("a,b\n1,2\n3,4\n", {}, "Give sample_rate"),
+    ("a,b\n1,2\n3,nan\n", {}, '"nan" is not a number'),
+    ("a,b\n1,2\n3,4\n", {}, "Pass sample_rate"),
     ("time,b\n0,2\n1,4\n2,4\n4,4\n", {}, "a step of 2 s at sample 3"),
     ("time,b\n0,2\n0,4\n", {}, "do not rise"),
-    ("time\n0\n1\n", {}, "has times and nothing else"),
+    ("time\n0\n1\n", {}, "has a time column but no channels"),
     ("nothing here", {}, "no line of numbers"),
     ("time,b\n0,2\n1,4\n", {"sample_rate": 2.0}, "sampling rates differ"),
     ("time,acc\n0,2\n1,4\n", {"channels": ["ac"]}, 'Did you mean "acc"'),

@@ -1,9 +1,9 @@
-"""Readers of recordings: what a file is is told by its content, not by its name alone.
+"""Readers of recordings; the format is detected from the content of a file, not only its name.
 
 | module | files |
 |---|---|
-| ``recognised`` | which reader a file needs |
-| ``content`` | what every reader gives; whether times are evenly spaced |
+| ``detect_format`` | detection of the format and choice of the reader |
+| ``recording_data`` | data that every reader returns; sampling rate of evenly spaced times |
 | ``text`` | CSV and other columns of numbers |
 | ``binary`` | WAV, UFF 58, TDMS, MAT of versions 4 to 7.3, HDF5 and netCDF |
 """

@@ -1,4 +1,4 @@
-"""Columns of numbers as text: CSV of any dialect, with lines of text before them."""
+"""Reader of text columns: CSV of any dialect, with optional header lines."""
 
 from __future__ import annotations
 
@@ -12,23 +12,24 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.measurement.readers.content import MEASURED, Content, in_seconds, is_time
+from tribodyn.measurement.readers.recording_data import MEASURED, RecordingData, in_seconds, is_time
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, convert
 from tribodyn.validated_files import LARGEST
 
 _NUMBER = re.compile(r"[+-]?((\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?|nan|inf)", re.IGNORECASE)
-#: What loggers write where a sample is missing.
+#: Placeholders of loggers for missing samples.
 _MISSING = {"", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
 _CLOCK = re.compile(r"(\d{4}-\d\d-\d\d)?[T ]?(\d\d?):(\d\d):(\d\d(?:[.,]\d*)?)Z?")
 _WITH_UNIT = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*")
 _BEFORE_UNIT = re.compile(r"(.*?)\s*[/,]\s*([^/,].*)")
-#: Lines of text that may come before the numbers; rows whose last cells are compared.
+#: Lines that are searched for the first row of numbers; rows at the end that the truncation check
+#: compares.
 _HEAD, _LOOK = 200, 100
 
 
 class _Layout(NamedTuple):
-    """How the numbers of a file stand in its lines."""
+    """Layout of the columns of numbers in a file."""
 
     first: int  #: line
     delimiter: str | None
@@ -36,34 +37,36 @@ class _Layout(NamedTuple):
     ends: bool  #: whether every row ends with the delimiter
 
     def cells(self, line: str) -> list[str]:
-        """Cells of a line as far as it holds numbers."""
-        found = _cells(line, self.delimiter)
-        return found[:-1] if self.ends and len(found) == self.width + 1 else found
+        """Cells of a line without the empty one after a trailing delimiter."""
+        cells = _split_cells(line, self.delimiter)
+        return cells[:-1] if self.ends and len(cells) == self.width + 1 else cells
 
 
 def looks_binary(head: bytes) -> bool:
-    """Whether the beginning of a file is no text."""
+    """Whether the beginning of a file is binary (neither 8-bit nor UTF-16 text)."""
     return b"\x00" in head and head[:2] not in (b"\xff\xfe", b"\xfe\xff")
 
 
-def content(path: Path) -> Content:
-    """Channels of a file of columns."""
+def read_columns(path: Path) -> RecordingData:
+    """Read the channels of a text file with columns of numbers."""
     text = _text(path)
     lines = [line for line in text.splitlines() if line.strip()]
     layout = _layout(lines, path)
-    names, units = _named(lines[: layout.first], layout, path)
+    names, units = _column_names_and_units(lines[: layout.first], layout, path)
     table = _numbers(lines, layout, path)
     if not text.endswith(("\n", "\r")):
         _refuse_cut(lines[layout.first :], layout, path)
     columns = dict(zip(names, table.T, strict=True))
-    of = dict(zip(names, units, strict=True))
-    clock = next((name for name in names if is_time(name, of[name])), None)
+    unit_of = dict(zip(names, units, strict=True))
+    clock = next((name for name in names if is_time(name, unit_of[name])), None)
     if clock is None:
-        return Content(columns, of)
-    time = in_seconds(columns.pop(clock), of.pop(clock), path)
+        return RecordingData(columns, unit_of)
+    time = in_seconds(columns.pop(clock), unit_of.pop(clock), path)
     if not columns:
-        raise InputError("has times and nothing else", where=str(path), remedy="Add a column")
-    return Content(columns, of, times=dict.fromkeys(columns, time))
+        raise InputError(
+            "has a time column but no channels", where=str(path), remedy="Add a column"
+        )
+    return RecordingData(columns, unit_of, times=dict.fromkeys(columns, time))
 
 
 def _text(path: Path) -> str:
@@ -72,7 +75,7 @@ def _text(path: Path) -> str:
         with gzip.open(path) as file:
             raw = file.read(LARGEST["recording"] + 1)
         if len(raw) > LARGEST["recording"]:
-            raise InputError("is too large once it is unpacked", where=str(path))
+            raise InputError("is too large after decompression", where=str(path))
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return raw.decode("utf-16")
     try:
@@ -81,91 +84,93 @@ def _text(path: Path) -> str:
         return raw.decode("latin-1")
 
 
-def _cells(line: str, delimiter: str | None) -> list[str]:
+def _split_cells(line: str, delimiter: str | None) -> list[str]:
     if delimiter and '"' in line:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]
     return [cell.strip().strip('"').strip() for cell in line.split(delimiter)]
 
 
 def _is_sample(cell: str) -> bool:
-    """Whether a cell holds a number, a time, or nothing where a number is missing."""
+    """Whether a cell holds a number, a time of day, or a placeholder for a missing sample."""
     return bool(_NUMBER.fullmatch(cell) or cell.lower() in _MISSING or _CLOCK.fullmatch(cell))
 
 
 def _row(line: str) -> tuple[str | None, int, bool] | None:
-    """What parts a line of numbers, how many there are, and whether it ends open."""
+    """Delimiter and number of cells of a line of numbers, and whether its last cell is empty."""
     for delimiter in (";", "\t", ",", None):
         if delimiter is not None and delimiter not in line:
             continue
-        cells = _cells(line, delimiter)
+        cells = _split_cells(line, delimiter)
         if all(map(_is_sample, cells)) and any(map(_NUMBER.fullmatch, cells)):
             return delimiter, len(cells), not cells[-1]
     return None
 
 
 def _layout(lines: Sequence[str], path: Path) -> _Layout:
-    """Where the numbers begin, what parts their columns, and how many there are.
+    """Detect the first row, delimiter and number of the columns.
 
-    Lines of numbers before the names of the columns are parted from the columns by a line of text.
+    Numbers in the header are separated from the columns by a line of text.
     """
-    found: list[_Layout] = []
+    layouts: list[_Layout] = []
     after_text = True
     for number, line in enumerate(lines[:_HEAD]):
         row = _row(line)
         if row is None:
-            words = re.split(r"[;,\t ]+", line)
-            after_text |= not any(map(_NUMBER.fullmatch, words))
+            entries = re.split(r"[;,\t ]+", line)
+            after_text |= not any(map(_NUMBER.fullmatch, entries))
             continue
-        last = found[-1] if found else None
+        last = layouts[-1] if layouts else None
         if last and (last.delimiter, last.width + last.ends) == row[:2]:
-            # One column alone has no names to be told from a sample that is none.
+            # In a single column, a name cannot be distinguished from an invalid sample.
             if after_text and last.width > 1 and number > last.first + 1:
-                found.append(_Layout(number, row[0], row[1] - row[2], row[2]))
+                layouts.append(_Layout(number, row[0], row[1] - row[2], row[2]))
             elif last.ends and not row[2]:
-                found[-1] = last._replace(width=row[1], ends=False)
+                layouts[-1] = last._replace(width=row[1], ends=False)
         elif last is None or after_text:
-            found.append(_Layout(number, row[0], row[1] - row[2], row[2]))
+            layouts.append(_Layout(number, row[0], row[1] - row[2], row[2]))
         after_text = False
-    if found:
-        return found[-1]
+    if layouts:
+        return layouts[-1]
     what = "holds no line of numbers"
-    why = f"Looked at the first {min(len(lines), _HEAD)} lines, parted by ; tab , or blanks"
+    why = f"Searched the first {min(len(lines), _HEAD)} lines with the delimiters ; tab , and blank"
     raise InputError(what, str(path), why, "Export the channels as columns of numbers")
 
 
-def _named(head: Sequence[str], layout: _Layout, path: Path) -> tuple[list[str], list[str]]:
+def _column_names_and_units(
+    head: Sequence[str], layout: _Layout, path: Path
+) -> tuple[list[str], list[str]]:
     """Names and units of the columns, from the last lines before the numbers."""
     width = layout.width
     rows = [layout.cells(line.lstrip("#%").strip()) for line in head]
     if rows and 2 * len(rows[-1]) == width and layout.delimiter == ",":
         what = f"has {len(rows[-1])} names and {width} columns of numbers"
-        why = "A comma parts its columns, and seems to be the decimal sign as well"
-        remedy = "Export it with semicolons between the columns, or with decimal points"
+        why = "The comma seems to be both column delimiter and decimal sign"
+        remedy = "Export it with semicolons as delimiters or with decimal points"
         raise InputError(what, str(path), why, remedy)
     rows = [cells for cells in rows if len(cells) == width]
     units = [""] * width
     if len(rows) > 1 and _are_units(rows[-1], rows[-2]):
         units = [cell.strip("[]() ") for cell in rows.pop()]
     names = list(rows[-1]) if rows else [f"column {1 + n}" for n in range(width)]
-    for place, name in enumerate(names):
+    for column, name in enumerate(names):
         if match := _WITH_UNIT.fullmatch(name):
-            names[place], units[place] = match[1] or f"column {1 + place}", match[2]
+            names[column], units[column] = match[1] or f"column {1 + column}", match[2]
         elif (match := _BEFORE_UNIT.fullmatch(name)) and match[1] and _is_unit(match[2]):
-            names[place], units[place] = match[1], match[2]
+            names[column], units[column] = match[1], match[2]
     return _distinct(names), units
 
 
 def _are_units(cells: Sequence[str], above: Sequence[str]) -> bool:
-    """Whether a line below the names holds units: in brackets, empty, or known as such."""
+    """Whether the cells below the names are units: in brackets, or units of measured quantities."""
     if all(not cell or cell[0] in "[(" for cell in cells) and any(cells):
         return True
     named = all(cell and not _is_sample(cell) for cell in above)
-    told = [cell for cell in cells if cell not in ("", "-", "%")]
-    return named and bool(told) and not is_time(cells[0]) and all(map(_is_unit, told))
+    labels = [cell for cell in cells if cell not in ("", "-", "%")]
+    return named and bool(labels) and not is_time(cells[0]) and all(map(_is_unit, labels))
 
 
 def _is_unit(text: str) -> bool:
-    """Whether a text is the unit of something that is measured, and no name."""
+    """Whether a text is the unit of a measured quantity, not a name."""
     for si in (*MEASURED, "s", "Hz"):
         try:
             return bool(convert(1.0, text, si))
@@ -175,15 +180,15 @@ def _is_unit(text: str) -> bool:
 
 
 def _distinct(names: Sequence[str]) -> list[str]:
-    found: list[str] = []
-    for place, name in enumerate(names):
-        name = name or f"column {1 + place}"
-        found.append(name if name not in found else f"{name} ({1 + place})")
-    return found
+    distinct: list[str] = []
+    for column, name in enumerate(names):
+        name = name or f"column {1 + column}"
+        distinct.append(name if name not in distinct else f"{name} ({1 + column})")
+    return distinct
 
 
 def _numbers(lines: Sequence[str], layout: _Layout, path: Path) -> Array:
-    """All numbers (rows, columns); a line that is none is told by its number."""
+    """Parse all numbers (rows, columns); raise InputError with the number of an invalid row."""
     rows, shape = lines[layout.first :], (len(lines) - layout.first, layout.width)
     try:
         if '"' in rows[0] or ":" in rows[0]:
@@ -202,42 +207,42 @@ def _numbers(lines: Sequence[str], layout: _Layout, path: Path) -> Array:
         bad = [c for c in cells if not (_NUMBER.fullmatch(c) or _CLOCK.fullmatch(c))]
         bad += [c for c in cells if c.lower().lstrip("+-") in ("nan", "inf")]
         if len(cells) != layout.width or bad:
-            what = f'"{bad[0]}" is no number' if bad else f"{len(cells)} columns"
+            what = f'"{bad[0]}" is not a number' if bad else f"{len(cells)} columns"
             raise InputError(
                 f"{what} in row {number} of the numbers: {row[:80]!r}",
                 where=str(path),
-                why=f"Every row holds {layout.width} numbers",
-                remedy="The file is cut short there, or a sample is missing: cut the row, or "
-                "fill it by interpolation",
+                why=f"Every row must hold {layout.width} numbers",
+                remedy="The file is cut short or a sample is missing: delete the row, or "
+                "fill the gap by interpolation",
             )
     raise InputError("holds numbers that are not finite", where=str(path))
 
 
 def _values(cells: Sequence[str], first: Sequence[str]) -> list[float]:
-    """Numbers of a row; times of the day count from the first day, which keeps their digits."""
-    found = []
+    """Numbers of a row; times of day in seconds from the first date, to preserve precision."""
+    values = []
     for cell, above in zip(cells, first, strict=True):
         clock, start = _CLOCK.fullmatch(cell), _CLOCK.fullmatch(above)
         if clock is None or start is None:
-            found.append(float(cell.replace(",", ".")))
+            values.append(float(cell.replace(",", ".")))
             continue
-        days = [np.datetime64(each[1] or "1970-01-01") for each in (clock, start)]
+        days = [np.datetime64(match[1] or "1970-01-01") for match in (clock, start)]
         hours, minutes, seconds = (float(part.replace(",", ".")) for part in clock.groups()[1:])
-        found.append(
+        values.append(
             3600.0 * (24.0 * (days[0] - days[1]).astype(int) + hours) + 60.0 * minutes + seconds
         )
-    return found
+    return values
 
 
 def _refuse_cut(rows: Sequence[str], layout: _Layout, path: Path) -> None:
-    """Refuse a file whose last number has fewer digits than any before, and no end of line."""
-    places = [
+    """Raise InputError if the unterminated last row ends in a number with too few digits."""
+    digits = [
         len(re.split(r"[.,]", layout.cells(row)[-1].lower().partition("e")[0])[-1])
         for row in rows[-_LOOK:]
     ]
-    shorter = np.mean(np.array(places[:-1]) <= places[-1]) if len(places) > 20 else 1.0
-    if shorter == 0.0 or (shorter < 0.05 and places[-1] < 0.5 * np.median(places)):
+    shorter = np.mean(np.array(digits[:-1]) <= digits[-1]) if len(digits) > 20 else 1.0
+    if shorter == 0.0 or (shorter < 0.05 and digits[-1] < 0.5 * np.median(digits)):
         what = f"seems to be cut short in its last row: {rows[-1][:80]!r}"
-        why = "The number there has fewer digits than those above, and no line ends after it"
-        remedy = "Take the file from the measuring system again, or end its last line"
+        why = "Its last number has fewer digits than those above, and the line is not terminated"
+        remedy = "Export the file from the measuring system again, or terminate its last line"
         raise InputError(what, str(path), why, remedy)
