@@ -142,7 +142,7 @@ class Motions:
 
 
 class _Block:
-    """Lanes marched side by side; each has a motion of its own, then another when it is done."""
+    """Lanes integrated in one batch; a lane takes the next motion when its present one is done."""
 
     def __init__(self, motions: Motions, transient: int, tolerance: float, width: int) -> None:
         self.motions, self.tolerance, self.width = motions, tolerance, width

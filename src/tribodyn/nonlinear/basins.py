@@ -1,4 +1,4 @@
-"""Basins of attraction: which motion a start comes to, over a plane of starts."""
+"""Basins of attraction: the motion that each start of a plane converges to."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def basins(
     keep_partial: bool = False,
     progress: Progress = SILENT,
 ) -> Basins:
-    """Find which motion every start of a plane comes to.
+    """Find the motion that every start of a plane converges to.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def basins(
     keep_partial : bool
         Return what is finished when interrupted (Ctrl-C), see ``finished``.
     progress : Progress
-        Told about the starts.
+        Receives the number of finished starts; silent by default.
 
     Returns
     -------
@@ -88,12 +88,12 @@ def basins(
     InputError
         If an argument is out of range or the step is too long.
     KeyboardInterrupt
-        As it came, unless ``keep_partial``.
+        On an interruption (Ctrl-C), unless ``keep_partial``.
 
     Notes
     -----
     A motion that repeats only after ``p`` mesh cycles is one attractor, whichever of its ``p``
-    states a start comes to. Motions that do not repeat are told apart by their rms. Boundaries
+    states a start comes to. Motions that do not repeat are distinguished by their rms. Boundaries
     between basins can be fractal: ``changed`` is the part of the starts that another step sends to
     another motion, which no step makes zero.
 
@@ -102,8 +102,8 @@ def basins(
     >>> from tribodyn.dynamics import Contact
     >>> pair = Contact([1.0], stiffness=lambda p: 1.0 + 0.2 * np.cos(2 * np.pi * p), gap=1.0)
     >>> system = System([[1.0]], [[0.1]], [[0.0]], [0.5], [pair], names=["x"])
-    >>> found = basins(system, 0.14, between=((1.0, 2.0), (0.0, 1.0)), points=(3, 3), steps=64)
-    >>> found.coordinates, [each.period for each in found.attractors]
+    >>> result = basins(system, 0.14, between=((1.0, 2.0), (0.0, 1.0)), points=(3, 3), steps=64)
+    >>> result.coordinates, [each.period for each in result.attractors]
     (('x', 'x_velocity'), [1, 1])
     """
     compiled = compile_for(system, mesh_frequency, steps)
@@ -176,19 +176,19 @@ def _attractor(
     steps: int,
     plane: StartPlane,
 ) -> Attractor:
-    found = catalogue.known[number]
-    half = found.full.shape[1] // 2
-    multiplier = multiplier_of(found, motions, steps)
+    marched = catalogue.known[number]
+    half = marched.full.shape[1] // 2
+    multiplier = multiplier_of(marched, motions, steps)
     return Attractor(
-        position=found.full[:, :half],
-        velocity=found.full[:, half:],
-        period=found.period,
-        rms=found.rms,
-        contact_loss_share=found.contact_loss_share,
+        position=marched.full[:, :half],
+        velocity=marched.full[:, half:],
+        period=marched.period,
+        rms=marched.rms,
+        contact_loss_share=marched.contact_loss_share,
         largest_multiplier=multiplier,
         stable=not multiplier >= 1.0,
         share=float(np.mean(mine)) if mine.size else 0.0,
-        section=plane.section(found.full),
+        section=plane.section(marched.full),
     )
 
 

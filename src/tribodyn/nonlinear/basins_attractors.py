@@ -50,7 +50,7 @@ class Attractor:
     share : float
         Part of the starts that come to it [-].
     verdict : str
-        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not asked for.
+        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not requested.
     refined_period : int
         Period with half the step [mesh cycles].
     refined_rms : float
@@ -209,7 +209,7 @@ def multiplier_of(attractor: MarchedAttractor, motions: Motions, steps: int) -> 
     if not attractor.period:
         return float("nan")
     try:
-        # An orbit that is not found is told by NaN; at rest its relative error means nothing.
+        # NaN marks an orbit that is not found; at rest its relative error means nothing.
         with quiet():
             orbit = steady_state(
                 motions.compiled.system,
@@ -245,7 +245,7 @@ class Basins(Record):
         The motions, the one with the largest share first.
     refined_attractor : (nx, ny) int array
         The same with half the step, -2 for an attractor that the longer step does not show; all
-        -3 if not asked for.
+        -3 if not requested.
     names : tuple of str
         Names of the coordinates of the system.
     signal : str

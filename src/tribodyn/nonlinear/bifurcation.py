@@ -45,7 +45,7 @@ _BRANCHES: dict[str, tuple[str, ...]] = {
 _TURN_IN = 20
 
 
-#: Steps of all motions above which it is told how long they may take: seconds to minutes.
+#: Total number of steps above which the expected duration is announced (seconds to minutes).
 _MANY = 2e7
 
 
@@ -90,24 +90,24 @@ def bifurcation(
         Mesh cycles before, fewer where the motion repeats after 1 to 8 of them; the distance to
         the motion that repeats exactly is then certified to be less than 1e-7 of its size.
     keep : int
-        The last mesh cycles, of which the points are kept.
+        Number of last mesh cycles whose points are stored.
     steps : int or (points,) array
         Steps per mesh cycle [-].
     start : (position, velocity), optional
         Two (n,) arrays [m or rad, m/s or rad/s]; the static equilibrium at mean stiffness by
         default.
     signal : int or str
-        Contact whose compression is looked at, or name of a coordinate.
+        Number of the contact whose compression is evaluated, or name of a coordinate.
     verdict : bool
         Repeat every motion with half the step or less, and judge.
     exponents : int
         Mesh cycles for the largest Lyapunov exponent of each motion; 0 to leave it out.
     keep_partial : bool
-        Return what is finished when interrupted (Ctrl-C): the rest is NaN, see ``finished``.
+        Return what is finished when interrupted (Ctrl-C): other values are NaN, see ``finished``.
     progress : Progress
-        Told about the motions.
+        Receives the number of finished motions; silent by default.
     members : tribodyn.checkpoints.Members, optional
-        Keeps every motion as it is finished, and has those that a killed process finished.
+        Stores every motion when it is finished, and restores those of an interrupted process.
 
     Returns
     -------
@@ -120,11 +120,11 @@ def bifurcation(
     InputError
         If an argument is out of range or shapes disagree.
     KeyboardInterrupt
-        As it came, unless ``keep_partial``.
+        On an interruption (Ctrl-C), unless ``keep_partial``.
 
     Notes
     -----
-    A sweep over the mesh frequency of one system is marched in stretches side by side. Every
+    A sweep over the mesh frequency of one system is integrated in stretches, in one batch. Every
     stretch is then entered from the end of the one before until it meets the motions that are
     there, so that jumps lie where marching one value after the other puts them. Motions that do
     not repeat count as the same. The repetition with shorter steps begins on the motion itself.
@@ -136,8 +136,8 @@ def bifurcation(
     >>> from tribodyn.dynamics import Contact
     >>> pair = Contact([1.0], stiffness=lambda p: 1.0 + 0.2 * np.cos(2 * np.pi * p), gap=1.0)
     >>> system = System([[1.0]], [[0.1]], [[0.0]], [0.5], [pair])
-    >>> found = bifurcation(system, np.array([0.7, 0.8]) / (2 * np.pi), steps=64)
-    >>> found.period.tolist(), found.verdicts()
+    >>> diagram = bifurcation(system, np.array([0.7, 0.8]) / (2 * np.pi), steps=64)
+    >>> diagram.period.tolist(), diagram.verdicts()
     ([[1, 1]], {'physical': 2})
     """
     require_one_of("sweep", sweep, _BRANCHES)
@@ -261,7 +261,7 @@ def _read_values(
 def _read_survey(survey: Survey) -> Survey:
     if not 2 <= survey.keep <= survey.cycles or survey.transient < 0:
         what = f"keep = {survey.keep}, cycles = {survey.cycles}, transient = {survey.transient}"
-        why = "At least two points are kept, of as many mesh cycles or more"
+        why = "At least two points are stored, and no more than cycles"
         raise InputError(what, "argument keep", why, "Lower keep, or raise cycles")
     return survey
 
@@ -374,7 +374,7 @@ class Bifurcation(Surveyed):
     branches : tuple of str
         ``"up"``, ``"down"`` or ``"independent"``.
     signal : str
-        Name of what was looked at, a contact or a coordinate.
+        Name of the evaluated contact or coordinate.
     section : (branches, points, keep) array
         It once per mesh cycle, at the mesh phase 0 [m or rad].
     period : (branches, points) int array
@@ -388,7 +388,7 @@ class Bifurcation(Surveyed):
     steps : (points,) int array
         Steps per mesh cycle.
     verdict : (branches, points) str array
-        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty words if not asked for.
+        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not requested.
     refined_period : (branches, points) int array
         Period of the same computation with ``refined_steps`` steps.
     refined_rms : (branches, points) array
@@ -396,7 +396,7 @@ class Bifurcation(Surveyed):
     refined_steps : (points,) int array
         Twice the steps, or more where that is not yet stable.
     largest_exponent : (branches, points) array
-        Largest Lyapunov exponent [1/s]; NaN if not asked for.
+        Largest Lyapunov exponent [1/s]; NaN if not requested.
     finished : (branches, points) bool array
         Which motions are there; all of them unless the work was interrupted. The others have NaN,
         period 0 and an empty verdict.

@@ -1,10 +1,10 @@
 """Sweeps over a parameter: every value from the last state of the one before.
 
-So it would have to march one motion at a time. Where one system serves all values, pieces of the
-sweep are marched side by side and joined where their motions are the same: all stretches begin at
-once, from rest. Then every stretch is entered from the end of the one before, and marched again
-until it meets a motion that is there already; if it never does, the following stretch is entered
-anew.
+Such a sweep integrates one motion at a time. Where one system serves all values, pieces of the
+sweep are integrated in one batch and joined where their motions are the same: all stretches
+begin at once, from rest. Then every stretch is entered from the end of the one before, and
+marched again until it meets a motion that is there already; if it never does, the following
+stretch is entered anew.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ class Stretches(Motions):
         compiled: Compiled,
         frequency: Array,
         first: Array,
-        rest: Array,
+        rest_state: Array,
         branches: tuple[str, ...],
     ) -> None:
         count = frequency.size
         all_of_them = np.tile(frequency, len(branches))
-        start = np.tile(rest, (all_of_them.size, 1))
+        start = np.tile(rest_state, (all_of_them.size, 1))
         super().__init__(compiled, all_of_them, start, keep_states=True)
-        self.rest = rest
+        self.rest_state = rest_state
         pieces = min(_STRETCHES // len(branches), max(1, count // _SHORTEST))
         self.stretches: list[list[list[int]]] = []
         self.follower = np.full(all_of_them.size, -1)
@@ -133,7 +133,7 @@ class Stretches(Motions):
     def enter(self, index: int, before: int) -> None:
         """Start a motion at the end of another, or at rest if that one diverged."""
         alive = np.all(np.isfinite(self.state[before]))
-        self.start[index] = self.state[before] if alive else self.rest
+        self.start[index] = self.state[before] if alive else self.rest_state
         self.force[index] = self.force[before] if alive else 0.0
 
     def _same(self, index: int, facts: tuple[int, float, Array, Array]) -> bool:
@@ -203,9 +203,9 @@ def march_sweeps(
         return outcomes
     count = points.count
     compiled = points.compiled(points.groups[0])
-    rest = static_start(compiled)
-    begin = rest if first is None else first
-    sweeps = Stretches(compiled, points.mesh_frequency, begin, rest, branches)
+    rest_state = static_start(compiled)
+    begin = rest_state if first is None else first
+    sweeps = Stretches(compiled, points.mesh_frequency, begin, rest_state, branches)
     names = [f"{branch} {number}" for branch in branches for number in range(count)]
     sweeps.kept_by(survey.members, names)
     survey.uninterrupted(lambda: march_stretches(sweeps, survey.transient, progress))

@@ -1,4 +1,4 @@
-"""Lyapunov exponents: how fast motions that begin side by side part or close up.
+"""Lyapunov exponents: how fast neighbouring motions diverge or converge.
 
 The tangent method: small disturbances are carried along the motion by the linear equations that
 hold between two changes of contact, with saltation matrices where contacts open or close, and
@@ -35,15 +35,15 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Mask
 
-#: Numbers kept at a time while disturbances are carried.
-_ROOM = 6_000_000
+#: Largest number of stored values while disturbances are integrated.
+_MOST_VALUES = 6_000_000
 #: Mesh cycles of the transient over which disturbances already turn into their directions.
 _ALIGN = 200
 _BLOCKS = 32
-#: Mesh cycles over which a motion that repeats is looked at with half the step.
+#: Mesh cycles over which a motion that repeats is integrated with half the step.
 _FEW = 64
 #: Mesh cycles whose matrices are compared to see whether they repeat.
-_KEPT = 32
+_COMPARED = 32
 #: Standard errors by which the largest exponent of a chaotic motion is above zero.
 _SURE = 3.0
 #: Largest exponents agree within this many standard errors of their difference, or this share, or
@@ -81,7 +81,7 @@ class LyapunovExponents(Record):
         [1/s].
     verdict : "physical", "step-limited", "undecided" or ""
         What half the step says of it, see
-        :func:`~tribodyn.nonlinear.lyapunov.exponent_verdict`; empty where it was not asked.
+        :func:`~tribodyn.nonlinear.lyapunov.exponent_verdict`; empty where not requested.
     free_rotation : (2 n,) bool array, optional
         Which exponents belong to free rotations, a pair for each: that of its angle, which is
         zero, and that of its speed, which is zero without dampers and minus their rate with them.
@@ -102,7 +102,7 @@ class LyapunovExponents(Record):
     rotating: tuple[str, ...] = fact(default=())
 
     def __post_init__(self) -> None:
-        """Take the exact zeros for the free rotations where it is not given which they are."""
+        """Assign exact zeros to the free rotations if ``free_rotation`` is None."""
         if self.free_rotation is None:
             zero = self.exponents == 0.0
             object.__setattr__(self, "free_rotation", zero & (np.cumsum(zero) <= self.free))
@@ -136,7 +136,7 @@ class LyapunovExponents(Record):
 
     @property
     def left_out(self) -> str:
-        """Exponents of free rotations in words; empty where the structure has none."""
+        """Text that lists the exponents of free rotations; empty where the structure has none."""
         count = int(self.free_rotation.sum())
         if not count:
             return ""
@@ -213,7 +213,7 @@ def lyapunov_exponents(
         Whether to find them again with half the step, over half of the mesh cycles, or over 64 if
         the motion repeats.
     progress : Progress
-        Told about the mesh cycles.
+        Receives the number of finished mesh cycles; silent by default.
 
     Raises
     ------
@@ -240,8 +240,8 @@ def lyapunov_exponents(
     Examples
     --------
     >>> free = System([[1.0]], [[0.2]], [[4.0]], [0.0])
-    >>> found = lyapunov_exponents(free, 1.0, start=([1.0], [0.0]), cycles=300, steps=64)
-    >>> bool(np.allclose(found.exponents, -0.1, rtol=1e-6))
+    >>> spectrum = lyapunov_exponents(free, 1.0, start=([1.0], [0.0]), cycles=300, steps=64)
+    >>> bool(np.allclose(spectrum.exponents, -0.1, rtol=1e-6))
     True
     """
     require_whole("cycles", cycles)
@@ -249,9 +249,9 @@ def lyapunov_exponents(
     compiled = compile_for(system, mesh_frequency, steps)
     tables = TangentTables(compiled, mesh_frequency)
     if tables.coordinates.elastic.shape[1] == 0:
-        what = "no coordinate is held by a spring or a contact"
+        what = "no coordinate is restrained by a spring or a contact"
         why = "Nothing vibrates, so that every exponent is zero"
-        raise InputError(what, "System.stiffness", why, "Hold at least one coordinate")
+        raise InputError(what, "System.stiffness", why, "Restrain at least one coordinate")
     extra = read_force(system, extra_force)
     state = static_start(compiled) if start is None else read_start(system, start)
     carrier = _Carrier(tables, state, np.broadcast_to(extra, (system.size,)))
@@ -295,7 +295,7 @@ class _Carrier:
         self.braked = np.vstack((np.zeros((k - len(braked), braked.shape[1])), braked))
         self.share = np.zeros(k)
         self.length = self.elapsed = 0
-        self.last: deque[Array] = deque(maxlen=_KEPT)
+        self.last: deque[Array] = deque(maxlen=_COMPARED)
 
     def settle(self, cycles: int) -> None:
         """March without disturbances."""
@@ -321,7 +321,7 @@ class _Carrier:
     def carry(self, cycles: int, progress: Progress) -> tuple[Array, Array]:
         """Growth of every disturbance and mean trace in each mesh cycle [1/s]."""
         k, steps = self.tables.size, self.tables.compiled.grid.steps
-        chunk = max(1, _ROOM // (steps * (k * k + self.state.shape[1])))
+        chunk = max(1, _MOST_VALUES // (steps * (k * k + self.state.shape[1])))
         growth, divergence, share = np.zeros((cycles, k)), np.zeros(cycles), np.zeros(k)
         for first in range(0, cycles, chunk):
             count = min(chunk, cycles - first)
@@ -362,8 +362,11 @@ class _Carrier:
         patterns = touching @ 2.0 ** np.arange(touching.shape[1])
         for pattern, first in zip(*np.unique(patterns, return_index=True), strict=True):
             which = np.flatnonzero(~crossed & (patterns == pattern))
-            known = tables.whole_steps(touching[first])
-            matrices[which], traces[which] = known[0][number[which]], known[1][number[which]]
+            step_tables = tables.whole_steps(touching[first])
+            matrices[which], traces[which] = (
+                step_tables[0][number[which]],
+                step_tables[1][number[which]],
+            )
         which = np.flatnonzero(crossed)
         if which.size:
             matrices[which], traces[which] = carry_over_crossings(
@@ -378,13 +381,13 @@ def _summarize(
     mesh_frequency = carrier.tables.mesh_frequency
     values, errors, share = growth.mean(axis=0), _block_error(growth), carrier.share
     mean = float(divergence.mean())
-    period, apart = repeats_after(carrier.last)
+    period, mismatch = repeats_after(carrier.last)
     if period:
         span = period / mesh_frequency
         repeated = list(carrier.last)[-period:]
         values, share = floquet_growth(repeated, carrier.frame, carrier.braked)
         values = values / span
-        errors, mean = np.full_like(values, apart / span), float(divergence[-period:].mean())
+        errors, mean = np.full_like(values, mismatch / span), float(divergence[-period:].mean())
     elif not np.nanmax(values) > _SURE * np.nan_to_num(errors[int(values.argmax())]):
         half = (len(growth) + 1) // 2
         values, mean = _windowed(growth), float(_windowed(divergence[:, None])[0])

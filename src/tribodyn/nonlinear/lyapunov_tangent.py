@@ -215,13 +215,13 @@ def _first_crossing(
     engine: WithinSteps, lanes: _Lanes, leaving: Array, beyond: Mask
 ) -> tuple[Array, Index]:
     """Fraction at which the first contact leaves its side (2 if none does), and which it is."""
-    found = np.full(beyond.shape, 2.0)
+    fractions = np.full(beyond.shape, 2.0)
     for j in range(beyond.shape[1]):
         which = np.flatnonzero(beyond[:, j])
         if which.size:
-            found[which, j] = _root(engine, lanes.take(which), leaving[which], j)
-    first = np.asarray(np.argmin(found, axis=1), dtype=np.int64)
-    return np.asarray(np.min(found, axis=1)), first
+            fractions[which, j] = _root(engine, lanes.take(which), leaving[which], j)
+    first = np.asarray(np.argmin(fractions, axis=1), dtype=np.int64)
+    return np.asarray(np.min(fractions, axis=1)), first
 
 
 def _root(engine: WithinSteps, lanes: _Lanes, leaving: Array, contact: int) -> Array:

@@ -1,4 +1,4 @@
-"""Maps over two parameters: period, rms and contact loss of many motions side by side."""
+"""Maps over two parameters: period, rms and contact loss of a batch of motions."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def parameter_map(
     keep_partial : bool
         Return what is finished when interrupted (Ctrl-C), see ``finished``.
     progress : Progress
-        Told about the motions.
+        Receives the number of finished motions; silent by default.
     backend : "cpu" or "cuda", optional
         The processor that marches, as in :func:`tribodyn.dynamics.simulate_ensemble`.
 
@@ -113,14 +113,15 @@ def parameter_map(
     InputError
         If an argument is out of range or the step is too long.
     KeyboardInterrupt
-        As it came, unless ``keep_partial``.
+        On an interruption (Ctrl-C), unless ``keep_partial``.
 
     Notes
     -----
-    Every motion starts by itself: where several exist, the map shows the one that the start comes
-    to. A motion that repeats is judged without marching it anew: one period with half the step
-    must come back so near that, by the rate at which disturbances die out, the motion of half the
-    step lies within 0.5 % of the state. All others are marched again, from where they are.
+    Every motion starts independently: where several exist, the map shows the one that its start
+    leads to. A motion that repeats is judged without integrating it anew: one period with half
+    the step must come back so near that, by the rate at which disturbances die out, the motion of
+    half the step lies within 0.5 % of the state. All others are integrated again, from where they
+    are.
 
     Examples
     --------
@@ -128,8 +129,8 @@ def parameter_map(
     >>> pair = Contact([1.0], stiffness=lambda p: 1.0 + 0.2 * np.cos(2 * np.pi * p), gap=1.0)
     >>> system = System([[1.0]], [[0.1]], [[0.0]], [0.5], [pair])
     >>> over = (("mesh_frequency", [0.12, 0.14]), ("force_scale", [1.0, 1.5]))
-    >>> found = parameter_map(system, over=over)
-    >>> found.period.tolist(), found.verdicts()
+    >>> result = parameter_map(system, over=over)
+    >>> result.period.tolist(), result.verdicts()
     ([[1, 1], [1, 1]], {'physical': 4})
     """
     axes = _read_axes(system, over, mesh_frequency, units)
@@ -339,7 +340,7 @@ class ParameterMap(Surveyed):
     step_number : array
         ``omega_max * dt`` [-].
     verdict : str array
-        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not asked for.
+        ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not requested.
     signal : str
         Name of what rms and contact loss are of, a contact or a coordinate.
     finished : bool array

@@ -47,7 +47,7 @@ class PoincareSection(Record):
         not yet settled.
     verdict : "physical", "step-limited", "undecided" or ""
         What half the step says of it, see :func:`~tribodyn.nonlinear.survey.step_verdict`; empty
-        where it was not asked.
+        where not requested.
     """
 
     position: Array = quantity("mesh_cycle", "coordinate", unit="m or rad")
@@ -290,7 +290,7 @@ class PhasePortrait(Record):
     mesh_frequency : float
         Mesh frequency [Hz].
     verdict : "physical", "step-limited", "undecided" or ""
-        What half the step says of it; empty where it was not asked.
+        What half the step says of it; empty where not requested.
     """
 
     name: str = fact()

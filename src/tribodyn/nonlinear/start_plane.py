@@ -38,10 +38,10 @@ class StartPlane:
         """Coordinates of states (..., 2 n) in the plane."""
         return np.asarray(states @ self.project.T - self.offset)
 
-    def starts(self, axes: tuple[Array, Array], rest: Array) -> Array:
+    def starts(self, axes: tuple[Array, Array], rest_state: Array) -> Array:
         """States of all starts, the second axis varying fastest."""
         values = np.stack([each.ravel() for each in np.meshgrid(*axes, indexing="ij")], axis=1)
-        starts = rest + (values - self.section(rest)) @ self.lift.T
+        starts = rest_state + (values - self.section(rest_state)) @ self.lift.T
         for number, column in enumerate(self.columns):
             starts[:, column] = values[:, number]
         return np.asarray(starts)

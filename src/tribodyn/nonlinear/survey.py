@@ -1,4 +1,4 @@
-"""Surveys of motions: marched until they repeat, measured, and judged by half the step.
+"""Surveys of motions: integrate until they repeat, evaluate, and judge by half the step.
 
 A survey has motions that differ in their system, mesh frequency, factors, steps or start. Those
 that share a system and its steps are lanes of one march.
@@ -62,12 +62,12 @@ class Surveyed(Record):
 
     @property
     def complete(self) -> bool:
-        """Whether every motion is there."""
+        """Whether every motion is finished."""
         return bool(self.finished.all())
 
     @property
     def ran_away(self) -> Mask:
-        """Which motions grew beyond all bounds without the step's doing."""
+        """Mask of the motions that grew beyond all bounds and are not step-limited."""
         lost = self.finished & ~np.isfinite(self.rms)
         return np.asarray(lost & (self.verdict != "step-limited"))
 
@@ -86,7 +86,7 @@ class Surveyed(Record):
 
 
 def signal_name(system: System, signal: int | str) -> str:
-    """Name of what is looked at: a contact or a coordinate."""
+    """Name of the evaluated contact or coordinate."""
     names = tuple(system.names)
     if isinstance(signal, str) and signal in names:
         return signal
@@ -104,8 +104,8 @@ class Survey:
 
     transient: int  #: mesh cycles before, fewer where the motion repeats
     cycles: int  #: mesh cycles of the statistics of a motion that does not repeat
-    keep: int  #: the last mesh cycles, of which the points are kept
-    signal: int | str  #: contact whose compression is looked at, or name of a coordinate
+    keep: int  #: number of last mesh cycles whose points are stored
+    signal: int | str  #: contact whose compression is evaluated, or name of a coordinate
     keep_partial: bool = False  #: whether an interruption leaves what is finished
     tolerance: float = 1e-7  #: certified distance to the motion that repeats, over its size
     width: int = 16  #: lanes of one block
@@ -113,7 +113,7 @@ class Survey:
     stop: threading.Event = field(default_factory=threading.Event, repr=False, compare=False)
 
     def uninterrupted(self, work: Callable[[], None]) -> None:
-        """Do some work; if it is interrupted, go on with what there is, where that is wanted."""
+        """Run ``work``; suppress an interruption if partial results are requested."""
         try:
             work()
         except KeyboardInterrupt:
@@ -136,8 +136,8 @@ class Survey:
         )
 
 
-#: Steps of all systems together that are kept compiled, some 60 MB.
-_KEPT = 2**16
+#: Most steps of all compiled systems in the cache together, some 60 MB.
+_CACHED_STEPS = 2**16
 
 
 class Points:
@@ -171,9 +171,9 @@ class Points:
             steps = int(self.steps[first])
             compiled = compile_lanes(self.systems[first], slowest, steps, any_step=True)
             self.step_number[group] = compiled.step_number * slowest / self.mesh_frequency[group]
-        with self._lock:  # The other branch asks last for what was asked for first.
+        with self._lock:  # The other branch requests the groups in reverse order.
             self._compiled[first] = compiled
-            while sum(each.grid.steps for each in self._compiled.values()) > _KEPT:
+            while sum(each.grid.steps for each in self._compiled.values()) > _CACHED_STEPS:
                 del self._compiled[next(iter(self._compiled))]
         return compiled
 
@@ -189,10 +189,10 @@ class Points:
 
 
 class Outcomes:
-    """What came of all motions of a survey; filled while marching."""
+    """Results of all motions of a survey, filled during the time integration."""
 
     def __init__(self, count: int, keep: int, size: int, name: str = "") -> None:
-        self.name = name  #: of motions that are kept
+        self.name = name  #: prefix of the names of checkpoints
         self.section = np.full((count, keep), np.nan)
         self.period = np.zeros(count, dtype=np.int64)
         self.rms, self.contact_loss_share = np.full(count, np.nan), np.full(count, np.nan)
@@ -247,7 +247,7 @@ def march_group(
 def march_points(
     points: Points, survey: Survey, *rows: tuple[Outcomes, Mask | None], progress: Progress = SILENT
 ) -> None:
-    """March all motions side by side, each from a start of its own; in ``rows``, those chosen."""
+    """Integrate all motions in batches, each from its start; ``rows`` may select some of them."""
 
     def wanted(group: Index) -> list[tuple[Outcomes, Mask | None]]:
         return [row for row in rows if row[1] is None or row[1][group].any()]
@@ -267,7 +267,7 @@ def march_points(
 
 
 def each_in_threads(function: Callable[[Any], None], items: Sequence[Any]) -> None:
-    """Do the same with every item, as many at a time as there are cores."""
+    """Call a function with every item, on as many threads as there are cores."""
     in_threads(function, items, os.cpu_count() or 1)
 
 
@@ -288,13 +288,13 @@ def comes_back(points: Points, outcomes: Outcomes) -> Mask:
                 new = motions.march(index, state, int(period), force)
             except ComputationError:
                 continue
-            apart = np.abs(reduce(new) - reduce(state)).max(axis=1) / (1.0 - rate[index])
-            same[group[index]] = apart <= _AGREES * np.abs(reduce(state)).max(axis=1)
+            distance = np.abs(reduce(new) - reduce(state)).max(axis=1) / (1.0 - rate[index])
+            same[group[index]] = distance <= _AGREES * np.abs(reduce(state)).max(axis=1)
     return same
 
 
 class Figures(NamedTuple):
-    """What was gathered of motions that go on from their last state, all of them (motions, ...)."""
+    """Statistics of motions that continue from their last state; shapes are (motions, ...)."""
 
     points: Array  #: the signal once per mesh cycle [m or rad]
     period: Index  #: mesh cycles after which it repeats
@@ -315,7 +315,7 @@ class Path(NamedTuple):
 
 
 def measure(motions: Motions, indices: Index, survey: Survey) -> Figures:
-    """March on from the last states, and gather statistics."""
+    """Continue from the last states and compute statistics."""
     nan = np.full(indices.size, np.nan)
     figures = Figures(
         np.full((indices.size, survey.keep), np.nan),
@@ -335,7 +335,7 @@ def measure(motions: Motions, indices: Index, survey: Survey) -> Figures:
 def _measure_rows(
     motions: Motions, indices: Index, rows: Index, period: int, survey: Survey, figures: Figures
 ) -> None:
-    """Motions of one period together; one by one if one of them grows beyond all bounds."""
+    """Evaluate motions of one period in a batch; separately if one grows beyond all bounds."""
     index = indices[rows]
     try:
         path = follow(motions, index, motions.state[index], period or survey.cycles, survey.signal)

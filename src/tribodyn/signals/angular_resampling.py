@@ -12,18 +12,18 @@ from tribodyn.types import Array
 
 
 def checked_signal(signal: Any, least: int = 8, name: str = "signal") -> Array:
-    """Return a signal as floats, or say what is wrong with it."""
+    """Return a signal as floats; raise an InputError that names its first defect."""
     where = f"argument {name}"
-    given = np.asarray(signal if hasattr(signal, "dtype") else real_numbers(where, signal))
-    if given.dtype.kind not in "biuf":
-        what = f"{name} holds {given.dtype} values"
-        remedy = "Pass real and imaginary parts one by one, and text as numbers"
+    samples = np.asarray(signal if hasattr(signal, "dtype") else real_numbers(where, signal))
+    if samples.dtype.kind not in "biuf":
+        what = f"{name} holds {samples.dtype} values"
+        remedy = "Pass real and imaginary parts separately, and text as numbers"
         raise InputError(what, where, "A recorded signal holds real numbers", remedy)
-    values = given.astype(float)
+    values = samples.astype(float)
     if values.ndim != 1:
         what = f"{name} has the shape {values.shape}"
         why = "One recorded signal is a row of numbers, (n,)"
-        raise InputError(what, where, why, "Pass the columns of a record one by one")
+        raise InputError(what, where, why, "Pass each column of a record separately")
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
         what = f"{name} is {values[bad[0]]} at sample {bad[0]} ({bad.size} such samples)"
@@ -56,14 +56,14 @@ def checked_rising(values: Any, size: int, name: str, unit: str) -> Array:
 
 
 def refuse_above_half(highest: float, sampling_rate: float, what: str, where: str) -> None:
-    """Refuse a frequency that the sampling cannot tell from a lower one."""
+    """Raise an error for a frequency above half the sampling rate (Nyquist)."""
     require_positive("sampling_rate", sampling_rate, "Hz")
     if not highest < 0.5 * sampling_rate:
         raise InputError(
             f"{what} is at {highest:.6g} Hz",
             where=where,
             why=f"Sampled with {sampling_rate:.6g} Hz, only frequencies below "
-            f"{0.5 * sampling_rate:.6g} Hz can be told apart (Nyquist)",
+            f"{0.5 * sampling_rate:.6g} Hz can be resolved (Nyquist)",
             remedy="Sample faster, or ask for less",
         )
 
@@ -116,7 +116,7 @@ class AngularSignal:
 
 
 def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
-    """Rotation of a shaft, given as it is or by its speed."""
+    """Return the rotation of a shaft, integrated from its speed if necessary [rad]."""
     if (rotation is None) == (speed is None):
         what = "neither or both of rotation and speed are given"
         why = "One of them is needed to follow the shaft"
@@ -171,8 +171,8 @@ def angular_resampling(
     -----
     The signal is first sampled over the rotation as finely as it was over time where the shaft
     is slowest, on a cubic spline. There all orders up to half the samples of a revolution are
-    kept and higher ones removed by a linear-phase filter over the rotation, whose edge thus
-    follows the speed; only then every so many samples are kept. A record sampled with fewer than
+    retained and higher ones removed by a linear-phase filter over the rotation, whose edge thus
+    follows the speed; only then is the signal decimated. A record sampled with fewer than
     16 samples per period of the highest order is refined first by band-limited interpolation,
     which needs equal steps of time. K. R. Fyfe and E. D. S. Munck, Mechanical Systems and Signal
     Processing 11 (1997) 187.
@@ -181,9 +181,10 @@ def angular_resampling(
     --------
     >>> time = np.linspace(0.0, 2.0, 4001)
     >>> rotation = 2 * np.pi * (5.0 * time + 5.0 * time**2)
-    >>> made = angular_resampling(np.cos(7 * rotation), time, rotation, samples_per_revolution=64)
+    >>> wave = np.cos(7 * rotation)
+    >>> resampled = angular_resampling(wave, time, rotation, samples_per_revolution=64)
     >>> middle = slice(200, 1700)
-    >>> float(np.abs(made.signal - np.cos(7 * made.rotation))[middle].max()) < 1e-3
+    >>> float(np.abs(resampled.signal - np.cos(7 * resampled.rotation))[middle].max()) < 1e-3
     True
     """
     from scipy.interpolate import CubicSpline
@@ -209,7 +210,7 @@ def angular_resampling(
             f"{fine_samples:.2g} samples over the rotation would be needed",
             where="argument rotation",
             why=f"The shaft turns as slowly as {slowest:.3g} revolutions per second, and "
-            f"sampled with {rate:.3g} Hz all of the signal must be kept there",
+            f"sampled with {rate:.3g} Hz the full bandwidth must be retained",
             remedy="Cut the slow part off, or sample more slowly",
         )
     fine_time, fine_signal = _refined(moments, values, top * pace)
@@ -217,18 +218,18 @@ def angular_resampling(
     grid = angle[0] + spacing * np.arange(int((angle[-1] - angle[0]) / spacing + 1e-9) + 1)
     when = np.clip(_inverse(turning, moments, angle, grid), moments[0], moments[-1])
     even = CubicSpline(fine_time, fine_signal)(when)
-    kept = slice(None, None, factor)
+    every_nth = slice(None, None, factor)
     return AngularSignal(
-        grid[kept] - angle[0],
+        grid[every_nth] - angle[0],
         decimated(even, factor),
-        when[kept],
-        np.asarray(turning(when[kept], 1)),
+        when[every_nth],
+        np.asarray(turning(when[every_nth], 1)),
         samples_per_revolution,
     )
 
 
 def _inverse(turning: Any, moments: Array, angle: Array, grid: Array) -> Array:
-    """Time at which the shaft has turned that far: two Newton steps from linear pieces."""
+    """Return the time of each angle, by two Newton steps from linear interpolation [s]."""
     when = np.interp(grid, angle, moments)
     for _ in range(2):
         slope = turning(when, 1)
@@ -251,7 +252,7 @@ def _refined(moments: Array, values: Array, highest: float) -> tuple[Array, Arra
 
 
 def decimated(values: Array, factor: int) -> Array:
-    """Every so many samples, after a filter without delay that removes what would fold."""
+    """Decimate a signal after a zero-delay filter that removes what would alias."""
     return values if factor == 1 else _resampled(values, 1, factor)
 
 

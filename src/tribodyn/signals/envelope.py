@@ -48,8 +48,8 @@ def envelope(
     --------
     >>> time = np.arange(2000) / 1000.0
     >>> wave = (2.0 + np.cos(2 * np.pi * 5.0 * time)) * np.cos(2 * np.pi * 100.0 * time)
-    >>> made = envelope(wave, 1000.0)
-    >>> round(float(made.min()), 6), round(float(made.max()), 6)
+    >>> result = envelope(wave, 1000.0)
+    >>> round(float(result.min()), 6), round(float(result.max()), 6)
     (1.0, 3.0)
     """
     from scipy.signal import butter, hilbert, sosfiltfilt
@@ -99,18 +99,18 @@ def envelope_spectrum(
     --------
     >>> time = np.arange(2000) / 1000.0
     >>> wave = (2.0 + np.cos(2 * np.pi * 5.0 * time)) * np.cos(2 * np.pi * 100.0 * time)
-    >>> made = envelope_spectrum(wave, 1000.0, window="hann")
-    >>> made
+    >>> result = envelope_spectrum(wave, 1000.0, window="hann")
+    >>> result
     SignalSpectrum(1001 lines to 500 Hz, largest 1 at 5 Hz)
-    >>> round(float(made.amplitude[0]), 6)
+    >>> round(float(result.amplitude[0]), 6)
     2.0
     """
     hull = envelope(signal, sampling_rate, band=band)
     mean = float(hull.mean())
-    made = spectrum(hull - mean, sampling_rate, window=window, unit=unit)
+    result = spectrum(hull - mean, sampling_rate, window=window, unit=unit)
     # the mean would hide slow modulation under its main lobe; it comes back as its own line
-    made.amplitude[0] = mean
-    return made
+    result.amplitude[0] = mean
+    return result
 
 
 #: Points over one period of the modulation.
@@ -184,7 +184,7 @@ def sidebands(
     count: int = 5,
     unit: str = "",
 ) -> Sidebands:
-    """Amplitudes at a carrier and beside it, and the modulation behind them.
+    """Compute the amplitudes of a carrier and its sidebands, and the modulation behind them.
 
     Parameters
     ----------
@@ -221,8 +221,8 @@ def sidebands(
     >>> time = np.arange(3000) / 3000.0
     >>> turn = 2 * np.pi * 7.3 * time
     >>> wave = (1 + 0.3 * np.cos(turn)) * np.cos(2 * np.pi * 400 * time + 0.2 * np.sin(turn + 1))
-    >>> made = sidebands(wave, 3000.0, 400.0, 7.3)
-    >>> round(made.amplitude_modulation, 5), round(made.phase_modulation, 5)
+    >>> result = sidebands(wave, 3000.0, 400.0, 7.3)
+    >>> round(result.amplitude_modulation, 5), round(result.phase_modulation, 5)
     (0.3, 0.2)
     """
     values = checked_signal(signal, 16)
@@ -237,7 +237,7 @@ def sidebands(
             f"sideband -{count} is at {low:.6g} Hz, the record holds {periods:.3g} "
             "periods of the modulation",
             where="arguments carrier, modulation and count",
-            why="All sidebands must lie above zero, and two periods are needed to part them",
+            why="All sidebands must lie above zero, and two periods are needed to separate them",
             remedy="Ask for fewer sidebands, or record longer",
         )
     number = np.arange(-count, count + 1)
@@ -247,7 +247,7 @@ def sidebands(
     if not size[count] > 1e-9 * max(float(size.max()), float(np.abs(values).max())):
         raise ComputationError(
             f"nothing vibrates at the carrier of {carrier:.6g} Hz",
-            why="Modulation is told over the amplitude of the carrier",
+            why="Modulation is relative to the amplitude of the carrier",
             remedy="Check the carrier against the peaks of tribodyn.analysis.spectrum",
         )
     shape = lines / lines[count]

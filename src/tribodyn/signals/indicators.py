@@ -1,4 +1,4 @@
-"""Indicators of a signal that keep the order of the integrator: mean, rms, peaks.
+"""Indicators of a signal to the order of accuracy of the integrator: mean, rms, peaks.
 
 All take signals on the fine samples of a response, (3 * steps, ...): both ends and the middle of
 every step. Between these three samples a signal is a parabola, so that peaks are not missed.
@@ -300,7 +300,7 @@ def direction_shares(along: Any, across: Any) -> tuple[float, float]:
             f"{first.size} samples along and {second.size} across, with the variance "
             f"{total:g} together",
             where="arguments along and across",
-            why="Both must be sampled alike, and one must vibrate",
+            why="Both must have the same samples, and at least one must vibrate",
             remedy="Give both signals over the same samples",
         )
     return float(np.var(first)) / total, float(np.var(second)) / total
@@ -329,7 +329,7 @@ def mesh_harmonics(
     Raises
     ------
     InputError
-        If ``count`` harmonics cannot be told apart on this grid.
+        If ``count`` harmonics cannot be resolved on this grid.
 
     Examples
     --------
@@ -343,8 +343,8 @@ def mesh_harmonics(
     return _fourier(fine, signal, np.arange(1, count + 1, dtype=float))
 
 
-#: Largest matrix of a transform that is kept for the next signal on the same samples.
-_KEPT = 10**6
+#: Largest transform matrix that is cached for the next signal on the same samples.
+_LARGEST_CACHED = 10**6
 
 
 _recent: Memo[tuple[Array, Array]] = Memo(2)
@@ -360,13 +360,17 @@ def _fourier(fine: FineSamples, signal: Array, orders: Array) -> ComplexArray:
     span = round(float(fine.phase[-1]))
     if orders.size and orders[-1] * 8.0 > fine.phase.size / 3.0 / max(span, 1):
         limit = fine.phase.size / 3.0 / max(span, 1) / 8.0
-        what = f"mesh harmonic {orders[-1]:g} asked for"
+        what = f"mesh harmonic {orders[-1]:g} is requested"
         why = f"With this step it is resolved up to harmonic {limit:.0f}, eight steps each"
         raise InputError(what, "argument count", why, "Use more steps per mesh cycle")
     _on(fine.phase.size, signal)
-    given = orders, fine.phase, fine.weight
-    small = orders.size * fine.phase.size < _KEPT
-    turns = _recent.get(given, lambda: _turns(*given)) if small else _turns(*given)
+    transform_grid = orders, fine.phase, fine.weight
+    small = orders.size * fine.phase.size < _LARGEST_CACHED
+    turns = (
+        _recent.get(transform_grid, lambda: _turns(*transform_grid))
+        if small
+        else _turns(*transform_grid)
+    )
     columns = signal.reshape(len(signal), -1)
     real, imaginary = (2.0 * (part @ columns) for part in turns)
     return np.asarray((real + 1j * imaginary).reshape(-1, *signal.shape[1:]))

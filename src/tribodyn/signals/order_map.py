@@ -1,4 +1,4 @@
-"""Order map and spectrogram: what turns with the shaft, apart from what does not."""
+"""Order map and spectrogram: amplitude over orders and speed, or over frequency and time."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Spectrogram(Record):
         ).replace("  ", " ")
 
     def strongest(self) -> tuple[int, int]:
-        """Return where the amplitude is largest, the mean left out.
+        """Return the indices of the largest amplitude, excluding the mean.
 
         Returns
         -------
@@ -98,7 +98,7 @@ def spectrogram(
     window: str = "hann",
     unit: str = "",
 ) -> Spectrogram:
-    """Amplitude spectra of short blocks, one after the other.
+    """Compute the amplitude spectra of successive short blocks.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def spectrogram(
         As :func:`tribodyn.analysis.spectrum` takes them [Hz].
     block_length : int, optional
         Samples of a block; by default about the square root of eight times their number. Longer
-        blocks tell closer frequencies apart and blur what changes faster.
+        blocks resolve closer frequencies and blur faster changes.
     overlap, window, unit
         As :func:`tribodyn.analysis.spectrum` takes them [-].
 
@@ -124,11 +124,11 @@ def spectrogram(
     --------
     >>> time = np.arange(4000) / 1000.0
     >>> wave = np.where(time < 2.0, 0.5, 3.0) * np.cos(2 * np.pi * 125.0 * time)
-    >>> made = spectrogram(wave, 1000.0, block_length=200, unit="um")
-    >>> made.time.size, round(float(made.time[0]), 6), round(float(made.time[-1]), 6)
+    >>> result = spectrogram(wave, 1000.0, block_length=200, unit="um")
+    >>> result.time.size, round(float(result.time[0]), 6), round(float(result.time[-1]), 6)
     (77, 0.1, 3.9)
-    >>> line, _ = made.strongest()
-    >>> round(float(made.frequency[line]), 6), round(float(made.amplitude[line].max()), 6)
+    >>> line, _ = result.strongest()
+    >>> round(float(result.frequency[line]), 6), round(float(result.amplitude[line].max()), 6)
     (125.0, 3.0)
     """
     values = checked_signal(signal, 16)
@@ -190,7 +190,7 @@ def order_map(
     highest_order : float
         Highest order, in cycles per revolution [-].
     revolutions : int
-        Revolutions in a block: orders are told apart down to about two over this number, and
+        Revolutions in a block: orders are resolved down to about two over this number, and
         amplitudes are means over so many revolutions.
     overlap : float
         Part of a block that it shares with the next [-].
@@ -216,10 +216,10 @@ def order_map(
     >>> time = np.linspace(0.0, 4.0, 16001)
     >>> speed = 2 * np.pi * (10.0 + 5.0 * time)
     >>> rotation = 2 * np.pi * (10.0 * time + 2.5 * time**2)
-    >>> made = order_map(np.cos(3 * rotation) * 2.0, time, speed=speed, highest_order=8, unit="N")
-    >>> float(made.order[made.strongest()[0]]), float(made.order[1])
+    >>> result = order_map(np.cos(3 * rotation) * 2.0, time, speed=speed, highest_order=8, unit="N")
+    >>> float(result.order[result.strongest()[0]]), float(result.order[1])
     (3.0, 0.125)
-    >>> round(float(made.cut(3).amplitude.min()), 3)
+    >>> round(float(result.cut(3).amplitude.min()), 3)
     2.0
     """
     values = checked_signal(signal, 16)
@@ -229,20 +229,20 @@ def order_map(
     require_positive("revolutions", revolutions)
     require_between("overlap", overlap, 0.0, 0.95)
     per_turn = 2 * int(np.ceil(1.3 * highest_order + 2))
-    made = angular_resampling(
+    resampled = angular_resampling(
         values, moments, angle, samples_per_revolution=per_turn, highest_order=highest_order
     )
     length = revolutions * per_turn
-    if made.signal.size < length:
-        what = f"the record holds {made.signal.size / per_turn:.3g} revolutions"
+    if resampled.signal.size < length:
+        what = f"the record holds {resampled.signal.size / per_turn:.3g} revolutions"
         why = f"One block takes {revolutions}"
         raise InputError(what, "argument revolutions", why, "Take shorter blocks, or record longer")
     hop = max(length - round(overlap * length), 1)
-    starts = np.arange(0, made.signal.size - length + 1, hop)
-    blocks = np.lib.stride_tricks.sliding_window_view(made.signal, length)[starts]
+    starts = np.arange(0, resampled.signal.size - length + 1, hop)
+    blocks = np.lib.stride_tricks.sliding_window_view(resampled.signal, length)[starts]
     orders, lines = orders_of_blocks(blocks, revolutions, highest_order, window)
     middle = starts + length // 2
-    speed, moments = made.speed[middle], made.time[middle]
+    speed, moments = resampled.speed[middle], resampled.time[middle]
     return OrderMap(orders, speed, moments, lines, float(revolutions), window, unit)
 
 
@@ -254,8 +254,8 @@ def orders_of_blocks(
     lines = np.abs(np.fft.rfft(blocks * weights, axis=1)) * (2.0 / weights.sum())
     lines[:, 0] *= 0.5
     orders = np.arange(lines.shape[1]) / revolutions
-    kept = orders <= highest + 1e-9
-    return orders[kept], lines[:, kept].T
+    in_range = orders <= highest + 1e-9
+    return orders[in_range], lines[:, in_range].T
 
 
 @record
@@ -333,14 +333,14 @@ class OrderMap(Record):
         ).replace("  ", " ")
 
     def strongest(self) -> tuple[int, int]:
-        """Return where the amplitude is largest, the mean left out.
+        """Return the indices of the largest amplitude, excluding the mean.
 
         Returns
         -------
         tuple of two int
             Index of the order and of the block.
         """
-        # the mean reaches into the orders beside zero as far as the main lobe of the window
+        # the mean leaks into the orders next to zero as far as the main lobe of the window
         start = int(np.searchsorted(self.order, 2.5 / self.revolutions))
         line, block = divmod(int(np.argmax(self.amplitude[start:])), self.speed.size)
         return start + line, block
@@ -366,7 +366,7 @@ class OrderMap(Record):
         if not self.order[0] <= order <= self.order[-1]:
             why = f"The map reaches from order {self.order[0]:g} to {self.order[-1]:g}"
             remedy = "Make the map with a larger highest_order"
-            raise InputError(f"order {order:g} asked for", "argument order", why, remedy)
+            raise InputError(f"order {order:g} is requested", "argument order", why, remedy)
         line = int(np.argmin(np.abs(self.order - order)))
         away = (order - float(self.order[line])) * self.revolutions
         offset, gain = window_gain(self.window, 2048)
@@ -374,7 +374,7 @@ class OrderMap(Record):
         return OrderCut(float(order), self.speed, self.amplitude[line] / loss, self.unit)
 
     def plot_waterfall(self) -> Any:
-        """Draw the order spectra one behind the other.
+        """Draw the order spectra as a waterfall.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Orders of a run-up: their amplitude over the speed, the overall level, and what resonates."""
+"""Orders of a run-up: their amplitude over the speed, the overall level and the resonances."""
 
 from __future__ import annotations
 
@@ -55,19 +55,19 @@ class OverallLevel(Record):
         ).replace("  ", " ")
 
 
-def _wholly(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:
-    """Tell which blocks lie wholly in a part of the run."""
+def _blocks_inside(run: RunUp, starts: Index, cycles: int, part: Part) -> Mask:
+    """Return a mask of the blocks that lie entirely in a part of the run."""
     require_one_of("part", part, ("all", "up", "down"))
     if part == "all":
         return np.ones(starts.size, dtype=bool)
-    inside = run.cycles.rate > 0.0 if part == "up" else run.cycles.rate < 0.0
-    count = np.append(0, np.cumsum(inside))
-    found = count[starts + cycles] - count[starts] == cycles
-    if not found.any():
+    in_part = run.cycles.rate > 0.0 if part == "up" else run.cycles.rate < 0.0
+    count = np.append(0, np.cumsum(in_part))
+    inside_part = count[starts + cycles] - count[starts] == cycles
+    if not inside_part.any():
         what = f"the speed never goes {part} for {cycles} mesh cycles"
         why = "An order map needs a record of this length"
         raise InputError(what, "argument part", why, 'Take part="all", or a profile that does')
-    return np.asarray(found)
+    return np.asarray(inside_part)
 
 
 def _starts(run: RunUp, cycles: int, hop: int, part: Part) -> tuple[Index, Index]:
@@ -77,7 +77,7 @@ def _starts(run: RunUp, cycles: int, hop: int, part: Part) -> tuple[Index, Index
         what, why = f"the run has {total} mesh cycles", f"One block takes {cycles}"
         raise InputError(what, "argument cycles", why, "Take shorter blocks, or a longer run")
     starts: Index = np.arange(0, total - cycles + 1, hop, dtype=np.int64)
-    starts = starts[_wholly(run, starts, cycles, part)]
+    starts = starts[_blocks_inside(run, starts, cycles, part)]
     return starts, starts * run.samples + cycles * run.samples // 2
 
 
@@ -99,7 +99,7 @@ def run_up_order_map(
     signal : str
         ``"deflection"``, ``"contact_force"``, a coordinate (its acceleration) or an output.
     cycles : int
-        Mesh cycles in a block: mesh orders are told apart down to about two over this number.
+        Mesh cycles in a block: mesh orders are resolved down to about two over this number.
     overlap : float
         Part of a block that it shares with the next [-].
     highest_order : float, optional
@@ -129,8 +129,8 @@ def run_up_order_map(
     >>> pair = Contact([1.0], stiffness=lambda phase: 9.0 + np.cos(2 * np.pi * phase))
     >>> system = System([[1.0]], [[0.2]], [[0.0]], [1.0], [pair])
     >>> run = run_up(system, ([0.0, 60.0], [1.0, 2.0]), samples=16)
-    >>> made = run_up_order_map(run, "deflection")
-    >>> float(made.order[made.strongest()[0]])
+    >>> result = run_up_order_map(run, "deflection")
+    >>> float(result.order[result.strongest()[0]])
     1.0
     """
     require_positive("cycles", cycles)
@@ -203,11 +203,11 @@ def order_cut(
     mesh = order / source.teeth if of == "shaft" else order
     if mesh >= source.samples / 2:
         what = f"mesh order {mesh:g} with {source.samples} samples per mesh cycle"
-        why = "Orders up to half of the samples can be told"
+        why = "Orders up to half of the samples per cycle can be resolved"
         remedy = f"Run with samples = {4 * int(np.ceil(mesh))} or more"
         raise InputError(what, "argument order", why, remedy)
     values, unit = source.signal(signal)
-    count = cycles or _whole(mesh)
+    count = cycles or _shortest_block(mesh)
     starts, middle = _starts(source, count, max(count // 4, 1), part)
     phase = np.arange(count * source.samples) / source.samples
     weights = window_values("hann", phase.size)
@@ -217,11 +217,11 @@ def order_cut(
     return OrderCut(mesh * source.teeth, source.speed[middle], amplitude, unit)
 
 
-def _whole(mesh: float) -> int:
+def _shortest_block(mesh: float) -> int:
     """Fewest mesh cycles in which an order fits a whole number of times."""
     counts = np.arange(_SHORT, _LONG + 1)
     away = np.abs(counts * mesh - np.round(counts * mesh))
-    # Less than one period in a block cannot be told from the mean.
+    # Less than one period in a block cannot be separated from the mean.
     fits = (away < 1e-9) & (counts * mesh >= 2.0 - 1e-9)
     return int(counts[np.argmax(fits)]) if fits.any() else _LONG
 
@@ -307,7 +307,7 @@ class RunUpResonance:
     amplitude : float
         Peak amplitude, in the unit of the signal.
     prominence : float
-        Height over the higher of the two valleys beside it, in the unit of the signal.
+        Height over the higher of the two adjacent valleys, in the unit of the signal.
     mains : float
         50 or 60 where the frequency is that of the mains or twice it, so that a measured peak may
         be electrical [Hz]; 0 elsewhere.
@@ -373,7 +373,7 @@ def resonances(
     Notes
     -----
     A contact that pulsates and opens shifts its resonances, and a quick run passes them late: the
-    peak lies beside the natural frequency. Of the modes within reach the nearest whose strain sits
+    peak is off the natural frequency. Of the modes within reach the nearest whose strain sits
     in the contacts to a hundredth or more is named.
 
     Examples
@@ -381,28 +381,28 @@ def resonances(
     >>> from tribodyn.dynamics import Contact, System, run_up
     >>> pair = Contact([1.0], stiffness=40.0, error=lambda phase: 0.1 * np.cos(2 * np.pi * phase))
     >>> run = run_up(System([[1.0]], [[0.3]], [[0.0]], [0.0], [pair]), ([0.0, 400.0], [0.6, 1.6]))
-    >>> (found,) = resonances(run, orders=[1])
-    >>> found.mode, round(found.mode_frequency, 3), abs(found.frequency - 1.007) < 0.03
+    >>> (peak,) = resonances(run, orders=[1])
+    >>> peak.mode, round(peak.mode_frequency, 3), abs(peak.frequency - 1.007) < 0.03
     (0, 1.007, True)
     """
     from scipy.signal import find_peaks
 
     lines = [float(order) for order in orders]
     if not lines:
-        what, why = "no order is asked for", "Each curve belongs to one order"
+        what, why = "orders is empty", "Each curve belongs to one order"
         raise InputError(what, "argument orders", why, "Give orders=(1, 2, 3), say")
     require_between("prominence", prominence, 0.0, 1.0)
-    known = modes if modes is not None else run.modes
+    natural_modes = modes if modes is not None else run.modes
     cuts = [order_cut(run, order, signal, part=part) for order in lines]
     largest = max(float(cut.amplitude.max()) for cut in cuts)
-    found: list[RunUpResonance] = []
+    resonance_peaks: list[RunUpResonance] = []
     for order, cut in zip(lines, cuts, strict=True):
-        peaks, facts = find_peaks(cut.amplitude, prominence=max(prominence * largest, 1e-300))
-        for place, height in zip(peaks, facts["prominences"], strict=True):
-            speed, top = _vertex(cut.speed, cut.amplitude, int(place))
+        tops, properties = find_peaks(cut.amplitude, prominence=max(prominence * largest, 1e-300))
+        for index, height in zip(tops, properties["prominences"], strict=True):
+            speed, top = _vertex(cut.speed, cut.amplitude, int(index))
             beat = speed * run.teeth / (2.0 * np.pi)
-            mode, natural = _mode(known, order * beat, near)
-            found.append(
+            mode, natural = _mode(natural_modes, order * beat, near)
+            resonance_peaks.append(
                 RunUpResonance(
                     order,
                     order * run.teeth,
@@ -416,25 +416,25 @@ def resonances(
                     mains_of(order * beat),
                 )
             )
-    return tuple(sorted(found, key=lambda each: -each.amplitude))
+    return tuple(sorted(resonance_peaks, key=lambda peak: -peak.amplitude))
 
 
-def _vertex(speed: Array, amplitude: Array, place: int) -> tuple[float, float]:
+def _vertex(speed: Array, amplitude: Array, index: int) -> tuple[float, float]:
     """Top of the parabola through a peak and its neighbours."""
-    left, middle, right = amplitude[place - 1 : place + 2]
+    left, middle, right = amplitude[index - 1 : index + 2]
     bend = left - 2.0 * middle + right
     shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
-    at = float(np.interp(place + shift, np.arange(speed.size), speed))
-    return at, float(middle - 0.25 * (left - right) * shift)
+    top_speed = float(np.interp(index + shift, np.arange(speed.size), speed))
+    return top_speed, float(middle - 0.25 * (left - right) * shift)
 
 
-def _mode(modes: NaturalModes | None, frequency: float, near: float) -> tuple[int, float]:
+def _mode(modes: NaturalModes | None, frequency: float, tolerance: float) -> tuple[int, float]:
     if modes is None:
         return -1, float("nan")
     natural = np.where(modes.frequency > 0.0, modes.frequency, np.inf)
     away = np.abs(frequency / natural - 1.0)
     share = modes.contact_share if modes.contacts else np.ones_like(natural)
-    away = np.where((away <= near) & (share >= 0.01), away, np.inf)
+    away = np.where((away <= tolerance) & (share >= 0.01), away, np.inf)
     number = int(np.argmin(away))
     if not np.isfinite(away[number]):
         return -1, float("nan")

@@ -123,7 +123,7 @@ def spectrum(
 
 
 def _single_sided(length: int) -> Mask:
-    """Lines that stand for a pair of a positive and a negative frequency."""
+    """Return a mask of the lines that combine a positive and a negative frequency."""
     pair = np.ones(length // 2 + 1, dtype=bool)
     pair[0] = False
     if length % 2 == 0:
@@ -135,11 +135,11 @@ def _single_sided(length: int) -> Mask:
 _MAINS, _MAINS_NEAR = (50.0, 60.0), 0.02
 
 
-def mains_of(frequency: float, near: float = _MAINS_NEAR) -> float:
+def mains_of(frequency: float, tolerance: float = _MAINS_NEAR) -> float:
     """50 or 60 where a frequency is that of the mains or twice it [Hz]; 0 elsewhere."""
     for mains in _MAINS:
         for times in (1.0, 2.0):
-            if abs(frequency / (times * mains) - 1.0) <= near:
+            if abs(frequency / (times * mains) - 1.0) <= tolerance:
                 return mains
     return 0.0
 
@@ -191,7 +191,7 @@ def _with_shaft_orders(peaks: Sequence[Peak], rotation: float, error: float) -> 
 
 
 def _nearest_mains_line(frequency: float) -> float:
-    """Frequency of the mains that a peak on them, or on twice them, stands for [Hz]."""
+    """Mains frequency that a peak at the mains or at twice the mains indicates [Hz]."""
     return frequency if frequency < 1.5 * mains_of(frequency) else 0.5 * frequency
 
 
@@ -344,7 +344,7 @@ class SignalSpectrum(Record):
         return self.scaling
 
 
-#: Local maxima that are looked at for distinct peaks, distance of two over the frequency and in
+#: Local maxima that are searched for distinct peaks, distance of two over the frequency and in
 #: lines, and share of the largest below which there may be rounding only.
 _CANDIDATES, _NEAR, _LOBE, _LEAST = 200, 0.005, 12, 1e-4
 
@@ -353,12 +353,12 @@ def distinct_peaks(lines: SignalSpectrum, count: int) -> list[Peak]:
     """Largest peaks above zero that do not belong to one line that a changing speed smears."""
     candidates = [peak for peak in lines.peaks(_CANDIDATES) if peak.frequency > 0.0]
     least = _LEAST * max((peak.amplitude for peak in candidates), default=0.0)
-    apart = _LOBE * float(lines.frequency[1] - lines.frequency[0])
+    lobe_width = _LOBE * float(lines.frequency[1] - lines.frequency[0])
     peaks: list[Peak] = []
     for peak in candidates:
-        near = max(_NEAR * peak.frequency, apart)
+        least_distance = max(_NEAR * peak.frequency, lobe_width)
         if peak.amplitude > least and all(
-            abs(peak.frequency - larger.frequency) > near for larger in peaks
+            abs(peak.frequency - larger.frequency) > least_distance for larger in peaks
         ):
             peaks.append(peak)
     return peaks[:count]
@@ -395,7 +395,7 @@ def zoom_spectrum(
     Notes
     -----
     Chirp transform (:func:`scipy.signal.zoom_fft`). Close lines draw the peak of the window in
-    full, which leaves no scalloping; two sines are told apart only if they differ by more than
+    full, which leaves no scalloping; two sines are resolved only if they differ by more than
     the main lobe, a few times the inverse of the duration.
 
     Examples

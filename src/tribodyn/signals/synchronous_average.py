@@ -1,4 +1,4 @@
-"""Time-synchronous average: what repeats with the shaft, apart from what does not."""
+"""Time-synchronous average: separate what repeats with the shaft from what does not."""
 
 from __future__ import annotations
 
@@ -70,12 +70,12 @@ class SynchronousAverage(Record):
         Returns
         -------
         (count,) array
-            Peak amplitudes, in the unit of the signal; zero above what is sampled.
+            Peak amplitudes, in the unit of the signal; zero above half the samples of a revolution.
         """
         lines = 2.0 * np.abs(np.fft.rfft(self.signal)) / self.signal.size
         orders = self.teeth * np.arange(1, count + 1)
-        held = orders < self.signal.size / 2
-        return np.where(held, lines[np.where(held, orders, 0)], 0.0)
+        resolved = orders < self.signal.size / 2
+        return np.where(resolved, lines[np.where(resolved, orders, 0)], 0.0)
 
     def residual(self, shaft_orders: int = 2) -> Array:
         """Mean revolution less its mean, the mesh harmonics and the lowest shaft orders.
@@ -107,11 +107,11 @@ class SynchronousAverage(Record):
         """
         return self._without(shaft_orders, 1)
 
-    def _without(self, shaft_orders: int, beside: int) -> Array:
+    def _without(self, shaft_orders: int, sidebands: int) -> Array:
         lines = np.fft.rfft(self.signal)
         lines[: shaft_orders + 1] = 0.0
-        for mesh in range(self.teeth, lines.size + beside, self.teeth):
-            lines[max(mesh - beside, 0) : mesh + beside + 1] = 0.0
+        for mesh in range(self.teeth, lines.size + sidebands, self.teeth):
+            lines[max(mesh - sidebands, 0) : mesh + sidebands + 1] = 0.0
         return np.asarray(np.fft.irfft(lines, self.signal.size))
 
     def _parts(self) -> Parts:
@@ -164,8 +164,8 @@ def time_synchronous_average(
     >>> time = np.linspace(0.0, 2.0, 20001)
     >>> turn = 2 * np.pi * 10.0 * time
     >>> wave = np.cos(16 * turn) + 0.2 * np.cos(7.3 * turn)
-    >>> made = time_synchronous_average(wave, time, teeth=16, speed=2 * np.pi * 10.0)
-    >>> made.revolutions, round(float(made.mesh_amplitudes(1)[0]), 3)
+    >>> average = time_synchronous_average(wave, time, teeth=16, speed=2 * np.pi * 10.0)
+    >>> average.revolutions, round(float(average.mesh_amplitudes(1)[0]), 3)
     (20, 1.0)
     """
     values = checked_signal(signal, 16)
@@ -175,15 +175,15 @@ def time_synchronous_average(
     angle = shaft_rotation(rotation, speed, moments)
     highest = teeth * mesh_harmonics + 2
     per_turn = 2 * int(np.ceil(1.3 * highest))
-    made = angular_resampling(
+    resampled = angular_resampling(
         values, moments, angle, samples_per_revolution=per_turn, highest_order=float(highest)
     )
-    count = made.signal.size // per_turn
+    count = resampled.signal.size // per_turn
     if count < 2:
-        what = f"the record holds {made.signal.size / per_turn:.3g} revolutions"
-        why = "An average needs two whole ones"
+        what = f"the record holds {resampled.signal.size / per_turn:.3g} revolutions"
+        why = "An average needs two complete revolutions"
         raise InputError(what, "argument rotation", why, "Record longer")
-    turns = made.signal[: count * per_turn].reshape(count, per_turn)
+    turns = resampled.signal[: count * per_turn].reshape(count, per_turn)
     return SynchronousAverage(
         2.0 * np.pi * np.arange(per_turn) / per_turn,
         turns.mean(axis=0),
@@ -287,15 +287,15 @@ def condition_indicators(
     FM0 and FM4 after R. M. Stewart, Some useful data analysis techniques for gearbox
     diagnostics, University of Southampton, 1977; NA4 after J. J. Zakrajsek, D. P. Townsend and
     H. J. Decker, NASA TM-105950, 1993. FM4 uses the difference signal (mesh harmonics, their
-    first sidebands and the shaft orders 1 and 2 removed), NA4 the residual (sidebands kept).
+    first sidebands and the shaft orders 1 and 2 removed), NA4 the residual (sidebands retained).
     Without earlier records NA4 is the kurtosis of the residual.
 
     Examples
     --------
     >>> angle = 2 * np.pi * np.arange(320) / 320
     >>> wave = 2.0 * np.cos(16 * angle) + 0.1 * np.cos(21 * angle)
-    >>> made = SynchronousAverage(angle, wave, 0.0 * angle, 50, 16)
-    >>> round(condition_indicators(made).fm4, 9)
+    >>> average = SynchronousAverage(angle, wave, 0.0 * angle, 50, 16)
+    >>> round(condition_indicators(average).fm4, 9)
     1.5
     """
     wave = average.signal
@@ -311,7 +311,7 @@ def condition_indicators(
             why="The indicators compare what is left over with the mesh harmonics",
             remedy="Check the number of teeth, and that the shaft is the one measured",
         )
-    seconds = [np.var(one.residual()) for one in (*earlier, average)]
+    seconds = [np.var(record_average.residual()) for record_average in (*earlier, average)]
     fourth = float(np.mean((residual - residual.mean()) ** 4))
     return ConditionIndicators(
         float(np.abs(away).max()) / rms,

@@ -197,7 +197,7 @@ def test_bad_averages_are_refused():
     with pytest.raises(ComputationError, match="does not change"):
         kurtosis(np.full(20, 3.0))
     wave = gear(TURNING)
-    with pytest.raises(InputError, match="two whole ones"):
+    with pytest.raises(InputError, match="two complete revolutions"):
         time_synchronous_average(wave[:600], TIME[:600], teeth=TEETH, rotation=TURNING[:600])
     with pytest.raises(InputError, match="Nyquist"):
         time_synchronous_average(wave, TIME, teeth=400, rotation=TURNING)
