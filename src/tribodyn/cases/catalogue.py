@@ -74,7 +74,7 @@ def cases() -> dict[str, str]:
 
 def with_known_reasons(case: Case) -> Case:
     """Drop reasons that a built-in case gives, word for word, for another value of the same key."""
-    # A file with the origin of a built-in case began as its copy: that case tells what has changed.
+    # A file with the origin of a built-in case began as its copy: compare it with that case.
     lines = case.source.lines
     if "based_on" in lines:
         return case

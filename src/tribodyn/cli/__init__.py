@@ -1,4 +1,4 @@
-"""The command line: stdout is data, stderr is progress, the exit code tells how it went."""
+"""The command line: stdout is data, stderr is progress, the exit code reports the outcome."""
 
 from __future__ import annotations
 

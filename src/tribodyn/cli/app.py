@@ -142,9 +142,9 @@ class _Help:
         from rich.text import Text
 
         for entry in panel.entries:
-            shown = getattr(entry.description, "primary_renderable", None)
-            if isinstance(shown, Text):
-                entry.description.primary_renderable = Text(" ".join(shown.plain.split()))
+            description = getattr(entry.description, "primary_renderable", None)
+            if isinstance(description, Text):
+                entry.description.primary_renderable = Text(" ".join(description.plain.split()))
         DefaultFormatter()(console, options, panel)
 
     def render_usage(self, console: Any, options: Any, usage: Any) -> None:

@@ -38,9 +38,9 @@ def show_problems(problems: Sequence[Problem]) -> None:
 
 
 def show_resumed(members: Members) -> None:
-    """Say on stderr how much of a study an earlier process has finished."""
+    """Report on stderr how much of a study an earlier process has finished."""
     if len(members):
-        tell(f"{len(members)} finished parts of this study were kept and are not computed again.")
+        tell(f"{len(members)} finished parts of this study were stored and are not computed again.")
 
 
 def show_warnings(warnings: Iterable[ModelWarning]) -> None:

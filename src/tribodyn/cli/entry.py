@@ -224,11 +224,11 @@ def _dispatch(arguments: list[str]) -> int:
     names = [name for name, _, _ in COMMANDS]
     if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
         raise InputError(_no_command(arguments[0], names))
-    # A leading space marks a negative value as a word: the parser takes "-..." for an option.
-    words = [f" {word}" if _NEGATIVE.match(word) else word for word in arguments]
+    # A leading space marks a negative value as an argument: the parser takes "-..." for an option.
+    tokens = [f" {argument}" if _NEGATIVE.match(argument) else argument for argument in arguments]
     try:
         with reserved_outputs:
-            result: Any = make_app()(words, exit_on_error=False, print_error=False)
+            result: Any = make_app()(tokens, exit_on_error=False, print_error=False)
     except CycloptsError as error:
         what = re.sub(r"^Unused Tokens: \[(.*)\]", r"too many arguments: \1", str(error).strip())
         why = "Commands take the arguments and options that their help lists"
@@ -238,7 +238,9 @@ def _dispatch(arguments: list[str]) -> int:
 
 def _remedy(arguments: list[str], what: str) -> str:
     """Return what to write instead of an invalid command."""
-    settings = [word for word in arguments if "=" in word and not word.startswith("-")]
+    settings = [
+        argument for argument in arguments if "=" in argument and not argument.startswith("-")
+    ]
     if len(settings) > arguments.count("--set") and arguments[0] not in ("sweep", "bifurcation"):
         return "Repeat --set before every KEY=VALUE"
     if arguments[0] in _EXAMPLES and "requires an argument" in what:
@@ -247,11 +249,11 @@ def _remedy(arguments: list[str], what: str) -> str:
     return f"See: tribodyn {arguments[0]} --help" if is_command else "See: tribodyn --help"
 
 
-def _no_command(word: str, names: list[str]) -> Problem:
+def _no_command(name: str, names: list[str]) -> Problem:
     from tribodyn.errors import Problem, did_you_mean
 
-    remedy = did_you_mean(word, names, "See: tribodyn --help")
-    return Problem(f'there is no command "{word}"', "", f"Commands: {', '.join(names)}", remedy)
+    remedy = did_you_mean(name, names, "See: tribodyn --help")
+    return Problem(f'there is no command "{name}"', "", f"Commands: {', '.join(names)}", remedy)
 
 
 def _failed(error: BaseException, as_json: bool) -> int:

@@ -46,11 +46,11 @@ def left(seconds: float | None) -> str:
     """Return the remaining time; empty where it is unknown."""
     if not seconds:
         return ""
-    minutes, rest = divmod(round(seconds), 60)
+    minutes, remainder = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     if hours:
         return f"about {hours} h {minutes} min left"
-    return f"about {minutes} min {rest:02d} s left" if minutes else f"about {rest} s left"
+    return f"about {minutes} min {remainder:02d} s left" if minutes else f"about {remainder} s left"
 
 
 class Bar:

@@ -51,14 +51,14 @@ def write_sweep_report(found: Sweep, path: str | os.PathLike[str]) -> Path:
     Parameters
     ----------
     found : Sweep
-        What :func:`tribodyn.sweep` returns.
+        Sweep from :func:`tribodyn.sweep`.
     path
         As :func:`write_report` takes it.
 
     Raises
     ------
     InputError
-        If the place cannot be written to.
+        If the file cannot be written.
     """
     names = found.shown()
     caption = plot.sweep.caption_of(found)
@@ -114,7 +114,7 @@ def write_bifurcation_report(
     Parameters
     ----------
     found : Bifurcation
-        What :func:`tribodyn.bifurcation` returns.
+        Diagram from :func:`tribodyn.bifurcation`.
     case : Case
         The case that was varied.
     path
@@ -122,7 +122,7 @@ def write_bifurcation_report(
     lead : str
         Subtitle: what varies.
     told : sequence of str
-        Results in sentences.
+        Results, one sentence each.
     head : sequence of str
         Head of the table.
     rows : sequence of sequence of str
@@ -131,10 +131,10 @@ def write_bifurcation_report(
     Raises
     ------
     InputError
-        If the place cannot be written to.
+        If the file cannot be written.
     """
     caption = plot.bifurcation.caption_of(found)
-    counts = [(word.capitalize(), str(count)) for word, count in found.verdicts().items()]
+    counts = [(verdict.capitalize(), str(count)) for verdict, count in found.verdicts().items()]
     if lost := int(found.ran_away.sum()):
         counts.append(("Ran away", str(lost)))
     page = _Page(
@@ -174,7 +174,7 @@ def write_study_report(
     kind : str
         Name of the kind of study.
     told : sequence of str
-        Results in sentences.
+        Results, one sentence each.
     figures : sequence of (str, figure, str)
         Heading, plotly figure and caption of each.
     head, rows : sequence of str, sequence of sequence of str
@@ -187,7 +187,7 @@ def write_study_report(
     Raises
     ------
     InputError
-        If the place cannot be written to.
+        If the file cannot be written.
     """
     blocks = [
         block_of_figure(f"figure-{number}", heading, sketch, caption)

@@ -120,9 +120,9 @@ def value_of(
     if not values:
         return None, ""
     if row.along:
-        shown = ", ".join(f"{shown_in(value, row.unit):.4g}" for value in values)
+        value_list = ", ".join(f"{shown_in(value, row.unit):.4g}" for value in values)
         unit = f" {row.unit}" if row.unit != "1" else ""
-        return f"{course(values, row.level)}: {shown}{unit}", ""
+        return f"{course(values, row.level)}: {value_list}{unit}", ""
     if row.against is not None:
         return shown_in(values[0] / values[1] - 1.0, row.unit), ""
     return shown_in(values[0], row.unit), ""

@@ -59,7 +59,9 @@ def ensemble(
     ready, target = prepare_study("ensemble", case, out, set_, force)
     if not ready.uncertain:
         remedy = 'Give a value its spread, as in --set "operation.torque=90 N*m +- 2 %"'
-        raise InputError("no value of the case is spread", case, "All variants were alike", remedy)
+        raise InputError(
+            "no value of the case is spread", case, "All variants would be equal", remedy
+        )
     with progress_bar() as progress:
         result = compute(ready, size=size, method=method, seed=seed, progress=progress)
     rows, facts = [], {}

@@ -112,7 +112,7 @@ def paper(
     Parameters
     ----------
     case : str
-        Built-in case that stands for a source.
+        Built-in case that represents a source.
     all_ : bool
         All sources on one page.
     out : Path

@@ -86,11 +86,11 @@ def _all_entries() -> list[tuple[tuple[str, ...], dict[str, Any]]]:
 def _entries_by_name(query: str) -> Entries:
     """Return entries with this name: as written, or else ignoring case, hyphens and underscores."""
     candidates = _all_entries()
-    words = [_of_word(meant)] if (meant := find_term(query)) else []
+    term_entries = [_of_word(meant)] if (meant := find_term(query)) else []
     exact = [entry for names, entry in candidates if query in names]
     plain_query = _plain_form(query)
     matches = exact or [e for names, e in candidates if plain_query in map(_plain_form, names)]
-    return [*words, *matches]
+    return [*term_entries, *matches]
 
 
 def _entries_with_words(query: str) -> Entries:

@@ -298,8 +298,8 @@ def _teeth_and_speed(turning: Shaft) -> tuple[int | None, int | None, float | No
     other = "wheel" if turning.gear == "pinion" else "pinion"
     teeth, mate = int(gears[turning.gear].teeth), int(gears[other].teeth)
     if speed is None:
-        own = case.operation.speed_of == turning.gear
-        speed = case.operation.speed * (1.0 if own else mate / teeth)
+        is_speed_of_gear = case.operation.speed_of == turning.gear
+        speed = case.operation.speed * (1.0 if is_speed_of_gear else mate / teeth)
     return teeth, mate, float(speed)
 
 

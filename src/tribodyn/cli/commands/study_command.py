@@ -128,8 +128,10 @@ class _Lines:
         if now - self._last_report >= _BETWEEN and self._done > self._first:
             self._last_report = now
             each = (now - self._start_time) / (self._done - self._first)
-            rest = left(each * (self._total - self._done))
-            tell(", ".join(filter(None, [f"{counted(self._done, self._total)} members", rest])))
+            remaining = left(each * (self._total - self._done))
+            tell(
+                ", ".join(filter(None, [f"{counted(self._done, self._total)} members", remaining]))
+            )
 
     def finish(self) -> None:
         """End it."""

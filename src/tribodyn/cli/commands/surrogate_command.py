@@ -113,10 +113,10 @@ def _error_lines(model: Surrogate) -> list[str]:
     ]
     count = model.true.shape[1]
     least = math.ceil(model.level / (1.0 - model.level))
-    few = f" A band of {model.level:.0%} takes {least} of them; give --size more."
+    too_few_note = f" A band of {model.level:.0%} takes {least} of them; give --size more."
     return [
         f"Learned from {model.training_rows} operating points, errors over {count} others."
-        + (few if count < least else ""),
+        + (too_few_note if count < least else ""),
         table([head, *rows]),
     ]
 
@@ -137,11 +137,11 @@ def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
     model = load(source)
     inputs = _inputs(model, read_changes(values))
     with collected() as warnings:
-        answers, bands = model.predict(inputs), model.predict_band(inputs)
+        predictions, bands = model.predict(inputs), model.predict_band(inputs)
     show_warnings(warnings)
     rows, facts = [["target", "prediction", f"{model.level:.0%} band"]], {}
     for name, unit in zip(model.targets, model.target_unit, strict=True):
-        value, (low, high) = float(answers[name]), map(float, bands[name])
+        value, (low, high) = float(predictions[name]), map(float, bands[name])
         band = f"{low:.6g} to {high:.6g} {_unit(unit)}" if math.isfinite(high) else "open"
         rows.append([str(name), f"{value:.6g} {_unit(unit)}", band])
         facts[str(name)] = {

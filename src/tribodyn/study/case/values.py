@@ -25,7 +25,7 @@ class Term(NamedTuple):
     """Explanation of a term that users type or search for."""
 
     meaning: str
-    key: str = ""  #: last part of the key, or the quantity, that the term stands for
+    key: str = ""  #: last part of the key, or the quantity, that the term means
     page: str = ""  #: page of the documentation
 
 
@@ -36,9 +36,9 @@ def _terms() -> dict[str, Term]:
     text = files("tribodyn.study.case").joinpath("texts", "words.toml").read_text(encoding="utf-8")
     entries = tomllib.loads(text).values()
     return {
-        word: Term(**{k: v for k, v in entry.items() if k != "words"})
+        name: Term(**{k: v for k, v in entry.items() if k != "words"})
         for entry in entries
-        for word in entry["words"]
+        for name in entry["words"]
     }
 
 
@@ -367,7 +367,7 @@ def _tables_with(name: str, path: tuple[str, ...] = ()) -> list[str]:
 
 
 def _intended_key(name: str, section: type[Section]) -> str:
-    """Guess the key that a misspelt key stands for; empty if there is no close match."""
+    """Guess the key intended by a misspelt one; empty if there is no close match."""
     keys = section.known().keys
     if term := find_term(name):
         return term.key if term.key in keys else ""

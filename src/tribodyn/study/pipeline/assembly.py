@@ -92,7 +92,7 @@ def _of_mesh_table(case: Case, table: TableFile) -> dict[str, float]:
     return {name: float(value) for name, value in values.items()}
 
 
-#: Dimensions of a blank that a summary tells, of the pair and of each gear.
+#: Dimensions of a blank in the summary, of the pair and of each gear.
 _BLANK = (
     "mean_normal_module",
     "limit_pressure_angle",

@@ -1,4 +1,4 @@
-"""Many variants of one case side by side, and the tables that are learned from.
+"""Batches of variants of one case, and data sets for learned models.
 
 | module | what it answers |
 |---|---|

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.drawing import draw as drawn
+from tribodyn.drawing import draw as draw_figure
 from tribodyn.drawing import figures_of
 from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.progress import SILENT, Progress
@@ -112,8 +112,8 @@ class CaseEnsemble(Record):
         """
         is_figure = not name or name in figures_of(self)
         if not is_figure:
-            return drawn(self, "bands", name)
-        return drawn(self, name or "ensemble", *arguments, **options)
+            return draw_figure(self, "bands", name)
+        return draw_figure(self, name or "ensemble", *arguments, **options)
 
     def figures(self) -> dict[str, Array]:
         """Figures of the summary of every full result, in SI.

@@ -72,8 +72,8 @@ class CaseSensitivity(Record):
     def __repr__(self) -> str:
         """One line."""
         largest = [str(self.input[int(row.argmax())]) for row in self.total_order]
-        words = ", ".join(f"{n}: {k}" for n, k in zip(self.figure, largest, strict=True))
-        return f"CaseSensitivity({len(self.value)} variants; most of the spread: {words})"
+        drivers = ", ".join(f"{n}: {k}" for n, k in zip(self.figure, largest, strict=True))
+        return f"CaseSensitivity({len(self.value)} variants; most of the spread: {drivers})"
 
 
 def sobol_indices(
@@ -102,7 +102,7 @@ def sobol_indices(
     seed : int
         The same seed gives the same indices.
     progress : Progress
-        Told how many variants are done; silent by default.
+        Receives the number of finished variants; silent by default.
 
     Returns
     -------
