@@ -1,16 +1,16 @@
 """Measured signals: recordings of test rigs, the angle of the shaft, orders.
 
-| module | what it answers |
+| module | content |
 |---|---|
-| ``recording`` | what a file of a test rig holds; ``readers`` know the formats |
-| ``tacho`` | how far the shaft has turned at each sample |
-| ``mesh_speed`` | the same from the mesh lines of a recording without a tachometer |
-| ``orders`` | how strong each order is, over a whole record and over the speed |
-| ``vold_kalman`` | how single orders change with time |
-| ``comparison`` | how far a computed motion is from a measured one |
-| ``shaft_speed`` | angle and speed of the shaft, by the best source there is |
+| ``recording`` | recordings of test rigs and :func:`read`; ``readers`` holds the file formats |
+| ``tacho`` | shaft angle at each sample from a tachometer |
+| ``mesh_speed`` | mesh speed and angle from the mesh lines, without a tachometer |
+| ``orders`` | order spectrum of a recording, and order map over the speed |
+| ``vold_kalman`` | amplitude and phase of single orders over time |
+| ``comparison`` | comparison of a computed with a measured response |
+| ``shaft_speed`` | shaft angle and speed from the best available source |
 | ``signal_analysis`` | spectra, envelope, orders, mean revolution and indicators of one channel |
-| ``synthetic`` | a run-up whose orders are known |
+| ``synthetic`` | synthetic run-up with prescribed orders |
 """
 
 from tribodyn.arguments import guard

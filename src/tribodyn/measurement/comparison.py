@@ -1,4 +1,4 @@
-"""A computed motion compared with a measured one: speed, levels, mesh harmonics, errors."""
+"""Comparison of a computed with a measured response: speed, levels, mesh harmonics, errors."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Lines:
 
 @record
 class Comparison(Record):
-    """Computed and measured values of channels side by side.
+    """Computed and measured values of channels and their differences.
 
     Parameters
     ----------
@@ -148,20 +148,20 @@ def compare(
     tacho: str | None = None,
     pulses: int = 1,
 ) -> Comparison:
-    """Compare a computed steady motion with a measured one.
+    """Compare a computed steady-state response with a measured one.
 
     Parameters
     ----------
     computed : Result or xarray.Dataset
-        What :func:`tribodyn.run` or :func:`tribodyn.load_result` returns, of a steady state.
+        Steady-state result of :func:`tribodyn.run` or :func:`tribodyn.load_result`.
     measured : Recording
-        At about the same speed, and the same torque.
+        Recording at about the same speed and the same torque.
     channels : mapping of str to str
         Measured channel to computed signal, such as ``{"acc": "acceleration_loa_pinion"}``.
     harmonics : int
         Mesh harmonics that are compared.
     base : {"measured", "computed", "mean"}
-        What errors are divided by; ``"mean"`` is half the sum of both.
+        Reference of the errors; ``"mean"`` is the mean of measured and computed value.
     gain : float, mapping or "fit"
         Transfer path from the computed place to the sensor: measured over computed signal, of all
         channels or by measured channel; ``"fit"`` takes the one of least squares over the mesh
@@ -170,7 +170,7 @@ def compare(
         Mesh frequency on the rig, about which its mesh lines are searched [Hz]; that of the
         computed motion by default.
     frequency_tolerance : float
-        How far the mesh frequency of the recording may be from that, over the latter [-].
+        Largest relative deviation of the measured mesh frequency from that [-].
     angle : str, optional
         Channel with the angle of a shaft [rad].
     teeth : int, optional
@@ -183,8 +183,8 @@ def compare(
     Raises
     ------
     InputError
-        If a channel or signal is not there, units do not match, the record is too short to part
-        the harmonics, no harmonic stands above the noise where a gain is to be fitted, or an
+        If a channel or signal is missing, units do not match, the record is too short to separate
+        the harmonics, no harmonic exceeds the noise where a gain is to be fitted, or an
         argument is out of its range.
 
     Warns
@@ -206,14 +206,14 @@ def compare(
     Examples
     --------
     >>> import xarray
-    >>> made = xarray.Dataset(
+    >>> computed = xarray.Dataset(
     ...     {"force_spectrum": ("order", [3.0, 1.0], {"units": "N"})},
     ...     {"order": [1.0, 2.0]}, {"mesh_frequency": 100.0},
     ... )
     >>> time = np.arange(20000) / 10000.0
     >>> wave = 2.0 * np.cos(2 * np.pi * 100 * time) + np.cos(2 * np.pi * 200 * time)
     >>> recording = Recording({"cell": wave}, 1e4, {"cell": "N"})
-    >>> comparison = compare(made, recording, {"cell": "force"}, harmonics=2)
+    >>> comparison = compare(computed, recording, {"cell": "force"}, harmonics=2)
     >>> comparison.measured.round(3).tolist()
     [1.581, 1.581, 2.0, 1.0]
     >>> round(comparison.speed_ratio, 4)
@@ -224,8 +224,12 @@ def compare(
     require_one_of("base", base, ("measured", "computed", "mean"))
     require_between("frequency_tolerance", frequency_tolerance, 0.0, 0.2)
     _refuse(measured, channels)
-    own = _frequency(data)
-    frequency = own if mesh_frequency is None else require_number("mesh_frequency", mesh_frequency)
+    computed_frequency = _frequency(data)
+    frequency = (
+        computed_frequency
+        if mesh_frequency is None
+        else require_number("mesh_frequency", mesh_frequency)
+    )
     require_positive("mesh_frequency", frequency, "Hz")
     signals = {name: _computed(data, signal, count) for name, signal in channels.items()}
     factors = {
@@ -250,14 +254,16 @@ def compare(
         rows += _harmonic_rows(name, unit, at_harmonics, (harmonic, factors[name]), speed.located)
         place, amplitude = harmonic.spectrum
         scale = speed.mesh_frequency if speed.located else frequency
-        lines[name] = Lines((order * own, size), (place * scale, factors[name] * amplitude))
+        lines[name] = Lines(
+            (order * computed_frequency, size), (place * scale, factors[name] * amplitude)
+        )
     channel, measure, units, values, test, noise = map(np.array, zip(*rows, strict=True))
-    errors, fitted, per = _errors(values, test, base), gain == "fit", frequency / own
+    errors, fitted, per = _errors(values, test, base), gain == "fit", frequency / computed_frequency
     ratio, uncertainty = per * speed.ratio, per * speed.uncertainty
     limits = (per * speed.lowest, per * speed.highest)
     columns = (channel, measure, units, values, test, errors)
     recorded = (noise, ratio, uncertainty, limits, speed.method, shares)
-    return Comparison(*columns, base, own, gains, fitted, lines, *recorded)
+    return Comparison(*columns, base, computed_frequency, gains, fitted, lines, *recorded)
 
 
 def _harmonic_rows(
@@ -280,9 +286,9 @@ def _harmonic_rows(
 
 def _errors(values: Array, test: Array, base: Base) -> Array:
     """Computed less measured values over the base."""
-    below = {"measured": test, "computed": values, "mean": 0.5 * (values + test)}[base]
+    divisor = {"measured": test, "computed": values, "mean": 0.5 * (values + test)}[base]
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(values == test, 0.0, (values - test) / below)
+        return np.where(values == test, 0.0, (values - test) / divisor)
 
 
 def _gears(computed: Any) -> tuple[int, ...]:
@@ -299,14 +305,16 @@ def _speed(
     frequency, count, tolerance = mesh
     angle, tacho, pulses, teeth = shaft
     if angle is not None and tacho is not None:
-        what, why = f'angle = "{angle}" and tacho = "{tacho}"', "Both give the angle of a shaft"
-        raise InputError(what, Argument("tacho"), why, "Leave one of them out")
+        what, why = f'angle = "{angle}" and tacho = "{tacho}"', "Both define the angle of a shaft"
+        raise InputError(what, Argument("tacho"), why, "Leave one out")
     if angle is None and tacho is None:
         if count * frequency >= 0.5 * measured.sample_rate:
             what = f"mesh harmonic {count} is beyond the record"
             reach = 0.5 * measured.sample_rate / frequency
             why = f"Sampled with {measured.sample_rate:g} Hz it reaches harmonic {reach:.3g}"
-            raise InputError(what, Argument("harmonics"), why, "Ask for fewer, or sample faster")
+            raise InputError(
+                what, Argument("harmonics"), why, "Request fewer harmonics, or sample faster"
+            )
         return speed_by_lines(measured, channels, frequency, count, tolerance, gears)
     per = require_whole("teeth", teeth, why="the teeth of the gear on that shaft,")
     if tacho is not None:
@@ -320,10 +328,10 @@ def _speed(
 
 def _refuse(measured: Any, channels: Any) -> None:
     if not isinstance(measured, Recording):
-        what, why = f"measured = {shortened(repr(measured))}", "Wanted: a Recording"
+        what, why = f"measured = {shortened(repr(measured))}", "Expected a Recording"
         raise InputError(what, Argument("measured"), why, "Read it with tribodyn.measurement.read")
     if not isinstance(channels, Mapping) or not channels:
-        why = "A comparison lays channels beside computed signals"
+        why = "A comparison needs a computed signal for each channel"
         remedy = 'Write {"acc": "acceleration_loa_pinion"}'
         raise InputError("no channels are compared", Argument("channels"), why, remedy)
 
@@ -337,7 +345,7 @@ def _frequency(data: Any) -> float:
     try:
         return float(data.attrs["mesh_frequency"])
     except (AttributeError, KeyError, TypeError, ValueError):
-        why, remedy = "Wanted: the result of tribodyn.run, or its data set", "Give the result"
+        why, remedy = "Expected the result of tribodyn.run or its dataset", "Pass the result"
         raise InputError("it has no mesh frequency", Argument("computed"), why, remedy) from None
 
 
@@ -345,28 +353,32 @@ def _computed(data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
     """Orders of the mesh, peak amplitudes and unit of a computed signal."""
     name = f"{signal}_spectrum"
     if name not in data:
-        names = [str(each) for each in data]
-        known = sorted(each.removesuffix("_spectrum") for each in names if "_spectrum" in each)
+        names = [str(entry) for entry in data]
+        available = sorted(
+            entry.removesuffix("_spectrum") for entry in names if "_spectrum" in entry
+        )
         raise InputError(
             f'there is no computed signal "{signal}"',
             Argument("channels"),
-            f"It has {', '.join(known)}" if known else "It is no steady state",
-            "Write one of these" if known else 'Compute with solver.method = "steady"',
+            f"It has {', '.join(available)}" if available else "It is not a steady state",
+            "Use one of these" if available else 'Compute with solver.method = "steady"',
         )
     order = np.asarray(data["order"].values, dtype=float)
     if order.max() < count:
         why = f"The computed motion holds {order.max():.0f}"
-        raise InputError(f"harmonics = {count}", Argument("harmonics"), why, "Ask for fewer")
+        raise InputError(
+            f"harmonics = {count}", Argument("harmonics"), why, "Request fewer harmonics"
+        )
     return order, np.asarray(data[name].values, dtype=float), str(data[name].attrs.get("units", ""))
 
 
-def _same_unit(given: str, wanted: str, name: str) -> float:
+def _same_unit(unit: str, target_unit: str, name: str) -> float:
     """Factor from the unit of the measured channel to that of the computed signal."""
     try:
-        return float(convert(1.0, given, wanted)) if given else 1.0
+        return float(convert(1.0, unit, target_unit)) if unit else 1.0
     except UnitProblemError as error:
-        what = f'channel {name} is in "{given}", the computed signal in "{wanted}"'
-        remedy = "Give units or sensitivity when reading it"
+        what = f'channel {name} is in "{unit}", the computed signal in "{target_unit}"'
+        remedy = "Pass units or sensitivity to read"
         raise InputError(what, Argument("channels"), str(error), remedy) from None
 
 
@@ -387,14 +399,14 @@ def _gain(
     clear = harmonic.clear
     if not (speed.located and clear.any()):
         what = f"no gain can be fitted for channel {name}"
-        why = "None of its mesh harmonics stands above the noise"
+        why = "None of its mesh harmonics exceeds the noise"
         if not speed.located:
             why = f"The speed of the recording is unknown: {speed.method}"
-        remedy = "Give the gain as a number, or correct the channel, the speed or the tachometer"
+        remedy = "Pass the gain as a number, or correct the channel, the speed or the tachometer"
         raise InputError(what, Argument("gain"), why, remedy)
     square = float(computed[clear] @ computed[clear])
     if square == 0.0:
         what = f"the computed harmonics for {name} are all zero"
-        why = "It scales one signal to the other"
-        raise InputError(what, Argument("gain"), why, "Give the gain as a number")
+        why = "A gain cannot scale zero to the measured signal"
+        raise InputError(what, Argument("gain"), why, "Pass the gain as a number")
     return factor * float(computed[clear] @ harmonic.amplitude[clear]) / square

@@ -2,7 +2,7 @@
 
 The angle comes from a tachometer, from a channel that holds the angle of a shaft, or from the mesh
 lines of the recording. Amplitudes are those of the spectrum over this angle, with the noise between
-the harmonics and the power right next to them, which tells whether a line is smeared.
+the harmonics and the power adjacent to them, which shows whether a line is smeared.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from tribodyn.types import Array, Mask
 _CYCLES, _CLEAR, _SHARE = 20.0, 3.0, 0.5
 #: Standard deviation over the amplitude from which it is unsure by 5 %, which is twice that.
 _UNSURE = 0.025
-#: Power next to a line, over all of both, from which its amplitude is more than 5 % too low: up to
-#: the first sideband of the slowest shaft, and further away, where sidebands add to it.
+#: Share of the power next to a line from which its amplitude is more than 5 % too low: up to the
+#: first sideband of the slowest shaft, and over a wider band, to which sidebands contribute.
 _SMEARED, _SPREAD = 0.1, 0.25
 #: Distance up to which power next to a harmonic is counted, over the mesh frequency.
 _FAR = 0.12
@@ -38,15 +38,15 @@ class MeshHarmonics:
     """Mesh harmonics of one channel."""
 
     amplitude: Array  #: peak amplitudes
-    noise: Array  #: rms amplitude that noise alone has there
-    near: Array  #: power next to each line over all of both, up to the first sideband
-    far: Array  #: the same further away
+    noise: Array  #: rms amplitude of the noise at each harmonic
+    smearing: Array  #: share of the power next to each line, up to the first sideband
+    spreading: Array  #: the same over a wider band
     share: float  #: of the alternating mean square that is in these harmonics
     spectrum: tuple[Array, Array]  #: orders of the mesh and amplitudes
 
     @property
     def clear(self) -> Mask:
-        """Whether each harmonic stands above the noise."""
+        """Whether each harmonic exceeds the noise."""
         return np.asarray(self.amplitude > _CLEAR * self.noise)
 
 
@@ -87,16 +87,16 @@ def speed_by_lines(
         warn(
             "speed-not-found",
             f"The speed of the recording is unknown: {speed.method}. Its mesh harmonics are not "
-            "compared; record a tachometer, give the mesh frequency of the rig, or look at the "
+            "compared. Record a tachometer, set the mesh frequency of the rig, or check the "
             "channels.",
             stacklevel=4,
         )
     elif speed.rivals:
-        others = ", ".join(f"{ratio:.4f}" for ratio in speed.rivals)
+        rivals = ", ".join(f"{ratio:.4f}" for ratio in speed.rivals)
         warn(
             "speed-ambiguous",
             f"The mesh frequency is taken as {speed.ratio:.4f} times the computed one, but lines "
-            f"about as strong fit {others} times. Record a tachometer, or give the mesh frequency "
+            f"about as strong fit {rivals} times. Record a tachometer, or give the mesh frequency "
             "of the rig and a smaller tolerance.",
             stacklevel=4,
         )
@@ -106,20 +106,23 @@ def speed_by_lines(
 def _of_shaft(
     recording: Recording, angle: Array, jitter: float, teeth: int, frequency: float, method: str
 ) -> MeshSpeed:
-    """Mesh speed of a shaft whose angle is known within the jitter [rad]."""
-    per = require_whole("teeth", teeth, why="the teeth of the gear on that shaft,")
-    mesh = per * np.asarray(angle, dtype=float)
+    """Mesh speed from the angle of a shaft with a given rms jitter [rad]."""
+    tooth_count = require_whole("teeth", teeth, why="the teeth of the gear on that shaft,")
+    mesh = tooth_count * np.asarray(angle, dtype=float)
     seconds = (mesh.size - 1) / recording.sample_rate
     cycles = float(mesh[-1] - mesh[0]) / (2.0 * np.pi)
     if cycles <= 0.0:
-        what, why = f"the {method} does not rise", "It counts on in the direction of rotation"
-        raise InputError(what, Argument("angle"), why, "Take its negative")
-    step = min(max(round(per * mesh.size / cycles), 1), mesh.size - 1)  # one revolution
+        what, why = (
+            f"the {method} does not rise",
+            "The angle must increase in the direction of rotation",
+        )
+        raise InputError(what, Argument("angle"), why, "Negate it")
+    step = min(max(round(tooth_count * mesh.size / cycles), 1), mesh.size - 1)  # one revolution
     unit = 2.0 * np.pi * frequency / recording.sample_rate
     ratio = np.diff(mesh[::step]) / (step * unit)
     return MeshSpeed(
         cycles / (seconds * frequency),
-        np.sqrt(2.0) * per * jitter / (2.0 * np.pi * seconds * frequency),
+        np.sqrt(2.0) * tooth_count * jitter / (2.0 * np.pi * seconds * frequency),
         float(ratio.min()),
         float(ratio.max()),
         cycles / seconds,
@@ -135,22 +138,24 @@ def harmonics_of(
     cycles = float(speed.angle[-1] - speed.angle[0]) / (2.0 * np.pi)
     if cycles < _CYCLES:
         what = f"the record lasts {cycles:.3g} mesh cycles"
-        why = f"Mesh harmonics are parted from what lies beside them over {_CYCLES:g} or more"
+        why = f"Separating mesh harmonics from adjacent lines takes at least {_CYCLES:g} cycles"
         raise InputError(what, Argument("measured"), why, "Record longer")
     limit = np.pi / float(np.diff(speed.angle).max())
     if limit < count:
         what = f"mesh harmonic {count} is beyond the record"
-        why = f"At its highest speed it was sampled up to harmonic {limit:.3g}"
-        raise InputError(what, Argument("harmonics"), why, "Ask for fewer, or sample faster")
-    made = order_spectrum(values, speed.angle, min(count + 0.5, limit * (1.0 - 1e-9)))
-    power, spacing = made.amplitudes**2, float(made.orders[1])
+        why = f"At the highest speed the sampling resolves harmonics up to {limit:.3g}"
+        raise InputError(
+            what, Argument("harmonics"), why, "Request fewer harmonics, or sample faster"
+        )
+    mesh_orders = order_spectrum(values, speed.angle, min(count + 0.5, limit * (1.0 - 1e-9)))
+    power, spacing = mesh_orders.amplitudes**2, float(mesh_orders.orders[1])
     lines = np.minimum(np.rint(np.arange(1, count + 1) / spacing).astype(int), power.size - 1)
     square = float(np.var(values))
     half = round(0.5 / spacing)
     floor = [np.median(power[line - half : line + half]) / np.log(2.0) for line in lines]
     noise = np.maximum(np.array(floor), 1e-18 * square)
     gap = 0.4 / max(teeth, default=64)  # up to the first sideband of the slowest shaft
-    near, far = (
+    smearing, spreading = (
         np.array(
             [
                 _next_to(power, line, level, round(width / spacing))
@@ -159,14 +164,14 @@ def harmonics_of(
         )
         for width in (gap, _FAR)
     )
-    amplitude = made.amplitudes[lines]
+    amplitude = mesh_orders.amplitudes[lines]
     share = 0.5 * float(np.sum(amplitude**2)) / square if square > 0.0 else 0.0
-    spectrum = (made.orders, made.amplitudes)
-    return MeshHarmonics(amplitude, np.sqrt(noise), near, far, share, spectrum)
+    spectrum = (mesh_orders.orders, mesh_orders.amplitudes)
+    return MeshHarmonics(amplitude, np.sqrt(noise), smearing, spreading, share, spectrum)
 
 
 def _next_to(power: Array, line: int, noise: float, width: int) -> float:
-    """Power next to a line over that of both, where the lines part it; 0 where they do not."""
+    """Share of the power next to a line in the band; 0 if the resolution cannot separate it."""
     if width < 2.0 * _LINES:
         return 0.0
     band = power[max(line - width, 0) : line + width + 1]
@@ -178,24 +183,24 @@ def _next_to(power: Array, line: int, noise: float, width: int) -> float:
 
 
 def warn_of_speed(speed: MeshSpeed, frequency: float, tolerance: float) -> None:
-    """Warn where a shaft turns at another speed than that of the computed motion."""
+    """Warn if the speed of the recording differs from that of the computed response."""
     if abs(speed.ratio - 1.0) > tolerance:
         warn(
             "speed-off",
             f"The mesh frequency of the recording is {speed.mesh_frequency:.6g} Hz by the "
             f"{speed.method}, {speed.ratio:.4g} times the computed {frequency:.6g} Hz. Check the "
-            "pulses, and on which gear they are counted; else compute at the speed of the rig.",
+            "number of pulses and the gear of the tachometer, or compute at the speed of the rig.",
             stacklevel=4,
         )
 
 
 def warn_of_harmonics(name: str, harmonics: MeshHarmonics) -> None:
-    """Warn of what makes the harmonics of a channel wrong, or unlike the whole signal."""
+    """Warn of noise, smeared lines, and power outside the harmonics of a channel."""
     amplitude, clear = harmonics.amplitude, harmonics.clear
     with np.errstate(divide="ignore"):
         unsure = harmonics.noise / np.sqrt(2.0) / amplitude
     noisy = np.flatnonzero(~clear | (unsure > _UNSURE))
-    smeared = clear & ((harmonics.near > _SMEARED) | (harmonics.far > _SPREAD))
+    smeared = clear & ((harmonics.smearing > _SMEARED) | (harmonics.spreading > _SPREAD))
     if noisy.size:
         worst = float(unsure[noisy].max())
         lost = np.flatnonzero(~clear) + 1
@@ -208,7 +213,7 @@ def warn_of_harmonics(name: str, harmonics: MeshHarmonics) -> None:
             stacklevel=4,
         )
     if smeared.any():
-        part = float(np.maximum(harmonics.near, harmonics.far)[smeared].max())
+        part = float(np.maximum(harmonics.smearing, harmonics.spreading)[smeared].max())
         warn(
             "harmonics-smeared",
             f"Up to {100.0 * part:.2g} % of the power of mesh harmonics "
@@ -221,8 +226,8 @@ def warn_of_harmonics(name: str, harmonics: MeshHarmonics) -> None:
         warn(
             "signal-outside-harmonics",
             f"Mesh harmonics 1 to {amplitude.size} hold {100.0 * harmonics.share:.2g} % of the "
-            f"alternating mean square of channel {name}: the other part is noise, sidebands, other "
-            "sources or higher harmonics. Look at its spectrum before you trust gain and errors.",
+            f"alternating mean square of channel {name}: the rest is noise, sidebands, other "
+            "sources or higher harmonics. Check its spectrum before relying on gain and errors.",
             stacklevel=4,
         )
 

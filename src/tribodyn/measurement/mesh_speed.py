@@ -111,7 +111,7 @@ def mesh_speed(
     Parameters
     ----------
     signal : (n,) or (m, n) array
-        Evenly spaced samples of one channel, or of several that were sampled together.
+        Evenly spaced samples of one channel, or of several sampled simultaneously.
     sample_rate : float
         Samples per second [Hz].
     mesh_frequency : float
@@ -119,7 +119,7 @@ def mesh_speed(
     harmonics : int
         Mesh harmonics that are searched; those above half the sampling rate are left out.
     tolerance : float
-        How far the mesh frequency may be from the assumed one, over the latter [-].
+        Largest relative deviation of the mesh frequency from the assumed one [-].
     teeth : sequence of int
         Teeth of the gears; with them changes of speed up to about once per turn of the slower shaft
         are followed, without them up to once in 64 mesh cycles.
@@ -127,8 +127,8 @@ def mesh_speed(
     Returns
     -------
     MeshSpeed
-        Mean ratio with its uncertainty, and the angle of the mesh. Where no mesh lines stand
-        clear of the noise within the tolerance, the ratio is NaN and ``method`` says why.
+        Mean ratio with its uncertainty, and the angle of the mesh. If no mesh lines exceed
+        the noise within the tolerance, the ratio is NaN and ``method`` says why.
 
     Raises
     ------
@@ -172,7 +172,7 @@ def mesh_speed(
     cycles = rows.shape[1] / sample_rate * frequency
     if cycles < 20.0:
         what = f"the record lasts {cycles:.3g} mesh cycles"
-        why = "Mesh harmonics are parted from what lies beside them over 20 mesh cycles or more"
+        why = "Separating mesh harmonics from adjacent lines takes at least 20 mesh cycles"
         raise InputError(what, Argument("signal"), why, "Record longer")
     search = _Search(rows, float(sample_rate), frequency, count, wide)
     shortest = max(max(teeth, default=_TEETH), 32) / frequency
@@ -318,12 +318,12 @@ class _Search:
         window = np.hanning(_POINTS + 2)[1:-1]
         turn = np.exp(-1j * angle)
         wave = np.ones(self.size, dtype=complex)
-        made = []
+        demodulated = []
         for _ in self.orders:
             wave = wave * turn
             coarse = [resample_poly(row * wave, 1, down) for row in self.rows]
-            made.append(coarse)
-        envelope = np.array(made).transpose(1, 0, 2)
+            demodulated.append(coarse)
+        envelope = np.array(demodulated).transpose(1, 0, 2)
         weight = np.convolve(np.ones(envelope.shape[2]), window, "same")
         smooth = np.apply_along_axis(np.convolve, 2, envelope, window, "same") / weight
         return down * np.arange(envelope.shape[2], dtype=float), smooth
@@ -362,15 +362,15 @@ class _Search:
         return power
 
 
-def _best_path(score: Array, most: int) -> Array:
-    """Indices of the path of greatest score, that changes by at most so many steps a block."""
-    shifts = np.arange(-most, most + 1)
-    cost = (shifts / most) ** 2
+def _best_path(score: Array, max_step: int) -> Array:
+    """Indices of the path with the highest score that changes by at most max_step per block."""
+    shifts = np.arange(-max_step, max_step + 1)
+    cost = (shifts / max_step) ** 2
     total, back = score[0].copy(), np.zeros(score.shape, dtype=int)
     size = score.shape[1]
     for block in range(1, score.shape[0]):
-        wide = np.pad(total, most, constant_values=-np.inf)
-        options = np.lib.stride_tricks.sliding_window_view(wide, 2 * most + 1) - cost
+        wide = np.pad(total, max_step, constant_values=-np.inf)
+        options = np.lib.stride_tricks.sliding_window_view(wide, 2 * max_step + 1) - cost
         pick = np.argmax(options, axis=1)
         back[block] = np.clip(np.arange(size) + shifts[pick], 0, size - 1)
         total = score[block] + options[np.arange(size), pick]
@@ -382,7 +382,7 @@ def _best_path(score: Array, most: int) -> Array:
 
 
 def _followed(search: _Search, shortest: int) -> _Path | None:
-    """Best path among those seen in the whole record and in blocks, the shortest ones first."""
+    """Best path of the search in blocks of increasing length, up to the complete record."""
     best, length = None, shortest
     while length < search.size / _NEARLY:
         path = search.follow(length)
@@ -398,12 +398,12 @@ def _followed(search: _Search, shortest: int) -> _Path | None:
 
 
 def _result(search: _Search, path: _Path | None, tolerance: float) -> MeshSpeed:
-    """What the best path says, or why it says nothing."""
+    """Mesh speed of the best path, or an unknown speed with the reason."""
     seconds = (search.size - 1) / search.rate
     if path is None:
         angle = np.linspace(0.0, 2.0 * np.pi * search.frequency * seconds, search.size)
         method = (
-            f"no steady line of the mesh stands clear of the noise within "
+            f"no steady mesh line exceeds the noise within "
             f"{100.0 * search.wide:.3g} % of {search.frequency:.6g} Hz"
         )
         return _unknown(search, angle, method)

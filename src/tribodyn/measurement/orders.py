@@ -3,8 +3,8 @@
 Samples that are evenly spaced in time are unevenly spaced in angle. The integral over the angle
 is a sum over the samples, each with the angle that the shaft turns during it; a sum over uneven
 places for all orders at once is a non-uniform Fourier transform. Nothing is interpolated or
-filtered, a shaft that stands adds nothing, and no order is folded onto another as long as the
-record was sampled twice as fast as the highest order at the highest speed.
+filtered, a shaft at rest contributes nothing, and no order is aliased as long as the sampling rate
+is at least twice the frequency of the highest order at the highest speed.
 """
 
 from __future__ import annotations
@@ -100,26 +100,26 @@ class OrderSpectrum(Record):
 def order_spectrum(
     signal: Any, angle: Any, max_order: float, *, window: str = "flattop", unit: str = ""
 ) -> OrderSpectrum:
-    """Amplitudes of a signal over the orders of a shaft, of the whole record.
+    """Compute the amplitudes of a signal over the orders of a shaft.
 
     Parameters
     ----------
     signal : (n,) array
         Evenly spaced samples over time, in any unit.
     angle : (n,) array
-        Angle of the shaft at each sample [rad], never falling; as :func:`shaft_angle` gives it.
+        Angle of the shaft at each sample [rad], non-decreasing, as returned by :func:`shaft_angle`.
     max_order : float
         Highest order, in cycles per revolution [-].
     window : {"flattop", "hann", "boxcar"}
-        Window over the angle: ``"flattop"`` gives every amplitude within 0.05 %, ``"hann"`` parts
-        close orders better.
+        Window over the angle: ``"flattop"`` is accurate to 0.05 % in amplitude, ``"hann"``
+        separates close orders better.
     unit : str
         Unit of the signal, for display.
 
     Returns
     -------
     OrderSpectrum
-        ``orders`` and peak ``amplitudes``, two lines for each order that the record can part.
+        ``orders`` and peak ``amplitudes``, two lines per resolved order.
 
     Raises
     ------
@@ -137,8 +137,8 @@ def order_spectrum(
     --------
     >>> time = np.arange(40000) / 10000.0
     >>> angle = 2 * np.pi * 5.0 * time**2
-    >>> found = order_spectrum(2.0 * np.cos(7 * angle), angle, 20)
-    >>> round(found.amplitude(7), 4)
+    >>> spectrum = order_spectrum(2.0 * np.cos(7 * angle), angle, 20)
+    >>> round(spectrum.amplitude(7), 4)
     2.0
     """
     values, turned = _checked(signal, angle, max_order)
@@ -209,45 +209,45 @@ def order_map(
         speeds.append(length * sample_rate / (end - begin))
         times.append((block.start + 0.5 * (begin + end)) / sample_rate)
     orders = np.arange(columns[0].size) / revolutions
-    found = np.array(columns).T
+    amplitudes = np.array(columns).T
     return OrderMap(
-        orders, np.array(speeds), np.array(times), found, float(revolutions), window, unit
+        orders, np.array(speeds), np.array(times), amplitudes, float(revolutions), window, unit
     )
 
 
 def _checked(signal: Any, angle: Any, max_order: float) -> tuple[Array, Array]:
-    """Samples and angles that belong together, fine enough for the order."""
+    """Validate samples and angles, and that the sampling resolves the highest order."""
     values = checked_signal(signal, 16)
     turned = checked_signal(angle, 16, "angle")
     require_positive("max_order", max_order)
     where = Argument("angle")
     if turned.size != values.size:
         what = f"angle has {turned.size} samples, the signal has {values.size}"
-        why = "Each sample of the signal has its own angle"
-        raise InputError(what, where, why, "Give the angle of the shaft at each sample")
+        why = "Each sample of the signal needs one angle"
+        raise InputError(what, where, why, "Pass the shaft angle at each sample")
     steps = np.diff(turned)
     if steps.min() < 0.0:
         at = int(np.argmin(steps))
         what = f"angle falls from {turned[at]:.6g} to {turned[at + 1]:.6g} rad at sample {at + 1}"
-        why = "It counts on, without going back to zero after a revolution"
-        remedy = "Unwrap it (numpy.unwrap), or take its negative if the shaft turns backwards"
+        why = "It must accumulate over revolutions without resetting to zero"
+        remedy = "Unwrap it (numpy.unwrap), or negate it if the shaft turns backwards"
         raise InputError(what, where, why, remedy)
     if max_order * steps.max() > np.pi:
         per = 2.0 * np.pi / steps.max()
         raise InputError(
             f"max_order = {max_order:g}",
             where=Argument("max_order"),
-            why=f"At the highest speed a revolution has {per:.4g} samples, which tell orders apart "
+            why=f"At the highest speed a revolution has {per:.4g} samples, which resolve orders "
             f"up to {0.5 * per:.4g}",
-            remedy="Sample faster, run slower, or ask for less",
+            remedy="Sample faster, run slower, or reduce max_order",
         )
     return values, turned
 
 
 def _too_short(turned: Array, least: float) -> InputError:
-    made = (turned[-1] - turned[0]) / (2.0 * np.pi)
-    what, why = f"the shaft turns {made:.4g} times", f"At least {least:g} revolutions are needed"
-    return InputError(what, Argument("angle"), why, "Record longer, or take shorter blocks")
+    turns = (turned[-1] - turned[0]) / (2.0 * np.pi)
+    what, why = f"the shaft turns {turns:.4g} times", f"At least {least:g} revolutions are needed"
+    return InputError(what, Argument("angle"), why, "Record longer, or use shorter blocks")
 
 
 def _lines(
@@ -256,7 +256,7 @@ def _lines(
     """Complex amplitudes at multiples of half an order over the revolutions."""
     length = 2.0 * np.pi * revolutions
     inside = np.clip((turned - start) * (1.0 / length), 0.0, 1.0)  # of the block
-    # Each sample stands for the angle from the middle before it to the middle after it.
+    # The weight of a sample is the angle between the midpoints to its neighbours.
     widths = np.empty_like(inside)
     np.subtract(inside[2:], inside[:-2], out=widths[1:-1])
     widths[0], widths[-1] = inside[1] - inside[0], inside[-1] - inside[-2]
@@ -273,17 +273,17 @@ def _lines(
     return np.asarray(lines)
 
 
-def _uneven_transform(strength: Array, place: Array, count: int) -> ComplexArray:
-    """Sums of strength times exp(-2 pi i k place) for k from 0 to count - 1.
+def _uneven_transform(strength: Array, position: Array, count: int) -> ComplexArray:
+    """Sums of strength times exp(-2 pi i k position) for k from 0 to count - 1.
 
     The strengths are spread onto an even grid by a kernel whose transform is divided out after
     the fast Fourier transform: A. H. Barnett, J. Magland and L. af Klinteberg, SIAM J. Sci.
     Comput. 41 (2019) C479, equations (1.8) and (3.12).
     """
-    size, taken = _grid(count)
+    size, kernel_transform = _grid(count)
     grid = np.zeros(size)
-    _spread(strength, place, grid)
-    return np.asarray(np.fft.rfft(grid)[:count] / taken)
+    _spread(strength, position, grid)
+    return np.asarray(np.fft.rfft(grid)[:count] / kernel_transform)
 
 
 @lru_cache(maxsize=16)

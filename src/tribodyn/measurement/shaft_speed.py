@@ -18,7 +18,7 @@ _VARIES = 0.03
 
 @dataclass(frozen=True)
 class ShaftSpeed:
-    """Angle of the shaft at every sample, and how it was found.
+    """Angle of the shaft at every sample and its source.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def shaft_speed(
     teeth: tuple[int, ...],
     notes: list[Problem],
 ) -> ShaftSpeed | None:
-    """Angle of the shaft by the best source there is; a note where there is none."""
+    """Shaft angle from the best available source; None, with a note, if there is none."""
     tacho, pulses, speed = source
     rate = recording.sample_rate
     if tacho is not None:

@@ -292,7 +292,7 @@ def analyse_signal(
     Returns
     -------
     SignalAnalysis
-        What could not be computed stands in its ``notes``, with what is needed for it.
+        Its ``notes`` list what could not be computed, and the missing input.
 
     Raises
     ------
@@ -319,11 +319,18 @@ def analyse_signal(
     values, unit = in_si(recording[channel], recording.units[channel])
     rate = recording.sample_rate
     if np.ptp(values) == 0.0:
-        what, why = f"channel {channel} is constant", "There is nothing to analyse in it"
-        raise InputError(what, Argument("channel"), why, "Look at the sensor, or take another one")
+        what, why = f"channel {channel} is constant", "It contains nothing to analyse"
+        raise InputError(
+            what, Argument("channel"), why, "Check the sensor, or select another channel"
+        )
     if tacho is not None and speed is not None:
         what = f"tacho = {tacho!r} and speed = {speed:g} rad/s are both given"
-        raise InputError(what, Argument("speed"), "The tachometer measures it", "Keep one of them")
+        raise InputError(
+            what,
+            Argument("speed"),
+            "The tachometer already measures the speed",
+            "Pass only one of them",
+        )
     counts = {SHAFT: teeth, MATE: mate_teeth}
     shafts = {k: require_whole(f"{k} teeth", n) for k, n in counts.items() if n is not None}
     notes: list[Problem] = []
@@ -428,7 +435,7 @@ def _averages(
     if turning.stop - turning.start < shaft.angle.size:
         start, end = time[turning][[0, -1]]
         what = f"the mean revolution is that from {start:.4g} to {end:.4g} s"
-        why = "Before or after it the shaft stands, or turns at less than a tenth of its speed"
+        why = "Before or after it the shaft is at rest, or turns at less than a tenth of its speed"
         notes.append(Problem(what, "", why, ""))
     step = float(np.diff(shaft.angle[turning]).max())
     averages, indicators = {}, {}

@@ -1,4 +1,4 @@
-"""A run-up with known orders: to try an analysis on before it sees a test rig."""
+"""Synthetic run-up with prescribed orders, to test an analysis before using it on a rig."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def synthetic_run_up(
     seed: int = 0,
     unit: str = "m/s^2",
 ) -> Recording:
-    """Make the recording of a run-up whose orders are known.
+    """Create the recording of a run-up with prescribed orders.
 
     Parameters
     ----------
@@ -49,9 +49,9 @@ def synthetic_run_up(
     mains : float
         Peak amplitude of a line at 50 Hz, in the unit of the signal.
     missing, double : int
-        Pulses that the tachometer leaves out, and that it gives twice.
+        Number of pulses that the tachometer misses, and that it repeats.
     seed : int
-        Of the random numbers.
+        Seed of the random numbers.
     unit : str
         Unit of the signal.
 
@@ -85,7 +85,7 @@ def synthetic_run_up(
     if not top < 0.5 * sample_rate:
         what = f"the highest order reaches {top:.6g} Hz"
         why = f"Only frequencies below half of {sample_rate:g} Hz can be recorded"
-        raise InputError(what, Argument("orders"), why, "Sample faster, or leave it out")
+        raise InputError(what, Argument("orders"), why, "Sample faster, or omit it")
     random = np.random.default_rng(require_whole("seed", seed, 0))
     signal = mains * np.cos(2.0 * np.pi * 50.0 * time) + noise * random.standard_normal(size)
     for order, amplitude in orders.items():
@@ -101,40 +101,42 @@ def _angle(speeds: Array, duration: float, time: Array) -> Array:
         return np.asarray(speeds[0] * time)
     knots = np.linspace(0.0, duration, speeds.size)
     slopes = np.diff(speeds) / np.diff(knots)
-    begun = np.concatenate(([0.0], np.cumsum(0.5 * (speeds[1:] + speeds[:-1]) * np.diff(knots))))
+    start_angles = np.concatenate(
+        ([0.0], np.cumsum(0.5 * (speeds[1:] + speeds[:-1]) * np.diff(knots)))
+    )
     piece = np.clip(np.searchsorted(knots, time, side="right") - 1, 0, slopes.size - 1)
     past = time - knots[piece]
-    return np.asarray(begun[piece] + speeds[piece] * past + 0.5 * slopes[piece] * past**2)
+    return np.asarray(start_angles[piece] + speeds[piece] * past + 0.5 * slopes[piece] * past**2)
 
 
 def _pulses(
     angle: Array, time: Array, per: int, jitter: float, missing: int, double: int, random: Any
 ) -> Array:
-    """Pulses of 5 V, two fifths of their distance long; a double one is two of a fifth."""
-    each = 2.0 * np.pi / per
-    turned = angle / each
-    moments = np.interp(np.arange(1, int(turned[-1]) + 1), turned, time)
+    """Pulses of 5 V with a width of 0.4 of their spacing; a double one is two of half the width."""
+    pitch = 2.0 * np.pi / per
+    passed = angle / pitch
+    moments = np.interp(np.arange(1, int(passed[-1]) + 1), passed, time)
     if moments.size < 8 + 4 * (missing + double):
         what = f"the shaft gives {moments.size} pulses"
         why = "At least eight are needed, and four more for each that is missing or double"
         remedy = "Turn longer or faster, or take more pulses per revolution"
         raise InputError(what, Argument("duration"), why, remedy)
-    apart = np.diff(moments)
-    gaps = np.minimum(np.append(apart, apart[-1]), np.append(apart[0], apart))
+    intervals = np.diff(moments)
+    gaps = np.minimum(np.append(intervals, intervals[-1]), np.append(intervals[0], intervals))
     moments = moments + jitter * gaps * random.standard_normal(moments.size)
     keep = np.ones(moments.size, dtype=bool)
     keep[random.choice(np.arange(3, moments.size - 3, 3), missing, replace=False)] = False
     moments, gaps = moments[keep], gaps[keep]
     if not 0.2 * gaps.min() > time[1]:
         what = f"pulses follow each other within {gaps.min() / time[1]:.3g} samples"
-        why = "Each needs at least five"
+        why = "Each pulse needs at least five"
         remedy = "Sample faster, or take fewer pulses per revolution"
         raise InputError(what, Argument("pulses_per_revolution"), why, remedy)
-    again = random.choice(np.arange(3, moments.size - 3, 3), double, replace=False)
-    starts = np.concatenate((moments, moments[again] + 0.4 * gaps[again]))
+    repeated = random.choice(np.arange(3, moments.size - 3, 3), double, replace=False)
+    starts = np.concatenate((moments, moments[repeated] + 0.4 * gaps[repeated]))
     width = 0.4 * gaps
-    width[again] *= 0.5
-    ends = starts + np.concatenate((width, width[again]))
+    width[repeated] *= 0.5
+    ends = starts + np.concatenate((width, width[repeated]))
     change = np.zeros(time.size + 1)
     np.add.at(change, np.searchsorted(time, starts), 5.0)
     np.add.at(change, np.searchsorted(time, ends), -5.0)

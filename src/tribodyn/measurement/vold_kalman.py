@@ -1,4 +1,4 @@
-"""Orders followed through time by the second-generation Vold-Kalman filter."""
+"""Order tracking over time with the second-generation Vold-Kalman filter."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array, ComplexArray
 
-#: Most unknowns: samples times orders.
-_MOST = 8_000_000
+#: Maximum number of unknowns (samples times orders).
+_MAX_UNKNOWNS = 8_000_000
 
 
 @record
@@ -70,12 +70,14 @@ class TrackedOrders(Record):
         InputError
             If the order is not among the tracked ones.
         """
-        found = np.flatnonzero(np.abs(self.order - order) < 1e-9)
-        if not found.size:
-            known = ", ".join(f"{each:g}" for each in self.order)
-            what = f"order {order:g} asked for"
-            raise InputError(what, Argument("order"), f"Tracked: {known}", "Track it")
-        row = int(found[0])
+        matches = np.flatnonzero(np.abs(self.order - order) < 1e-9)
+        if not matches.size:
+            tracked = ", ".join(f"{value:g}" for value in self.order)
+            what = f"order {order:g} is not tracked"
+            raise InputError(
+                what, Argument("order"), f"Tracked orders: {tracked}", "Add it to orders"
+            )
+        row = int(matches[0])
         return np.asarray(self.amplitude[row] * np.cos(order * self.angle + self.phase[row]))
 
 
@@ -88,16 +90,16 @@ def track_orders(
     bandwidth: float = 1.0,
     unit: str = "",
 ) -> TrackedOrders:
-    """Follow orders of a shaft through time, together, so that crossing ones are told apart.
+    """Track orders of a shaft over time simultaneously, which separates crossing orders.
 
     Parameters
     ----------
     signal : (n,) array
         Evenly spaced samples, in any unit.
     angle : (n,) array
-        Angle of the shaft at each sample [rad], as :func:`shaft_angle` gives it.
+        Angle of the shaft at each sample [rad], as returned by :func:`shaft_angle`.
     orders : (k,) array
-        Orders to follow, in cycles per revolution [-].
+        Orders to track, in cycles per revolution [-].
     sample_rate : float
         Samples per second [Hz].
     bandwidth : float
@@ -125,73 +127,73 @@ def track_orders(
     --------
     >>> time = np.arange(4000) / 1000.0
     >>> angle = 2 * np.pi * (5.0 * time + 2.0 * time**2)
-    >>> found = track_orders(3.0 * np.cos(4 * angle) + np.cos(5 * angle), angle, [4, 5], 1000.0)
-    >>> found.amplitude[:, 2000].round(3).tolist()
+    >>> tracked = track_orders(3.0 * np.cos(4 * angle) + np.cos(5 * angle), angle, [4, 5], 1000.0)
+    >>> tracked.amplitude[:, 2000].round(3).tolist()
     [3.0, 1.0]
     """
     from scipy.linalg import LinAlgError, solveh_banded
 
     values = checked_signal(signal, 16)
-    turned = checked_signal(angle, 16, "angle")
-    wanted = np.atleast_1d(real_numbers(Argument("orders"), orders))
-    require_positive("orders", wanted)
+    shaft_angles = checked_signal(angle, 16, "angle")
+    shaft_orders = np.atleast_1d(real_numbers(Argument("orders"), orders))
+    require_positive("orders", shaft_orders)
     require_positive("sample_rate", sample_rate, "Hz")
     require_between("bandwidth", bandwidth, 1e-3, 0.25 * sample_rate, "Hz")
-    _refuse(values, turned, wanted)
-    count, width = values.size, wanted.size
+    _check_inputs(values, shaft_angles, shaft_orders)
+    count, width = values.size, shaft_orders.size
     turn = 2.0 * np.pi * (0.5 * bandwidth / sample_rate)
     weight = (np.sqrt(2.0) - 1.0) / (4.0 * np.sin(0.5 * turn) ** 2) ** 2
-    waves = np.exp(1j * wanted * turned[:, None])  # (n, k)
+    waves = np.exp(1j * shaft_orders * shaft_angles[:, None])  # (n, k)
     upper = _equations(waves, weight)
-    # A real signal is half of two waves that turn against each other.
+    # A real signal is half the sum of two counter-rotating complex waves.
     right = 2.0 * np.conj(waves) * values[:, None]
     try:
         envelope = solveh_banded(upper, right.ravel(), overwrite_ab=True, check_finite=False)
     except LinAlgError:
         what = f"bandwidth = {bandwidth:g} Hz cannot be resolved"
         why = f"At {sample_rate:g} Hz the equations are singular to working precision"
-        remedy = "Widen it, or sample the record more coarsely first"
+        remedy = "Increase the bandwidth, or downsample the recording first"
         raise ComputationError(what, Argument("bandwidth"), why, remedy) from None
-    found: ComplexArray = envelope.reshape(count, width).T
+    envelopes: ComplexArray = envelope.reshape(count, width).T
     time = np.arange(count) / float(sample_rate)
-    size, phase = np.abs(found), np.angle(found)
-    return TrackedOrders(wanted, time, size, phase, turned, float(bandwidth), unit)
+    size, phase = np.abs(envelopes), np.angle(envelopes)
+    return TrackedOrders(shaft_orders, time, size, phase, shaft_angles, float(bandwidth), unit)
 
 
-def _refuse(values: Array, turned: Array, wanted: Array) -> None:
-    if wanted.ndim != 1 or np.unique(wanted).size != wanted.size:
-        what, why = f"orders = {wanted.tolist()}", "Each order is followed once"
-        raise InputError(what, Argument("orders"), why, "Give a list of different orders")
-    if turned.size != values.size:
-        what = f"angle has {turned.size} samples, the signal has {values.size}"
-        why = "Each sample of the signal has its own angle"
-        raise InputError(what, Argument("angle"), why, "Give the angle of the shaft at each sample")
-    if values.size * wanted.size > _MOST:
-        what = f"{wanted.size} orders over {values.size} samples"
-        why = f"At most {_MOST} unknowns are solved at once"
-        remedy = "Follow fewer orders together, or cut the record in parts"
+def _check_inputs(values: Array, angles: Array, orders: Array) -> None:
+    if orders.ndim != 1 or np.unique(orders).size != orders.size:
+        what, why = f"orders = {orders.tolist()}", "Each order can be tracked only once"
+        raise InputError(what, Argument("orders"), why, "Pass a list of distinct orders")
+    if angles.size != values.size:
+        what = f"angle has {angles.size} samples, the signal has {values.size}"
+        why = "Each sample of the signal needs one angle"
+        raise InputError(what, Argument("angle"), why, "Pass the shaft angle at each sample")
+    if values.size * orders.size > _MAX_UNKNOWNS:
+        what = f"{orders.size} orders over {values.size} samples"
+        why = f"At most {_MAX_UNKNOWNS} unknowns can be solved at once"
+        remedy = "Track fewer orders at once, or split the recording"
         raise InputError(what, Argument("orders"), why, remedy)
-    top = float(wanted.max() * np.abs(np.diff(turned)).max())
+    top = float(orders.max() * np.abs(np.diff(angles)).max())
     if top > np.pi:
-        what = f"order {wanted.max():g} asked for"
+        what = f"order {orders.max():g} is too high"
         why = f"At the highest speed it has {2 * np.pi / top:.3g} samples in a period, not two"
-        raise InputError(what, Argument("orders"), why, "Leave it out, or sample faster")
+        raise InputError(what, Argument("orders"), why, "Omit it, or sample faster")
 
 
 def _equations(waves: ComplexArray, weight: float) -> ComplexArray:
-    """Upper bands of the normal equations; unknowns of one sample stand together."""
+    """Upper bands of the normal equations; the unknowns of one sample are adjacent."""
     count, width = waves.shape
     depth = 2 * width
     upper = np.zeros((depth + 1, count, width), dtype=complex)
     ends = np.ones(count)
     diagonal = 6.0 * ends
     diagonal[[0, -1]], diagonal[[1, -2]] = 1.0, 5.0
-    beside = -4.0 * ends
-    beside[[1, -1]] = -2.0
+    first_off_diagonal = -4.0 * ends
+    first_off_diagonal[[1, -1]] = -2.0
     upper[depth] = 1.0 + weight * diagonal[:, None]
-    upper[width, 1:] = weight * beside[1:, None]
+    upper[width, 1:] = weight * first_off_diagonal[1:, None]
     upper[0, 2:] = weight
     # Orders of one sample: row k, column k + apart.
-    for apart in range(1, width):
-        upper[depth - apart, :, apart:] += np.conj(waves[:, :-apart]) * waves[:, apart:]
+    for offset in range(1, width):
+        upper[depth - offset, :, offset:] += np.conj(waves[:, :-offset]) * waves[:, offset:]
     return upper.reshape(depth + 1, count * width)

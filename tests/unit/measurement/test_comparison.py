@@ -223,7 +223,7 @@ def test_the_figure_and_the_table() -> None:
         ({"tacho": "acc", "angle": "acc"}, "Leave one"),
         ({"tacho": "pulses", "teeth": 20}, "no channel"),
         ({"tacho": "acc", "teeth": 20, "pulses": 0}, "pulses"),
-        ({"measured": 3}, "Wanted: a Recording"),
+        ({"measured": 3}, "Expected a Recording"),
         ({"computed": 3}, "mesh frequency"),
     ],
 )

@@ -101,7 +101,7 @@ def test_noise_has_no_speed_and_neither_has_a_resonance_in_it(seed) -> None:
     for wave in (noise, rung):
         speed = mesh_speed(wave, RATE, MESH, harmonics=3)
         assert not speed.located
-        assert "no steady line" in speed.method
+        assert "no steady mesh line" in speed.method
         assert np.isnan(speed.uncertainty)
 
 

@@ -194,7 +194,7 @@ def test_refusals() -> None:
     time = np.arange(20_000) / 1000.0
     turned = 2.0 * np.pi * 20.0 * time
     signal = np.cos(turned)
-    with pytest.raises(InputError, match="apart up to 25"):
+    with pytest.raises(InputError, match="resolve orders up to 25"):
         order_spectrum(signal, turned, 30)
     with pytest.raises(InputError, match="angle falls"):
         order_spectrum(signal, -turned, 3)
@@ -206,7 +206,7 @@ def test_refusals() -> None:
         shaft_angle(np.ones(100), 1000.0, 1)
     with pytest.raises(ComputationError, match="pulses found"):
         shaft_angle(np.cos(2.0 * np.pi * np.arange(1000) / 400.0), 1000.0, 1)
-    with pytest.raises(InputError, match="followed once"):
+    with pytest.raises(InputError, match="tracked only once"):
         track_orders(signal, turned, [1, 1], 1000.0)
     with pytest.raises(InputError, match="not two"):
         track_orders(signal, turned, [40], 1000.0)

@@ -81,7 +81,7 @@ def test_a_stated_speed_without_teeth_says_that_it_is_not_measured() -> None:
     assert not analysis.averages
     noise = recording(np.random.default_rng(0).standard_normal(time.size), angle)
     analysis = analyse_signal(noise, "acc", speed=SPEED, teeth=TEETH)
-    assert "No steady line of the mesh" in missing(analysis)
+    assert "No steady mesh line" in missing(analysis)
     assert analysis.speed.steady
 
 
