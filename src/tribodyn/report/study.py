@@ -60,43 +60,51 @@ def write_sweep_report(found: Sweep, path: str | os.PathLike[str]) -> Path:
     InputError
         If the file cannot be written.
     """
-    names = found.shown()
-    caption = plot.sweep.caption_of(found)
-    blocks = [
-        block_of_figure(name, in_words(name), found.plot(name), caption if name == names[0] else "")
-        for name in names
-    ]
-    head = [_headed(axis.name, axis.display_unit) for axis in found.axes]
+    return _write(Path(path), found.case, _sweep_page(found))
+
+
+def _sweep_page(sweep: Sweep) -> _Page:
+    """Figures, cards, warnings and table of a sweep."""
+    names = sweep.shown()
+    caption = plot.sweep.caption_of(sweep)
+    failed = [point for point in sweep.points if point.failed]
+    notices = list(dict.fromkeys(point.failed for point in failed))
+    if not sweep.complete:
+        done = f"{len(sweep.points)} of {sweep.failed.size}"
+        notices.insert(0, f"Interrupted: {done} values are done.")
+    truncated = len(sweep.points) > _ROWS
+    head, rows = _sweep_table(sweep, names)
+    return _Page(
+        kind="sweep",
+        lead=repr(sweep)[6:-1],
+        blocks=[
+            block_of_figure(n, in_words(n), sweep.plot(n), caption if n == names[0] else "")
+            for n in names
+        ],
+        varied=[axis.key for axis in sweep.axes],
+        notice_heading="Warnings",
+        cards=[("Values", f"{len(sweep.points)}"), ("Failed", f"{len(failed)}")],
+        notices=notices,
+        head=head,
+        rows=rows,
+        more=f"The first {_ROWS} values; all of them are in sweep.csv." if truncated else "",
+    )
+
+
+def _sweep_table(sweep: Sweep, names: Sequence[str]) -> tuple[list[str], list[list[str]]]:
+    """Head and first rows of the table of a sweep: axis values, results and failures."""
+    head = [_headed(axis.name, axis.display_unit) for axis in sweep.axes]
     head += [_headed(in_words(name), SUMMARY[name].display_unit) for name in names]
     rows = []
-    for point in found.points[:_ROWS]:
-        keys = zip(found.axes, point.values, strict=True)
+    for point in sweep.points[:_ROWS]:
+        keys = zip(sweep.axes, point.values, strict=True)
         cells = [axis.show(value).partition(" ")[0] for axis, value in keys]
         results = [
             SUMMARY[n].show(point.figures[n]).partition(" ")[0] if n in point.figures else ""
             for n in names
         ]
         rows.append([*cells, *results, point.failed])
-    failed = [point for point in found.points if point.failed]
-    lacking = "" if found.complete else f"Interrupted: {len(found.points)} of {found.failed.size}"
-    page = _Page(
-        kind="sweep",
-        lead=repr(found)[6:-1],
-        blocks=blocks,
-        varied=[axis.key for axis in found.axes],
-        notice_heading="Warnings",
-        cards=[("Values", f"{len(found.points)}"), ("Failed", f"{len(failed)}")],
-        notices=[
-            *([f"{lacking} values are done."] if lacking else []),
-            *dict.fromkeys(point.failed for point in failed),
-        ],
-        head=[*head, "Failed"],
-        rows=rows,
-        more=f"The first {_ROWS} values; all of them are in sweep.csv."
-        if len(found.points) > _ROWS
-        else "",
-    )
-    return _write(Path(path), found.case, page)
+    return [*head, "Failed"], rows
 
 
 def write_bifurcation_report(
@@ -134,21 +142,27 @@ def write_bifurcation_report(
         If the file cannot be written.
     """
     caption = plot.bifurcation.caption_of(found)
-    counts = [(verdict.capitalize(), str(count)) for verdict, count in found.verdicts().items()]
-    if lost := int(found.ran_away.sum()):
-        counts.append(("Ran away", str(lost)))
     page = _Page(
         kind="bifurcation diagram",
         lead=lead,
         varied=[found.parameter_name],
         notice_heading="Results",
         blocks=[block_of_figure("bifurcation", "Bifurcation diagram", found.plot(), caption)],
-        cards=[("Motions", str(int(found.finished.sum()))), *counts],
+        cards=_verdict_cards(found),
         notices=list(told),
         head=head,
         rows=rows,
     )
     return _write(Path(path), case, page)
+
+
+def _verdict_cards(diagram: Bifurcation) -> list[tuple[str, str]]:
+    """Cards with the numbers of motions, of each verdict and of motions that ran away."""
+    cards = [("Motions", str(int(diagram.finished.sum())))]
+    cards += [(verdict.capitalize(), str(count)) for verdict, count in diagram.verdicts().items()]
+    if diverged := int(diagram.ran_away.sum()):
+        cards.append(("Ran away", str(diverged)))
+    return cards
 
 
 def write_study_report(
