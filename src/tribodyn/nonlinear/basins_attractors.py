@@ -1,4 +1,4 @@
-"""Attractors of a plane of starts: which motions there are, and which of them a start comes to."""
+"""Attractors of a plane of starts, and the attractor that each start converges to."""
 
 from __future__ import annotations
 
@@ -46,9 +46,10 @@ class Attractor:
     largest_multiplier : float
         Modulus of its largest Floquet multiplier [-]; NaN if it does not repeat.
     stable : bool
-        Whether that is below one; true of a motion that does not repeat, since starts come to it.
+        Whether that is below one; true of a motion that does not repeat, since it attracts
+        starts.
     share : float
-        Part of the starts that come to it [-].
+        Part of the starts that converge to it [-].
     verdict : str
         ``"physical"``, ``"step-limited"``, ``"undecided"``; empty if not requested.
     refined_period : int
@@ -227,7 +228,7 @@ def multiplier_of(attractor: MarchedAttractor, motions: Motions, steps: int) -> 
 
 @record
 class Basins(Record):
-    """Which motion every start of a plane comes to.
+    """Motion that every start of a plane converges to.
 
     Parameters
     ----------

@@ -98,7 +98,7 @@ def parameter_map(
         Steps per mesh cycle; by default the power of two, at least 64, that keeps
         ``omega_max * dt`` below 0.5 at the mesh frequency and stiffness of each point.
     signal : int or str
-        Contact whose compression is looked at, or name of a coordinate.
+        Number of the contact whose compression is evaluated, or name of a coordinate.
     verdict : bool
         Judge every motion by half the step.
     keep_partial : bool
@@ -136,7 +136,7 @@ def parameter_map(
     axes = _read_axes(system, over, mesh_frequency, units)
     if transient < 0 or cycles < 2 or (steps is not None and steps < 1):
         what = f"transient = {transient}, cycles = {cycles}, steps = {steps}"
-        why = "At least two mesh cycles are looked at"
+        why = "The statistics need at least two mesh cycles"
         raise InputError(what, "argument cycles", why, "Give cycles=2 or more")
     systems = [system] if isinstance(system, System) else [system(float(v)) for v in axes.first]
     name = signal_name(systems[0], signal)

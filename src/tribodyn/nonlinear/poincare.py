@@ -326,7 +326,7 @@ def phase_portrait(
     motion : Response
         From :func:`tribodyn.dynamics.steady_state` or :func:`tribodyn.dynamics.simulate`.
     of : int or str
-        Number of a contact, whose compression is looked at, or name of a coordinate.
+        Number of the contact whose compression is evaluated, or name of a coordinate.
     gap : float
         Half of the backlash of the contact [m], which the figure then shows.
     transient : int

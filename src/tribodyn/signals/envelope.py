@@ -22,7 +22,7 @@ def envelope(
     Parameters
     ----------
     signal, sampling_rate
-        As :func:`spectrum` takes them [Hz].
+        As in :func:`spectrum` [Hz].
     band : tuple of two float, optional
         Lower and upper end of the band that carries the modulation [Hz]; the whole signal less
         its mean by default.
@@ -80,9 +80,9 @@ def envelope_spectrum(
     Parameters
     ----------
     signal, sampling_rate, band
-        As :func:`envelope` takes them [Hz].
+        As in :func:`envelope` [Hz].
     window, unit
-        As :func:`spectrum` takes them.
+        As in :func:`spectrum`.
 
     Returns
     -------
@@ -189,7 +189,7 @@ def sidebands(
     Parameters
     ----------
     signal, sampling_rate
-        As :func:`tribodyn.analysis.spectrum` takes them [Hz].
+        As in :func:`tribodyn.analysis.spectrum` [Hz].
     carrier : float
         Frequency of the carrier [Hz].
     modulation : float

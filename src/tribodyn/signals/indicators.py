@@ -64,12 +64,12 @@ def rms(samples: FineSamples, signal: Array) -> Array:
     Parameters
     ----------
     samples, signal
-        As :func:`mean` takes them.
+        As in :func:`mean`.
 
     Returns
     -------
     array
-        As :func:`mean` gives it.
+        As in :func:`mean`.
 
     Examples
     --------
@@ -89,12 +89,12 @@ def alternating_rms(samples: FineSamples, signal: Array) -> Array:
     Parameters
     ----------
     samples, signal
-        As :func:`mean` takes them.
+        As in :func:`mean`.
 
     Returns
     -------
     array
-        As :func:`mean` gives it.
+        As in :func:`mean`.
 
     Examples
     --------
@@ -149,7 +149,7 @@ def peak_to_peak(signal: Array) -> Array:
     Parameters
     ----------
     signal
-        As :func:`extremes` takes it.
+        As in :func:`extremes`.
 
     Returns
     -------
@@ -171,7 +171,7 @@ def crest_factor(samples: FineSamples, signal: Array) -> Array:
     Parameters
     ----------
     samples, signal
-        As :func:`mean` takes them.
+        As in :func:`mean`.
 
     Returns
     -------

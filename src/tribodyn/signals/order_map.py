@@ -103,12 +103,12 @@ def spectrogram(
     Parameters
     ----------
     signal, sampling_rate
-        As :func:`tribodyn.analysis.spectrum` takes them [Hz].
+        As in :func:`tribodyn.analysis.spectrum` [Hz].
     block_length : int, optional
         Samples of a block; by default about the square root of eight times their number. Longer
         blocks resolve closer frequencies and blur faster changes.
     overlap, window, unit
-        As :func:`tribodyn.analysis.spectrum` takes them [-].
+        As in :func:`tribodyn.analysis.spectrum` [-].
 
     Returns
     -------
@@ -182,7 +182,7 @@ def order_map(
     Parameters
     ----------
     signal, time
-        As :func:`tribodyn.analysis.angular_resampling` takes them [s].
+        As in :func:`tribodyn.analysis.angular_resampling` [s].
     rotation : (n,) array, optional
         Rotation of the shaft at each sample [rad], counted on without wrap.
     speed : float or (n,) array, optional

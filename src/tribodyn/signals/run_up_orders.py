@@ -170,7 +170,7 @@ def order_cut(
         Mesh cycles in a block; by default the fewest, from 4 to 64, in which the order fits a whole
         number of times: orders that do so too leave no trace.
     part
-        As :func:`run_up_order_map` takes it.
+        As in :func:`run_up_order_map`.
 
     Returns
     -------
@@ -234,11 +234,11 @@ def overall_level(
     Parameters
     ----------
     run, signal
-        As :func:`run_up_order_map` takes them.
+        As in :func:`run_up_order_map`.
     cycles : int
         Mesh cycles over which the mean and the mean square are taken.
     part
-        Likewise.
+        As in :func:`run_up_order_map`.
 
     Raises
     ------
@@ -348,7 +348,7 @@ def resonances(
     Parameters
     ----------
     run, signal
-        As :func:`run_up_order_map` takes them.
+        As in :func:`run_up_order_map`.
     orders : iterable of float
         Mesh orders [-].
     modes : NaturalModes, optional

@@ -379,13 +379,13 @@ def zoom_spectrum(
     Parameters
     ----------
     signal, sampling_rate
-        As :func:`spectrum` takes them [Hz].
+        As in :func:`spectrum` [Hz].
     lowest, highest : float
         Ends of the band [Hz].
     points : int
         Number of lines.
     window, unit
-        As :func:`spectrum` takes them.
+        As in :func:`spectrum`.
 
     Raises
     ------

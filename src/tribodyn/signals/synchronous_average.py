@@ -136,11 +136,11 @@ def time_synchronous_average(
     Parameters
     ----------
     signal, time
-        As :func:`tribodyn.analysis.order_map` takes them [s].
+        As in :func:`tribodyn.analysis.order_map` [s].
     teeth : int
         Number of teeth of the gear on the shaft.
     rotation, speed
-        Likewise [rad], [rad/s].
+        As in :func:`tribodyn.analysis.order_map` [rad], [rad/s].
     mesh_harmonics : int
         Mesh harmonics that must come through.
     unit : str
