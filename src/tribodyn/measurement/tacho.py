@@ -80,14 +80,14 @@ def shaft_angle(
     Notes
     -----
     The time of an edge is interpolated between two samples; the next edge is counted only after
-    the signal has fallen below the threshold by a quarter of its height (hysteresis). A pulse is
-    double if the two gaps around it add up to one expected gap. Pulses are missing if a gap is two
-    to four times the length expected from the gaps on either side. The angle over time is a
-    least-squares cubic spline. Generalized cross validation selects the number of pulses per
-    piece, which smooths the jitter of single pulses but not the speed. For steep edges the pieces
-    are as long as the residual stays within the sampling step, because this rounding error repeats
-    at a steady speed. Before the first pulse, after the last one and around a rest, the angle is
-    extrapolated with constant acceleration until standstill.
+    the signal has passed a quarter of its height beyond the threshold on the other side
+    (hysteresis). A pulse is double if the two gaps around it add up to one expected gap. Pulses are
+    missing if a gap is two to four times the length expected from the gaps on either side. The
+    angle over time is a least-squares cubic spline. Generalized cross validation selects the number
+    of pulses per piece, which smooths the jitter of single pulses but not the speed. For steep
+    edges the pieces are the longest whose residual stays within the sampling step, because this
+    rounding error repeats at a steady speed. Before the first pulse, after the last one and around
+    a rest, the angle is extrapolated with constant acceleration until standstill.
     G. Wahba, Spline Models for Observational Data, SIAM 1990, equation (4.3.1).
 
     Examples

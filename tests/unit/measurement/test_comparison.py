@@ -25,9 +25,11 @@ def rig(sizes, frequency=MESH, unit="m/s^2", noise=0.0) -> Recording:
     return Recording({"acc": wave}, RATE, {"acc": unit})
 
 
-def by_measure(found) -> dict[str, tuple[float, float, float]]:
-    rows = zip(found.measure, found.computed, found.measured, found.error, strict=True)
-    return {str(name): tuple(map(float, rest)) for name, *rest in rows}
+def by_measure(comparison) -> dict[str, tuple[float, float, float]]:
+    rows = zip(
+        comparison.measure, comparison.computed, comparison.measured, comparison.error, strict=True
+    )
+    return {str(name): tuple(map(float, values)) for name, *values in rows}
 
 
 def codes(warned) -> list[str]:
@@ -35,9 +37,9 @@ def codes(warned) -> list[str]:
 
 
 def test_equal_motions_have_no_error() -> None:
-    found = compare(COMPUTED, rig(SIZE), {"acc": "acceleration"})
-    assert np.abs(found.error).max() < 2e-3
-    rows = by_measure(found)
+    comparison = compare(COMPUTED, rig(SIZE), {"acc": "acceleration"})
+    assert np.abs(comparison.error).max() < 2e-3
+    rows = by_measure(comparison)
     assert rows["rms"][0] == pytest.approx(np.sqrt(0.5 * np.sum(SIZE**2)))
     assert rows["rms"][1] == pytest.approx(rows["rms"][0], rel=1e-3)
 
@@ -50,20 +52,20 @@ def test_errors_by_base(base: str, error: float) -> None:
 
 
 def test_units_of_the_channel_are_converted() -> None:
-    found = compare(COMPUTED, rig(1e3 * SIZE, unit="mm/s^2"), {"acc": "acceleration"})
-    assert np.abs(found.error).max() < 2e-3
+    comparison = compare(COMPUTED, rig(1e3 * SIZE, unit="mm/s^2"), {"acc": "acceleration"})
+    assert np.abs(comparison.error).max() < 2e-3
     with pytest.raises(InputError, match="units or sensitivity"):
         compare(COMPUTED, rig(SIZE, unit="N"), {"acc": "acceleration"})
 
 
-def test_a_gain_is_given_or_fitted_and_told() -> None:
+def test_gain_is_prescribed_or_fitted() -> None:
     halved = rig(0.5 * SIZE, noise=0.01)
-    given = compare(COMPUTED, halved, {"acc": "acceleration"}, gain={"acc": 0.5})
-    assert np.abs(given.error).max() < 0.02
+    prescribed = compare(COMPUTED, halved, {"acc": "acceleration"}, gain={"acc": 0.5})
+    assert np.abs(prescribed.error).max() < 0.02
     fitted = compare(COMPUTED, halved, {"acc": "acceleration"}, gain="fit")
     assert fitted.gains["acc"] == pytest.approx(0.5, rel=1e-3)
     assert fitted.fitted
-    assert not given.fitted
+    assert not prescribed.fitted
 
 
 def test_noise_counts_in_the_whole_and_not_in_the_harmonics() -> None:
@@ -101,25 +103,27 @@ def wandering(ratio, wander, sizes=SIZE, decibel=20.0, duration=4.0, seed=0) -> 
     ("ratio", "wander"), [(0.99, 0.0), (1.03, 0.0), (0.97, 0.01), (1.03, 0.01)]
 )
 def test_harmonics_of_a_recording_off_speed_that_wanders(ratio, wander, tacho) -> None:
-    found = compare(COMPUTED, wandering(ratio, wander), {"acc": "acceleration"}, **tacho)
-    assert np.abs(found.error[2:]).max() < 0.05
+    comparison = compare(COMPUTED, wandering(ratio, wander), {"acc": "acceleration"}, **tacho)
+    assert np.abs(comparison.error[2:]).max() < 0.05
     mean = ratio  # of a whole number of periods of the wander
-    assert abs(found.speed_ratio - mean) < max(4.0 * found.speed_uncertainty, 1e-6)
-    assert found.speed_uncertainty < 2e-5
-    assert ("tachometer" if tacho else "phase demodulation") in found.speed_method
-    assert found.speed_range == pytest.approx(
+    assert abs(comparison.speed_ratio - mean) < max(4.0 * comparison.speed_uncertainty, 1e-6)
+    assert comparison.speed_uncertainty < 2e-5
+    assert ("tachometer" if tacho else "phase demodulation") in comparison.speed_method
+    assert comparison.speed_range == pytest.approx(
         (ratio * (1.0 - wander), ratio * (1.0 + wander)), abs=1e-3
     )
-    assert found.shares["acc"] == pytest.approx(1.0 / 1.01, abs=5e-3)
-    assert f"speed ratio {found.speed_ratio:.5g}" in repr(found)
-    stated = float(found.speed_text.partition("computed one: ")[2].partition(" ")[0])
-    assert stated == pytest.approx(found.speed_ratio, abs=2.0 * found.speed_uncertainty)
+    assert comparison.shares["acc"] == pytest.approx(1.0 / 1.01, abs=5e-3)
+    assert f"speed ratio {comparison.speed_ratio:.5g}" in repr(comparison)
+    stated = float(comparison.speed_text.partition("computed one: ")[2].partition(" ")[0])
+    assert stated == pytest.approx(comparison.speed_ratio, abs=2.0 * comparison.speed_uncertainty)
 
 
 def test_one_line_one_percent_slow_is_that_line() -> None:
     """A line of 6 m/s^2 that is recorded 1 % slower than computed is 6 m/s^2, and a gain of it."""
-    found = compare(COMPUTED, wandering(0.99, 0.0, [6.0]), {"acc": "acceleration"}, harmonics=1)
-    assert by_measure(found)["mesh harmonic 1"][1] == pytest.approx(6.0, rel=0.01)
+    comparison = compare(
+        COMPUTED, wandering(0.99, 0.0, [6.0]), {"acc": "acceleration"}, harmonics=1
+    )
+    assert by_measure(comparison)["mesh harmonic 1"][1] == pytest.approx(6.0, rel=0.01)
     with pytest.warns(ModelWarning, match="harmonics-in-noise"):
         fitted = compare(COMPUTED, wandering(0.99, 0.0, [6.0]), {"acc": "acceleration"}, gain="fit")
     assert fitted.gains["acc"] == pytest.approx(6.0 / 5.0, rel=0.01)
@@ -128,13 +132,13 @@ def test_one_line_one_percent_slow_is_that_line() -> None:
 def test_a_recording_at_another_speed_is_not_compared() -> None:
     for ratio in (1.1, 1.3, 0.5):
         with pytest.warns(ModelWarning) as warned:
-            found = compare(COMPUTED, wandering(ratio, 0.0), {"acc": "acceleration"})
+            comparison = compare(COMPUTED, wandering(ratio, 0.0), {"acc": "acceleration"})
         assert "speed-not-found" in codes(warned), ratio
-        assert np.isnan(found.measured[1:]).all()
-        assert np.isnan(found.speed_ratio)
-        assert "not found" in repr(found)
-        assert "not found" in found.speed_text
-        assert "not found" in found.plot().layout.title.text
+        assert np.isnan(comparison.measured[1:]).all()
+        assert np.isnan(comparison.speed_ratio)
+        assert "not found" in repr(comparison)
+        assert "not found" in comparison.speed_text
+        assert "not found" in comparison.plot().layout.title.text
 
 
 def test_lines_of_double_the_speed_leave_every_other_harmonic_in_noise() -> None:
@@ -183,8 +187,8 @@ def test_a_steady_tachometer_on_a_mesh_that_wanders_is_told_as_smeared() -> None
     ("unit", "factor"), [("g", 1.0), ("gn", 1.0), ("g0", 1.0), ("g_n", 1.0), ("mg", 1e-3)]
 )
 def test_g_of_an_acceleration_is_gravity(unit, factor) -> None:
-    found = compare(COMPUTED, rig(SIZE / 9.80665 / factor, unit=unit), {"acc": "acceleration"})
-    assert np.abs(found.error).max() < 2e-3
+    comparison = compare(COMPUTED, rig(SIZE / 9.80665 / factor, unit=unit), {"acc": "acceleration"})
+    assert np.abs(comparison.error).max() < 2e-3
 
 
 def test_g_of_a_mass_is_a_gram() -> None:
@@ -200,14 +204,14 @@ def test_g_of_a_mass_is_a_gram() -> None:
 
 
 def test_the_figure_and_the_table() -> None:
-    found = compare(COMPUTED, rig(SIZE), {"acc": "acceleration"})
-    assert "harmonic" in found.plot().layout.title.text
-    assert found.to_xarray().sizes["row"] == 7
-    assert "Comparison(1 channels" in repr(found)
+    comparison = compare(COMPUTED, rig(SIZE), {"acc": "acceleration"})
+    assert "harmonic" in comparison.plot().layout.title.text
+    assert comparison.to_xarray().sizes["row"] == 7
+    assert "Comparison(1 channels" in repr(comparison)
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"channels": {"acc": "force"}}, "It has acceleration"),
         ({"channels": {"ac": "acceleration"}}, 'Did you mean "acc"'),
@@ -227,8 +231,8 @@ def test_the_figure_and_the_table() -> None:
         ({"computed": 3}, "mesh frequency"),
     ],
 )
-def test_refusals(options: dict, told: str) -> None:
-    given = {"computed": COMPUTED, "measured": rig(SIZE), "channels": {"acc": "acceleration"}}
+def test_refusals(options: dict, message: str) -> None:
+    arguments = {"computed": COMPUTED, "measured": rig(SIZE), "channels": {"acc": "acceleration"}}
     with pytest.raises(InputError) as error:
-        compare(**{**given, **options})
-    assert told.lower() in str(error.value).lower()
+        compare(**{**arguments, **options})
+    assert message.lower() in str(error.value).lower()

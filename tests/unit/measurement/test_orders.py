@@ -37,24 +37,24 @@ def test_the_uneven_transform_equals_its_sum() -> None:
 
 
 def test_orders_of_a_run_from_rest_to_rest_to_a_thousandth(run, angle) -> None:
-    found = order_spectrum(run["signal"], angle, 70, unit="m/s^2")
+    spectrum = order_spectrum(run["signal"], angle, 70, unit="m/s^2")
     for order, amplitude in ORDERS.items():
-        assert found.amplitude(order) == pytest.approx(amplitude, rel=1e-3)
-    assert "order 29" in repr(found)
-    assert found.to_xarray().units == "m/s^2"
+        assert spectrum.amplitude(order) == pytest.approx(amplitude, rel=1e-3)
+    assert "order 29" in repr(spectrum)
+    assert spectrum.to_xarray().units == "m/s^2"
 
 
 def test_an_order_between_lines_and_its_phase() -> None:
     time = np.arange(60_000) / 20_000.0
     turned = 2.0 * np.pi * (4.0 * time + 9.0 * time**2 + 0.3)
     signal = 0.7 + 2.0 * np.cos(4.08 * turned + 0.5)
-    found = order_spectrum(signal, turned, 20)
-    line = int(np.argmax(found.amplitudes[1:])) + 1
-    assert found.amplitudes[line] == pytest.approx(2.0, rel=1e-3)
-    assert found.amplitudes[0] == pytest.approx(0.7, rel=1e-3)
-    whole = order_spectrum(2.0 * np.cos(7.0 * turned + 0.5), turned, 20)
-    at = int(np.argmin(np.abs(whole.orders - 7.0)))
-    assert whole.phases[at] == pytest.approx(0.5, abs=1e-4)
+    between_lines = order_spectrum(signal, turned, 20)
+    line = int(np.argmax(between_lines.amplitudes[1:])) + 1
+    assert between_lines.amplitudes[line] == pytest.approx(2.0, rel=1e-3)
+    assert between_lines.amplitudes[0] == pytest.approx(0.7, rel=1e-3)
+    on_line = order_spectrum(2.0 * np.cos(7.0 * turned + 0.5), turned, 20)
+    at = int(np.argmin(np.abs(on_line.orders - 7.0)))
+    assert on_line.phases[at] == pytest.approx(0.5, abs=1e-4)
 
 
 def test_a_resonance_in_hertz_is_not_folded_onto_low_orders() -> None:
@@ -66,12 +66,12 @@ def test_a_resonance_in_hertz_is_not_folded_onto_low_orders() -> None:
 
 
 def test_the_map_and_its_cut_follow_an_order_from_rest(run, angle) -> None:
-    made = order_map(run["signal"], angle, 70, run.sample_rate, unit="m/s^2")
-    cut = made.cut(29)
+    orders = order_map(run["signal"], angle, 70, run.sample_rate, unit="m/s^2")
+    cut = orders.cut(29)
     np.testing.assert_allclose(cut.amplitude, 2.0, rtol=3e-3)
     # speed of the middle of each block against the known course
-    known = UP_AND_DOWN[1] * (1.0 - np.abs(made.time - 10.0) / 10.0)
-    np.testing.assert_allclose(made.speed[3:-3], known[3:-3], rtol=0.02)
+    expected_speed = UP_AND_DOWN[1] * (1.0 - np.abs(orders.time - 10.0) / 10.0)
+    np.testing.assert_allclose(orders.speed[3:-3], expected_speed[3:-3], rtol=0.02)
 
 
 @pytest.mark.parametrize("per", [1, 4, 60])
@@ -79,13 +79,13 @@ def test_the_map_and_its_cut_follow_an_order_from_rest(run, angle) -> None:
 def test_the_angle_of_clean_pulses(per: int, edge: str) -> None:
     run = synthetic_run_up({}, UP_AND_DOWN, pulses_per_revolution=per)
     tacho = run["tacho"] if edge == "rising" else 5.0 - run["tacho"]
-    found = shaft_angle(tacho, run.sample_rate, per, edge=edge)
-    away = found - run["angle"]
+    estimate = shaft_angle(tacho, run.sample_rate, per, edge=edge)
+    away = estimate - run["angle"]
     inner = (run.time > 1.0) & (run.time < 19.0)
     # a sample of a pulse is 2 pi 50 / 25600 = 0.012 rad at the highest speed
     assert np.std(away[inner]) < 0.002
-    assert np.all(np.diff(found) >= 0.0)
-    assert found[-1] - found[0] == pytest.approx(run["angle"][-1], abs=0.6)
+    assert np.all(np.diff(estimate) >= 0.0)
+    assert estimate[-1] - estimate[0] == pytest.approx(run["angle"][-1], abs=0.6)
 
 
 @pytest.mark.parametrize(("missing", "double"), [(20, 0), (0, 20), (15, 15)])
@@ -93,26 +93,26 @@ def test_missing_and_double_pulses_are_counted_right(missing: int, double: int) 
     run = synthetic_run_up(
         {}, UP_AND_DOWN, sample_rate=51200.0, jitter=0.01, missing=missing, double=double, seed=3
     )
-    with pytest.warns(ModelWarning, match="tacho-repaired") as told:
-        found = shaft_angle(run["tacho"], run.sample_rate, 60)
-    text = str(told[0].message)
+    with pytest.warns(ModelWarning, match="tacho-repaired") as warned:
+        estimate = shaft_angle(run["tacho"], run.sample_rate, 60)
+    text = str(warned[0].message)
     assert (f"{missing} missing" in text) == bool(missing)
     assert (f"{double} double" in text) == bool(double)
-    away = found - run["angle"]
+    away = estimate - run["angle"]
     assert np.ptp(away[(run.time > 1.0) & (run.time < 19.0)]) < 0.01  # a pulse is 0.105 rad
 
 
 def test_a_standstill_is_no_missing_pulse() -> None:
     turn = np.pi / 30.0
     run = synthetic_run_up({}, np.array([0.0, 1500.0, 0.0, 0.0, 1500.0, 0.0]) * turn)
-    found = shaft_angle(run["tacho"], run.sample_rate, 60)
-    assert np.ptp(found - run["angle"]) < 0.2
+    estimate = shaft_angle(run["tacho"], run.sample_rate, 60)
+    assert np.ptp(estimate - run["angle"]) < 0.2
 
 
 def test_jitter_is_smoothed_and_speed_is_not() -> None:
     run = synthetic_run_up({}, (100.0, 300.0, 150.0), jitter=0.05, seed=1)
-    found = shaft_angle(run["tacho"], run.sample_rate, 60)
-    away = (found - run["angle"])[1000:-1000]
+    estimate = shaft_angle(run["tacho"], run.sample_rate, 60)
+    away = (estimate - run["angle"])[1000:-1000]
     assert np.std(away) < 0.25 * 0.05 * 2.0 * np.pi / 60.0
 
 
@@ -127,10 +127,10 @@ def test_steep_edges_that_repeat_with_the_samples_are_no_speed(speeds, per: int)
     angle, orders = run["angle"], {1: 1.0, 14.5: 0.3, 40: 0.5}
     pulses = 5.0 * (np.sin(per * angle) > 0.0)
     signal = 100.0 + sum(size * np.cos(order * angle) for order, size in orders.items())
-    found = order_spectrum(signal, shaft_angle(pulses, run.sample_rate, per), 50)
+    spectrum = order_spectrum(signal, shaft_angle(pulses, run.sample_rate, per), 50)
     for order, size in orders.items():
-        assert found.amplitude(order) == pytest.approx(size, rel=1e-3)
-    assert found.amplitude(0) == pytest.approx(100.0, rel=1e-3)
+        assert spectrum.amplitude(order) == pytest.approx(size, rel=1e-3)
+    assert spectrum.amplitude(0) == pytest.approx(100.0, rel=1e-3)
 
 
 def test_pulses_in_noise_are_counted_or_refused() -> None:
@@ -140,44 +140,46 @@ def test_pulses_in_noise_are_counted_or_refused() -> None:
     noise = np.random.default_rng(0).normal(0.0, 0.01, speed.size)
     pickup = speed * np.sin(60.0 * run["angle"]) + noise
     with pytest.warns(ModelWarning, match="tacho-repaired"):
-        found = shaft_angle(pickup, run.sample_rate, 60)
+        estimate = shaft_angle(pickup, run.sample_rate, 60)
     inner = (run.time > 1.0) & (run.time < 7.0)
-    assert np.ptp((found - run["angle"])[inner]) < 0.01
+    assert np.ptp((estimate - run["angle"])[inner]) < 0.01
 
 
 def test_the_filter_solves_its_equations() -> None:
     count, rate, width = 60, 100.0, 10.0
     signal = np.random.default_rng(0).normal(size=count)
     turned = np.linspace(0.0, 20.0, count)
-    found = track_orders(signal, turned, [1.0, 2.5], rate, bandwidth=width)
+    tracked = track_orders(signal, turned, [1.0, 2.5], rate, bandwidth=width)
     weight = (np.sqrt(2) - 1) / (
         6 - 8 * np.cos(np.pi * width / rate) + 2 * np.cos(2 * np.pi * width / rate)
     )
     second = np.diff(np.eye(count), 2, axis=0)
     waves = np.hstack([np.diag(np.exp(1j * order * turned)) for order in (1.0, 2.5)])
     matrix = waves.conj().T @ waves + weight * np.kron(np.eye(2), second.T @ second)
-    known = np.linalg.solve(matrix, 2.0 * waves.conj().T @ signal).reshape(2, count)
-    np.testing.assert_allclose(found.amplitude * np.exp(1j * found.phase), known, atol=1e-10)
+    solution = np.linalg.solve(matrix, 2.0 * waves.conj().T @ signal).reshape(2, count)
+    np.testing.assert_allclose(tracked.amplitude * np.exp(1j * tracked.phase), solution, atol=1e-10)
 
 
 def test_the_filter_passes_half_its_power_at_the_edge_of_its_band() -> None:
     rate, width = 1000.0, 4.0
     time = np.arange(20_000) / rate
     turned = 2.0 * np.pi * 100.0 * time
-    beside = np.cos(2.0 * np.pi * (100.0 + 0.5 * width) * time)
-    found = track_orders(beside, turned, [1.0], rate, bandwidth=width)
-    assert np.median(found.amplitude) == pytest.approx(1.0 / np.sqrt(2.0), rel=1e-3)
+    edge_wave = np.cos(2.0 * np.pi * (100.0 + 0.5 * width) * time)
+    tracked = track_orders(edge_wave, turned, [1.0], rate, bandwidth=width)
+    assert np.median(tracked.amplitude) == pytest.approx(1.0 / np.sqrt(2.0), rel=1e-3)
 
 
-def test_two_orders_that_cross_a_third_are_told_apart(run, angle) -> None:
+def test_track_orders_separates_crossing_orders(run, angle) -> None:
     part = run.cut(5.0, 8.0)
-    found = track_orders(part["signal"], part["angle"], [1, 29, 58], run.sample_rate, bandwidth=2.0)
-    middle = found.amplitude[:, 8000:-8000]
+    tracked = track_orders(
+        part["signal"], part["angle"], [1, 29, 58], run.sample_rate, bandwidth=2.0
+    )
+    middle = tracked.amplitude[:, 8000:-8000]
     np.testing.assert_allclose(middle[1], 2.0, atol=0.03)
     np.testing.assert_allclose(middle[2], 0.5, atol=0.03)
-    assert found.waveform(29).shape == part["signal"].shape
-    for made in (found, order_spectrum(part["signal"], part["angle"], 40), run):
-        assert made.plot().layout.title.text
+    assert tracked.waveform(29).shape == part["signal"].shape
+    for item in (tracked, order_spectrum(part["signal"], part["angle"], 40), run):
+        assert item.plot().layout.title.text
 
 
 def test_known_lines_of_a_made_run_up() -> None:

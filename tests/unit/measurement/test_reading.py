@@ -36,10 +36,10 @@ def rows(separator: str, point: str = ".") -> str:
 def test_columns_of_text_in_any_dialect(tmp_path: Path, head, separator, point) -> None:
     file = tmp_path / "run.csv"
     file.write_text("\ufeff" + head + rows(separator, point), "utf-8")
-    found = read(file)
-    assert found.sample_rate == pytest.approx(RATE)
-    np.testing.assert_allclose(found["acc"], ACC, atol=1e-7)
-    assert found.units["acc"] == ("" if "#" in head else "m/s^2")
+    recording = read(file)
+    assert recording.sample_rate == pytest.approx(RATE)
+    np.testing.assert_allclose(recording["acc"], ACC, atol=1e-7)
+    assert recording.units["acc"] == ("" if "#" in head else "m/s^2")
 
 
 @pytest.mark.parametrize(
@@ -57,10 +57,10 @@ def test_columns_of_text_in_any_dialect(tmp_path: Path, head, separator, point) 
 def test_columns_as_loggers_write_them(tmp_path: Path, text: str) -> None:
     file = tmp_path / "run.csv"
     file.write_text(text, "utf-16")
-    found = read(file)
-    assert found.sample_rate == pytest.approx(1000.0, rel=1e-7)
-    np.testing.assert_array_equal(found["acc"], [1.0, 2.0, 3.0])
-    assert found.units["acc"] == ("m/s^2" if "m/s" in text else "")
+    recording = read(file)
+    assert recording.sample_rate == pytest.approx(1000.0, rel=1e-7)
+    np.testing.assert_array_equal(recording["acc"], [1.0, 2.0, 3.0])
+    assert recording.units["acc"] == ("m/s^2" if "m/s" in text else "")
 
 
 def test_rounded_times_need_the_rate(tmp_path: Path) -> None:
@@ -92,9 +92,9 @@ def test_wav_of_floats_and_of_whole_numbers(tmp_path: Path) -> None:
 
 def test_mat_and_hdf5(tmp_path: Path) -> None:
     savemat(tmp_path / "a.mat", {"acc": ACC, "fs": RATE, "more": {"sound": SOUND}})
-    found = read(tmp_path / "a.mat")
-    np.testing.assert_array_equal(found["acc"], ACC)
-    np.testing.assert_array_equal(found["more.sound"], SOUND)
+    recording = read(tmp_path / "a.mat")
+    np.testing.assert_array_equal(recording["acc"], ACC)
+    np.testing.assert_array_equal(recording["more.sound"], SOUND)
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["rig/acc"] = 0.1 * ACC
         file["rig/acc"].attrs["units"] = "V"
@@ -104,12 +104,12 @@ def test_mat_and_hdf5(tmp_path: Path) -> None:
     assert scaled.units["rig/acc"] == "m/s^2"
 
 
-def test_what_tells_a_rate_or_a_unit_belongs_to_what_it_stands_in(tmp_path: Path) -> None:
+def test_rates_and_units_apply_to_their_enclosing_scope(tmp_path: Path) -> None:
     two = {"a": {"data": ACC, "fs": RATE, "unit": "g"}, "b": {"data": SOUND[:500], "dt": 4e-4}}
     savemat(tmp_path / "two.mat", two)
     with h5py.File(tmp_path / "two.h5", "w") as file:
-        for name, held in two.items():
-            file[f"{name}/data"] = held["data"]
+        for name, values in two.items():
+            file[f"{name}/data"] = values["data"]
         file["a"].attrs["sample_rate"] = str(RATE)
         file["a/data"].attrs["unit"] = "g"
         file["b/time"] = 0.4 * np.arange(500)
@@ -175,11 +175,11 @@ def test_numbers_that_are_scaled_in_the_file(tmp_path: Path) -> None:
         file["acc"].attrs.update({"scale_factor": 1e-3, "add_offset": 2.0, "fs": RATE})
     linear = {"Scale_Type": "Linear", "Linear_Slope": 1e-3, "Linear_Y_Intercept": 2.0,
               "Linear_Input_Source": np.uint32(0xFFFFFFFF)}  # fmt: skip
-    told = {f"NI_Scale[0]_{name}": value for name, value in linear.items()}
-    told |= {"NI_Number_Of_Scales": np.int32(1), "NI_Scaling_Status": "unscaled"}
+    scaling = {f"NI_Scale[0]_{name}": value for name, value in linear.items()}
+    scaling |= {"NI_Number_Of_Scales": np.int32(1), "NI_Scaling_Status": "unscaled"}
     with nptdms.TdmsWriter(str(tmp_path / "a.tdms")) as out:
         group = nptdms.GroupObject("rig", properties={"wf_increment": 1.0 / RATE})
-        out.write_segment([group, nptdms.ChannelObject("rig", "acc", raw, properties=told)])
+        out.write_segment([group, nptdms.ChannelObject("rig", "acc", raw, properties=scaling)])
     for name in ("a.h5", "a.tdms"):
         np.testing.assert_allclose(read(tmp_path / name)["acc"], 2.0 + 1e-3 * raw)
 
@@ -201,21 +201,21 @@ def test_uff_and_tdms_by_their_own_libraries(tmp_path: Path) -> None:
     for name, binary in (("text.uff", 0), ("binary.uff", 1)):
         data = uff_set(SOUND, "microphone", binary, "Pa")
         pyuff.UFF(str(tmp_path / name)).write_sets(data, "add")
-        found = read(tmp_path / name)
-        np.testing.assert_allclose(found["microphone"], SOUND, rtol=1e-4)
-        assert found.units["microphone"] == "Pa"
-        assert found.sample_rate == pytest.approx(RATE, rel=1e-4)
+        recording = read(tmp_path / name)
+        np.testing.assert_allclose(recording["microphone"], SOUND, rtol=1e-4)
+        assert recording.units["microphone"] == "Pa"
+        assert recording.sample_rate == pytest.approx(RATE, rel=1e-4)
     with nptdms.TdmsWriter(str(tmp_path / "a.tdms")) as out:
-        told = {"wf_increment": 1.0 / RATE, "unit_string": "g"}
-        out.write_segment([nptdms.ChannelObject("rig", "acc", ACC, properties=told)])
+        properties = {"wf_increment": 1.0 / RATE, "unit_string": "g"}
+        out.write_segment([nptdms.ChannelObject("rig", "acc", ACC, properties=properties)])
     assert read(tmp_path / "a.tdms") == Recording({"acc": ACC}, RATE, {"acc": "g"})
 
 
 def test_a_saved_recording_comes_back_equal(tmp_path: Path) -> None:
-    made = Recording({"acc": ACC, "sound": SOUND}, RATE, {"acc": "m/s^2", "sound": "Pa"})
-    made.save(tmp_path / "made.nc")
-    assert read(tmp_path / "made.nc") == made
-    assert made.to_xarray()["sound"].units == "Pa"
+    recording = Recording({"acc": ACC, "sound": SOUND}, RATE, {"acc": "m/s^2", "sound": "Pa"})
+    recording.save(tmp_path / "made.nc")
+    assert read(tmp_path / "made.nc") == recording
+    assert recording.to_xarray()["sound"].units == "Pa"
     assert read(tmp_path / "made.nc", channels=["sound"]).units == {"sound": "Pa"}
     with h5py.File(tmp_path / "made.nc", "r+") as file:
         file["acc"][7] = 5.0
@@ -242,9 +242,9 @@ def test_files_that_are_cut_short_are_refused(tmp_path: Path) -> None:
     for suffix, path in written(tmp_path).items():
         cut = tmp_path / f"cut{suffix}"
         cut.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
-        with pytest.raises(InputError) as told:
+        with pytest.raises(InputError) as error:
             read(cut)
-        assert "cut" in str(told.value), suffix
+        assert "cut" in str(error.value), suffix
 
 
 def test_a_file_that_ends_between_its_datasets_is_refused(tmp_path: Path) -> None:
@@ -254,22 +254,22 @@ def test_a_file_that_ends_between_its_datasets_is_refused(tmp_path: Path) -> Non
     raw = (tmp_path / "a.uff").read_bytes()
     text = ("time,acc\n" + "\n".join(f"{a},{b}" for a, b in zip(TIME, SOUND, strict=True))).encode()
     fixed = ("time,acc\n" + rows(",")).encode()
-    kept = 0
+    readable = 0
     for tenth in range(1, 10):
         (tmp_path / "a.uff").write_bytes(raw[: len(raw) * tenth // 10])
         with pytest.raises(InputError):
             read(tmp_path / "a.uff")
-        for whole in (text, fixed):
-            (tmp_path / "a.csv").write_bytes(whole[: len(whole) * tenth // 10])
+        for content in (text, fixed):
+            (tmp_path / "a.csv").write_bytes(content[: len(content) * tenth // 10])
             try:
-                found = read(tmp_path / "a.csv")["acc"]
+                samples = read(tmp_path / "a.csv")["acc"]
             except InputError:
                 continue
-            kept += 1
+            readable += 1
             np.testing.assert_allclose(
-                found, (SOUND if whole is text else ACC)[: found.size], atol=1e-6
+                samples, (SOUND if content is text else ACC)[: samples.size], atol=1e-6
             )
-    assert kept < 9
+    assert readable < 9
 
 
 def test_files_with_a_wrong_name_say_what_they_are(tmp_path: Path) -> None:
@@ -296,15 +296,15 @@ def test_damaged_files_raise_nothing_but_input_errors(tmp_path: Path, draws) -> 
             damaged = tmp_path / f"damaged{suffix}"
             damaged.write_bytes(raw)
             try:
-                found = read(damaged)
+                recording = read(damaged)
             except InputError:
                 continue
-            assert all(np.all(np.isfinite(found[name])) for name in found.channels)
+            assert all(np.all(np.isfinite(recording[name])) for name in recording.channels)
 
 
 def test_a_table_of_matlab_names_the_way_out(tmp_path: Path, monkeypatch) -> None:
-    held = {"None": np.zeros(1).view(MatlabOpaque)}
-    monkeypatch.setattr("scipy.io.loadmat", lambda *_, **__: held)
+    variables = {"None": np.zeros(1).view(MatlabOpaque)}
+    monkeypatch.setattr("scipy.io.loadmat", lambda *_, **__: variables)
     savemat(tmp_path / "t.mat", {"a": ACC})
     with pytest.raises(InputError, match="table2struct"):
         read(tmp_path / "t.mat")
@@ -326,13 +326,13 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("text", "options", "told"), BAD)
-def test_messages(tmp_path: Path, text: str, options: dict, told: str) -> None:
+@pytest.mark.parametrize(("text", "options", "message"), BAD)
+def test_messages(tmp_path: Path, text: str, options: dict, message: str) -> None:
     file = tmp_path / "a.csv"
     file.write_text(text)
     with pytest.raises(InputError) as error:
         read(file, **options)
-    assert told in str(error.value)
+    assert message in str(error.value)
 
 
 @pytest.mark.parametrize("path", ["", "missing.csv", "/dev/zero", 3, None])
@@ -348,8 +348,8 @@ def test_recordings_are_whole(tmp_path: Path) -> None:
         Recording({"a": [1.0, 2.0, np.nan]}, RATE, {})
     with pytest.raises(InputError):
         Recording({}, RATE, {})
-    made = Recording({"a": ACC}, RATE, {})
-    assert made.cut(0.05, 0.1)["a"].size == 250
+    recording = Recording({"a": ACC}, RATE, {})
+    assert recording.cut(0.05, 0.1)["a"].size == 250
     with pytest.raises(InputError, match=r"lasts 0\.2 s"):
-        made.cut(0.1, 0.3)
-    assert len(made.plot().data) == 1
+        recording.cut(0.1, 0.3)
+    assert len(recording.plot().data) == 1

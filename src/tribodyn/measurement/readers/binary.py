@@ -78,7 +78,7 @@ def uff(path: Path) -> RecordingData:
             continue
         if data.size != dataset["num_pts"]:
             what = f"holds {data.size} of {dataset['num_pts']} samples"
-            raise InputError(what, where=str(path), why="The file is truncated (cut short)")
+            raise InputError(what, where=str(path), why="The file is cut short")
         name = _uff_name(dataset, channels)
         channels[name] = data.astype(float)
         units[name] = _label(dataset["ordinate_axis_units_lab"])
