@@ -112,7 +112,7 @@ def test_a_sweep_in_which_all_fails_exits_with_one(capsys: pytest.CaptureFixture
     [
         (["operation.sped=400..3500 rpm:4"], 'Did you mean "speed"?'),
         (["operation.speed=400..3500:4"], "Write the unit behind the last number"),
-        (["operation.speed=400..3500 rpm:100000000"], "at most 100000"),
+        (["operation.speed=400..3500 rpm:100000000"], "the limit is 100000"),
         (["operation.speed=400...3500 rpm:4"], "two dots"),
         (["operation.speed=400..3500 rpm:4", "--sweep", "sideways"], "--help"),
         (["gears.pinion.teeth=15..17:3"], "no values in between"),

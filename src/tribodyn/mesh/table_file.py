@@ -196,7 +196,7 @@ def read_table_file(path: str | os.PathLike[str]) -> TableFile:
     place = Path(path)
     kind = file_kind(place)
     if kind != "file":
-        what = "the mesh table " + ("is no regular file" if kind else "does not exist")
+        what = "the mesh table " + ("is not a regular file" if kind else "does not exist")
         _refuse(path, what, "It is a CSV or netCDF file", "Correct the path")
     if place.suffix.lower() in (".nc", ".nc4", ".netcdf", ".h5"):
         return (

@@ -282,7 +282,7 @@ def test_a_faulty_file_is_refused_with_the_key_of_the_case(tmp_path, name, told)
 def test_what_is_no_file_is_refused(tmp_path):
     with pytest.raises(InputError, match="does not exist"):
         table_case(tmp_path / "none.csv")
-    with pytest.raises(InputError, match="no regular file"):
+    with pytest.raises(InputError, match="is not a regular file"):
         table_case(tmp_path)
     (tmp_path / "text.nc").write_text("no netCDF")
     with pytest.raises(InputError, match="cannot be read"):
