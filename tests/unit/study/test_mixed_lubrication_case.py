@@ -111,7 +111,7 @@ def test_figure_shows_shares_and_parts_of_the_friction(mesh: MeshTable) -> None:
     curves = {(curve.name, curve.yaxis): np.asarray(curve.y) for curve in figure.data}
     assert curves["oil film", "y2"] + curves["asperities", "y2"] == pytest.approx(1.0)
     parts = curves["oil film", "y3"] + curves["asperities", "y3"]
-    assert parts == pytest.approx(curves["both", "y3"])
+    assert parts == pytest.approx(curves["total", "y3"])
     assert {note.text for note in figure.layout.annotations} >= {"boundary", "mixed", "full film"}
 
 
