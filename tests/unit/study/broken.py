@@ -331,7 +331,7 @@ BROKEN = (
     Broken("spread-of-both", 'torque = "90 N*m"', 'torque = "90 +- 5 N*m"', "torque",
            ('Write "90 N*m +- 5 N*m"',)),
     Broken("table-of-spreads", "[solver]", '[uncertainty]\ntorque = "5 %"\n[solver]',
-           "[uncertainty]", ("stands at its own key", "+- 5 %")),
+           "[uncertainty]", ("is written at its key", "+- 5 %")),
     Broken("relief-of-a-gear", _TEETH, 'teeth = 16\ntip_relief = "9 um"', "tip_relief",
            ("It belongs to [gears.pinion.modification].",)),
     # TOML
