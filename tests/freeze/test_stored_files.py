@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pint
 import pytest
 import xarray
 from frozen_figures import differences
@@ -90,9 +91,15 @@ def test_stored_cases_read_back(name: str, stored: Path) -> None:
     path = stored / "cases" / f"{name}.toml"
     again = dict(_entries(tomllib.loads(td.load_case(path).to_toml())))
     for key, value in _entries(tomllib.loads(path.read_text("utf-8"))):
-        # A reason now stands beside the value that it belongs to.
+        # A reason is written next to its value now, and a value in its usual unit.
         place = f"{key}.reason" if key.startswith("assumed.") else key
-        assert again[place] == value, key
+        assert again[place] == value or _in_si(again[place]) == _in_si(value), key
+
+
+def _in_si(text: Any) -> tuple[float, str]:
+    """Number and dimensions of a quantity, to the digits that a file holds."""
+    quantity = pint.UnitRegistry()(str(text)).to_base_units()
+    return float(f"{quantity.magnitude:.14g}"), str(quantity.units)
 
 
 @pytest.mark.parametrize("name", _RESULTS)
@@ -124,9 +131,15 @@ def test_case_of_a_stored_result_reads_back(name: str, stored: Path) -> None:
     path = stored / name / "case.toml"
     again = dict(_entries(tomllib.loads(td.load_case(path).to_toml())))
     for key, value in _entries(tomllib.loads(path.read_text("utf-8"))):
-        # A reason now stands beside the value that it belongs to.
+        # A reason is written next to its value now, and a value in its usual unit.
         place = f"{key}.reason" if key.startswith("assumed.") else key
-        assert again[place] == value, key
+        assert again[place] == value or _in_si(again[place]) == _in_si(value), key
+
+
+def _in_si(text: Any) -> tuple[float, str]:
+    """Number and dimensions of a quantity, to the digits that a file holds."""
+    quantity = pint.UnitRegistry()(str(text)).to_base_units()
+    return float(f"{quantity.magnitude:.14g}"), str(quantity.units)
 
 
 @pytest.mark.parametrize("name", [*MESHES, "result"])

@@ -89,7 +89,7 @@ def test_a_motion_that_never_repeats_is_told():
     with pytest.warns(ModelWarning, match="lyapunov_exponents") as caught:
         orbit = steady_state(system, 2.0 / (2.0 * np.pi), steps=STEPS, periods="auto")
     text = str(caught[0].message)
-    assert "1 to 8 mesh cycles before" in text
+    assert "1 to 8 mesh cycles earlier" in text
     assert orbit.converged
     assert not orbit.stable
 

@@ -107,19 +107,18 @@ def basins(
     (('x', 'x_velocity'), [1, 1])
     """
     compiled = compile_for(system, mesh_frequency, steps)
-    plane = start_plane(compiled, float(mesh_frequency), coordinates)
+    beat = float(mesh_frequency)
+    plane = start_plane(compiled, beat, coordinates)
     axes = _axes(between, points, cycles)
-    rest_state = static_start(compiled) if start is None else read_start(system, start)
-    starts = plane.starts(axes, rest_state)
+    rest = static_start(compiled) if start is None else read_start(system, start)
+    starts = plane.starts(axes, rest)
     force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     name = signal_name(system, signal)
     quantity = signal if system.contacts else name
-    survey = Survey(
-        cycles, max(64, cycles), 2, quantity, keep_partial, tolerance=_NEAR, width=_WIDTH
-    )
+    settings = (cycles, max(64, cycles), 2, quantity, keep_partial)
+    survey = Survey(*settings, tolerance=_NEAR, width=_WIDTH)
     catalogue = Catalogue(survey, _REST * float(np.abs(starts[:, : system.size]).max()))
     progress.start("Motions", len(starts) * (1 + bool(verdict)))
-    beat = float(mesh_frequency)
     motions = _motions(compiled, starts, beat, force)
     survey.settle(motions, np.arange(len(starts)), progress)
     label = catalogue.label(motions)
@@ -134,9 +133,8 @@ def basins(
         attractors = _judged(attractors, fine, compiled.step_number)
         refined = _labels_again(fine, again, len(attractors))
     progress.finish()
-    order = sorted(range(len(attractors)), key=lambda n: -attractors[n].share)
-    rank = np.argsort(np.array(order, dtype=np.int64))
-    shape = (axes[0].size, axes[1].size)
+    order = np.argsort([-attractor.share for attractor in attractors], kind="stable")
+    rank, shape = np.argsort(order), (axes[0].size, axes[1].size)
     return Basins(
         coordinates=plane.names,
         units=plane.units,
@@ -147,7 +145,7 @@ def basins(
         refined_attractor=_renumbered(refined, rank).reshape(shape),
         names=tuple(system.names),
         signal=name,
-        mesh_frequency=float(mesh_frequency),
+        mesh_frequency=beat,
         steps=steps,
         step_number=compiled.step_number,
         finished=motions.finished.reshape(shape),
