@@ -200,7 +200,7 @@ def test_disturbance_of_one_cycle_agrees_with_two_marched_motions(name):
 
 def test_bad_input_is_refused():
     free = System([[1.0]], [[0.0]], [[0.0]], [0.0])
-    with pytest.raises(InputError, match="no coordinate is held"):
+    with pytest.raises(InputError, match="no coordinate is restrained"):
         lyapunov_exponents(free, 1.0)
     with pytest.raises(InputError, match="cycles = 0"):
         lyapunov_exponents(hysteresis_system(), 1.0, cycles=0)
