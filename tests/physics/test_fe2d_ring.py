@@ -39,7 +39,7 @@ def annulus(sectors: int = 10, columns: int = 4, rows: int = 12) -> SectorMesh:
         elements=grid_elements(grid),
         right_cut=grid[0, :-1],
         left_cut=grid[-1, :-1],
-        held=grid[:, -1],
+        fixed=grid[:, -1],
         tooth=grid[:, :3],
         flank_length=np.linspace(1.0, 0.0, 3),
         outline=grid[:, 0],
