@@ -107,7 +107,7 @@ COMMANDS = (
     ("new", "case_commands:new", "Write a commented case file to start from."),
     (
         "cookbook",
-        "cookbook_command:cookbook",
+        "explain_commands:cookbook",
         "Print a short script for a common task, or list all of them.",
     ),
     ("explain", "explain_commands:explain", "Explain a symbol, key, model or warning."),
