@@ -7,7 +7,7 @@
 
 Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
-``analysis``, ``measurement``, ``uncertainty``,
+``machine``, ``analysis``, ``measurement``, ``uncertainty``,
 ``exchange``, ``study``, ``cases``, ``cookbook``, ``variants``, ``plot`` and ``report``.
 """
 
@@ -104,8 +104,9 @@ _ELSEWHERE = {
 
 _ROOMS = (
     "analysis", "cases", "contact", "cookbook", "dynamics", "ehl", "errors", "exchange",
-    "friction", "gear", "losses", "lubricant", "measurement", "mesh", "nomenclature", "plot",
-    "progress", "report", "stiffness", "study", "surrogate", "uncertainty", "units", "variants",
+    "friction", "gear", "losses", "lubricant", "machine", "measurement", "mesh", "nomenclature",
+    "plot", "progress", "report", "stiffness", "study", "surrogate", "uncertainty", "units",
+    "variants",
 )  # fmt: skip
 
 

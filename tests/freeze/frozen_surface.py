@@ -18,7 +18,7 @@ from typing import Any
 PACKAGE = Path(str(files("tribodyn")))
 
 _PARTS = """
-analysis cases cli contact dynamics ehl errors exchange friction gear losses lubricant
+analysis cases cli contact dynamics ehl errors exchange friction gear losses lubricant machine
 measurement mesh nomenclature plot progress report stiffness study surrogate uncertainty units
 variants
 """

@@ -35,6 +35,7 @@ PHYSICS = {
     "analysis",
     "nonlinear",
     "signals",
+    "machine",
 }
 #: Types of options of commands that bring their own text.
 OPTIONS = {

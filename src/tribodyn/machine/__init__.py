@@ -1,0 +1,36 @@
+"""Machines of several shafts: parts, kinematics, clock, directions of the meshes, matrices.
+
+Node coordinates have the order x, y, z, theta_x, theta_y, theta_z, with x along the shafts; a
+positive speed turns y towards z.
+
+| module | what it answers |
+|---|---|
+| ``section``, ``shaft`` | what a shaft consists of |
+| ``gear``, ``mesh`` | which teeth mesh where, and with which force law |
+| ``bearing``, ``housing`` | what carries the shafts |
+| ``machine`` | which parts form a machine |
+"""
+
+from tribodyn.arguments import guard
+from tribodyn.machine.bearing import Bearing
+from tribodyn.machine.gear import Gear
+from tribodyn.machine.housing import Housing
+from tribodyn.machine.machine import Machine, Operation
+from tribodyn.machine.mesh import Mesh
+from tribodyn.machine.section import STEEL, Material, Section
+from tribodyn.machine.shaft import Shaft
+
+__all__ = [
+    "STEEL",
+    "Bearing",
+    "Gear",
+    "Housing",
+    "Machine",
+    "Material",
+    "Mesh",
+    "Operation",
+    "Section",
+    "Shaft",
+]
+
+guard(__name__)

@@ -1,0 +1,169 @@
+"""A bearing: stiffness of a linear support, or a rolling bearing by its geometry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.errors import Argument, InputError, real_numbers
+from tribodyn.machine.fields import check_name, check_number
+from tribodyn.types import Array
+
+#: Coordinates of a bearing that are in a matrix of five rows: all but the rotation of the shaft.
+HELD = (0, 1, 2, 4, 5)
+#: Stiffness of a bearing without data: radial and axial [N/m]; it does not resist tilting.
+STIFF = 1e9
+_UNITS = {
+    "radial": ("N/m", "N*s/m"),
+    "axial": ("N/m", "N*s/m"),
+    "tilting": ("N*m/rad", "N*m*s/rad"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Bearing:
+    """A bearing between a shaft and the housing.
+
+    Parameters
+    ----------
+    shaft : str
+        Name of its shaft.
+    position : float
+        Position of its mid plane on the shaft [m].
+    radial_stiffness : float or (2,) array, optional
+        Stiffness along y and z, one value for each or for both [N/m].
+    axial_stiffness : float
+        Stiffness along x [N/m].
+    tilting_stiffness : float or (2,) array
+        Stiffness against tilting about y and z [N*m/rad].
+    stiffness : (6, 6) or (5, 5) array, optional
+        All stiffnesses together, in the order x, y, z, theta_x, theta_y, theta_z, of five without
+        theta_x [N/m, N, N*m].
+    radial_damping : float or (2,) array
+        Damping along y and z [N*s/m].
+    axial_damping : float
+        Damping along x [N*s/m].
+    tilting_damping : float or (2,) array
+        Damping against tilting [N*m*s/rad].
+    damping : (6, 6) or (5, 5) array, optional
+        All damping coefficients together.
+    rolling : object, optional
+        A rolling bearing of :mod:`tribodyn.machine`, whose stiffness follows from its load.
+    node : str, optional
+        Node of the housing that carries the bearing; by default it is held by a rigid wall.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or two stiffnesses contradict each other.
+
+    Notes
+    -----
+    Without any stiffness it is stiff: 1e9 N/m along x, y and z.
+
+    Examples
+    --------
+    >>> Bearing("input", 0.012, radial_stiffness=4e8).stiffness_matrix.diagonal().tolist()
+    [0.0, 400000000.0, 400000000.0, 0.0, 0.0, 0.0]
+    """
+
+    shaft: str
+    position: float
+    radial_stiffness: float | ArrayLike | None = None
+    axial_stiffness: float = 0.0
+    tilting_stiffness: float | ArrayLike = 0.0
+    stiffness: ArrayLike | None = None
+    radial_damping: float | ArrayLike = 0.0
+    axial_damping: float = 0.0
+    tilting_damping: float | ArrayLike = 0.0
+    damping: ArrayLike | None = None
+    rolling: Any = None
+    node: str | None = None
+
+    def __post_init__(self) -> None:
+        check_name(self, "shaft")
+        check_number(self, "position", "m", -1e3, 1e3)
+        for way, units in _UNITS.items():
+            for kind, unit in zip(("stiffness", "damping"), units, strict=True):
+                if getattr(self, name := f"{way}_{kind}") is not None:
+                    _check_pair(self, name, unit, 1 if way == "axial" else 2)
+        parts = [f"{way}_stiffness" for way in _UNITS if np.any(getattr(self, f"{way}_stiffness"))]
+        parts += [name for name in ("stiffness", "rolling") if getattr(self, name) is not None]
+        whole = {"stiffness", "rolling"} & set(parts)
+        if whole and len(parts) > 1:
+            why = "A matrix and a rolling bearing hold the stiffness of all directions"
+            where = Argument(f"Bearing.{parts[-1]}")
+            raise InputError(
+                f"{' and '.join(parts)} are both given", where, why, "Give one of them"
+            )
+        for name in ("stiffness", "damping"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _matrix(name, getattr(self, name)))
+        if self.node is not None:
+            check_name(self, "node")
+
+    @property
+    def is_default(self) -> bool:
+        """Whether it has no data, so that it is stiff."""
+        empty = self.radial_stiffness is None and self.stiffness is None and self.rolling is None
+        return empty and not (self.axial_stiffness or np.any(self.tilting_stiffness))
+
+    @property
+    def stiffness_matrix(self) -> Array:
+        """Stiffness of a linear bearing (6, 6); zero for a rolling bearing, which needs a load."""
+        if self.is_default:
+            return np.diag([STIFF, STIFF, STIFF, 0.0, 0.0, 0.0])
+        return _assembled(self, "stiffness")
+
+    @property
+    def damping_matrix(self) -> Array:
+        """Damping (6, 6)."""
+        return _assembled(self, "damping")
+
+
+def _check_pair(bearing: Bearing, name: str, unit: str, size: int) -> None:
+    where = Argument(f"Bearing.{name}")
+    values = real_numbers(where, getattr(bearing, name), f"a number [{unit}]")
+    if values.shape not in ((), (size,)):
+        what, why = f"{name} has the shape {values.shape}", f"Wanted: one value, or {size}"
+        raise InputError(what, where, why, "Give one value, or one for each direction")
+    bad = values[~((values >= 0.0) & (values < 1e30))]
+    if bad.size:
+        what, why = f"{name} = {bad.flat[0]:.6g} {unit}", "It must be finite and not negative"
+        raise InputError(what, where, why, f"Give {name} in {unit}")
+    value = float(values) if not values.ndim else tuple(values.tolist())
+    object.__setattr__(bearing, name, value)
+
+
+def _matrix(name: str, value: ArrayLike) -> Array:
+    """Symmetric matrix (6, 6) from one of five or six rows."""
+    where = Argument(f"Bearing.{name}")
+    matrix = real_numbers(where, value)
+    if matrix.shape == (5, 5):
+        full = np.zeros((6, 6))
+        full[np.ix_(HELD, HELD)] = matrix
+        matrix = full
+    if matrix.shape != (6, 6) or not np.all(np.isfinite(matrix)):
+        what = f"{name} has the shape {matrix.shape} or is not finite"
+        remedy = "Give the rows x, y, z, theta_y, theta_z, or all six with theta_x"
+        raise InputError(what, where, "It must be a finite (5, 5) or (6, 6) matrix", remedy)
+    scale = np.abs(matrix).max()
+    least = float(np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[0])
+    if np.abs(matrix - matrix.T).max() > 1e-6 * scale or least < -1e-9 * scale:
+        what = f"{name} is not symmetric, or has the negative eigenvalue {least:.4g}"
+        why = "A passive support stores or dissipates energy in every motion"
+        raise InputError(what, where, why, "Check signs and positions of its entries")
+    matrix = 0.5 * (matrix + matrix.T)
+    matrix.flags.writeable = False
+    return matrix
+
+
+def _assembled(bearing: Bearing, kind: str) -> Array:
+    if (matrix := getattr(bearing, kind)) is not None:
+        return np.array(matrix)
+    radial = np.broadcast_to(np.asarray(getattr(bearing, f"radial_{kind}") or 0.0), 2)
+    tilting = np.broadcast_to(np.asarray(getattr(bearing, f"tilting_{kind}")), 2)
+    return np.diag([getattr(bearing, f"axial_{kind}"), *radial, 0.0, *tilting]).astype(float)

@@ -1,0 +1,95 @@
+"""A housing by its reduced matrices, with named nodes that carry the bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.errors import Argument, InputError, real_numbers
+from tribodyn.types import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Housing:
+    """Reduced matrices of a housing; without one the bearings are held by a rigid wall.
+
+    Parameters
+    ----------
+    mass, stiffness : (n, n) array
+        Matrices over the coordinates of the housing [kg, N/m and their products with m].
+    damping : (n, n) array, optional
+        Damping matrix [N*s/m].
+    nodes : mapping of str to (6,) sequence of int
+        Numbers of the coordinates of each node in the order x, y, z, theta_x, theta_y, theta_z,
+        counted from 0; -1 where the node does not move.
+
+    Raises
+    ------
+    InputError
+        If a matrix has a wrong shape or is not finite and symmetric, or a node has a coordinate
+        that the matrices do not have.
+
+    Examples
+    --------
+    >>> Housing(np.eye(3), 1e9 * np.eye(3), nodes={"seat A": [0, 1, 2, -1, -1, -1]}).size
+    3
+    """
+
+    mass: ArrayLike
+    stiffness: ArrayLike
+    damping: ArrayLike | None = None
+    nodes: Mapping[str, Sequence[int]] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "stiffness", "damping"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _symmetric(name, getattr(self, name)))
+        sizes = {n: np.shape(getattr(self, n)) for n in ("mass", "stiffness", "damping")}
+        if len(shapes := {shape for shape in sizes.values() if shape}) > 1:
+            what = f"the matrices have the shapes {', '.join(map(str, sorted(shapes)))}"
+            why = "All are over the same coordinates"
+            where = Argument("Housing.stiffness")
+            raise InputError(what, where, why, "Give matrices of one size")
+        nodes = {
+            str(name): _coordinates(str(name), numbers, self.size)
+            for name, numbers in (self.nodes or {}).items()
+        }
+        object.__setattr__(self, "nodes", nodes)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(np.asarray(self.mass))
+
+
+def _symmetric(name: str, value: ArrayLike) -> Array:
+    where = Argument(f"Housing.{name}")
+    matrix = np.array(real_numbers(where, value), ndmin=2)
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or not np.all(np.isfinite(matrix)):
+        what = f"{name} has the shape {matrix.shape} or is not finite"
+        why = "It must be a finite square matrix"
+        raise InputError(what, where, why, "Give rows and columns over the same coordinates")
+    difference = np.abs(matrix - matrix.T).max()
+    if difference > 1e-6 * np.abs(matrix).max():
+        row, column = np.unravel_index(np.abs(matrix - matrix.T).argmax(), matrix.shape)
+        what = f"{name} is not symmetric: entries ({row}, {column}) differ by {difference:.4g}"
+        why = "Reduced matrices of a passive housing are symmetric"
+        raise InputError(what, where, why, "Check the file; give a lower triangle completed")
+    return np.asarray(0.5 * (matrix + matrix.T))
+
+
+def _coordinates(node: str, numbers: Sequence[int], size: int) -> tuple[int, ...]:
+    where = Argument("Housing.nodes")
+    values = real_numbers(where, numbers, "six whole numbers").reshape(-1)
+    valid = (values == np.round(values)) & (values >= -1) & (values < size)
+    if values.size != 6 or not np.all(valid):
+        what = f'node "{node}" has the coordinates {values.tolist()}'
+        why = f"Wanted: six whole numbers from -1 to {size - 1}"
+        remedy = (
+            "Give the numbers of its coordinates x, y, z, theta_x, theta_y, theta_z, -1 at rest"
+        )
+        raise InputError(what, where, why, remedy)
+    return tuple(int(value) for value in values)

@@ -1,0 +1,155 @@
+"""The machine: shafts, gears, meshes, bearings and housing, joined by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+from tribodyn.errors import InputError, Problem, did_you_mean
+from tribodyn.machine.bearing import Bearing
+from tribodyn.machine.fields import check_name, check_number
+from tribodyn.machine.gear import Gear
+from tribodyn.machine.housing import Housing
+from tribodyn.machine.mesh import Mesh
+from tribodyn.machine.shaft import Shaft
+
+
+@dataclass(frozen=True)
+class Operation:
+    """Speed and torque of the input, and where the power leaves.
+
+    Parameters
+    ----------
+    input, output : str
+        Names of two shafts.
+    speed : float
+        Speed of the input; a positive one turns y towards z [rad/s].
+    torque : float
+        Torque on the input in its direction of rotation; negative where the output drives [N*m].
+
+    Raises
+    ------
+    InputError
+        If a value is not finite.
+
+    Examples
+    --------
+    >>> Operation("input", "output", speed=157.08, torque=300.0).torque
+    300.0
+    """
+
+    input: str
+    output: str
+    speed: float
+    torque: float
+
+    def __post_init__(self) -> None:
+        check_name(self, "input")
+        check_name(self, "output")
+        check_number(self, "speed", "rad/s", -1e6, 1e6)
+        check_number(self, "torque", "N*m", -1e12, 1e12)
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """Shafts on bearings that are joined by meshes.
+
+    Parameters
+    ----------
+    shafts : mapping of str to Shaft
+        Shafts by name.
+    gears : mapping of str to Gear
+        Gears by name.
+    meshes : mapping of str to Mesh
+        Meshes by name.
+    bearings : mapping of str to Bearing
+        Bearings by name.
+    housing : Housing, optional
+        Housing; rigid by default.
+    operation : Operation
+        Speed and torque.
+
+    Raises
+    ------
+    InputError
+        If the parts do not form a machine; the message names the part: ``bearings.A.position``.
+
+    Examples
+    --------
+    >>> machine = Machine(
+    ...     shafts={"input": Shaft(), "output": Shaft()},
+    ...     gears={"z1": Gear("input", 0.0, 27, 0.05), "z2": Gear("output", 0.0, 51, 0.05)},
+    ...     meshes={"first": Mesh(("z1", "z2"), normal_module=4.5e-3)},
+    ...     operation=Operation("input", "output", speed=100.0, torque=400.0))
+    >>> machine
+    Machine(2 shafts, 2 gears, 1 mesh, 0 bearings)
+    """
+
+    shafts: Mapping[str, Shaft]
+    gears: Mapping[str, Gear]
+    meshes: Mapping[str, Mesh]
+    bearings: Mapping[str, Bearing] = field(default_factory=dict)
+    housing: Housing | None = None
+    operation: Operation = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        kinds = {"shafts": Shaft, "gears": Gear, "meshes": Mesh, "bearings": Bearing}
+        for group, kind in kinds.items():
+            object.__setattr__(self, group, _parts(group, getattr(self, group), kind))
+        if not isinstance(self.operation, Operation):
+            what, remedy = f"operation = {self.operation!r}", "Give an Operation"
+            raise InputError(what, "operation", "A machine runs at a speed under a torque", remedy)
+        if problems := list(self._reference_problems()):
+            raise InputError(problems)
+
+    def __repr__(self) -> str:
+        """One line."""
+        counts = {
+            "shaft": len(self.shafts),
+            "gear": len(self.gears),
+            "mesh": len(self.meshes),
+            "bearing": len(self.bearings),
+        }
+        plural = {"mesh": "meshes"}
+        parts = [f"{n} {k if n == 1 else plural.get(k, k + 's')}" for k, n in counts.items()]
+        return f"Machine({', '.join(parts)})"
+
+    def _reference_problems(self) -> Iterable[Problem]:
+        """Names of parts that do not exist."""
+        if not self.shafts:
+            yield Problem("there is no shaft", "shafts", "A machine has shafts", "Add a shaft")
+        for group, parts in (("gears", self.gears), ("bearings", self.bearings)):
+            for name, part in parts.items():
+                yield from _missing(f"{group}.{name}.shaft", part.shaft, "shaft", self.shafts)
+        for name, mesh in self.meshes.items():
+            for gear in mesh.gears:
+                yield from _missing(f"meshes.{name}.gears", gear, "gear", self.gears)
+        for end in ("input", "output"):
+            yield from _missing(
+                f"operation.{end}", getattr(self.operation, end), "shaft", self.shafts
+            )
+        nodes = self.housing.nodes if self.housing and self.housing.nodes else {}
+        for name, bearing in self.bearings.items():
+            if bearing.node is not None:
+                where = f"bearings.{name}.node"
+                yield from _missing(where, bearing.node, "node of the housing", nodes)
+
+
+def _parts(group: str, parts: Any, kind: type) -> Mapping[str, Any]:
+    if not isinstance(parts, Mapping):
+        what, why = f"{group} is {type(parts).__name__}", f"Wanted: a mapping of names to {kind}"
+        raise InputError(what, group, why, f'Give {{"name": {kind.__name__}(...)}}')
+    for name, part in parts.items():
+        if not isinstance(name, str) or not isinstance(part, kind):
+            what, why = f"{name!r}: {type(part).__name__}", f"Wanted: a name and a {kind.__name__}"
+            raise InputError(what, f"{group}.{name}", why, f"Make it a {kind.__name__}")
+    return MappingProxyType(dict(parts))
+
+
+def _missing(where: str, name: str, kind: str, parts: Iterable[str]) -> Iterable[Problem]:
+    if name not in (names := list(parts)):
+        known = ", ".join(names) or "none"
+        remedy = did_you_mean(name, names, f"Add the {kind}, or correct the name")
+        yield Problem(f'there is no {kind} "{name}"', where, f"Known: {known}", remedy)

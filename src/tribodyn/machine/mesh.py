@@ -1,0 +1,141 @@
+"""A mesh of two gears: basic rack, place of the second gear, and force law of the teeth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from tribodyn.dynamics.equations.entry import Entry, read_events, varies
+from tribodyn.errors import Argument, InputError, real_numbers
+from tribodyn.machine.fields import check_number
+
+Hand = Literal["right", "left"]
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A mesh of two gears on parallel shafts.
+
+    Parameters
+    ----------
+    gears : (str, str)
+        Names of the first and the second gear.
+    normal_module : float
+        Module in the normal section [m].
+    helix_angle : float
+        Helix angle at the reference circle, without a sign [rad]; zero for spur gears.
+    hand : "right" or "left"
+        Hand of the first gear: the tooth of a right-hand gear turns with x like a right-hand screw.
+    center_distance : float, optional
+        Distance of the axes [m]; of internal gears with either sign. By default that of gears
+        without profile shift.
+    angle : float
+        Direction from the axis of the first gear to that of the second, from y towards z [rad].
+    pressure_angle : float
+        Pressure angle of the basic rack, in the normal section [rad].
+    stiffness : float or function, optional
+        Mesh stiffness along the transverse line of action, over the phase of this mesh [N/m].
+    damping : float or function
+        Damping along the line of action [N*s/m].
+    damping_ratio : float, optional
+        Damping over the critical value of the gears with the mean stiffness, in place of
+        ``damping``.
+    error : float or function
+        Displacement error, subtracted from the compression [m].
+    gap : float or function
+        Half the backlash along the line of action [m]; with zero the teeth never separate.
+    friction : object, optional
+        With ``friction_sum``, ``friction_moment_pinion`` (first gear) and
+        ``friction_moment_wheel`` (second gear) over the mesh phase, such as
+        ``mesh_table.functions()``.
+    events : tuple of float
+        Phases of this mesh at which an entry jumps.
+    offset : float
+        Phase of this mesh when the clock of the machine is at 0, in [0, 1).
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> mesh = Mesh(("z1", "z2"), normal_module=4.5e-3, helix_angle=math.radians(21.0))
+    >>> round(math.degrees(mesh.transverse_pressure_angle), 6)
+    21.299064
+    """
+
+    gears: tuple[str, str]
+    normal_module: float
+    helix_angle: float = 0.0
+    hand: Hand = "right"
+    center_distance: float | None = None
+    angle: float = 0.0
+    pressure_angle: float = math.radians(20.0)
+    stiffness: Entry | None = None
+    damping: Entry = 0.0
+    damping_ratio: float | None = None
+    error: Entry = 0.0
+    gap: Entry = 0.0
+    friction: Any = None
+    events: tuple[float, ...] = (0.0,)
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        gears = () if isinstance(self.gears, str) else tuple(self.gears)
+        if len(gears) != 2 or gears[0] == gears[1] or not all(isinstance(g, str) for g in gears):
+            what, where = f"gears = {self.gears!r}", Argument("Mesh.gears")
+            remedy = 'Give the names of its first and second gear: ("z1", "z2")'
+            raise InputError(what, where, "A mesh has two gears", remedy)
+        object.__setattr__(self, "gears", gears)
+        check_number(self, "normal_module", "m", 0.0, 1.0, above=True)
+        check_number(self, "helix_angle", "rad", 0.0, math.radians(60.0))
+        if self.hand not in ("right", "left"):
+            what, where = f'hand = "{self.hand}"', Argument("Mesh.hand")
+            why = "Hand of the first gear; the other follows"
+            raise InputError(what, where, why, "Choose right or left")
+        if self.center_distance is not None:
+            check_number(self, "center_distance", "m", -100.0, 100.0)
+        check_number(self, "angle", "rad", -1e3, 1e3)
+        check_number(self, "pressure_angle", "rad", math.radians(5.0), math.radians(45.0))
+        if self.damping_ratio is not None:
+            check_number(self, "damping_ratio", "", 0.0, 10.0)
+        check_number(self, "offset", "", 0.0, 1.0)
+        object.__setattr__(self, "offset", self.offset % 1.0)
+        object.__setattr__(self, "events", read_events(self.events, "Mesh.events"))
+        for name, positive in (("stiffness", True), ("damping", False), ("gap", False)):
+            _check_entry(self, name, positive)
+        _check_entry(self, "error", None)
+
+    @property
+    def transverse_module(self) -> float:
+        """Module in the transverse section [m]."""
+        return self.normal_module / math.cos(self.helix_angle)
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """Pressure angle of the basic rack in the transverse section [rad]."""
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+
+    @property
+    def base_helix_angle(self) -> float:
+        """Helix angle at the base circle, without a sign [rad]."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
+
+
+def _check_entry(mesh: Mesh, name: str, positive: bool | None) -> None:
+    """Refuse a constant entry that is out of range; functions are checked where they are used."""
+    entry = getattr(mesh, name)
+    where = Argument(f"Mesh.{name}")
+    if entry is None or varies(entry):
+        if entry is None and name != "stiffness":
+            what, why = f"{name} is None", "Wanted: a number or a function of the mesh phase"
+            raise InputError(what, where, why, f"Leave {name} out, or give 0.0")
+        return
+    if real_numbers(where, entry).ndim:
+        what, why = f"{name} has a shape", "Wanted: a number or a function of the mesh phase"
+        raise InputError(what, where, why, "Give one number, or a function")
+    unit = {"stiffness": "N/m", "damping": "N*s/m"}.get(name, "m")
+    low = -1.0 if positive is None else 0.0
+    check_number(mesh, name, unit, low, 1.0 if unit == "m" else 1e30, above=bool(positive))
