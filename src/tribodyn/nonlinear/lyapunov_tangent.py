@@ -60,7 +60,7 @@ class TangentTables:
         count = place.shape[1]
         self._rigid[:count, count:] = c.rate * c.elastic.T @ c.moving
         self._rigid[count:, :count] = -speed.T @ np.asarray(system.stiffness) @ place
-        self._rigid[count:, count:] = -speed.T @ np.asarray(system.damping) @ speed
+        self._rigid[count:, count:] = -speed.T @ system.rate_matrix @ speed
         #: How the compression of each contact feels a disturbance, (steps, 3, contacts, k).
         self.feel = np.concatenate((nodes.direction @ place, still), axis=-1)
         rate = np.concatenate(

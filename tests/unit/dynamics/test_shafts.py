@@ -98,7 +98,7 @@ def test_mesh_with_three_cycles_in_the_common_one_shakes_at_three_times_its_freq
         return np.where(phase < 0.4, 5e8, 4e8)
 
     drive = train(stiffness=second, cycles=3, lag=0.25, events=(0.4,))
-    events = drive.contacts[1].events
+    events = drive.clocked_contacts[1].events
     assert events == pytest.approx(sorted({(k + at) / 3 for k in range(3) for at in (0.15, 0.75)}))
     orbit = steady_state(drive, 900.0)
     sizes = np.abs(mesh_harmonics(orbit, orbit.fine.contact_force[:, 0], 6))

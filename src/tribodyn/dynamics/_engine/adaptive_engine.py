@@ -76,7 +76,7 @@ def step_share(
     longest = 0.0
     pairs = (
         (stiffness_scale * nodes.stiffness, system.stiffness),
-        (damping_scale * nodes.damping, system.damping),
+        (damping_scale * nodes.damping, system.rate_matrix),
     )
     for share in (0.0, 1.0):
         parts = []

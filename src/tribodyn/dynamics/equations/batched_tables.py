@@ -49,11 +49,11 @@ def group_by_structure(systems: Sequence[System]) -> Iterator[list[int]]:
 def _structure(system: System) -> Hashable:
     """Key of the structure that systems of a batch share; None for a system without a batch."""
     contacts = system.contacts
-    if len(contacts) != 1 or system.frictions or varies(system.force):
+    if len(contacts) != 1 or system.frictions or varies(system.force) or system.cycles > 1:
         return None
-    if varies(contacts[0].direction):
+    if varies(contacts[0].direction) or contacts[0].offset:
         return None
-    parts = system.mass, system.damping, system.stiffness, system.balance, contacts[0].direction
+    parts = system.mass, system.rate_matrix, system.stiffness, system.balance, contacts[0].direction
     numbers = tuple(None if part is None else np.asarray(part).tobytes() for part in parts)
     return numbers, tuple(system.names), contacts[0].events, contacts[0].damping_in_gap
 

@@ -139,6 +139,7 @@ def _refuse_different(systems: list[System]) -> None:
         return {
             "coordinates": system.size,
             "contacts": len(system.contacts),
+            "mesh cycles of its contacts": tuple(contact.cycles for contact in system.contacts),
             "contacts with damping in the gap": tuple(
                 contact.damping_in_gap for contact in system.contacts
             ),

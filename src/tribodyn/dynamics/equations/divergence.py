@@ -242,7 +242,7 @@ def _mean_matrices(system: System, nodes: Nodes, factors: Array) -> tuple[Array,
         np.einsum("rs,rsj,rsji,rsjk->ik", nodes.weight, part, sliding, along)
         for part in (stiff * nodes.stiffness, damp * nodes.damping)
     ]
-    total = spring + np.asarray(system.stiffness), damper + np.asarray(system.damping)
+    total = spring + np.asarray(system.stiffness), damper + system.rate_matrix
     return (*total, np.array(added))
 
 

@@ -35,7 +35,7 @@ _STENCIL = 1e-4
 
 @dataclass(frozen=True)
 class Grid:
-    """Steps of one mesh cycle in phase."""
+    """Steps of one period of the clock: of a mesh cycle where all contacts have one cycle."""
 
     left: Array  #: [-]
     width: Array  #: [-]
@@ -45,7 +45,7 @@ class Grid:
 
     @cached_property
     def steps(self) -> int:
-        """Number of steps in a mesh cycle."""
+        """Number of steps in a period."""
         return int(self.left.size)
 
     @cached_property
@@ -61,8 +61,8 @@ class Grid:
 
 def system_events(*systems: System) -> tuple[float, ...]:
     """Events of all contacts and frictions, sorted and merged."""
-    event_lists = [part.events for system in systems for part in system.contacts]
-    event_lists += [part.events for system in systems for part in system.frictions]
+    event_lists = [part.events for system in systems for part in system.clocked_contacts]
+    event_lists += [part.events for system in systems for part in system.clocked_frictions]
     events = sorted({0.0, *(event for part in event_lists for event in part)})
     merged: list[float] = []
     for event in events:
@@ -168,7 +168,7 @@ class RowEvaluator:
         if not varies(entry):
             return np.broadcast_to(0.0, (*self.nodes.shape, size))
         span = self._high - self._low
-        step = np.minimum(_STENCIL, span / 8.0)
+        step = np.minimum(_STENCIL / getattr(entry, "cycles", 1), span / 8.0)
         centre = np.clip(self.nodes, self._low + 2.0 * step, self._high - 2.0 * step)
         shift = (self.nodes - centre) / step
         points = centre[..., None] + step[..., None] * np.arange(-2, 3)

@@ -49,7 +49,7 @@ def coefficient_count(where: str, friction: LoadFriction) -> int:
 def friction_directions(system: System, rows: RowEvaluator) -> Array:
     """Directions of all frictions on the rows."""
     out = np.zeros((*rows.nodes.shape, len(system.frictions), system.size))
-    for f, friction in enumerate(system.frictions):
+    for f, friction in enumerate(system.clocked_frictions):
         out[:, :, f] = rows.values(f"frictions[{f}].direction", friction.direction, system.size)
     return out
 
@@ -57,7 +57,7 @@ def friction_directions(system: System, rows: RowEvaluator) -> Array:
 def friction_coefficients(system: System, rows: RowEvaluator) -> Array:
     """Coefficients of all frictions on the rows, filled up with zeros."""
     names = [f"frictions[{f}].coefficients" for f in range(len(system.frictions))]
-    pairs = list(zip(names, system.frictions, strict=True))
+    pairs = list(zip(names, system.clocked_frictions, strict=True))
     counts = [coefficient_count(name, friction) for name, friction in pairs]
     out = np.zeros((*rows.nodes.shape, len(pairs), max(counts, default=1)))
     for f, (name, friction) in enumerate(pairs):
@@ -148,7 +148,7 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     widest = float(grid.width.max())
     rows = RowEvaluator(grid, checks=widest < 0.49 * system._checked)
     size = system.size
-    contacts = tuple(system.contacts)
+    contacts = system.clocked_contacts
 
     def scalar(name: str, take: Callable[..., Array]) -> Array:
         entries = [getattr(contact, name) for contact in contacts]
@@ -248,7 +248,7 @@ def step_weights(grid: Grid) -> Array:
 
 
 def sampled(system: System, steps: int) -> tuple[Grid, Nodes]:
-    """The grid of a system with ``steps`` steps, and its rows."""
+    """The grid of a system with ``steps`` steps in a period of the clock, and its rows."""
     grid = build_grid(system_events(system), steps)
     return grid, evaluate_nodes(system, grid)
 

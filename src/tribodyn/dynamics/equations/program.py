@@ -131,7 +131,7 @@ def compile_system(
     system: System, steps: int, events: tuple[float, ...] | None = None
 ) -> tuple[Grid, Nodes, Program]:
     """Evaluate a system on its event-aligned grid."""
-    grid = build_grid(events or system_events(system), steps)
+    grid = build_grid(events or system_events(system), steps * system.cycles)
     nodes = evaluate_nodes(system, grid)
     return grid, nodes, build_program(system, grid, nodes)
 
@@ -264,7 +264,9 @@ def _coordinate_terms(
     drag = times(rub, -inverse, rub.ndim - 4)
     steps = slice(None if depends_on_phase(system.force) else 1)
     load = np.einsum("ik,...k->...i", inverse, unrepeated(nodes.force[..., steps, :, :], 1))
-    state = -np.hstack([inverse @ np.asarray(part) for part in (system.stiffness, system.damping)])
+    state = -np.hstack(
+        [inverse @ np.asarray(part) for part in (system.stiffness, system.rate_matrix)]
+    )
     state[np.abs(state) <= 1e-15 * np.abs(state).max(axis=1, keepdims=True)] = 0.0
     code: list[int] = []
     varies = np.zeros(system.size, dtype=bool)

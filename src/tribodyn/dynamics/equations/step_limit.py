@@ -67,7 +67,7 @@ def rates_at(
     damping = np.einsum("...mj,...mjik->...mik", nodes.damping[places], outer)
     inverse = system.inverse_mass
     elastic = inverse @ (spring * stiffness + np.asarray(system.stiffness))
-    viscous = inverse @ (damper * damping + np.asarray(system.damping))
+    viscous = inverse @ (damper * damping + system.rate_matrix)
     return _spectral_radius(_state_matrix(elastic, viscous))
 
 
@@ -172,16 +172,16 @@ def recommended_steps(system: System, mesh_frequency: float) -> int:
     """
     require_number("mesh_frequency", mesh_frequency)
     require_positive("mesh_frequency", mesh_frequency, "Hz")
-    return accurate_steps(rate_on_grid(system), mesh_frequency)
+    return accurate_steps(rate_on_grid(system), mesh_frequency * system.cycles)
 
 
 def rate_on_grid(system: System, steps: int = FEWEST) -> float:
     """Largest modulus of an eigenvalue on a grid of ``steps`` steps; cached."""
     if steps in system._rates:
         return system._rates[steps]
-    grid = build_grid(system_events(system), steps)
+    grid = build_grid(system_events(system), steps * system.cycles)
     evaluator, total = RowEvaluator(grid, checks=False), np.zeros((grid.steps, 3))
-    for j, contact in enumerate(system.contacts):
+    for j, contact in enumerate(system.clocked_contacts):
         total += evaluator.values(f"contacts[{j}].stiffness", contact.stiffness)[..., 0]
     # All other entries are needed on the examined rows only.
     rows, stages = examined_rows(total)
@@ -209,10 +209,11 @@ def refuse_unstable_step(
     rate = largest_rate(system, nodes, factors) if rate is None else rate
     number = rate * float(grid.width.max()) / mesh_frequency
     if number > LIMIT:
-        needed = int(np.ceil(grid.steps * number / LIMIT / 64.0)) * 64
+        steps = grid.steps // system.cycles
+        needed = int(np.ceil(steps * number / LIMIT / 64.0)) * 64
         raise InputError(
-            f"omega_max*dt = {number:.3f} with {grid.steps} steps per mesh cycle at "
-            f"{mesh_frequency:g} Hz and a fastest motion of {rate:.4g} rad/s{lane}",
+            f"omega_max*dt = {number:.3f} with {steps} steps per mesh cycle at "
+            f"{mesh_frequency * system.cycles:g} Hz and a fastest motion of {rate:.4g} rad/s{lane}",
             "argument steps",
             f"The limit is {LIMIT}; above 2.83 Runge-Kutta is unstable, its result not physics",
             f"Use at least {needed} steps per mesh cycle",

@@ -4,7 +4,8 @@
 ``N_j = k_j(phi) g(delta_j) + c_j(phi) delta_j'`` while in contact, ``delta_j = h_j(phi).q -
 e_j(phi)``, ``g`` a dead zone of half width ``gap``, ``phi`` the mesh phase, ``h`` the direction
 of the line of action in generalized coordinates and ``s`` the direction of friction, which
-already carries the sign of sliding, the friction coefficients and the load shares.
+already carries the sign of sliding, the friction coefficients and the load shares. The mesh phase
+of each contact follows from the clock of the system, ``phi_j = (cycles_j*clock + offset_j) mod 1``.
 """
 
 from __future__ import annotations
@@ -18,8 +19,9 @@ from numpy.typing import ArrayLike
 
 from tribodyn.arrays.memo import Memo
 from tribodyn.checks import require_flag, require_number, require_whole
+from tribodyn.dynamics.equations.clock import on_clock, refuse_several_clocks
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
-from tribodyn.errors import InputError, real_numbers, require_positive
+from tribodyn.errors import InputError, real_numbers, require_between, require_positive
 from tribodyn.types import Array
 
 
@@ -50,11 +52,16 @@ class Contact:
         a function that jumps anywhere else or depends on more than the phase is refused.
     damping_in_gap : bool
         Keep the damping in free flight. Unphysical; for comparison with published models.
+    cycles : int
+        Mesh cycles of this contact in one period of the clock.
+    offset : float
+        Mesh phase of this contact when the clock starts, in [0, 1).
 
     Raises
     ------
     InputError
-        If an event lies outside [0, 1), or the direction is zero.
+        If an event or the offset lies outside [0, 1), the direction is zero, or ``cycles`` is not
+        a whole number of at least 1.
 
     Examples
     --------
@@ -70,10 +77,15 @@ class Contact:
     friction: Entry | None = None
     events: tuple[float, ...] = (0.0,)
     damping_in_gap: bool = False
+    cycles: int = 1
+    offset: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
         require_flag("damping_in_gap", self.damping_in_gap)
+        object.__setattr__(self, "cycles", require_whole("cycles", self.cycles))
+        require_number("offset", self.offset)
+        require_between("offset", self.offset, 0.0, float(np.nextafter(1.0, 0.0)), "")
         where = "Contact.direction"
         if not varies(self.direction) and not real_numbers(where, self.direction).any():
             raise no_direction(where)
@@ -82,7 +94,8 @@ class Contact:
         """One line."""
         stiffness = "function" if callable(self.stiffness) else f"{self.stiffness}"
         gap = "function" if callable(self.gap) else f"{self.gap}"
-        return f"Contact(stiffness={stiffness}, gap={gap}, events={self.events})"
+        clock = "" if self.cycles == 1 else f", cycles={self.cycles}, offset={self.offset:g}"
+        return f"Contact(stiffness={stiffness}, gap={gap}, events={self.events}{clock})"
 
 
 @dataclass(frozen=True)
@@ -176,9 +189,9 @@ class System:
     mass, damping, stiffness : (n, n) array
         Structural matrices without the contacts [kg or kg*m^2, N*s/m, N/m, ...].
     force : (n,) array or function
-        External generalized force [N or N*m]; a function returns (p, n).
+        External generalized force [N or N*m]; a function of the clock returns (p, n).
     contacts : sequence of Contact
-        Any number of contacts.
+        Any number of contacts, each with its own mesh cycles in a period of the clock.
     names : sequence of str, optional
         Names of the coordinates; ``q0, q1, ...`` by default.
     balance : (n,) array, optional
@@ -186,12 +199,16 @@ class System:
         a constant mean speed [N*m per unit]. Without it all forces are as prescribed.
     frictions : sequence of LoadFriction
         Frictions whose coefficients follow the contact forces.
+    gyroscopic : (n, n) array, optional
+        Skew matrix of the gyroscopic moments at the speed of the motion, added to the damping
+        matrix; it does no work [N*s/m or N*m*s].
 
     Raises
     ------
     InputError
         If shapes disagree, a value is not finite, the mass matrix is not symmetric and positive
-        definite, or a friction refers to a contact that does not exist.
+        definite, the gyroscopic matrix is not skew, or a friction refers to a contact that does not
+        exist or to contacts with different ``cycles`` or ``offset``.
 
     Examples
     --------
@@ -208,6 +225,7 @@ class System:
     names: Sequence[str] = ()
     balance: ArrayLike | None = None
     frictions: Sequence[LoadFriction] = ()
+    gyroscopic: ArrayLike | None = None
     #: Largest rate of the motion by the number of steps with which it was computed.
     _rates: dict[int, float] = field(default_factory=dict, init=False, repr=False, compare=False)
     #: Widest step over a mesh cycle when the entries were checked for jumps and randomness.
@@ -245,6 +263,10 @@ class System:
         object.__setattr__(self, "names", names)
         _inverse_of(matrices["mass"], names)
         _refuse_missing_contacts(self)
+        for f, friction in enumerate(self.frictions):
+            refuse_several_clocks(friction, self.contacts, f"System.frictions[{f}]")
+        if self.gyroscopic is not None:
+            object.__setattr__(self, "gyroscopic", _skew(self.gyroscopic, size))
         if self.balance is not None:
             balance = real_numbers("System.balance", self.balance)
             if balance.shape != (size,):
@@ -267,7 +289,32 @@ class System:
     def over_mass(self) -> tuple[Array, Array]:
         """Inverse of the mass matrix times stiffness and damping, (n, n) [1/s^2] and [1/s]."""
         inverse = self.inverse_mass
-        return inverse @ np.asarray(self.stiffness), inverse @ np.asarray(self.damping)
+        return inverse @ np.asarray(self.stiffness), inverse @ self.rate_matrix
+
+    @cached_property
+    def rate_matrix(self) -> Array:
+        """Damping plus gyroscopic matrix, (n, n) [N*s/m or N*m*s]."""
+        damping = np.asarray(self.damping)
+        return damping if self.gyroscopic is None else damping + np.asarray(self.gyroscopic)
+
+    @cached_property
+    def cycles(self) -> int:
+        """Mesh cycles of the fastest contact in one period of the clock."""
+        return max((contact.cycles for contact in self.contacts), default=1)
+
+    @cached_property
+    def clocked_contacts(self) -> tuple[Contact, ...]:
+        """Contacts whose entries and events are over the clock."""
+        return tuple(on_clock(c, _CONTACT_ENTRIES, c.cycles, c.offset) for c in self.contacts)
+
+    @cached_property
+    def clocked_frictions(self) -> tuple[LoadFriction, ...]:
+        """Frictions whose entries and events are over the clock."""
+        clocks = [self.contacts[friction.contacts[0]] for friction in self.frictions]
+        return tuple(
+            on_clock(friction, _FRICTION_ENTRIES, clock.cycles, clock.offset)
+            for friction, clock in zip(self.frictions, clocks, strict=True)
+        )
 
     def __repr__(self) -> str:
         """One line."""
@@ -276,8 +323,20 @@ class System:
 
 
 _MATRICES = ("mass", "damping", "stiffness")
+_CONTACT_ENTRIES = ("direction", "stiffness", "damping", "error", "gap", "friction")
+_FRICTION_ENTRIES = ("direction", "coefficients")
 #: Inverses of mass matrices: a study builds the same structure many times.
 _inverses: Memo[Array] = Memo(8)
+
+
+def _skew(value: ArrayLike, size: int) -> Array:
+    matrix = _matrix("gyroscopic", value)
+    skew = matrix.shape == (size, size)
+    if not skew or np.abs(matrix + matrix.T).max() > 1e-9 * np.abs(matrix).max():
+        what = "the gyroscopic matrix " + ("is not skew" if skew else f"is not ({size}, {size})")
+        why = "Gyroscopic moments do no work, so that G = -G^T"
+        raise InputError(what, "System.gyroscopic", why, "Put damping into System.damping")
+    return matrix
 
 
 def _inverse_of(mass: Array, names: tuple[str, ...]) -> Array:

@@ -145,7 +145,7 @@ def forced_response(
     approach = position @ linear.direction.T
     deflection = approach - contact_error
     omega = 2j * np.pi * hertz[:, None]
-    stiffness, damping = np.asarray(system.stiffness), np.asarray(system.damping)
+    stiffness, damping = np.asarray(system.stiffness), system.rate_matrix
     return ForcedResponse(
         names=linear.names,
         frequency=hertz,

@@ -84,15 +84,16 @@ def _over_cycle(factor: Array, rows: Array, columns: Array) -> Array:
 def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
     """Rows of the system with weights of sum 1: over the whole cycle, or at one phase."""
     if phase == "mean":
-        _, nodes = sampled(system, max(_STEPS, 4 * len(system_events(system))))
+        _, nodes = sampled(system, max(_STEPS * system.cycles, 4 * len(system_events(system))))
         return nodes, nodes.weight
     if isinstance(phase, str):
         why = '"mean" or a mesh phase in [0, 1)'
         raise InputError(f'phase = "{phase}"', "argument phase", why, "Choose one of the two")
     at = float(phase)
     require_between("phase", at, 0.0, np.nextafter(1.0, 0.0), "")
-    contacts = tuple(replace(contact, events=(*contact.events, at)) for contact in system.contacts)
-    marked = replace(system, contacts=contacts)
+    clocked = system.clocked_contacts
+    contacts = tuple(replace(contact, events=(*contact.events, at)) for contact in clocked)
+    marked = replace(system, contacts=contacts, frictions=system.clocked_frictions)
     grid, nodes = sampled(marked, 4 * len(system_events(marked)))
     row = int(np.argmin(np.abs(grid.left - at)))
     single = Nodes(*(part[row : row + 1, :1] for part in nodes))

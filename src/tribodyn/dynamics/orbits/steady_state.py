@@ -54,9 +54,9 @@ def steady_state(
     ----------
     system : System
     mesh_frequency : float
-        Mesh frequency [Hz].
+        Mesh frequency; of contacts with several cycles, the frequency of the clock [Hz].
     steps : int
-        Steps per mesh cycle.
+        Steps per mesh cycle of the contact with the most cycles.
     periods : int or "auto"
         Mesh cycles after which the motion repeats. With ``"auto"`` the motion from the start is
         followed, and the stable orbit of up to 8 mesh cycles that it approaches is returned.

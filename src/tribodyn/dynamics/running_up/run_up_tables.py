@@ -55,10 +55,12 @@ def systems_by_frequency(
     first = systems[0]
     for at, other in zip(frequency, systems, strict=True):
         same = other.size == first.size and len(other.contacts) == len(first.contacts)
-        same = same and len(other.frictions) == len(first.frictions)
+        same = (
+            same and len(other.frictions) == len(first.frictions) and other.cycles == first.cycles
+        )
         same = same and all(
             np.allclose(getattr(other, name), getattr(first, name), rtol=1e-12, atol=0.0)
-            for name in ("mass", "damping", "stiffness")
+            for name in ("mass", "rate_matrix", "stiffness")
         )
         if not same or (other.balance is None) != (first.balance is None):
             raise InputError(
@@ -108,20 +110,22 @@ class Tables:
         events = sorted({event for system in systems for event in system_events(system)})
         duplicates = [i for i in range(1, len(events)) if events[i] - events[i - 1] < 1e-9]
         self.events = tuple(event for i, event in enumerate(events) if i not in duplicates)
-        least = max(64, 2 * len(self.events))
+        self.cycles = systems[0].cycles
+        least = max(64, 2 * -(-len(self.events) // self.cycles))
         self.rate = max(rate_on_grid(system, least) for system in systems)
         self._tables: dict[int, Table] = {}
         self._refuse(lowest)
 
     def _refuse(self, lowest: float) -> None:
         steps = self.fixed
-        needed = self.rate / (LIMIT * lowest)
+        needed = self.rate / (LIMIT * lowest * self.cycles)
         if steps is not None:
             require_whole("steps", steps)
         if steps is not None and needed > steps:
             raise InputError(
                 f"omega_max*dt = {LIMIT * needed / steps:.3f} with {steps} steps per mesh "
-                f"cycle at {lowest:g} Hz and a fastest motion of {self.rate:.4g} rad/s",
+                f"cycle at {self.cycles * lowest:g} Hz and a fastest motion of "
+                f"{self.rate:.4g} rad/s",
                 where="argument steps",
                 why=f"The limit is {LIMIT}, and the lowest speed has the longest steps",
                 remedy=f"Use at least {64 * int(np.ceil(needed / 64))} steps, or omit steps: "
@@ -129,7 +133,7 @@ class Tables:
             )
         if needed > _MOST:
             raise InputError(
-                f"{lowest:g} Hz needs {needed:.3g} steps per mesh cycle",
+                f"{self.cycles * lowest:g} Hz needs {needed:.3g} steps per mesh cycle",
                 where="argument profile",
                 why=f"The fastest motion is {self.rate:.4g} rad/s, and the limit is {_MOST} steps",
                 remedy=f"Begin at {self.rate / (LIMIT * _MOST):.3g} Hz or above; below it the "
@@ -137,10 +141,10 @@ class Tables:
             )
 
     def steps_at(self, frequency: float) -> int:
-        """Steps per mesh cycle at a mesh frequency."""
+        """Steps per cycle of the fastest mesh at a frequency of the clock."""
         if self.fixed is not None:
             return int(self.fixed)
-        needed = self.rate / (_FINE * frequency)
+        needed = self.rate / (_FINE * self.cycles * frequency)
         level = np.ceil(np.log(max(needed / _FEWEST, 1.0)) / np.log(_LADDER) - 1e-9)
         return int(min(np.ceil(_FEWEST * _LADDER**level / 64.0) * 64, _MOST))
 
@@ -152,7 +156,7 @@ class Tables:
         return self._tables[steps]
 
     def _make(self, steps: int) -> Table:
-        grid = sampled_grid(self.events, steps, self.samples)
+        grid = sampled_grid(self.events, steps * self.cycles, self.samples)
         nodes = [evaluate_nodes(system, grid) for system in self.systems]
         pairs = list(zip(self.systems, nodes, strict=True))
         programs = tuple(build_program(system, grid, node) for system, node in pairs)

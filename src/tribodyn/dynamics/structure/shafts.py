@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -314,24 +314,12 @@ def _contact(names: tuple[str, ...], mesh: GearMesh) -> Contact:
 
     return Contact(
         direction=sense * _along(names, mesh, along, tuple(radii)),
-        stiffness=_shifted(mesh, mesh.stiffness),
-        damping=_shifted(mesh, mesh.damping),
-        error=_shifted(mesh, mesh.error),
+        stiffness=mesh.stiffness,
+        damping=mesh.damping,
+        error=mesh.error,
         gap=0.5 * mesh.backlash,
-        friction=None if friction is None else _shifted(mesh, rub),
-        events=tuple(
-            sorted(
-                (event - mesh.lag + cycle) / mesh.cycles % 1.0 % 1.0
-                for event in {0.0, *mesh.events}
-                for cycle in range(mesh.cycles)
-            )
-        ),
+        friction=None if friction is None else rub,
+        events=tuple(sorted({0.0, *mesh.events})),
+        cycles=mesh.cycles,
+        offset=mesh.lag % 1.0,
     )
-
-
-def _shifted(mesh: GearMesh, entry: Entry) -> Entry:
-    """Entry over the phase of the common cycle."""
-    if not callable(entry) or (mesh.cycles == 1 and mesh.lag == 0.0):
-        return entry
-    function: Callable[[Array], Any] = entry
-    return lambda phase: function((mesh.cycles * phase + mesh.lag) % 1.0)

@@ -81,7 +81,7 @@ def energy_audit(system: System, response: Response) -> EnergyAudit:
     >>> audit.imbalance < 1e-9, audit.dissipated > 0.0
     (True, True)
     """
-    steps = response.time.size // response.periods
+    steps = response.time.size // (response.periods * system.cycles)
     compiled = compile_for(system, response.mesh_frequency, steps)
     fine, beat = response.fine, response.mesh_frequency
     q, v, d, n = (
@@ -163,7 +163,7 @@ def _slopes(system: System, grid: Grid) -> tuple[Array, Array]:
     def slope(name: str) -> Array:
         columns = [
             rows.derivatives(f"contacts[{j}].{name}", getattr(contact, name))[..., 0]
-            for j, contact in enumerate(system.contacts)
+            for j, contact in enumerate(system.clocked_contacts)
         ]
         return np.stack(columns, axis=-1) if columns else np.zeros((grid.steps, 3, 0))
 

@@ -128,10 +128,12 @@ def _refuse_step(
     rate = _undamped_rate(member.system, member.nodes, factors)
     number = rate * float(grid.width.max()) * period
     if number > limit:
-        needed = int(np.ceil(grid.steps * number / limit / 64.0)) * 64
+        steps = grid.steps // member.system.cycles
+        needed = int(np.ceil(steps * number / limit / 64.0)) * 64
         raise InputError(
-            f"omega*dt = {number:.4g} with {grid.steps} steps per mesh cycle at "
-            f"{1.0 / period:g} Hz and a highest natural frequency of {rate:.4g} rad/s{who}",
+            f"omega*dt = {number:.4g} with {steps} steps per mesh cycle at "
+            f"{member.system.cycles / period:g} Hz and a highest natural frequency of "
+            f"{rate:.4g} rad/s{who}",
             where="argument steps",
             why=f"With gamma = {gamma:g} and beta = {beta:g} the limit is "
             f"1/sqrt(gamma/2 - beta) = {limit:.4g}; any step is stable only with 2 beta >= "

@@ -73,7 +73,7 @@ def simulate(
     ----------
     system : System
     mesh_frequency : float
-        Mesh frequency [Hz].
+        Mesh frequency; of contacts with several cycles, the frequency of the clock [Hz].
     cycles : int
         Whole mesh cycles.
     start : (position, velocity)
@@ -137,13 +137,14 @@ def simulate(
     marcher = prepare(method, setting, **options, backend=backend)
     recorded = cycles if kept is None else require_whole("kept", kept)
     skipped = cycles - min(recorded, cycles)
-    record = np.empty(((cycles - skipped) * steps + 1, 2 * system.size, 1))
+    rows = marcher.compiled.grid.steps
+    record = np.empty(((cycles - skipped) * rows + 1, 2 * system.size, 1))
     progress.start("Mesh cycles", cycles)
     elapsed = 0
     while elapsed < cycles:
         count = min(_CHUNK, (skipped if elapsed < skipped else cycles) - elapsed)
-        first = (elapsed - skipped) * steps
-        part = record[first : first + count * steps + 1] if elapsed >= skipped else None
+        first = (elapsed - skipped) * rows
+        part = record[first : first + count * rows + 1] if elapsed >= skipped else None
         state = marcher.march(state, count, record=part, elapsed=elapsed)
         elapsed += count
         progress.advance(count)
