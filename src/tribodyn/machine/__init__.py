@@ -9,6 +9,7 @@ positive speed turns y towards z.
 | ``gear``, ``mesh`` | which teeth mesh where, and with which force law |
 | ``bearing``, ``housing`` | what carries the shafts |
 | ``machine`` | which parts form a machine |
+| ``beam``, ``shaft_matrices`` | how stiff and how heavy a shaft is |
 """
 
 from tribodyn.arguments import guard
@@ -19,6 +20,7 @@ from tribodyn.machine.machine import Machine, Operation
 from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.section import STEEL, Material, Section
 from tribodyn.machine.shaft import Shaft
+from tribodyn.machine.shaft_matrices import ShaftMatrices
 
 __all__ = [
     "STEEL",
@@ -31,6 +33,7 @@ __all__ = [
     "Operation",
     "Section",
     "Shaft",
+    "ShaftMatrices",
 ]
 
 guard(__name__)
