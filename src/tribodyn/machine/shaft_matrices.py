@@ -46,9 +46,8 @@ class ShaftMatrices:
     Examples
     --------
     >>> from tribodyn.machine import Section, Shaft
-    >>> ShaftMatrices(Shaft([Section(0.1, 0.04)]), (0.03,)).nodes.round(3)
-    array([0.   , 0.01 , 0.02 , 0.03 , 0.04 , 0.05 , 0.06 , 0.07 , 0.08 ,
-           0.09 , 0.1  ])
+    >>> ShaftMatrices(Shaft([Section(0.1, 0.04)]), (0.035,), element_length=0.04).nodes.round(3)
+    array([0.   , 0.035, 0.068, 0.1  ])
     """
 
     shaft: Shaft
