@@ -1,0 +1,9 @@
+"""Rolling bearings: load and stiffness from geometry, at the working load.
+
+| module | content |
+| --- | --- |
+| `element_ring` | sum over a ring of rolling elements, balance of a load |
+| `ball_bearing` | deep groove and angular contact ball bearings, Hertzian point contact |
+| `roller_bearing` | cylindrical and tapered roller bearings, line contact in laminae |
+| `bearing_types` | types by name |
+"""
