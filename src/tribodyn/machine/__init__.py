@@ -18,22 +18,33 @@ from tribodyn.machine.gear import Gear
 from tribodyn.machine.housing import Housing
 from tribodyn.machine.machine import Machine, Operation
 from tribodyn.machine.mesh import Mesh
+from tribodyn.machine.rolling.ball_bearing import AngularContactBallBearing, DeepGrooveBallBearing
+from tribodyn.machine.rolling.bearing_types import ROLLING_BEARINGS
+from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
+from tribodyn.machine.rolling.roller_bearing import CylindricalRollerBearing, TaperedRollerBearing
 from tribodyn.machine.section import STEEL, Material, Section
 from tribodyn.machine.shaft import Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices
 
 __all__ = [
+    "ROLLING_BEARINGS",
     "STEEL",
+    "AngularContactBallBearing",
     "Bearing",
+    "BearingState",
+    "CylindricalRollerBearing",
+    "DeepGrooveBallBearing",
     "Gear",
     "Housing",
     "Machine",
     "Material",
     "Mesh",
     "Operation",
+    "RollingElementBearing",
     "Section",
     "Shaft",
     "ShaftMatrices",
+    "TaperedRollerBearing",
 ]
 
 guard(__name__)

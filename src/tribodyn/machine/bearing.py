@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import Argument, InputError, real_numbers
 from tribodyn.machine.fields import check_name, check_number
+from tribodyn.machine.rolling.element_ring import RollingElementBearing
 from tribodyn.types import Array
 
 #: Coordinates of a bearing that are in a matrix of five rows: all but the rotation of the shaft.
@@ -50,8 +50,8 @@ class Bearing:
         Damping against tilting [N*m*s/rad].
     damping : (6, 6) or (5, 5) array, optional
         All damping coefficients together.
-    rolling : object, optional
-        A rolling bearing of :mod:`tribodyn.machine`, whose stiffness follows from its load.
+    rolling : RollingElementBearing, optional
+        Rolling bearing, whose stiffness follows from its geometry and load.
     node : str, optional
         Node of the housing that carries the bearing; by default it is held by a rigid wall.
 
@@ -80,7 +80,7 @@ class Bearing:
     axial_damping: float = 0.0
     tilting_damping: float | ArrayLike = 0.0
     damping: ArrayLike | None = None
-    rolling: Any = None
+    rolling: RollingElementBearing | None = None
     node: str | None = None
 
     def __post_init__(self) -> None:

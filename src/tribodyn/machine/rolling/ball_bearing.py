@@ -32,8 +32,8 @@ class BallBearing(RollingElementBearing):
     load, is stretched by the displacement of the inner ring; a ball carries
     ``Q = c (distance - A)^(3/2)`` along the line through both centres, so that contact angles
     follow the load. Centrifugal forces and gyroscopic moments of the balls are left out.
-    Source: Harris, Rolling Bearing Analysis; ISO/TS 16281, for the Hertzian constant ``c`` of both
-    raceways together.
+    Source: Harris and Kotzalas (2006); ISO/TS 16281 (2008), with the Hertzian constant ``c`` of
+    both raceways together.
     """
 
     balls: int | None = None
@@ -116,19 +116,19 @@ class BallBearing(RollingElementBearing):
     ) -> tuple[Array, Array, Array, Array]:
         """Distance of both centres, its direction, and the compression of each ball."""
         lever, height = self._inner_centre
-        apart = self._centres[0] + axial + height * tilt
-        above = self._centres[1] + radial - lever * tilt
-        distance = np.hypot(apart, above)
-        return distance, apart, above, np.maximum(distance - self.centre_distance, 0.0)
+        axial_gap = self._centres[0] + axial + height * tilt
+        radial_gap = self._centres[1] + radial - lever * tilt
+        distance = np.hypot(axial_gap, radial_gap)
+        return distance, axial_gap, radial_gap, np.maximum(distance - self.centre_distance, 0.0)
 
     def element_law(self, axial: Array, radial: Array, tilt: Array) -> ElementLaw:
         """Response of each ball, see :class:`RollingElementBearing`."""
-        distance, apart, above, compression = self._stretched(axial, radial, tilt)
+        distance, axial_gap, radial_gap, compression = self._stretched(axial, radial, tilt)
         lever, height = self._inner_centre
         constant = self._contact.constant
         force = constant * compression**1.5
         geometry = np.array([[1.0, 0.0, height], [0.0, 1.0, -lever]])
-        gradient = np.stack([apart, above], axis=-1) / distance[:, None] @ geometry
+        gradient = np.stack([axial_gap, radial_gap], axis=-1) / distance[:, None] @ geometry
         turning = force / distance
         stiffness = np.einsum(
             "e,ei,ej->eij", 1.5 * constant * np.sqrt(compression) - turning, gradient, gradient
@@ -137,9 +137,9 @@ class BallBearing(RollingElementBearing):
         return ElementLaw(0.4 * force * compression, force[:, None] * gradient, stiffness)
 
     def _contacts(self, axial: Array, radial: Array, tilt: Array) -> tuple[Array, ...]:
-        _, apart, above, compression = self._stretched(axial, radial, tilt)
+        _, axial_gap, radial_gap, compression = self._stretched(axial, radial, tilt)
         force = self._contact.constant * compression**1.5
-        angle = np.arctan2(apart, above)
+        angle = np.arctan2(axial_gap, radial_gap)
         if self.contact_angle and np.any(self.direction * angle[force > 0.0] < 0.0):
             warn(
                 "contact-angle",

@@ -74,6 +74,26 @@ class RollingElementBearing(ABC):
     ``u_a = x``, radial ``u_r = y cos psi + z sin psi`` and the tilt
     ``phi = theta_y sin psi - theta_z cos psi`` about the tangent. The law of the element is that
     of its type; the bearing is the sum over all elements, so that its stiffness is symmetric.
+
+    Parameters
+    ----------
+    bore_diameter, outer_diameter, width : float, optional [m]
+        Main dimensions, from which missing inner ones are estimated.
+    pitch_diameter : float, optional [m]
+        Diameter of the circle of the element centres; default: mean of bore and outer diameter.
+    radial_clearance : float [m]
+        Radial play at work, of the diameter; negative for an interference.
+    preload : float [N]
+        Axial force of the undisplaced bearing.
+    direction : int
+        1 if the bearing holds the shaft against forces along +x, -1 against those along -x.
+    first_element_angle : float [rad]
+        Position of the first element, from y towards z.
+
+    Raises
+    ------
+    InputError
+        If a dimension is missing and cannot be estimated, or the dimensions are no bearing.
     """
 
     bore_diameter: float | None = None
@@ -201,7 +221,13 @@ class RollingElementBearing(ABC):
 
     @cached_property
     def axial_offset(self) -> float:
-        """Axial displacement of the inner ring that the preload makes, along x [m]."""
+        """Axial displacement of the inner ring that the preload makes, along x [m].
+
+        Raises
+        ------
+        InputError
+            If the bearing cannot carry the preload.
+        """
         if not self.preload:
             return 0.0
         from scipy.optimize import brentq
@@ -319,8 +345,8 @@ class RollingElementBearing(ABC):
                 shift = max(10.0 * shift, 1e-6 * float(np.trace(matrix)))
             position, (energy, force, stiffness), shift = trial, new, 0.1 * shift
         raise ComputationError(
-            f"no displacement of the bearing balances the load {_shown(target)} N, N*m; "
-            f"{_shown(target - force)} is left after {_STEPS} steps",
+            f"no displacement of the bearing balances the load {_format(target)} N, N*m; "
+            f"{_format(target - force)} is left after {_STEPS} steps",
             Argument("load"),
             self._limits(),
             "Correct the load, or give another type of bearing",
@@ -362,5 +388,5 @@ def _five(name: str, values: ArrayLike) -> Array:
     return array
 
 
-def _shown(values: Array) -> str:
+def _format(values: Array) -> str:
     return f"({', '.join(f'{value:.4g}' for value in values)})"

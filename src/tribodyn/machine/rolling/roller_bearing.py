@@ -31,7 +31,7 @@ class RollerBearing(RollingElementBearing):
     the normal of the raceway, less clearance and profile, and carries
     ``35948 L^(8/9) delta^(10/9) / laminae`` (N, mm; steel). Forces of the flanges, and the
     difference between the contact angles of both raceways of a tapered roller, are left out.
-    Source: ISO/TS 16281; Palmgren, Ball and Roller Bearing Engineering, 1959.
+    Source: ISO/TS 16281 (2008); Palmgren (1959).
     """
 
     rollers: int | None = None

@@ -41,9 +41,9 @@ def test_load_and_stiffness_are_derivatives_of_the_energy(bearing, position):
     steps = np.array([1e-9, 1e-9, 1e-9, 1e-7, 1e-7])
     for k, step in enumerate(steps):
         shift = np.eye(5)[k] * step
-        above, below = bearing.response(position + shift), bearing.response(position - shift)
-        assert load[k] == pytest.approx((above[0] - below[0]) / (2 * step), rel=1e-5, abs=1e-3)
-        slopes = (above[1] - below[1]) / (2 * step)
+        upper, lower = bearing.response(position + shift), bearing.response(position - shift)
+        assert load[k] == pytest.approx((upper[0] - lower[0]) / (2 * step), rel=1e-5, abs=1e-3)
+        slopes = (upper[1] - lower[1]) / (2 * step)
         assert stiffness[k] == pytest.approx(
             slopes, rel=1e-3, abs=1e-4 * np.abs(stiffness[k]).max()
         )
@@ -167,7 +167,7 @@ def integral(zone: float, exponent: float, order: int) -> float:
 NSK = {1.5: (4.37, 1.216), 10.0 / 9.0: (4.08, 1.260)}
 
 
-def many(exponent: float, angle: float):
+def large_bearing(exponent: float, angle: float):
     """Bearing with many small elements."""
     if exponent == 1.5:
         sizes = {"pitch_diameter": 0.4, "balls": 200, "ball_diameter": 4e-3}
@@ -180,7 +180,7 @@ def many(exponent: float, angle: float):
 
 @pytest.mark.parametrize("exponent", NSK)
 def test_largest_load_without_clearance_is_that_of_stribeck(exponent):
-    bearing = many(exponent, 0.0)
+    bearing = large_bearing(exponent, 0.0)
     state = bearing.state([0.0, 1e-6, 0.0, 0.0, 0.0])
     factor = state.element_load.max() * bearing.elements / state.load[1]
     assert factor == pytest.approx(1.0 / integral(0.5, exponent, 1), rel=3e-4)
@@ -191,7 +191,7 @@ def test_largest_load_without_clearance_is_that_of_stribeck(exponent):
 @pytest.mark.parametrize("zone", [0.3, 0.5, 0.8])
 def test_load_zone_follows_the_integrals_of_sjovall(exponent, zone):
     angle = 20 * DEG
-    bearing = many(exponent, angle)
+    bearing = large_bearing(exponent, angle)
     radial = 1e-8  # so small that contact angles stay
     axial = (2.0 * zone - 1.0) * radial / math.tan(angle)
     state = bearing.state([axial, radial, 0.0, 0.0, 0.0])
