@@ -1,4 +1,12 @@
-"""Ball bearings: Hertzian point contact between ball and grooves."""
+"""Ball bearings: Hertzian point contact between ball and grooves.
+
+The distance of the centres of curvature of both grooves, ``A = (f_i + f_e - 1) D`` without
+load, is stretched by the displacement of the inner ring; a ball carries
+``Q = c (distance - A)^(3/2)`` along the line through both centres, so that contact angles
+follow the load. Centrifugal forces and gyroscopic moments of the balls are left out.
+Source: Harris and Kotzalas (2006); ISO/TS 16281 (2008), with the Hertzian constant ``c`` of
+both raceways together.
+"""
 
 from __future__ import annotations
 
@@ -26,15 +34,7 @@ class _PointContact(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class BallBearing(RollingElementBearing):
-    """Single-row ball bearing whose grooves touch the balls at a contact angle.
-
-    The distance of the centres of curvature of both grooves, ``A = (f_i + f_e - 1) D`` without
-    load, is stretched by the displacement of the inner ring; a ball carries
-    ``Q = c (distance - A)^(3/2)`` along the line through both centres, so that contact angles
-    follow the load. Centrifugal forces and gyroscopic moments of the balls are left out.
-    Source: Harris and Kotzalas (2006); ISO/TS 16281 (2008), with the Hertzian constant ``c`` of
-    both raceways together.
-    """
+    """Single-row ball bearing whose grooves touch the balls at a contact angle."""
 
     balls: int | None = None
     ball_diameter: float | None = None

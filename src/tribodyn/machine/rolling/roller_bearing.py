@@ -1,4 +1,11 @@
-"""Roller bearings: line contact between roller and raceways, in laminae."""
+"""Roller bearings: line contact between roller and raceways, in laminae.
+
+A lamina at ``xi`` along the roller is compressed by the displacement of the inner ring along
+the normal of the raceway, less clearance and profile, and carries
+``35948 L^(8/9) delta^(10/9) / laminae`` (N, mm; steel). Forces of the flanges, and the
+difference between the contact angles of both raceways of a tapered roller, are left out.
+Source: ISO/TS 16281 (2008); Palmgren (1959).
+"""
 
 from __future__ import annotations
 
@@ -25,14 +32,7 @@ _STEEL = 207e9 / (1.0 - 0.3**2)
 
 @dataclass(frozen=True, kw_only=True)
 class RollerBearing(RollingElementBearing):
-    """Single-row roller bearing, in laminae that carry independently of each other.
-
-    A lamina at ``xi`` along the roller is compressed by the displacement of the inner ring along
-    the normal of the raceway, less clearance and profile, and carries
-    ``35948 L^(8/9) delta^(10/9) / laminae`` (N, mm; steel). Forces of the flanges, and the
-    difference between the contact angles of both raceways of a tapered roller, are left out.
-    Source: ISO/TS 16281 (2008); Palmgren (1959).
-    """
+    """Single-row roller bearing, in laminae that carry independently of each other."""
 
     rollers: int | None = None
     roller_diameter: float | None = None
