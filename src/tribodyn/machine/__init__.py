@@ -10,11 +10,17 @@ positive speed turns y towards z.
 | ``bearing``, ``housing`` | what carries the shafts |
 | ``machine`` | which parts form a machine |
 | ``beam``, ``shaft_matrices`` | how stiff and how heavy a shaft is |
+| ``graph`` | speeds, torques, clock, directions, places and masses that follow from it |
 """
 
 from tribodyn.arguments import guard
 from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.gear import Gear
+from tribodyn.machine.graph.bodies import GearBody
+from tribodyn.machine.graph.clock import Clock
+from tribodyn.machine.graph.directions import MeshDirection
+from tribodyn.machine.graph.kinematics import Kinematics, MeshLoad, ShaftLoad
+from tribodyn.machine.graph.placement import Placement
 from tribodyn.machine.housing import Housing
 from tribodyn.machine.machine import Machine, Operation
 from tribodyn.machine.mesh import Mesh
@@ -32,17 +38,24 @@ __all__ = [
     "AngularContactBallBearing",
     "Bearing",
     "BearingState",
+    "Clock",
     "CylindricalRollerBearing",
     "DeepGrooveBallBearing",
     "Gear",
+    "GearBody",
     "Housing",
+    "Kinematics",
     "Machine",
     "Material",
     "Mesh",
+    "MeshDirection",
+    "MeshLoad",
     "Operation",
+    "Placement",
     "RollingElementBearing",
     "Section",
     "Shaft",
+    "ShaftLoad",
     "ShaftMatrices",
     "TaperedRollerBearing",
 ]

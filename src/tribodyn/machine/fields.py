@@ -8,13 +8,17 @@ from typing import Any
 from tribodyn.errors import Argument, InputError, real_numbers, shortened
 
 #: Factor and name of the unit in which a message states a quantity.
-_SHOWN = {"m": (1e3, "mm"), "rad": (180.0 / math.pi, "deg"), "rad/s": (30.0 / math.pi, "rpm")}
+_DISPLAY_UNITS = {
+    "m": (1e3, "mm"),
+    "rad": (180.0 / math.pi, "deg"),
+    "rad/s": (30.0 / math.pi, "rpm"),
+}
 _LARGEST = 1e30
 
 
-def shown(value: float, unit: str) -> str:
+def display(value: float, unit: str) -> str:
     """Write an SI value in the unit of a drawing: mm, deg or rpm."""
-    factor, name = _SHOWN.get(unit, (1.0, unit))
+    factor, name = _DISPLAY_UNITS.get(unit, (1.0, unit))
     return f"{value * factor:.6g} {name}".rstrip()
 
 
@@ -37,11 +41,11 @@ def check_number(
     number = float(value)
     if not low <= number <= high or (above and number == low):
         sign = "greater than" if above else "at least"
-        limits = [f"{sign} {shown(low, unit)}"] if low > -_LARGEST else []
-        limits += [f"at most {shown(high, unit)}"] if high < _LARGEST else []
+        limits = [f"{sign} {display(low, unit)}"] if low > -_LARGEST else []
+        limits += [f"at most {display(high, unit)}"] if high < _LARGEST else []
         limit = " and ".join(["finite", *limits])
         raise InputError(
-            f"{name} = {shown(number, unit)}",
+            f"{name} = {display(number, unit)}",
             where,
             why or f"It must be {limit}",
             f"Give {name}{f' in {unit}' if unit else ''}, {limit}",

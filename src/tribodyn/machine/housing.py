@@ -19,7 +19,7 @@ class Housing:
     Parameters
     ----------
     mass, stiffness : (n, n) array
-        Matrices over the coordinates of the housing [kg, N/m and their products with m].
+        Mass matrix [kg] and stiffness matrix [N/m], with rotations in rad.
     damping : (n, n) array, optional
         Damping matrix [N*s/m].
     nodes : mapping of str to (6,) sequence of int

@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
+
+import numpy as np
 
 from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.fields import check_name, check_number
 from tribodyn.machine.gear import Gear
+from tribodyn.machine.graph.bodies import GearBody, body_problems, gear_body
+from tribodyn.machine.graph.clock import Clock, clock_of
+from tribodyn.machine.graph.directions import MeshDirection, mesh_direction
+from tribodyn.machine.graph.kinematics import Kinematics, kinematics, ratio_problems
+from tribodyn.machine.graph.mesh_checks import mesh_problems
+from tribodyn.machine.graph.placement import Placement, on_axis, placement_problems, shaft_starts
+from tribodyn.machine.graph.shaft_checks import drive_problems, place_problems, support_problems
+from tribodyn.machine.graph.shaft_graph import ShaftGraph
 from tribodyn.machine.housing import Housing
 from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.shaft import Shaft
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True)
@@ -101,8 +114,9 @@ class Machine:
         if not isinstance(self.operation, Operation):
             what, remedy = f"operation = {self.operation!r}", "Give an Operation"
             raise InputError(what, "operation", "A machine runs at a speed under a torque", remedy)
-        if problems := list(self._reference_problems()):
-            raise InputError(problems)
+        for problems in (self._reference_problems, self._mesh_problems, self._place_problems):
+            if listed := list(problems()):
+                raise InputError(listed)
 
     def __repr__(self) -> str:
         """One line."""
@@ -115,6 +129,96 @@ class Machine:
         plural = {"mesh": "meshes"}
         parts = [f"{n} {k if n == 1 else plural.get(k, k + 's')}" for k, n in counts.items()]
         return f"Machine({', '.join(parts)})"
+
+    @cached_property
+    def graph(self) -> ShaftGraph:
+        """Shafts and the meshes between them."""
+        edges = {
+            name: (self.gears[mesh.gears[0]].shaft, self.gears[mesh.gears[1]].shaft)
+            for name, mesh in self.meshes.items()
+        }
+        return ShaftGraph(edges, self.operation.input)
+
+    @cached_property
+    def kinematics(self) -> Kinematics:
+        """Speeds, torques and power of shafts and meshes."""
+        run = self.operation
+        return kinematics(
+            self.graph, self.gears, self.meshes, (run.input, run.output), (run.speed, run.torque)
+        )
+
+    @cached_property
+    def clock(self) -> Clock:
+        """Common period of all meshes."""
+        ratios = {name: shaft.ratio for name, shaft in self.kinematics.shafts.items()}
+        cycles = {
+            name: abs(ratios[self.graph.edges[name][0]] * self.gears[mesh.gears[0]].teeth)
+            for name, mesh in self.meshes.items()
+        }
+        return clock_of(cycles, ratios, abs(self.operation.speed) / (2.0 * math.pi))
+
+    @cached_property
+    def directions(self) -> Mapping[str, MeshDirection]:
+        """Directions of each mesh in space."""
+        ratios = self.kinematics.shafts
+        sign = -1 if self.operation.speed < 0.0 else 1
+        directions = {}
+        for name, mesh in self.meshes.items():
+            first, second = (self.gears[gear] for gear in mesh.gears)
+            senses = [sign * (1 if ratios[g.shaft].ratio > 0 else -1) for g in (first, second)]
+            sense = self.kinematics.meshes[name].sense
+            directions[name] = mesh_direction(mesh, (first, second), sense, (senses[0], senses[1]))
+        return directions
+
+    @cached_property
+    def placement(self) -> Placement:
+        """Axes of the shafts in space, and their places along x."""
+        starts = shaft_starts(self.graph, self.gears, self.meshes)
+        gears = {n: on_axis(starts[g.shaft], g.node_position) for n, g in self.gears.items()}
+        bearings = {n: on_axis(starts[b.shaft], b.position) for n, b in self.bearings.items()}
+        return Placement(starts, gears, bearings)
+
+    @cached_property
+    def gear_bodies(self) -> Mapping[str, GearBody]:
+        """Mass and inertia of each gear without its shaft."""
+        return {
+            name: gear_body(gear, self._mesh_of(name), self.shafts[gear.shaft])
+            for name, gear in self.gears.items()
+        }
+
+    @cached_property
+    def gear_loads(self) -> Mapping[str, Array]:
+        """Mean forces and moments of the meshes on each gear, in the order of a node [N, N*m]."""
+        loads = {name: np.zeros(6) for name in self.gears}
+        for name, mesh in self.meshes.items():
+            load = -self.kinematics.meshes[name].force * self.directions[name].direction
+            loads[mesh.gears[0]] += load[:6]
+            loads[mesh.gears[1]] += load[6:]
+        return loads
+
+    def _mesh_of(self, gear: str) -> Mesh | None:
+        return next((mesh for mesh in self.meshes.values() if gear in mesh.gears), None)
+
+    def _mesh_problems(self) -> Iterable[Problem]:
+        """Meshes that cannot run, and shafts that nothing drives."""
+        problems = list(mesh_problems(self.gears, self.meshes))
+        yield from problems
+        if not problems:
+            yield from drive_problems(self.graph, self.shafts, self.operation.output)
+
+    def _place_problems(self) -> Iterable[Problem]:
+        """Loops that do not close, and parts that are in a wrong place or not held."""
+        problems = ratio_problems(self.graph, self.gears, self.meshes, self.operation.speed)
+        problems += placement_problems(self.graph, self.gears, self.meshes)
+        problems += place_problems(self.shafts, self.gears, self.bearings)
+        for name, gear in self.gears.items():
+            problems += body_problems(name, gear, self._mesh_of(name), self.shafts[gear.shaft])
+        yield from problems
+        if not problems:
+            pushed = dict.fromkeys(self.shafts, 0.0)
+            for name, load in self.gear_loads.items():
+                pushed[self.gears[name].shaft] += float(load[0])
+            yield from support_problems(self.shafts, self.bearings, pushed)
 
     def _reference_problems(self) -> Iterable[Problem]:
         """Names of parts that do not exist."""

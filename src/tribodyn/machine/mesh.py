@@ -50,9 +50,9 @@ class Mesh:
         ``friction_moment_wheel`` (second gear) over the mesh phase, such as
         ``mesh_table.functions()``.
     events : tuple of float
-        Phases of this mesh at which an entry jumps.
+        Mesh phases at which an entry jumps.
     offset : float
-        Phase of this mesh when the clock of the machine is at 0, in [0, 1).
+        Mesh phase when the clock of the machine is at 0, in [0, 1).
 
     Raises
     ------

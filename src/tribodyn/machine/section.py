@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tribodyn.errors import Argument, InputError
-from tribodyn.machine.fields import check_number, shown
+from tribodyn.machine.fields import check_number, display
 
 
 @dataclass(frozen=True)
@@ -99,9 +99,9 @@ class Section:
             outer = getattr(self, name.replace("inner", "outer"))
             if (inner := getattr(self, name)) >= outer:
                 raise InputError(
-                    f"{name} = {shown(inner, 'm')}",
+                    f"{name} = {display(inner, 'm')}",
                     Argument(f"Section.{name}"),
-                    f"The bore must be smaller than the shaft, which has {shown(outer, 'm')} there",
+                    f"It must be smaller than the outer diameter there, {display(outer, 'm')}",
                     "Give a smaller bore, or a thicker shaft",
                 )
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.machine.section import STEEL, Material, Section
@@ -17,8 +16,8 @@ class Shaft:
     Parameters
     ----------
     sections : sequence of Section
-        Sections in their order along x, or their sizes ``(length, outer, inner, ...)`` [m].
-        Without sections the shaft is rigid and without mass, with one node at position 0.
+        Sections in their order along x. Without sections the shaft is rigid and without mass, with
+        one node at position 0.
     material : Material
         Material of all sections.
 
@@ -29,7 +28,7 @@ class Shaft:
 
     Examples
     --------
-    >>> Shaft([(0.060, 0.040), (0.050, 0.045, 0.010)]).length
+    >>> Shaft([Section(0.060, 0.040), Section(0.050, 0.045, 0.010)]).length
     0.11
     """
 
@@ -37,13 +36,10 @@ class Shaft:
     material: Material = STEEL
 
     def __post_init__(self) -> None:
-        try:
-            sections = tuple(map(_section, self.sections))
-        except TypeError as error:
-            what = f"sections cannot be read: {error}"
-            why = "A section is a Section or the numbers (length, outer diameter, ...)"
-            remedy = "Give a list of sections, each with two to five sizes in m"
-            raise InputError(what, Argument("Shaft.sections"), why, remedy) from None
+        sections = tuple(self.sections)
+        if not all(isinstance(section, Section) for section in sections):
+            what, where = f"sections = {sections!r}", Argument("Shaft.sections")
+            raise InputError(what, where, "Wanted: a list of Sections", "Give [Section(...), ...]")
         object.__setattr__(self, "sections", sections)
         if not isinstance(self.material, Material):
             what, remedy = f"material = {self.material!r}", "Give a Material, such as STEEL"
@@ -66,7 +62,3 @@ class Shaft:
         for section in self.sections:
             positions.append(positions[-1] + section.length)
         return tuple(positions)
-
-
-def _section(section: Any) -> Section:
-    return section if isinstance(section, Section) else Section(*section)

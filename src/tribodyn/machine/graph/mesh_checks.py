@@ -1,0 +1,112 @@
+"""Meshes that cannot run: gears that do not fit or do not reach each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from tribodyn.errors import Problem
+from tribodyn.machine.fields import display
+from tribodyn.machine.gear import Gear
+from tribodyn.machine.graph.directions import center_distance, reference_center_distance
+from tribodyn.machine.mesh import Mesh
+
+#: Properties of the rack that all meshes of one gear share, with unit.
+_RACK = {"normal_module": "m", "helix_angle": "rad", "pressure_angle": "rad"}
+
+
+def mesh_problems(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> Iterator[Problem]:
+    """Problems of single meshes, and of meshes with a common gear."""
+    pairs: dict[frozenset[str], str] = {}
+    racks: dict[str, str] = {}
+    for name, mesh in meshes.items():
+        where = f"meshes.{name}.gears"
+        first, second = (gears[gear] for gear in mesh.gears)
+        if first.shaft == second.shaft:
+            yield Problem(
+                f'both gears are on shaft "{first.shaft}"',
+                where,
+                "The gears of a mesh turn with different speeds",
+                "Put one of them on another shaft",
+            )
+        elif (other := pairs.setdefault(frozenset(mesh.gears), name)) != name:
+            why, remedy = "Two gears have one mesh", "Remove one of the two meshes"
+            yield Problem(f"mesh {other} has the same gears", where, why, remedy)
+        elif first.teeth + second.teeth == 0 or (first.is_ring and second.is_ring):
+            yield _no_pair(name, mesh, (first, second), "Two rings, or equal gears, cannot mesh")
+        elif (first.is_ring or second.is_ring) and first.teeth + second.teeth > 0:
+            yield _no_pair(name, mesh, (first, second), "A ring has more teeth than its gear")
+        else:
+            yield from _reach(name, mesh, (first, second))
+        for gear in mesh.gears:
+            if (other := racks.setdefault(gear, name)) != name:
+                yield from _rack_problems(gear, gears, (other, meshes[other]), (name, mesh))
+
+
+def _no_pair(name: str, mesh: Mesh, gears: tuple[Gear, Gear], why: str) -> Problem:
+    teeth = " and ".join(f"{n} {g.teeth}" for n, g in zip(mesh.gears, gears, strict=True))
+    remedy = "Correct the numbers of teeth; those of a ring are negative"
+    return Problem(f"the numbers of teeth are {teeth}", f"meshes.{name}.gears", why, remedy)
+
+
+def _reach(name: str, mesh: Mesh, gears: tuple[Gear, Gear]) -> Iterator[Problem]:
+    """Centre distances at which the teeth do not engage."""
+    reference = abs(reference_center_distance(mesh, gears))
+    distance = abs(center_distance(mesh, gears))
+    base = reference * math.cos(mesh.transverse_pressure_angle)
+    addenda = 2.0 * mesh.normal_module
+    internal = gears[0].teeth + gears[1].teeth < 0
+    where = f"meshes.{name}.center_distance"
+    what = f"center_distance = {display(mesh.center_distance or 0.0, 'm')}"
+    remedy = f"Without profile shift it is {display(reference, 'm')}"
+    if mesh.center_distance is not None and mesh.center_distance < 0.0 and not internal:
+        why = "Only internal gears have a negative centre distance"
+        yield Problem(what, where, why, remedy)
+    elif distance <= base:
+        why = f"The base circles of {' and '.join(mesh.gears)} need more than {display(base, 'm')}"
+        yield Problem(what, where, why, remedy)
+    elif abs(distance - reference) >= addenda:
+        bounds = (reference - addenda if internal else base), reference + addenda
+        yield Problem(
+            f"{what}: gears {mesh.gears[0]} and {mesh.gears[1]} do not reach each other",
+            where,
+            f"The addenda of their teeth meet between {display(bounds[0], 'm')} and "
+            f"{display(bounds[1], 'm')}",
+            remedy,
+        )
+
+
+def _rack_problems(
+    gear: str,
+    gears: Mapping[str, Gear],
+    first: tuple[str, Mesh],
+    second: tuple[str, Mesh],
+) -> Iterator[Problem]:
+    """Differences of the rack or the hand between two meshes of one gear."""
+    for key, unit in _RACK.items():
+        values = [getattr(mesh, key) for _, mesh in (first, second)]
+        if abs(values[0] - values[1]) > 1e-9 * abs(values[0]):
+            yield Problem(
+                f"{key} = {display(values[1], unit)}, and mesh {first[0]} has "
+                f"{display(values[0], unit)}",
+                f"meshes.{second[0]}.{key}",
+                f"Both meshes have the gear {gear}, whose teeth have one {key.replace('_', ' ')}",
+                "Give both meshes the same value",
+            )
+    hands = [gear_hand(gear, gears, mesh) for _, mesh in (first, second)]
+    if hands[0] != hands[1] and second[1].helix_angle > 0.0:
+        yield Problem(
+            f'hand = "{second[1].hand}" makes gear {gear} a {hands[1]}-hand gear, and mesh '
+            f"{first[0]} makes it a {hands[0]}-hand one",
+            f"meshes.{second[0]}.hand",
+            "It is that of the first gear; external gears have opposite hands, internal ones equal",
+            f"Change the hand of mesh {second[0]}, or that of mesh {first[0]}",
+        )
+
+
+def gear_hand(gear: str, gears: Mapping[str, Gear], mesh: Mesh) -> str:
+    """Hand of one of the gears of a mesh."""
+    internal = any(gears[name].is_ring for name in mesh.gears)
+    if gear == mesh.gears[0] or internal:
+        return mesh.hand
+    return "left" if mesh.hand == "right" else "right"
