@@ -32,6 +32,12 @@ class GearBody:
         Polar moment of inertia [kg*m^2].
     transverse_moment_of_inertia : float
         Moment of inertia about an axis in the mid plane [kg*m^2].
+
+    Notes
+    -----
+    What is not prescribed is that of a steel cylinder of the reference diameter, less what the
+    shaft fills; a ring reaches from its reference diameter to ten modules beyond. A prescribed mass
+    scales the moments of inertia of the solid.
     """
 
     mass: float
@@ -40,11 +46,7 @@ class GearBody:
 
 
 def gear_body(gear: Gear, mesh: Mesh | None, shaft: Shaft) -> GearBody:
-    """Body of a gear: a steel cylinder of the reference diameter, less what the shaft fills.
-
-    A ring reaches from its reference diameter to ten modules beyond. A given mass scales the
-    moments of inertia of the solid, where these are not given.
-    """
+    """Body of a gear: prescribed values, else those of the solid."""
     values = gear.mass, gear.moment_of_inertia, gear.transverse_moment_of_inertia
     if mesh is None or None not in values:
         return GearBody(*(value or 0.0 for value in values))
