@@ -45,7 +45,7 @@ def waviness(position, film):
     return 0.5 * np.ptp(film[..., middle], axis=-1)
 
 
-settled, late = moving.kept_time > 7 * period, time > 7 * period
+settled, late = moving.stored_time > 7 * period, time > 7 * period
 amplitudes = {
     "before": amplitude,
     "standing": waviness(standing.position, standing.film),

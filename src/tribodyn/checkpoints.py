@@ -12,10 +12,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from tribodyn.aliases import old_module
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.files import absolute_target, cannot_write, lock
 
-__all__ = ["NAME", "Members", "read_lines"]
+__all__ = ["NAME", "Checkpoints", "read_lines"]
 
 #: File of the finished runs.
 NAME = "members.jsonl"
@@ -28,8 +29,10 @@ _DIFFERENCES = {
     "options": "its options differ",
 }
 
+__getattr__ = old_module(__name__)
 
-class Members:
+
+class Checkpoints:
     """Finished runs of a study by name, in a hidden folder next to its target until discarded.
 
     With ``inside`` they are stored in the target folder itself and stay there.
@@ -45,7 +48,7 @@ class Members:
         self._file: BinaryIO | None = None
         self._writing = threading.Lock()
 
-    def begin(self, identity: Mapping[str, Any]) -> Members:
+    def begin(self, identity: Mapping[str, Any]) -> Checkpoints:
         """Open the checkpoints of a study; runs that the same study has finished are loaded."""
         if self.target is None:
             return self
@@ -144,7 +147,7 @@ class Members:
         elif self.folder is not None:
             os.utime(self.folder / NAME)  # newer than the saved result, so that it is not removed
 
-    def __enter__(self) -> Members:
+    def __enter__(self) -> Checkpoints:
         """Return the checkpoints for a ``with`` block."""
         return self
 

@@ -19,6 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.aliases import with_old_names
+
 __all__ = [
     "Argument",
     "ComputationError",
@@ -462,7 +464,8 @@ def require_between(
     )
 
 
-def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
+@with_old_names
+def require_one_of(name: str, value: Any, choices: Iterable[str]) -> str:
     """Return a value if it is one of the allowed names, or raise :class:`InputError`.
 
     Parameters
@@ -471,8 +474,8 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
         Argument name used in the message.
     value : object
         What was given.
-    known : iterable of str
-        The words.
+    choices : iterable of str
+        Allowed names.
 
     Raises
     ------
@@ -484,16 +487,16 @@ def require_one_of(name: str, value: Any, known: Iterable[str]) -> str:
     >>> require_one_of("inlet", "flooded", ("flooded", "zero"))
     'flooded'
     """
-    choices = list(known)
-    if not isinstance(value, str) or value not in choices:
-        what, why = f'{name} = "{value}"', f"Known: {', '.join(choices)}"
+    allowed = list(choices)
+    if not isinstance(value, str) or value not in allowed:
+        what, why = f'{name} = "{value}"', f"Known: {', '.join(allowed)}"
         raise InputError(what, f"argument {name}", why, "Choose one of these")
     return value
 
 
-def did_you_mean(name: object, known: Iterable[str], otherwise: str = "") -> str:
+def did_you_mean(name: object, names: Iterable[str], otherwise: str = "") -> str:
     """Remedy for an unknown name: the closest known name, or another text."""
     from difflib import get_close_matches
 
-    matches = get_close_matches(str(name), list(known), n=1)
+    matches = get_close_matches(str(name), list(names), n=1)
     return f'Did you mean "{matches[0]}"?' if matches else otherwise

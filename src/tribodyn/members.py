@@ -1,11 +1,7 @@
-"""Earlier name of :mod:`tribodyn.checkpoints`, which it forwards to."""
+"""Earlier name of :mod:`tribodyn.checkpoints`."""
 
 from __future__ import annotations
 
-import warnings
+from tribodyn.aliases import old_module
 
-from tribodyn.checkpoints import NAME as NAME
-from tribodyn.checkpoints import Members as Members
-from tribodyn.checkpoints import read_lines as read_lines
-
-warnings.warn("tribodyn.members is now tribodyn.checkpoints", DeprecationWarning, stacklevel=2)
+__getattr__ = old_module(__name__)

@@ -105,7 +105,7 @@ class Parts(NamedTuple):
         return Parts(variables, axes, self.attributes)
 
 
-def drawn(name: str, text: str) -> Callable[[Any], Any]:
+def figure_method(name: str, text: str) -> Callable[[Any], Any]:
     """Method that draws a result with a registered figure; the text is its docstring."""
 
     def method(self: Any) -> Any:

@@ -10,7 +10,7 @@ import pytest
 
 from tribodyn.cases import compare_with_paper
 from tribodyn.cases.papers import printed
-from tribodyn.checkpoints import Members
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.cli import call
 from tribodyn.errors import ModelWarning
 
@@ -93,12 +93,14 @@ def test_an_interrupted_comparison_goes_on_from_there(tmp_path: Path) -> None:
         def finish(self) -> None:
             self.total = None
 
-    with Members(tmp_path / "there") as members:
-        begun = compare_with_paper("fzg-12dof", partial=True, progress=Stopping(2), members=members)
-    assert 0 < len(begun.points) < begun.asked
+    with Checkpoints(tmp_path / "there") as members:
+        begun = compare_with_paper(
+            "fzg-12dof", partial=True, progress=Stopping(2), checkpoints=members
+        )
+    assert 0 < len(begun.points) < begun.computation_count
     assert begun.surprises == ()
     assert 0 < len(begun.rows) < len(printed.printed_rows("fzg-12dof"))
-    with Members(tmp_path / "there") as members:
-        whole = compare_with_paper("fzg-12dof", members=members)
+    with Checkpoints(tmp_path / "there") as members:
+        whole = compare_with_paper("fzg-12dof", checkpoints=members)
         assert len(members) == len(begun.points)
     assert whole.complete

@@ -10,6 +10,7 @@ sys.path.insert(0, str(ROOT / "docs"))
 
 from _site.names import described, packages
 
+from tribodyn.aliases import RENAMED
 from tribodyn.study import Case
 from tribodyn.study.case.reference import reference_tables, start_toml
 from tribodyn.study.case.section import Table
@@ -31,7 +32,7 @@ def _bibliography(text: str) -> str:
     """The page of sources."""
     users: dict[str, list[str]] = {}
     for table, field in Case.fields.items():
-        models = field.kind.known().models if isinstance(field, Table) else {}
+        models = field.kind.section_keys().models if isinstance(field, Table) else {}
         for model in models.values():
             for key in model.papers:
                 users.setdefault(key, []).append(f"`{table}` `{model.name}`")
@@ -66,8 +67,20 @@ def _reference(text: str) -> str:
             f"| `{public}` | {described(package, public)} |"
             for public in sorted(package.__all__, key=str.casefold)
         ]
+    lines += ["", *_DEPRECATED, *(f"| `{old}` | `{new}` |" for old, new in RENAMED.items())]
     return "\n".join(lines) + "\n"
 
+
+_DEPRECATED = (
+    "## Deprecated names",
+    "",
+    "Earlier names still work; a script that uses one gets a `DeprecationWarning` with the new",
+    "name. Parameters are written in brackets behind their function or class; `Section` is that",
+    "of every table of a case, and of the case.",
+    "",
+    "| deprecated name | current name |",
+    "|---|---|",
+)
 
 #: What writes a page, or a part of it, anew.
 GENERATED = {

@@ -80,7 +80,7 @@ def test_replace_drops_the_options_of_the_law_left_behind(load: Load, tmp_path: 
     case = case_of(FRICTION, tmp_path).replace(
         {"friction.law": "constant", "friction.coefficient": 0.05}
     )
-    assert "friction.slope" not in case.given
+    assert "friction.slope" not in case.user_input
     assert case.friction.slope is None
 
 

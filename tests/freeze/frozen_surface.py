@@ -15,6 +15,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from tribodyn.aliases import RENAMED, Alias
+
 PACKAGE = Path(str(files("tribodyn")))
 
 _PARTS = """
@@ -39,6 +41,7 @@ def surface(names: Mapping[str, Mapping[str, Any]] | None = None) -> dict[str, A
         "quantities": quantities(),
         "summary": summary_names(),
         "figures": figures(),
+        "deprecated names": dict(RENAMED),
         "warning codes": warning_codes(),
     }
 
@@ -107,6 +110,8 @@ def members(owner: type) -> dict[str, list[str] | None]:
 
 def _member(owner: type, name: str) -> list[str] | None:
     value = inspect.getattr_static(owner, name, None)
+    if isinstance(value, Alias):
+        return _member(owner, value.new)
     return parameters(getattr(owner, name)) if _is_method(value) else None
 
 

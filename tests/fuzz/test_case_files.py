@@ -172,7 +172,7 @@ def test_mutated_cases_of_python(draws: Draws) -> None:
         }
         case = _told(lambda changes=changes: whole.replace(changes))
         assert case is None or isinstance(case, Case)
-        _told(lambda changes=changes: Case(**{**whole.given.data, **changes}))
+        _told(lambda changes=changes: Case(**{**whole.user_input.data, **changes}))
 
 
 @pytest.mark.parametrize(

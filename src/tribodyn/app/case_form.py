@@ -231,7 +231,7 @@ class CaseForm:
         """Value as text: typed, or as the case file has it; empty where it has a default."""
         if key in self.typed:
             return self.typed[key]
-        value = self.case.uncertain.get(key, self.case.given.get(key))
+        value = self.case.uncertain.get(key, self.case.user_input.get(key))
         if value is None or isinstance(value, Mapping) or self._origins.get(key) == DEFAULT_MARK:
             return ""
         if isinstance(value, bool):

@@ -87,7 +87,7 @@ def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Show
 
     result = sweep(case, dict(_varied(values)), by="study", progress=progress)
     result.save(target)
-    names = result.shown()
+    names = result.displayed_figures()
     figures = [(in_words(name), result.plot(name), "") for name in names]
     figures[:1] = [(*figures[0][:2], plot.sweep.caption_of(result))] if figures else []
     failed = dict.fromkeys(point.failed for point in result.points if point.failed)
@@ -150,7 +150,7 @@ def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Sho
     content = _of(answer, "relief", case, target)
     gears = [values["gears"]] if values.get("gears") in _GEARS else list(_GEARS)
     reliefs = [f"gears.{g}.modification.tip_relief{part}" for g in gears for part in _RELIEF]
-    changes = answer.best.given if answer.best is not None else {}
+    changes = answer.best.user_input if answer.best is not None else {}
     return {**content, "relief": {key: changes[key] for key in reliefs if key in changes}}
 
 

@@ -85,7 +85,7 @@ def with_known_reasons(case: Case) -> Case:
     }
     models = _models(case.origin, plain)
     stale = {key for key in plain if _of_another_value(case, key, models)}
-    data = {**case.given.data, "assumed": _without(case.given.data["assumed"], stale)}
+    data = {**case.user_input.data, "assumed": _without(case.user_input.data["assumed"], stale)}
     copied = [model for model in models if case.origin and model.origin == case.origin]
     if not (stale or copied):
         return case

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import ModelWarning, Problem
 
 if TYPE_CHECKING:
-    from tribodyn.checkpoints import Members
+    from tribodyn.checkpoints import Checkpoints
 
 
 def say(text: str) -> None:
@@ -37,10 +37,10 @@ def show_problems(problems: Sequence[Problem]) -> None:
         tell(f"{len(problems)} faults found.")
 
 
-def show_resumed(members: Members) -> None:
+def show_resumed(checkpoints: Checkpoints) -> None:
     """Report on stderr how much of a study an earlier process has finished."""
-    if len(members):
-        tell(f"{len(members)} finished parts of this study were stored and are not computed again.")
+    if count := len(checkpoints):
+        tell(f"{count} finished parts of this study were stored and are not computed again.")
 
 
 def show_warnings(warnings: Iterable[ModelWarning]) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.aliases import with_old_names
 from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
 from tribodyn.errors import InputError, Problem, require_between, require_positive, shortened, warn
 from tribodyn.model import Model, Registry
@@ -32,6 +33,7 @@ _POSITIVE = (
 _FILMS = ("film_thickness", "central_film")
 
 
+@with_old_names
 @dataclass(frozen=True)
 class TribologicalContact:
     """Loaded tooth contacts as friction laws see them: arrays of one shape, and two scalars.
@@ -152,15 +154,15 @@ class TribologicalContact:
     @property
     def kinematic_viscosity(self) -> float:
         """Viscosity over density [m^2/s]."""
-        return self.dynamic_viscosity / float(self.known("oil_density"))
+        return self.dynamic_viscosity / float(self.require("oil_density"))
 
     @property
     def film_ratio(self) -> Array:
         """Film thickness over composite roughness; infinite over smooth flanks."""
         with np.errstate(divide="ignore"):
-            return np.asarray(self.known("film_thickness") / np.float64(self.composite_roughness))
+            return np.asarray(self.require("film_thickness") / np.float64(self.composite_roughness))
 
-    def known(self, name: str) -> Any:
+    def require(self, name: str) -> Any:
         """Field that a law needs.
 
         Parameters
@@ -180,9 +182,8 @@ class TribologicalContact:
 
         Examples
         --------
-        >>> TribologicalContact(1e5, 8e8, 1.0, 2.0, 0.5, 8e-3, 0.08, 5e-7, oil_density=880.0).known(
-        ...     "oil_density"
-        ... )
+        >>> values = 1e5, 8e8, 1.0, 2.0, 0.5, 8e-3, 0.08, 5e-7
+        >>> TribologicalContact(*values, oil_density=880.0).require("oil_density")
         880.0
         """
         value = getattr(self, name)
@@ -223,6 +224,7 @@ class FrictionParts:
         return np.asarray(self.film + self.asperities)
 
 
+@with_old_names
 @dataclass(frozen=True)
 class FrictionLaw(Model):
     """A friction law: called with contacts and options, gives friction coefficients.
@@ -292,10 +294,10 @@ class FrictionLaw(Model):
         InputError
             If an option is unknown or missing, or the law cannot be applied.
         """
-        friction = self.told(contact, options)
+        friction = self.evaluate(contact, options)
         return friction.coefficient if isinstance(friction, FrictionParts) else friction
 
-    def told(
+    def evaluate(
         self, contact: TribologicalContact, options: Mapping[str, Any]
     ) -> Array | FrictionParts:
         """Result of the law: the coefficients, with their parts if it has them.

@@ -92,7 +92,7 @@ def ehl(
     >>> print(np.round(ehl(contact), 4), np.round(ehl(contact, flash_temperature=True), 4))
     [0.044] [0.035]
     """
-    film = contact.known("film")
+    film = contact.require("film")
     speed = np.abs(np.ravel(contact.sliding_speed))
     factor = _film_factor(contact, film) if inlet_heating else None
     model = SHEAR_MODELS[shear_model]

@@ -121,5 +121,5 @@ def _law(
     heights = maximum_heights
     if heights is None:
         heights = _HEIGHTS_OF_COMPOSITE * contact.composite_roughness
-    thickness = contact.known("film_thickness")
+    thickness = contact.require("film_thickness")
     return _parts(thickness, heights, film, boundary_friction_coefficient)

@@ -67,7 +67,7 @@ def _asperities_of(
 def _load_share(contact: TribologicalContact, asperities: Asperities | None) -> tuple[Array, Array]:
     """Load share of the film of each contact, and the gap [m]."""
     central = contact.central_film
-    film = np.asarray(contact.known("film_thickness") if central is None else central)
+    film = np.asarray(contact.require("film_thickness") if central is None else central)
     if asperities is None:
         return np.ones(film.shape), film
     pressure = contact.hertz_pressure
@@ -210,7 +210,7 @@ def mixed_solved(
     >>> print(np.round(parts.film, 3), np.round(parts.asperities, 3))
     [0.038] [0.037]
     """
-    film: FilmState = contact.known("film")
+    film: FilmState = contact.require("film")
     central = film.central_film[film.contacts].reshape(contact.load_per_width.shape)
     asperities = _asperities_of(
         contact.composite_roughness, rms_slope, summit_density, roughness_profile

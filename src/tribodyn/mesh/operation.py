@@ -22,7 +22,7 @@ from tribodyn.mesh.sharing import LEAST_SHARE, ToothContact, teeth_of
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Parts, Record, drawn, fact, quantity, record
+from tribodyn.record import Parts, Record, fact, figure_method, quantity, record
 from tribodyn.types import Array, Mask
 
 #: Positions for the models that have no such option.
@@ -76,7 +76,7 @@ class FilmOverOperation(Record):
     film_pressure: Array | None = quantity("torque", "speed", "position", default=None)
     film_stiffness: Array | None = quantity("torque", "speed", "position", default=None)
 
-    plot_lubrication_map = drawn(
+    plot_lubrication_map = figure_method(
         "lubrication_map", "Draw the lubrication regime over speed and torque."
     )
 

@@ -16,7 +16,7 @@ from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.grid import PhaseFunction
 from tribodyn.mesh.loaded_intervals import contact_ratio, teeth_shares
 from tribodyn.mesh.storage import FORMAT, FORMAT_WITHOUT_GEARS, stored_values, write_csv
-from tribodyn.record import Labels, Parts, drawn, record
+from tribodyn.record import Labels, Parts, figure_method, record
 from tribodyn.types import Array
 
 
@@ -272,15 +272,19 @@ class MeshTable(MeshColumns):
         """
         return cls(**stored_values(path))
 
-    plot_stiffness = drawn("mesh_stiffness", "Draw pair and mesh stiffness over the mesh cycle.")
-    plot_friction = drawn("friction", "Draw the friction of a tooth pair over the path of contact.")
-    plot_film = drawn(
+    plot_stiffness = figure_method(
+        "mesh_stiffness", "Draw pair and mesh stiffness over the mesh cycle."
+    )
+    plot_friction = figure_method(
+        "friction", "Draw the friction of a tooth pair over the path of contact."
+    )
+    plot_film = figure_method(
         "film", "Draw the oil film of a tooth pair and its ratio to the roughness over the path."
     )
-    plot_lubrication = drawn(
+    plot_lubrication = figure_method(
         "lubrication", "Draw lubrication regime, load share of the film and parts of the friction."
     )
-    plot_film_stiffness = drawn(
+    plot_film_stiffness = figure_method(
         "film_stiffness", "Draw the stiffness of the oil film and of the teeth over the path."
     )
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.checkpoints import Members
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.dynamics._engine.blocks import march, marching_on, on_gpu
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
@@ -73,15 +73,15 @@ class Motions:
         self.finished = np.zeros(count, dtype=bool)
         self.stop = threading.Event()
         self.progress = SILENT
-        self.members, self.names = Members(), list[str]()
+        self.checkpoints, self.names = Checkpoints(), list[str]()
         self._waiting: Iterator[int] = iter(())
         self._lock = threading.Lock()
 
-    def kept_by(self, members: Members, names: Sequence[str]) -> None:
+    def use_checkpoints(self, checkpoints: Checkpoints, names: Sequence[str]) -> None:
         """Restore the motions that an earlier process finished, and store each new one."""
-        self.members, self.names = members, list(names)
+        self.checkpoints, self.names = checkpoints, list(names)
         for index, name in enumerate(names):
-            if (stored := members.get(name)) is not None:
+            if (stored := checkpoints.get(name)) is not None:
                 self._restore(index, stored)
 
     def _restore(self, index: int, stored: Any) -> None:
@@ -126,7 +126,7 @@ class Motions:
             self.recent[index] = recent
         self.finished[index] = True
         if self.names:
-            self.members.keep(self.names[index], self._stored(index))
+            self.checkpoints.keep(self.names[index], self._stored(index))
         with self._lock:
             self.progress.advance()
         return -1

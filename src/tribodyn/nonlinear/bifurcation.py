@@ -10,7 +10,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.checkpoints import Members
+from tribodyn.aliases import with_old_names
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.compiled import announce
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
@@ -49,6 +50,7 @@ _TURN_IN = 20
 _MANY = 2e7
 
 
+@with_old_names
 def bifurcation(
     systems: System | Sequence[System],
     mesh_frequency: ArrayLike,
@@ -67,7 +69,7 @@ def bifurcation(
     exponents: int = 0,
     keep_partial: bool = False,
     progress: Progress = SILENT,
-    members: Members | None = None,
+    checkpoints: Checkpoints | None = None,
 ) -> Bifurcation:
     """Follow the motion of a system over a parameter.
 
@@ -106,7 +108,7 @@ def bifurcation(
         Return what is finished when interrupted (Ctrl-C): other values are NaN, see ``finished``.
     progress : Progress
         Receives the number of finished motions; silent by default.
-    members : tribodyn.checkpoints.Members, optional
+    checkpoints : tribodyn.checkpoints.Checkpoints, optional
         Stores every motion when it is finished, and restores those of an interrupted process.
 
     Returns
@@ -151,7 +153,7 @@ def bifurcation(
             keep,
             signal if values.systems[0].contacts else name,
             keep_partial,
-            members=Members() if members is None else members,
+            checkpoints=Checkpoints() if checkpoints is None else checkpoints,
         )
     )
     first = None if start is None else read_start(values.systems[0], start)

@@ -207,7 +207,7 @@ def march_sweeps(
     begin = rest_state if first is None else first
     sweeps = Stretches(compiled, points.mesh_frequency, begin, rest_state, branches)
     names = [f"{branch} {number}" for branch in branches for number in range(count)]
-    sweeps.kept_by(survey.members, names)
+    sweeps.use_checkpoints(survey.checkpoints, names)
     survey.uninterrupted(lambda: march_stretches(sweeps, survey.transient, progress))
     for number, outcome in enumerate(outcomes):
         numbers = np.arange(count)

@@ -15,7 +15,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.checkpoints import Members
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
 from tribodyn.dynamics.equations.step_limit import LIMIT
@@ -109,7 +109,7 @@ class Survey:
     keep_partial: bool = False  #: whether an interruption leaves what is finished
     tolerance: float = 1e-7  #: certified distance to the motion that repeats, over its size
     width: int = 16  #: lanes of one block
-    members: Members = field(default_factory=Members, repr=False, compare=False)
+    checkpoints: Checkpoints = field(default_factory=Checkpoints, repr=False, compare=False)
     stop: threading.Event = field(default_factory=threading.Event, repr=False, compare=False)
 
     def uninterrupted(self, work: Callable[[], None]) -> None:
@@ -235,7 +235,9 @@ def march_group(
     motions = points.motions(compiled, group, outcomes)
     indices = np.arange(group.size) if chosen is None else np.flatnonzero(chosen[group])
     if outcomes.name:
-        motions.kept_by(survey.members, [f"{outcomes.name} {number}" for number in group])
+        motions.use_checkpoints(
+            survey.checkpoints, [f"{outcomes.name} {number}" for number in group]
+        )
     if indices.size:
         left = indices[~motions.finished[indices]]
         progress.advance(indices.size - left.size)

@@ -191,7 +191,7 @@ def continuation_report_data(
     axis = Axis(over, tuple(map(float, branch.parameter)), *unit)
     multiplier = np.abs(branch.floquet_multipliers).max(axis=1, initial=0.0)
     picked = np.unique(np.linspace(0, branch.parameter.size - 1, _ROWS).round().astype(int))
-    shown_values = axis.shown()
+    shown_values = axis.display_values()
     # The ramps of a force law open in sequence; contact is lost when the last one opens.
     loss = 100.0 * branch.contact_loss.min(axis=1)
     rows = [

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn import plot
+from tribodyn.aliases import with_old_names
 from tribodyn.drawing import report_of
 from tribodyn.report.figure_blocks import Block, block_of_figure
 from tribodyn.report.html import plotly_script, template, text_of
@@ -45,12 +46,13 @@ class _Page:
 
 
 @report_of("Sweep")
-def write_sweep_report(found: Sweep, path: str | os.PathLike[str]) -> Path:
+@with_old_names
+def write_sweep_report(sweep: Sweep, path: str | os.PathLike[str]) -> Path:
     """Write the figures and the table of a sweep to a file.
 
     Parameters
     ----------
-    found : Sweep
+    sweep : Sweep
         Sweep from :func:`tribodyn.sweep`.
     path
         As :func:`write_report` takes it.
@@ -60,12 +62,12 @@ def write_sweep_report(found: Sweep, path: str | os.PathLike[str]) -> Path:
     InputError
         If the file cannot be written.
     """
-    return _write(Path(path), found.case, _sweep_page(found))
+    return _write(Path(path), sweep.case, _sweep_page(sweep))
 
 
 def _sweep_page(sweep: Sweep) -> _Page:
     """Figures, cards, warnings and table of a sweep."""
-    names = sweep.shown()
+    names = sweep.displayed_figures()
     caption = plot.sweep.caption_of(sweep)
     failed = [point for point in sweep.points if point.failed]
     notices = list(dict.fromkeys(point.failed for point in failed))
@@ -107,13 +109,14 @@ def _sweep_table(sweep: Sweep, names: Sequence[str]) -> tuple[list[str], list[li
     return [*head, "Failed"], rows
 
 
+@with_old_names
 def write_bifurcation_report(
-    found: Bifurcation,
+    diagram: Bifurcation,
     case: Case,
     path: str | os.PathLike[str],
     *,
     lead: str,
-    told: Sequence[str],
+    results: Sequence[str],
     head: Sequence[str],
     rows: Sequence[Sequence[str]],
 ) -> Path:
@@ -121,7 +124,7 @@ def write_bifurcation_report(
 
     Parameters
     ----------
-    found : Bifurcation
+    diagram : Bifurcation
         Diagram from :func:`tribodyn.bifurcation`.
     case : Case
         The case that was varied.
@@ -129,7 +132,7 @@ def write_bifurcation_report(
         As :func:`write_report` takes it.
     lead : str
         Subtitle: what varies.
-    told : sequence of str
+    results : sequence of str
         Results, one sentence each.
     head : sequence of str
         Head of the table.
@@ -141,15 +144,15 @@ def write_bifurcation_report(
     InputError
         If the file cannot be written.
     """
-    caption = plot.bifurcation.caption_of(found)
+    caption = plot.bifurcation.caption_of(diagram)
     page = _Page(
         kind="bifurcation diagram",
         lead=lead,
-        varied=[found.parameter_name],
+        varied=[diagram.parameter_name],
         notice_heading="Results",
-        blocks=[block_of_figure("bifurcation", "Bifurcation diagram", found.plot(), caption)],
-        cards=_verdict_cards(found),
-        notices=list(told),
+        blocks=[block_of_figure("bifurcation", "Bifurcation diagram", diagram.plot(), caption)],
+        cards=_verdict_cards(diagram),
+        notices=list(results),
         head=head,
         rows=rows,
     )
@@ -165,12 +168,13 @@ def _verdict_cards(diagram: Bifurcation) -> list[tuple[str, str]]:
     return cards
 
 
+@with_old_names
 def write_study_report(
     case: Case | None,
     path: str | os.PathLike[str],
     *,
     kind: str,
-    told: Sequence[str],
+    results: Sequence[str],
     figures: Sequence[tuple[str, Any, str]],
     head: Sequence[str],
     rows: Sequence[Sequence[str]],
@@ -187,7 +191,7 @@ def write_study_report(
         As :func:`write_report` takes it.
     kind : str
         Name of the kind of study.
-    told : sequence of str
+    results : sequence of str
         Results, one sentence each.
     figures : sequence of (str, figure, str)
         Heading, plotly figure and caption of each.
@@ -209,12 +213,12 @@ def write_study_report(
     ]
     page = _Page(
         kind=kind,
-        lead=told[0],
+        lead=results[0],
         varied=[],
         blocks=blocks,
         cards=cards,
         notice_heading="Results",
-        notices=list(told),
+        notices=list(results),
         head=head,
         rows=rows,
         heading=title,

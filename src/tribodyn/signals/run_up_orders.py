@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from tribodyn.aliases import with_old_names
 from tribodyn.dynamics.linear.natural_modes import NaturalModes
 from tribodyn.dynamics.running_up.run_up_result import RunUp
 from tribodyn.errors import InputError, require_between, require_one_of, require_positive
@@ -333,6 +334,7 @@ class RunUpResonance:
         )
 
 
+@with_old_names
 def resonances(
     run: RunUp,
     signal: str = "contact_force",
@@ -341,7 +343,7 @@ def resonances(
     modes: NaturalModes | None = None,
     part: Part = "all",
     prominence: float = 0.05,
-    near: float = 0.1,
+    frequency_tolerance: float = 0.1,
 ) -> tuple[RunUpResonance, ...]:
     """Find peaks of mesh orders over the speed and the natural modes that they meet.
 
@@ -357,7 +359,7 @@ def resonances(
         Part of the run; peaks of a run-up and of a run-down are different peaks.
     prominence : float
         Least prominence over the largest amplitude of all orders [-].
-    near : float
+    frequency_tolerance : float
         Largest distance to a natural frequency, over that frequency [-].
 
     Returns
@@ -401,7 +403,7 @@ def resonances(
         for index, height in zip(tops, properties["prominences"], strict=True):
             speed, top = _vertex(cut.speed, cut.amplitude, int(index))
             beat = speed * run.teeth / (2.0 * np.pi)
-            mode, natural = _mode(natural_modes, order * beat, near)
+            mode, natural = _mode(natural_modes, order * beat, frequency_tolerance)
             resonance_peaks.append(
                 RunUpResonance(
                     order,

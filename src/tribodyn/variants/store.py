@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.checkpoints import NAME, Members, read_lines
+from tribodyn.checkpoints import NAME, Checkpoints, read_lines
 from tribodyn.errors import Argument, InputError, OutputExistsError, quiet
 from tribodyn.files import atomic_write, lock
 from tribodyn.study.studies.grid import identity
@@ -177,7 +177,7 @@ class Store:
     def __init__(self, study: Study, folder: Path, force: bool = False) -> None:
         self.study, self.folder = study, folder
         _check_place(folder)
-        self.members = Members(folder, force, inside=True)
+        self.members = Checkpoints(folder, force, inside=True)
 
     def __enter__(self) -> Store:
         """Lock the directory and read what is stored."""
@@ -210,7 +210,9 @@ class Store:
     def _identity(self) -> dict[str, Any]:
         """Identity of the study, independent of the number of its members."""
         study = self.study
-        return identity(f"study {study.compute}", study.case, study.told, keep=list(study.keep))
+        return identity(
+            f"study {study.compute}", study.case, study.specification, keep=list(study.keep)
+        )
 
     def job(self, chunk: Chunk) -> Job:
         """Input for the computation of a chunk."""

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.aliases import with_old_names
 from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, Problem, did_you_mean
@@ -79,6 +80,7 @@ _LISTED = 12
 _KEYED = ("set", "axes", "samples.over")
 
 
+@with_old_names
 @dataclass(frozen=True)
 class Study:
     """Many members of one case; created by :func:`load_study`.
@@ -97,7 +99,7 @@ class Study:
         Members that are computed and stored together.
     layout : Grid or Listed
         The members; ``layout.count`` is their number.
-    told : dict
+    specification : dict
         Specification of the members.
     place : str
         Path of the file, for messages.
@@ -109,7 +111,7 @@ class Study:
     keep: tuple[str, ...]
     chunk: int
     layout: Layout
-    told: Mapping[str, Any]
+    specification: Mapping[str, Any]
     place: str = "study"
 
 

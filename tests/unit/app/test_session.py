@@ -49,7 +49,7 @@ def shown_parts(desk: TabSession) -> list[Any]:
 def test_every_given_value_has_its_field_and_the_pair_is_drawn(desk: TabSession, name: str) -> None:
     desk.take(load_case(name), "")
     shown = fields(desk)
-    given = [key for key in desk.case.given.typed if key.split(".")[0] not in ("assumed",)]
+    given = [key for key in desk.case.user_input.typed if key.split(".")[0] not in ("assumed",)]
     assert set(given) <= {*shown, *(k for k in given if k.startswith("based_on"))}
     known = {key for key, _, _ in case_keys()}
     assert set(shown) <= known
@@ -128,11 +128,11 @@ def test_a_box_counts_the_values_in_it(desk: TabSession) -> None:
     """Those of the boxes inside it too; the model that it names stands there by itself."""
     before = boxes(desk)
     assert before["gears.pinion.modification"]["values"] == 0
-    assert before["operation"]["values"] == len(set(desk.case.given) & {*fields(desk)} & {
+    assert before["operation"]["values"] == len(set(desk.case.user_input) & {*fields(desk)} & {
         f"operation.{name}" for name in ("speed", "torque", "speed_of", "torque_balance")
     })  # fmt: skip
     assert before["stiffness"]["note"] == desk.case.stiffness.model
-    keys = [key for key in desk.case.given.typed if key.startswith("stiffness.")]
+    keys = [key for key in desk.case.user_input.typed if key.startswith("stiffness.")]
     assert before["stiffness"]["values"] == len(set(keys) - {"stiffness.model"})
     typed(desk, "gears.pinion.modification.tip_relief", value="18", unit="um")
     after = boxes(desk)

@@ -61,7 +61,13 @@ def _motions(backend: str) -> dict[str, np.ndarray]:
         averaged=0, backend=backend,
     )  # fmt: skip
     alone = simulate(
-        _rubbing(50.0), 0.3, 2, ([0.3, 0.0], [1.0, 0.0]), steps=48, kept=1, backend=backend
+        _rubbing(50.0),
+        0.3,
+        2,
+        ([0.3, 0.0], [1.0, 0.0]),
+        steps=48,
+        recorded_cycles=1,
+        backend=backend,
     )
     motions = {
         "position": ensemble.position,

@@ -69,7 +69,7 @@ def test_functions_arrays_and_numbers_are_the_same() -> None:
 def test_result_object() -> None:
     contact = solve(keep_every=4)
     assert contact.pressure.shape == contact.film.shape == (3, 129)
-    assert contact.kept_time == pytest.approx(TIME[::4])
+    assert contact.stored_time == pytest.approx(TIME[::4])
     assert contact.maximum_pressure[-1] == pytest.approx(contact.pressure[-1].max())
     middle = np.interp(0.0, contact.position, contact.film[-1])
     assert contact.central_film[-1] == pytest.approx(middle, rel=2e-3)

@@ -273,7 +273,7 @@ def transient(impose: str = "load") -> Any:
         maximum_pressure=0.7e9 * np.sqrt(1.0 + 1e3 * time),
         outlet=np.full(101, 1.2e-4),
         position=position,
-        kept=kept,
+        stored_instants=kept,
         pressure=np.tile(pressure, (11, 1)),
         film=np.tile(film, (11, 1)),
         half_width=1e-4,
@@ -310,6 +310,6 @@ def test_animation_over_time() -> None:
     assert whole.y[-1] == pytest.approx(200.0)
     assert all("dry" not in each.name for each in film_over_time(transient("approach")).data)
     bare = transient()
-    bare.kept = bare.kept[:1]
+    bare.stored_instants = bare.stored_instants[:1]
     with pytest.raises(InputError, match="keep_every"):
         film_over_time(bare)

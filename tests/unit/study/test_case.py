@@ -266,7 +266,7 @@ def test_numbers_in_the_place_of_numbers_make_the_case_that_reading_it_anew_make
     for one, other in zip(quick, whole, strict=True):
         assert one == other
         assert one.to_toml() == other.to_toml()
-        assert one._given == other._given
+        assert one.user_input == other.user_input
 
 
 @pytest.mark.parametrize("relief", [3.8799123456789e-06, 18e-6, 1e-5 / 3.0])

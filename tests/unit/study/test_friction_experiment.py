@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.checkpoints import Members
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.study import friction_experiment
 from tribodyn.study.studies import friction_experiment as module
 from tribodyn.study.studies import sweep as sweeps
@@ -225,10 +225,10 @@ def test_it_is_stored_and_goes_on(found: Any, case: Any, tmp_path: Any) -> None:
     assert found.claims[3].why.split(";")[0] in report
     asked: list[Any] = []
     options = {"laws": ["xu-2007"], "roughness": ["0.4 um"]}
-    with Members(tmp_path / "m") as members:
-        whole = friction_experiment(case, **options, members=members)
-    with Members(tmp_path / "m") as members, pytest.MonkeyPatch.context() as patch:
+    with Checkpoints(tmp_path / "m") as members:
+        whole = friction_experiment(case, **options, checkpoints=members)
+    with Checkpoints(tmp_path / "m") as members, pytest.MonkeyPatch.context() as patch:
         patch.setattr(sweeps, "prepare_run", lambda *a, **k: asked.append(a))
-        again = friction_experiment(case, **options, members=members)
+        again = friction_experiment(case, **options, checkpoints=members)
     assert not asked
     assert again.to_csv() == whole.to_csv()

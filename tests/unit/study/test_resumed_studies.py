@@ -10,7 +10,7 @@ import pytest
 import tribodyn.study.studies.grid as grid
 import tribodyn.study.studies.sweep as sweeps
 from tribodyn import load_case
-from tribodyn.checkpoints import Members
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.nonlinear.attractors import Motions
 from tribodyn.study import bifurcation, sweep
 
@@ -29,32 +29,32 @@ def _plain_case() -> Any:
 
 def _dying(monkeypatch: pytest.MonkeyPatch, after: int) -> list[str]:
     """Let the process die when it keeps one member more."""
-    keep, kept = Members.keep, []
+    keep, kept = Checkpoints.keep, []
 
-    def then_die(self: Members, name: str, value: Any) -> None:
+    def then_die(self: Checkpoints, name: str, value: Any) -> None:
         if len(kept) == after:
             raise _KilledError
         kept.append(name)
         keep(self, name, value)
 
-    monkeypatch.setattr(Members, "keep", then_die)
+    monkeypatch.setattr(Checkpoints, "keep", then_die)
     return kept
 
 
 def test_a_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case = _plain_case()
     whole = sweep(case, _SPEEDS)
-    with monkeypatch.context() as patch, Members(tmp_path / "s") as members:
+    with monkeypatch.context() as patch, Checkpoints(tmp_path / "s") as members:
         patch.setattr(grid.os, "cpu_count", lambda: 1)
         _dying(patch, 2)
         with pytest.raises(_KilledError):
-            sweep(case, _SPEEDS, members=members)
+            sweep(case, _SPEEDS, checkpoints=members)
     prepare_run, asked = sweeps.prepare_run, []
     monkeypatch.setattr(
         sweeps, "prepare_run", lambda *a, **k: asked.append(a) or prepare_run(*a, **k)
     )
-    with Members(tmp_path / "s") as members:
-        found = sweep(case, _SPEEDS, members=members)
+    with Checkpoints(tmp_path / "s") as members:
+        found = sweep(case, _SPEEDS, checkpoints=members)
     assert len(asked) == 2
     assert found == whole
     assert found.to_csv() == whole.to_csv()
@@ -71,18 +71,18 @@ def test_a_bifurcation_goes_on(
     between = {"operation.speed": ("900 rpm", "3000 rpm"), "operation.torque": (60.0, 120.0)}[over]
     whole = bifurcation(case, over, between, 6, **options)
     for after in (0, 3, 5):
-        with monkeypatch.context() as patch, Members(tmp_path / "b") as members:
+        with monkeypatch.context() as patch, Checkpoints(tmp_path / "b") as members:
             _dying(patch, after)
             with pytest.raises(_KilledError):
-                bifurcation(case, over, between, 6, members=members, **options)
+                bifurcation(case, over, between, 6, checkpoints=members, **options)
     taken, queue = [], Motions.queue
     monkeypatch.setattr(
         Motions,
         "queue",
         lambda self, indices: (taken.append(len(list(indices))), queue(self, indices)),
     )
-    with Members(tmp_path / "b") as members:
-        found = bifurcation(case, over, between, 6, members=members, **options)
+    with Checkpoints(tmp_path / "b") as members:
+        found = bifurcation(case, over, between, 6, checkpoints=members, **options)
         assert len(members) >= 8
     motions = 24 if direction == "both" else 12
     if (over, direction) != ("operation.speed", "both"):  # There stretches are joined, too.

@@ -90,10 +90,10 @@ def test_a_sweep_is_a_frame(swept: Any) -> None:
 
 
 def test_a_varied_film_shows_its_columns(swept: Any) -> None:
-    assert "central_film" in swept.shown()
-    assert swept.shown(["efficiency"]) == ["efficiency"]
+    assert "central_film" in swept.displayed_figures()
+    assert swept.displayed_figures(["efficiency"]) == ["efficiency"]
     with pytest.raises(td.InputError, match="efficiency"):
-        swept.shown(["eficiency"])
+        swept.displayed_figures(["eficiency"])
     title = swept.plot("rms_bearing_force_loa_pinion").layout.title.text
     assert title.startswith("The rms bearing force along the line of action of the pinion is ")
 

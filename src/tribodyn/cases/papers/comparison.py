@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
+from tribodyn.aliases import with_old_names
 from tribodyn.cases.papers.printed import (
     PrintedRow,
     deviation,
@@ -18,13 +19,14 @@ from tribodyn.cases.papers.printed import (
     series_of,
     verdicts,
 )
-from tribodyn.checkpoints import Members
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.drawing import write_report_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, record
 from tribodyn.study.pipeline.save import new_directory
 
 
+@with_old_names
 @record
 class PaperComparison(Record):
     """What :func:`compare_with_paper` returns.
@@ -39,14 +41,14 @@ class PaperComparison(Record):
         ``reason``.
     points : tuple of str
         Computations that are done.
-    asked : int
+    computation_count : int
         Computations that there are.
     """
 
     papers: tuple[str, ...]
     rows: tuple[dict[str, Any], ...]
     points: tuple[str, ...]
-    asked: int
+    computation_count: int
     HEAD: ClassVar[tuple[str, ...]] = (
         "Table",
         "Row",
@@ -60,7 +62,7 @@ class PaperComparison(Record):
     @property
     def complete(self) -> bool:
         """Whether every computation was done."""
-        return len(self.points) == self.asked
+        return len(self.points) == self.computation_count
 
     @property
     def surprises(self) -> tuple[dict[str, Any], ...]:
@@ -134,8 +136,12 @@ def _text(value: Any) -> str:
     return value if isinstance(value, str) else f"{value:.5g}"
 
 
+@with_old_names
 def compare_with_paper(
-    *names: str, partial: bool = False, progress: Progress = SILENT, members: Members | None = None
+    *names: str,
+    partial: bool = False,
+    progress: Progress = SILENT,
+    checkpoints: Checkpoints | None = None,
 ) -> PaperComparison:
     """Compute the figures that the sources of built-in cases print, and compare them.
 
@@ -147,7 +153,7 @@ def compare_with_paper(
         Return the rows that are done when the computation is interrupted with Ctrl-C.
     progress : Progress
         Reports how many computations are done; silent by default.
-    members : tribodyn.checkpoints.Members, optional
+    checkpoints : tribodyn.checkpoints.Checkpoints, optional
         Stores every computation when it is finished, and supplies those of a killed process.
 
     Returns
@@ -186,7 +192,7 @@ def compare_with_paper(
         "case": "",
         "over": sorted(jobs.names.values()),
     }
-    checkpoints = (Members() if members is None else members).begin(identity)
+    checkpoints = (Checkpoints() if checkpoints is None else checkpoints).begin(identity)
     results = jobs.done(checkpoints, partial, progress)
     lacking = [
         row

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.cases.load import load_case
 from tribodyn.cases.papers.computations import Figures, Meshes, figures_of, loads_of
 from tribodyn.cases.papers.printed import PrintedRow, course
-from tribodyn.checkpoints import Members
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.studies.grid import over_cases
@@ -34,10 +34,10 @@ def requests_of(row: PrintedRow) -> list[Request]:
         ((key, values),) = row.along.items()
         changes = [{key: value} for value in values]
         if "." in key:
-            return [_request(row, {**row.set, **change}, row.given) for change in changes]
-        return [_request(row, row.set, {**row.given, **change}) for change in changes]
+            return [_request(row, {**row.set, **change}, row.arguments) for change in changes]
+        return [_request(row, row.set, {**row.arguments, **change}) for change in changes]
     others = [] if row.against is None else [{**row.set, **row.against}]
-    return [_request(row, change, row.given) for change in (row.set, *others)]
+    return [_request(row, change, row.arguments) for change in (row.set, *others)]
 
 
 def _request(row: PrintedRow, changes: Mapping[str, Any], arguments: Mapping[str, Any]) -> Request:
@@ -75,7 +75,7 @@ class Jobs:
         return hashlib.sha256(text.encode()).hexdigest()
 
     def done(
-        self, checkpoints: Members, partial: bool, progress: Progress = SILENT
+        self, checkpoints: Checkpoints, partial: bool, progress: Progress = SILENT
     ) -> dict[str, Figures]:
         """Figures of every computation by name; of the finished ones if interrupted."""
         groups, done = list(self.groups.values()), dict[int, Any]()

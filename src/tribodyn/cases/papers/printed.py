@@ -38,7 +38,7 @@ class PrintedRow:
     of: str = ""  #: its figure
     case: str = ""  #: case that is computed; that of the source by default
     set: Mapping[str, Any] = field(default_factory=dict)  #: changes of the case
-    given: Mapping[str, Any] = field(default_factory=dict)  #: arguments of the computation
+    arguments: Mapping[str, Any] = field(default_factory=dict)  #: of the computation
     against: Mapping[str, Any] | None = None  #: changes of a second case; relative change to it
     along: Mapping[str, Any] = field(default_factory=dict)  #: key or argument and its values
     series: str = ""  #: rows of one series have to run like the printed ones
@@ -72,7 +72,7 @@ def printed_rows(paper: str) -> tuple[PrintedRow, ...]:
     return tuple(_row(paper, table, row) for table in tables for row in table["rows"])
 
 
-_MERGED = ("set", "given")
+_MERGED = ("set", "arguments")
 
 
 def _row(paper: str, table: Mapping[str, Any], row: Mapping[str, Any]) -> PrintedRow:

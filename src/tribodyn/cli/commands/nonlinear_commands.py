@@ -59,14 +59,14 @@ def bifurcation(
     json : bool
         Write the findings in SI as one JSON object to stdout.
     """
-    from tribodyn.checkpoints import Members
+    from tribodyn.checkpoints import Checkpoints
     from tribodyn.cli.progress_bar import progress_bar
 
     key, (first, last, points) = _single_range(over)
     _check_lengths(cycles, transient)
     ready, target = prepare_study("bifurcation", case, out, set_, force)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
-    with Members(target, force) as members:
+    with Checkpoints(target, force) as checkpoints:
         with progress_bar() as progress:
             from tribodyn.study.studies.axes import read_axes
             from tribodyn.study.studies.bifurcation import Findings
@@ -75,9 +75,9 @@ def bifurcation(
             read_axes(ready, {key: (first, last, points)}, by="bifurcation")
             diagram = compute(
                 ready, key, (first, last), points, steps=steps, sweep=sweep, by="bifurcation",
-                keep_partial=True, progress=progress, members=members, **options,
+                keep_partial=True, progress=progress, checkpoints=checkpoints, **options,
             )  # fmt: skip
-        show_resumed(members)
+        show_resumed(checkpoints)
         if not diagram.finished.any():
             raise KeyboardInterrupt
         judged = int((diagram.finished & (diagram.verdict != "")).sum())
@@ -95,7 +95,7 @@ def bifurcation(
 
             save_bifurcation(diagram, ready, findings, target, force)
             progress.finish()
-        members.close_after(complete)
+        checkpoints.close_after(complete)
     if json:
         say_json({**findings.figures(), "complete": complete})
     else:

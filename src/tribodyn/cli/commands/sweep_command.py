@@ -63,7 +63,7 @@ def sweep(
         return over_keys(ready, ranges, partial=True, by="sweep", **checkpointing)
 
     result = run_checkpointed(target, force, compute)
-    _show(result, result.shown(names), json)
+    _show(result, result.displayed_figures(names), json)
     failed = sum(bool(point.failed) for point in result.points)
     if failed:
         tell(
@@ -74,17 +74,17 @@ def sweep(
 
 def run_checkpointed(target: Path, force: bool, compute: Callable[..., StudyType]) -> StudyType:
     """Compute a study with checkpoints of its finished parts, and save what is done."""
-    from tribodyn.checkpoints import Members
+    from tribodyn.checkpoints import Checkpoints
     from tribodyn.cli.progress_bar import progress_bar
 
     check_place(target, force)
-    with Members(target, force) as members:
+    with Checkpoints(target, force) as checkpoints:
         with progress_bar() as progress:
-            study = compute(progress=progress, members=members)
-        show_resumed(members)
+            study = compute(progress=progress, checkpoints=checkpoints)
+        show_resumed(checkpoints)
         if not study.complete:
             tell(
-                f"interrupted: {len(study.points)} of {study.asked} values are done and "
+                f"interrupted: {len(study.points)} of {study.size} values are done and "
                 "being written; the same command with --force continues from there; "
                 "Ctrl-C again stops at once"
             )
@@ -92,7 +92,7 @@ def run_checkpointed(target: Path, force: bool, compute: Callable[..., StudyType
             progress.start("Report")
             study.save(target, force=force)
             progress.finish()
-        members.close_after(study.complete)
+        checkpoints.close_after(study.complete)
     return study
 
 

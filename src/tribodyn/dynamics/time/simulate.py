@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.aliases import with_old_names
 from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics._engine.blocks import Backend
@@ -49,6 +50,7 @@ def read_force(system: System, extra_force: ArrayLike | None) -> Array:
     return force
 
 
+@with_old_names
 def simulate(
     system: System,
     mesh_frequency: float,
@@ -57,7 +59,7 @@ def simulate(
     *,
     steps: int = 512,
     extra_force: ArrayLike | None = None,
-    kept: int | None = None,
+    recorded_cycles: int | None = None,
     progress: Progress = SILENT,
     method: Method = "rk4",
     rtol: float | None = None,
@@ -82,7 +84,7 @@ def simulate(
         Steps per mesh cycle; with "dormand-prince" rows of the response per mesh cycle.
     extra_force : (n,) array, optional
         Constant generalized force on top of the system's [N or N*m].
-    kept : int, optional
+    recorded_cycles : int, optional
         Number of the last mesh cycles that are recorded; all of them by default.
     progress : Progress
         Receives the progress every 64 cycles.
@@ -104,7 +106,7 @@ def simulate(
     Returns
     -------
     Response
-        With ``cycles * steps`` rows, or ``kept * steps``.
+        With ``cycles * steps`` rows, or ``recorded_cycles * steps``.
 
     Raises
     ------
@@ -135,8 +137,9 @@ def simulate(
     setting = Setting(system, frequency, cycles, steps, extra[None, :])
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
     marcher = prepare(method, setting, **options, backend=backend)
-    recorded = cycles if kept is None else require_whole("kept", kept)
-    skipped = cycles - min(recorded, cycles)
+    if recorded_cycles is None:
+        recorded_cycles = cycles
+    skipped = cycles - min(require_whole("recorded_cycles", recorded_cycles), cycles)
     rows = marcher.compiled.grid.steps
     record = np.empty(((cycles - skipped) * rows + 1, 2 * system.size, 1))
     progress.start("Mesh cycles", cycles)

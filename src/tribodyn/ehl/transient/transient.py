@@ -9,6 +9,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.aliases import with_old_names
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.transient.moving_contact import (
     REASONS,
@@ -31,6 +32,7 @@ from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 
 
+@with_old_names
 @record
 class TransientLineContact(Record):
     """Film and load of a lubricated line contact over time, isothermal.
@@ -54,7 +56,7 @@ class TransientLineContact(Record):
         Reduced radius of curvature, and HALF the sum of the surface speeds.
     position : (n,) array [m]
         Nodes of the grid: distance from the line of centres in the direction of rolling.
-    kept : (k,) array of int
+    stored_instants : (k,) array of int
         Instants whose pressure and film are stored.
     pressure, film : (k, n) array [Pa], [m]
         Pressure and film at these instants.
@@ -77,7 +79,9 @@ class TransientLineContact(Record):
         ``"flooded"`` or ``"zero"``.
     """
 
-    DERIVED: ClassVar[Mapping[str, Labels]] = {"kept_time": Labels(("kept_time",), "s", axis=True)}
+    DERIVED: ClassVar[Mapping[str, Labels]] = {
+        "stored_time": Labels(("kept_time",), "s", axis=True, name="kept_time")
+    }
 
     time: Array = quantity("time", unit="s", axis=True)
     central_film: Array = quantity("time", unit="m")
@@ -89,7 +93,7 @@ class TransientLineContact(Record):
     equivalent_radius: Array = quantity("time", unit="m")
     entrainment_speed: Array = quantity("time", unit="m/s")
     position: Array = quantity("position", unit="m", axis=True)
-    kept: Index
+    stored_instants: Index
     pressure: Array = quantity("kept_time", "position", unit="Pa")
     film: Array = quantity("kept_time", "position", unit="m")
     iterations: Index = quantity("time", unit="1")
@@ -104,9 +108,9 @@ class TransientLineContact(Record):
     inlet: str = fact()
 
     @property
-    def kept_time(self) -> Array:
+    def stored_time(self) -> Array:
         """Instants whose pressure and film are stored [s]."""
-        return np.asarray(self.time[self.kept])
+        return np.asarray(self.time[self.stored_instants])
 
     def __repr__(self) -> str:
         """One line with the main figures."""
@@ -352,7 +356,7 @@ def _result(
         equivalent_radius=inputs.radius,
         entrainment_speed=inputs.entrainment_speed,
         position=X * scale.half_width,
-        kept=stored_instants,
+        stored_instants=stored_instants,
         pressure=pressures * scale.pressure,
         film=films * scale.film,
         iterations=steps.astype(int),

@@ -97,7 +97,7 @@ def mean_law(
 
     def keep(function: Callable[..., Any]) -> None:
         def law(contact: TribologicalContact, **options: Any) -> Array:
-            point: PitchPoint = contact.known("pitch")
+            point: PitchPoint = contact.require("pitch")
             if rough:
                 options["state"] = _state(contact, point, options.pop("roughness_ra"))
                 options["state"]["lubricant_factor"] = options.pop("lubricant_factor")

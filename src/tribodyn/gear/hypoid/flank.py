@@ -17,7 +17,7 @@ from tribodyn.gear.hypoid.blank import HypoidBlank
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks
 from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap, working_depth
 from tribodyn.gear.hypoid.envelope import turned
-from tribodyn.record import Record, drawn, fact, quantity, record
+from tribodyn.record import Record, fact, figure_method, quantity, record
 from tribodyn.types import Array, Mask
 
 SIDES = ("drive", "coast")
@@ -92,7 +92,7 @@ class HypoidFlanks(Record):
         """Share of the active flank on which the flanks cut into each other."""
         return float(np.mean(self.relative_curvature[self.active] <= 0.0))
 
-    plot_ease_off = drawn("ease_off", "Draw the ease-off over the flank.")
+    plot_ease_off = figure_method("ease_off", "Draw the ease-off over the flank.")
 
     @cached_property
     def conjugate(self) -> ConjugateFlanks:

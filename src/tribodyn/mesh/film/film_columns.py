@@ -148,9 +148,9 @@ def friction_by_law(
         columns = {each.name: getattr(contact, each.name) for each in fields(contact)}
         columns = {n: c for n, c in columns.items() if np.shape(c) == judge.shape}
         part = replace(contact, **{name: c[judge] for name, c in columns.items()})
-        return LAWS[law].told(part, options)
+        return LAWS[law].evaluate(part, options)
 
-    return warn_of_loaded(lambda: LAWS[law].told(contact, options), of_judged)
+    return warn_of_loaded(lambda: LAWS[law].evaluate(contact, options), of_judged)
 
 
 def smallest_film(films: Films) -> Array | None:

@@ -444,4 +444,4 @@ def _of_places(
         film=FilmState.from_solutions(list(places.solution), index),
         bodies=settings.bodies,
     )
-    return LAWS[settings.friction_law].told(contact, settings.friction_options)
+    return LAWS[settings.friction_law].evaluate(contact, settings.friction_options)

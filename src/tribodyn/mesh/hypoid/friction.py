@@ -31,7 +31,7 @@ from tribodyn.mesh.hypoid.loaded_contact import (
 )
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
-from tribodyn.record import Record, drawn, fact, quantity, record
+from tribodyn.record import Record, fact, figure_method, quantity, record
 from tribodyn.types import Array, Mask
 
 #: Film model of each line as an elliptical contact; the other models are for line contacts.
@@ -135,7 +135,7 @@ class HypoidFriction(Record):
         """
         return _table_of(self)
 
-    plot_friction = drawn("hypoid_friction", "Draw friction and film over the flank.")
+    plot_friction = figure_method("hypoid_friction", "Draw friction and film over the flank.")
 
     def __repr__(self) -> str:
         """One line."""
@@ -218,7 +218,7 @@ def hypoid_friction(
     def rubbed(which: Mask) -> tuple[TribologicalContact, FrictionParts]:
         film = _film(loaded, motion, which, lubricant, film_model)
         contact = _contact(loaded, motion, which, film, lubricant, roughness)
-        friction = law.told(contact, friction_options)
+        friction = law.evaluate(contact, friction_options)
         if isinstance(friction, FrictionParts):
             return contact, friction
         return contact, FrictionParts(friction, np.zeros(friction.shape), np.ones(friction.shape))
@@ -249,7 +249,7 @@ def _of_the_law(
 ) -> dict[str, Array]:
     """Film and friction of the loaded cells, spread over all cells."""
     line_values = {
-        "minimum_film": (contact.known("film_thickness"), 0.0),
+        "minimum_film": (contact.require("film_thickness"), 0.0),
         "film_ratio": (contact.film_ratio, np.inf),
         "friction_coefficient": (parts.coefficient, 0.0),
         "film_load_share": (parts.film_load_share, 1.0),

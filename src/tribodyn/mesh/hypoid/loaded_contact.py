@@ -20,7 +20,7 @@ from tribodyn.gear.hypoid.contact_lines import ContactLines
 from tribodyn.gear.hypoid.envelope import Curvature, cross
 from tribodyn.gear.hypoid.tooth_contact import gap_of
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
-from tribodyn.record import Record, drawn, fact, quantity, record
+from tribodyn.record import Record, fact, figure_method, quantity, record
 from tribodyn.types import Array, Index, Mask
 
 
@@ -229,8 +229,8 @@ class HypoidLoadedContact(Record):
         torque = _required_torque(pinion_torque)
         return _loaded(self.cells, self.grid, torque, self.line_stiffness, self.material)
 
-    plot_pressure = drawn("hypoid_pressure", "Draw the pressure over the flank.")
-    plot_load = drawn("hypoid_load", "Draw load sharing, transmission error and stiffness.")
+    plot_pressure = figure_method("hypoid_pressure", "Draw the pressure over the flank.")
+    plot_load = figure_method("hypoid_load", "Draw load sharing, transmission error and stiffness.")
 
     def __repr__(self) -> str:
         """One line."""

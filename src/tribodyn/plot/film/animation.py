@@ -285,15 +285,17 @@ class _Snapshot:
 
 def _snapshots(transient: TransientLineContact) -> tuple[list[_Snapshot], Array]:
     """Stored instants, at most one per frame, and their times [s]."""
-    if len(transient.kept) < 2:
-        what = f"{len(transient.kept)} stored instants have a pressure and a film"
+    if len(transient.stored_instants) < 2:
+        what = f"{len(transient.stored_instants)} stored instants have a pressure and a film"
         why = "An animation needs at least two"
         remedy = "Solve with keep_every = 1, or with a larger number for long series"
         raise InputError(what, "argument transient", why, remedy)
     # Width and pressure of the dry contact follow the square root of load times radius.
     strength = transient.load_per_width * transient.equivalent_radius
     widths = transient.half_width * np.sqrt(strength / strength.max())
-    chosen = np.unique(np.linspace(0, len(transient.kept) - 1, _FRAMES).round().astype(int))
+    chosen = np.unique(
+        np.linspace(0, len(transient.stored_instants) - 1, _FRAMES).round().astype(int)
+    )
     snapshots = [
         _Snapshot(
             position=transient.position,
@@ -306,9 +308,9 @@ def _snapshots(transient: TransientLineContact) -> tuple[list[_Snapshot], Array]
             half_width=float(widths[at]),
             hertz_pressure=float(2.0 * transient.load_per_width[at] / (np.pi * widths[at])),
         )
-        for row, at in ((row, int(transient.kept[row])) for row in chosen)
+        for row, at in ((row, int(transient.stored_instants[row])) for row in chosen)
     ]
-    return snapshots, transient.time[transient.kept[chosen]]
+    return snapshots, transient.time[transient.stored_instants[chosen]]
 
 
 def film_over_time(transient: TransientLineContact) -> Any:

@@ -199,7 +199,7 @@ def _marked(x: Any, y: Any, failed: Any, name: str, color: str, unit: str) -> li
 
 def _case_curves(study: Sweep, values: Any, unit: str) -> list[Trace]:
     """Curves over the first key, one per combination of the other keys."""
-    x, traces = study.axes[0].shown(), []
+    x, traces = study.axes[0].display_values(), []
     others = list(product(*(range(len(axis.values)) for axis in study.axes[1:])))
     for number, place in enumerate(others):
         pairs = zip(study.axes[1:], place, strict=True)
@@ -214,8 +214,8 @@ def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
     first, second = study.axes
     heat = {
         "type": "heatmap",
-        "x": first.shown(),
-        "y": second.shown(),
+        "x": first.display_values(),
+        "y": second.display_values(),
         "z": values.T,
         "colorscale": "Viridis",
         "colorbar": {"title": {"text": label, "side": "right"}},

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import SpurGear, SpurPair, half_tooth
-from tribodyn.record import Labels, Record, drawn, fact, quantity, record
+from tribodyn.record import Labels, Record, fact, figure_method, quantity, record
 from tribodyn.stiffness.teeth.tooth_bending import load_point
 from tribodyn.types import Array, Index
 
@@ -209,10 +209,10 @@ class LoadedContact(Record):
         radii = self.pinion_curvature_radius, self.wheel_curvature_radius
         return root_loads(self.gear_pair, radii, self.normal_force)
 
-    plot_load_sharing = drawn(
+    plot_load_sharing = figure_method(
         "loaded_sharing", "Draw the force on a tooth pair over its way through the mesh."
     )
-    plot_deformation = drawn(
+    plot_deformation = figure_method(
         "mesh_deformation",
         "Draw the teeth in mesh with the forces on them and their deformation enlarged, that of "
         "``fe2d`` whatever the provider, with a slider over the mesh phase.",

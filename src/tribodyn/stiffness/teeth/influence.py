@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.aliases import with_old_names
 from tribodyn.arrays.cubic import spline
 from tribodyn.errors import Argument, InputError
 from tribodyn.types import Array
@@ -110,8 +111,9 @@ class GearInfluence:
         """
         return np.asarray(self._self(self._inside(curvature_radius)))
 
+    @with_old_names
     def between(
-        self, loaded_radius: Array | float, seen_radius: Array | float, neighbour: int
+        self, loaded_radius: Array | float, displaced_radius: Array | float, neighbour: int
     ) -> Array:
         """Displacement of another tooth per load.
 
@@ -119,8 +121,8 @@ class GearInfluence:
         ----------
         loaded_radius : float or array [m]
             Radius of curvature where the load acts.
-        seen_radius : float or array [m]
-            Radius of curvature at the place that is seen, of the same shape.
+        displaced_radius : float or array [m]
+            Radius of curvature at the displaced place, of the same shape.
         neighbour : int
             How many teeth on, counted to the side of the larger radii; not zero.
 
@@ -138,7 +140,7 @@ class GearInfluence:
             why = "The displacement of the loaded tooth has a local part"
             remedy = "Use the self compliance, and add the compression of the contact"
             raise InputError("neighbour = 0", Argument("neighbour"), why, remedy)
-        first, second = self._inside(loaded_radius), self._inside(seen_radius)
+        first, second = self._inside(loaded_radius), self._inside(displaced_radius)
         if abs(neighbour) > self.neighbours:
             return np.zeros(np.broadcast_shapes(first.shape, second.shape))
         if neighbour < 0:

@@ -8,6 +8,7 @@ from functools import cached_property
 from inspect import Signature
 from typing import Any, ClassVar
 
+from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case import derive
 from tribodyn.study.case.case_data import CaseData
@@ -52,7 +53,8 @@ _DERIVED = {
 _DECIDES = ("solver.method",)
 
 
-class Case(CaseData, whole=True):
+@with_old_names
+class Case(CaseData, case=True):
     """One gear pair under one load: frozen, checked, in SI.
 
     Created by :func:`tribodyn.load_case`, or from nested keywords: a float is SI, text and pint
@@ -114,7 +116,7 @@ class Case(CaseData, whole=True):
         self._stated, stale = settled(self, self._effective, inputs, stated)
         for key in stale:
             del self._assumed[key]
-        self._given = UserInput({**inputs.data, **tables(self._stated, self._assumed)})
+        self._user_input = UserInput({**inputs.data, **tables(self._stated, self._assumed)})
 
     def _spread_faults(self, faulty: set[str]) -> list[tuple[str, Problem]]:
         """Report spread values that reach beyond the range of their key."""
@@ -158,9 +160,9 @@ class Case(CaseData, whole=True):
         if not by and (changed := self._with_numbers(changes)) is not None:
             return changed
         ready = changes if by else {key: Plain(value) for key, value in changes.items()}
-        dropped = dropped_options(self._given, ready, self._chosen_by(ready))
+        dropped = dropped_options(self._user_input, ready, self._chosen_by(ready))
         spread = {key: text for key, text in self._spread.items() if key not in dropped}
-        data = self._given.merged({**spread, **dict.fromkeys(dropped), **ready})
+        data = self._user_input.merged({**spread, **dict.fromkeys(dropped), **ready})
         if "assumed" in data:
             marks = {
                 k: w for k, w in data["assumed"].items() if k not in changes and k not in dropped
@@ -185,7 +187,7 @@ class Case(CaseData, whole=True):
         changes = {key: float(v) if isinstance(v, float) else v for key, v in changes.items()}
         for key, value in changes.items():
             table, _, name = key.partition(".")
-            spec, old = spec_of(self, key), self._given.get(key)
+            spec, old = spec_of(self, key), self._user_input.get(key)
             numeric = type(value) is float and spec is not None and spec.kind == "number"
             indirect = table == "gears" or key in self._spread or key in self._assumed
             if not numeric or indirect or old is None or self._effective.get(key) is None:
@@ -201,7 +203,7 @@ class Case(CaseData, whole=True):
             return None
         changed._files = self._named_files()
         changed._effective, changed._changed = self._effective | numbers, None
-        changed._given = self._given.with_numbers(changes)
+        changed._user_input = self._user_input.with_numbers(changes)
         changed._source = self._source.with_replaced(changes, "replace:")
         changed_after(self, changed, numbers)
         return changed

@@ -53,7 +53,7 @@ class CaseData(CaseTables):
 
     _assumed: dict[str, str]
     _spread: dict[str, str]
-    _given: UserInput
+    _user_input: UserInput
     _source: Source
     _stated: Stated
     _effective: dict[str, Any]
@@ -168,9 +168,9 @@ class CaseData(CaseTables):
         return self.operation.torque / (self.gear_ratio if of_wheel else 1.0)
 
     @property
-    def given(self) -> UserInput:
+    def user_input(self) -> UserInput:
         """User input, before defaults."""
-        return self._given
+        return self._user_input
 
     @property
     def source(self) -> Source:

@@ -246,7 +246,7 @@ def _argument(problem: Problem) -> Argument | None:
 @lru_cache(maxsize=1)
 def _argument_keys() -> dict[str, str]:
     """Map arguments of physics functions to the keys of the case file."""
-    return {o.argument: key for key, o in options_of(Section.whole, "") if o.argument}
+    return {o.argument: key for key, o in options_of(Section.case_class, "") if o.argument}
 
 
 def _key(problem: Problem, section: str) -> str:
@@ -269,7 +269,7 @@ def _key_in(case: CaseData, problem: Problem) -> str:
         section = getattr(case, place.kind, None)
         if not isinstance(section, Section) or not place.model:
             return ""
-        option = place.name if place.name in section.known().keys else section.selector
+        option = place.name if place.name in section.section_keys().keys else section.selector
         return f"{place.kind}.{option}"
     argument = _argument(problem)
     if argument is None:
@@ -280,9 +280,9 @@ def _key_in(case: CaseData, problem: Problem) -> str:
             if argument.name == (declared.argument or option):
                 return f"{name}.{option}"
     key = _argument_keys().get(argument.name, "")
-    if key == "gears.composite_roughness" and key not in case._given:
+    if key == "gears.composite_roughness" and key not in case._user_input:
         heights = [f"gears.pinion.roughness_{kind}" for kind in ("ra", "rms")]
-        return next((height for height in heights if height in case._given), key)
+        return next((height for height in heights if height in case._user_input), key)
     return key
 
 

@@ -358,7 +358,7 @@ def _keys_that_changed(case: CaseData) -> tuple[str, ...]:
 
 def _defaults_before(case: CaseData, keys: Iterable[str]) -> dict[str, Any]:
     """Return the initial defaults of keys that were given later."""
-    inputs, base = case.given, case.stated.base
+    inputs, base = case.user_input, case.stated.base
     return {
         key: default_of(case, key)
         for key in keys
@@ -415,7 +415,7 @@ def _unused(case: CaseData, key: str) -> bool:
 
 def provenance(case: CaseData) -> dict[str, str]:
     """Return the provenance of every effective value."""
-    origins, changed, inputs = {}, changed_keys(case), case.given
+    origins, changed, inputs = {}, changed_keys(case), case.user_input
     for key, value in effective(case).items():
         if key in case.assumed:
             origins[key] = _marked(case, key, value, changed)

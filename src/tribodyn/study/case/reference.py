@@ -18,7 +18,7 @@ def case_keys() -> Iterator[tuple[str, Option, str]]:
 
 
 def _walk(section: type[Section], path: tuple[str, ...]) -> Iterator[tuple[str, Option, str]]:
-    for name, field in section.known().keys.items():
+    for name, field in section.section_keys().keys.items():
         if isinstance(field, Table):
             yield from _walk(field.kind, (*path, name))
         else:
@@ -85,7 +85,7 @@ def _models() -> Iterator[tuple[str, Model]]:
     """Iterate over all models that a case can name, with the key that selects each."""
     for table, field in Case.fields.items():
         section = field.kind if isinstance(field, Table) else None
-        for model in section.known().models.values() if section else ():
+        for model in section.section_keys().models.values() if section else ():
             yield f"{table}.{section.selector}", model  # type: ignore[union-attr]
 
 

@@ -12,6 +12,7 @@ from inspect import Parameter, Signature
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
+from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError
 from tribodyn.model import Model, Models, Option
 
@@ -50,6 +51,7 @@ def _section_keys(fields: Mapping[str, Option | Table], models: Mapping[str, Any
     return SectionKeys(models, keys, owners)
 
 
+@with_old_names
 class Section:
     """Base of the tables of a case file; its Options and Tables are class attributes."""
 
@@ -57,12 +59,12 @@ class Section:
     _available: ClassVar[tuple[int, SectionKeys]]
     selector: ClassVar[str] = ""  #: key that names a model, which brings its options
     needed: ClassVar[tuple[str, ...]] = ()  #: keys that a remedy lists; empty: the required keys
-    whole: ClassVar[type[Section]]  #: the table that contains all others: the case
+    case_class: ClassVar[type[Section]]  #: the table that contains all others
 
-    def __init_subclass__(cls, whole: bool = False) -> None:
+    def __init_subclass__(cls, case: bool = False) -> None:
         """Collect the declared keys in their order."""
-        if whole:
-            Section.whole = cls
+        if case:
+            Section.case_class = cls
         declared = {k: v for k, v in vars(cls).items() if isinstance(v, Option | Table)}
         cls.fields = {**cls.fields, **declared}
         chosen = [k for k, v in declared.items() if isinstance(getattr(v, "names", None), Models)]
@@ -72,7 +74,7 @@ class Section:
 
     def __getattr__(self, name: str) -> Any:
         """None for an option that the chosen model does not have."""
-        if not name.startswith("_") and name in type(self).known().keys:
+        if not name.startswith("_") and name in type(self).section_keys().keys:
             return None
         raise AttributeError(f"{type(self).__name__} has no {name}")
 
@@ -101,10 +103,10 @@ class Section:
     def __dir__(self) -> list[str]:
         """List keys, methods and properties."""
         methods = {n for n in dir(type(self)) if not n.startswith("_") and not hasattr(Section, n)}
-        return sorted({*methods, *type(self).known().keys})
+        return sorted({*methods, *type(self).section_keys().keys})
 
     @classmethod
-    def known(cls) -> SectionKeys:
+    def section_keys(cls) -> SectionKeys:
         """Models that this table may name and all keys that it can have with them."""
         names = cls.fields[cls.selector].names if cls.selector else None  # type: ignore[union-attr]
         if not isinstance(names, Models):
@@ -118,7 +120,7 @@ class Section:
     @classmethod
     def model_named(cls, name: Any) -> Model | None:
         """Return the model of a name, or None if there is no such model."""
-        return cls.known().models.get(name) if isinstance(name, str) else None
+        return cls.section_keys().models.get(name) if isinstance(name, str) else None
 
     @property
     def chosen(self) -> Model | None:
@@ -128,18 +130,18 @@ class Section:
     @classmethod
     def spec(cls, name: str) -> Option | None:
         """Return the Option of a key, or None for an unknown key or a table."""
-        option = cls.fields.get(name) or cls.known().keys.get(name)
+        option = cls.fields.get(name) or cls.section_keys().keys.get(name)
         return option if isinstance(option, Option) else None
 
     @classmethod
     def specs(cls) -> Iterator[tuple[str, Option]]:
         """Iterate over all keys that are not tables, in order."""
-        yield from ((k, o) for k, o in cls.known().keys.items() if isinstance(o, Option))
+        yield from ((k, o) for k, o in cls.section_keys().keys.items() if isinstance(o, Option))
 
 
 def section_at(path: tuple[str, ...]) -> type[Section] | None:
     """Return the class of the table at a dotted path of a case, or None."""
-    section = Section.whole
+    section = Section.case_class
     for name in path:
         table = section.fields.get(name)
         if not isinstance(table, Table):
@@ -161,9 +163,9 @@ def options_of(section: type[Section], prefix: str) -> list[tuple[str, Option]]:
 
 def file_keys() -> list[str]:
     """Return the dotted keys of a case that name files."""
-    files = [key for key, option in options_of(Section.whole, "") if option.kind == "file"]
-    for table, field in Section.whole.fields.items():
-        keys = field.kind.known().keys if isinstance(field, Table) else {}
+    files = [key for key, option in options_of(Section.case_class, "") if option.kind == "file"]
+    for table, field in Section.case_class.fields.items():
+        keys = field.kind.section_keys().keys if isinstance(field, Table) else {}
         files += [
             f"{table}.{name}"
             for name, option in keys.items()
@@ -214,9 +216,9 @@ class Choice(NamedTuple):
 def choices(inputs: Mapping[str, Any]) -> dict[str, Choice]:
     """Return the models that the tables name, by table; ``inputs`` has dotted keys."""
     chosen = {}
-    for name, field in Section.whole.fields.items():
+    for name, field in Section.case_class.fields.items():
         if isinstance(field, Table) and field.kind.selector:
-            selector, keys = field.kind.selector, field.kind.known()
+            selector, keys = field.kind.selector, field.kind.section_keys()
             model_name = inputs.get(f"{name}.{selector}", field.kind.fields[selector].default)
             model = keys.models.get(model_name) if isinstance(model_name, str) else None
             chosen[name] = Choice(selector, model, keys)
@@ -227,7 +229,7 @@ def flat(section: Section, prefix: str = "") -> dict[str, Any]:
     """Return all values of a table and its inner tables by dotted key."""
     entries = vars(section)
     values: dict[str, Any] = {}
-    for name in section.known().keys:
+    for name in section.section_keys().keys:
         value = entries.get(name)
         if isinstance(value, Section):
             values |= flat(value, f"{prefix}{name}.")
@@ -243,7 +245,7 @@ def in_force(case: Section) -> dict[str, Any]:
         if not (isinstance(section, Section) and section.selector):
             continue
         options = section.chosen.options if section.chosen else {}
-        for name in section.known().owners:
+        for name in section.section_keys().owners:
             key = f"{table}.{name}"
             if name not in options:
                 values[key] = None

@@ -323,7 +323,7 @@ def _unexpected_keys(
 ) -> Iterator[tuple[str, Problem]]:
     """Report keys that neither this table nor its model has."""
     unexpected = list(islice((name for name in data if name not in options), _MAX_UNKNOWN))
-    available = cls.known().keys if unexpected else {}
+    available = cls.section_keys().keys if unexpected else {}
     for name in unexpected:
         key, option = (f"{path}.{name}" if path else name), available.get(name)
         if isinstance(option, Option):
@@ -358,7 +358,7 @@ def _tables_with(name: str, path: tuple[str, ...] = ()) -> list[str]:
     """List the tables that have a key called ``name``."""
     section = section_at(path)
     tables = []
-    for key, field in section.known().keys.items() if section else ():
+    for key, field in section.section_keys().keys.items() if section else ():
         if isinstance(field, Table):
             tables += _tables_with(name, (*path, key))
         elif key == name:
@@ -368,7 +368,7 @@ def _tables_with(name: str, path: tuple[str, ...] = ()) -> list[str]:
 
 def _intended_key(name: str, section: type[Section]) -> str:
     """Guess the key intended by a misspelt one; empty if there is no close match."""
-    keys = section.known().keys
+    keys = section.section_keys().keys
     if term := find_term(name):
         return term.key if term.key in keys else ""
     for gear in ("pinion", "wheel"):
@@ -386,7 +386,7 @@ def correct_keys(
     Returns the corrected data, the problems, and the typed key of each corrected key.
     """
     section = section_at(path)
-    keys = section.known().keys if section else {}
+    keys = section.section_keys().keys if section else {}
     result: dict[str, Any] = {}
     problems: KeyedProblems = []
     typed_keys: dict[str, str] = {}
@@ -426,7 +426,7 @@ def unknown_key(path: tuple[str, ...], value: Any) -> Problem:
     """Return the problem of an unknown key, with the closest key or the table that has it."""
     *table, name = path
     section = section_at(tuple(table))
-    keys = list(section.known().keys) if section else []
+    keys = list(section.section_keys().keys) if section else []
     keys += [] if table else ["assumed"]
     entry = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
     location = f"[{'.'.join(table)}]" if table else "the top of the file"

@@ -81,7 +81,7 @@ def _owners(case: CaseData, key: str) -> str:
     """Name the models that have an option which the model of the case lacks."""
     table, _, name = key.rpartition(".")
     section = section_at((table,)) if "." not in table else None
-    owners = section.known().owners.get(name, []) if section else []
+    owners = section.section_keys().owners.get(name, []) if section else []
     chosen = vars(case).get(table)
     if not (section and owners and isinstance(chosen, Section)) or chosen.chosen is None:
         return "not given"

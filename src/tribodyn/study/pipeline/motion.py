@@ -103,7 +103,7 @@ def _transient(
         start,
         steps=steps,
         extra_force=extra,
-        kept=stored_cycles,
+        recorded_cycles=stored_cycles,
         progress=progress,
         **engine_arguments(case),
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.section import section_at
@@ -27,6 +28,7 @@ _FILE_EXAMPLE = 'Write, for example, operation.speed = "400..3500 rpm:60"'
 _MAX_VALUES = 100_000
 
 
+@with_old_names
 @dataclass(frozen=True)
 class Axis:
     """Key of a case that a study varies, with its values."""
@@ -46,7 +48,7 @@ class Axis:
         """Whether the values are numbers."""
         return all(isinstance(v, int | float) and not isinstance(v, bool) for v in self.values)
 
-    def shown(self) -> NDArray[Any]:
+    def display_values(self) -> NDArray[Any]:
         """Return the values in the display unit, or as text if they are names."""
         from tribodyn.units import convert
 

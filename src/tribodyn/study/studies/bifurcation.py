@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.checkpoints import Members
+from tribodyn.aliases import with_old_names
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import locate_errors
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 _MAX_STEP_RATIO = 2
 
 
+@with_old_names
 def bifurcation(
     case: Case,
     over: str = "operation.speed",
@@ -39,7 +41,7 @@ def bifurcation(
     steps: int | None = None,
     by: str = "",
     progress: Progress = SILENT,
-    members: Members | None = None,
+    checkpoints: Checkpoints | None = None,
     **options: Any,
 ) -> Bifurcation:
     """Compute the bifurcation diagram of a case over one of its values.
@@ -62,7 +64,7 @@ def bifurcation(
         file.
     progress : Progress
         Receives the progress of the study; silent by default.
-    members : tribodyn.checkpoints.Members, optional
+    checkpoints : tribodyn.checkpoints.Checkpoints, optional
         Stores each finished motion, and restores those that a killed process had finished.
     **options : object
         ``sweep``, ``cycles``, ``transient``, ``keep``, ``signal``, ``verdict``, ``exponents`` and
@@ -90,9 +92,9 @@ def bifurcation(
 
     values = _values(case, over, between, points, by)
     study = identity("bifurcation", case, [over, values.tolist()], steps=steps, **options)
-    members = (Members() if members is None else members).begin(study)
+    checkpoints = (Checkpoints() if checkpoints is None else checkpoints).begin(study)
     with compile_in_parallel(case, "bifurcation"):
-        systems, frequency, counts = _systems(case, over, values, steps, progress, members)
+        systems, frequency, counts = _systems(case, over, values, steps, progress, checkpoints)
         return compute(
             systems,
             frequency,
@@ -101,13 +103,18 @@ def bifurcation(
             parameter_unit=_unit(case, over),
             steps=counts,
             progress=progress,
-            members=members,
+            checkpoints=checkpoints,
             **options,
         )
 
 
 def _systems(
-    case: Case, over: str, values: Any, steps: int | None, progress: Progress, checkpoints: Members
+    case: Case,
+    over: str,
+    values: Any,
+    steps: int | None,
+    progress: Progress,
+    checkpoints: Checkpoints,
 ) -> tuple[list[System], list[float], list[int]]:
     """Structure, mesh frequency and steps of every value; one shared structure if none differs."""
     same = over == "operation.speed" and contact_without_speed(case)
@@ -215,7 +222,7 @@ class Findings:
             "verdict",
         ]
         cells = []
-        for number, value in enumerate(self.axis.shown()):
+        for number, value in enumerate(self.axis.display_values()):
             for branch, name in enumerate(diagram.branches):
                 if diagram.finished[branch, number]:
                     period, rms = diagram.period[branch, number], diagram.rms[branch, number]

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.checkpoints import Members
+from tribodyn.aliases import with_old_names
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.derive import locate_errors, mesh_law_of
@@ -45,6 +46,7 @@ _ON_FILM = frozenset({"mixed", MIXED, "matsumoto"})
 _KEYS = ("gears.driver", "operation.torque_balance", "friction")
 
 
+@with_old_names
 def friction_experiment(
     case: Case,
     *,
@@ -53,7 +55,7 @@ def friction_experiment(
     coefficients: Sequence[float] = COEFFICIENTS,
     partial: bool = False,
     progress: Progress = SILENT,
-    members: Members | None = None,
+    checkpoints: Checkpoints | None = None,
 ) -> FrictionExperiment:
     """Compare friction laws and roughnesses on one gear pair, and judge five published claims.
 
@@ -73,7 +75,7 @@ def friction_experiment(
         Return the finished steady states when interrupted with Ctrl-C, instead of raising.
     progress : Progress
         Receives the number of finished steady states; silent by default.
-    members : tribodyn.checkpoints.Members, optional
+    checkpoints : tribodyn.checkpoints.Checkpoints, optional
         Stores each finished state, and restores those that a killed process had finished.
 
     Returns
@@ -115,7 +117,7 @@ def friction_experiment(
         return PendingRun(changed, lambda: _table(changed, mesh))
 
     study = identity("friction", base, [(axis.key, axis.values) for axis in axes])
-    points = compute_points(axes, pending_at, study, partial, progress, members)
+    points = compute_points(axes, pending_at, study, partial, progress, checkpoints)
     return FrictionExperiment(base, axes, points, rubbing)
 
 
@@ -154,7 +156,7 @@ def _with_film(case: Case, laws: Sequence[str]) -> Case:
     heights = [
         f"gears.{gear}.{name}" for gear in DRIVERS for name in ("roughness_rms", "roughness_ra")
     ]
-    cleared = {key: None for key in heights if key in case.given}
+    cleared = {key: None for key in heights if key in case.user_input}
     rough = {"gears.composite_roughness": case.composite_roughness} if cleared else {}
     return case.replace({**changes, **cleared, **rough})
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from tribodyn.checkpoints import Members
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import InputError
 from tribodyn.interrupt import in_threads
 from tribodyn.mesh import MeshTable
@@ -48,7 +48,7 @@ def varied(
     case: Case,
     changes: Sequence[Mapping[str, Any]],
     progress: Progress,
-    checkpoints: Members | None = None,
+    checkpoints: Checkpoints | None = None,
 ) -> list[Member]:
     """Build tooth contact and structure of a case for each change, in their order."""
     members: dict[int, Member] = {}

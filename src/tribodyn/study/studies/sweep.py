@@ -13,7 +13,8 @@ from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from tribodyn.checkpoints import Members
+from tribodyn.aliases import with_old_names
+from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.interrupt import STOPPED, in_threads, refuse_stopped, stop_flag
 from tribodyn.mesh.film.film_lookup import shared_films
@@ -41,6 +42,7 @@ Value = TypeVar("Value")
 _SHARED_FILM_POINTS = 4
 
 
+@with_old_names
 def sweep(
     case: Case,
     over: str | Mapping[str, Any] = "operation.speed",
@@ -50,7 +52,7 @@ def sweep(
     partial: bool = False,
     by: str = "",
     progress: Progress = SILENT,
-    members: Members | None = None,
+    checkpoints: Checkpoints | None = None,
 ) -> Sweep:
     """Compute a case at many values of one or several of its keys.
 
@@ -72,7 +74,7 @@ def sweep(
         file.
     progress : Progress
         Receives the number of finished values; silent by default.
-    members : tribodyn.checkpoints.Members, optional
+    checkpoints : tribodyn.checkpoints.Checkpoints, optional
         Stores each finished value, and restores those that a killed process had finished.
 
     Returns
@@ -105,7 +107,9 @@ def sweep(
     study = identity("sweep", case, [(axis.key, axis.values) for axis in axes])
 
     pending_at = functools.partial(_pending_at, case, tuple(axis.key for axis in axes))
-    return Sweep(case, axes, compute_points(axes, pending_at, study, partial, progress, members))
+    return Sweep(
+        case, axes, compute_points(axes, pending_at, study, partial, progress, checkpoints)
+    )
 
 
 def _pending_at(case: Case, keys: Sequence[str], *values: Any) -> PendingRun:
@@ -118,11 +122,11 @@ def compute_points(
     study: Mapping[str, Any],
     partial: bool,
     progress: Progress,
-    members: Members | None,
+    checkpoints: Checkpoints | None,
 ) -> tuple[SweepPoint, ...]:
     """Compute every point of a grid in parallel, except those that the checkpoints hold."""
     grid = list(product(*(axis.values for axis in axes)))
-    checkpoints = (Members() if members is None else members).begin(study)
+    checkpoints = (Checkpoints() if checkpoints is None else checkpoints).begin(study)
     done = {
         index: SweepPoint(grid[index], figures, failed, tuple(warned))
         for index in range(len(grid) if len(checkpoints) else 0)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.aliases import with_old_names
 from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import InputError, did_you_mean
 from tribodyn.record import Parts, Record, html_table, record
@@ -53,6 +54,7 @@ class SweepPoint:
     warned: tuple[str, ...] = ()  #: codes of the warnings of the models
 
 
+@with_old_names
 @record
 class Sweep(Record):
     """What :func:`tribodyn.sweep` returns; ``sweep["rms_mesh_force"]`` is one figure as an array.
@@ -77,14 +79,14 @@ class Sweep(Record):
         return tuple(len(axis.values) for axis in self.axes)
 
     @property
-    def asked(self) -> int:
+    def size(self) -> int:
         """Number of values of the grid."""
         return prod(self.shape)
 
     @property
     def complete(self) -> bool:
         """Whether every value was reached."""
-        return len(self.points) == self.asked
+        return len(self.points) == self.size
 
     @cached_property
     def figures(self) -> tuple[str, ...]:
@@ -206,7 +208,7 @@ class Sweep(Record):
 
     def _repr_html_(self) -> str:
         """Table for notebooks: keys and the figures that reports of sweeps show."""
-        names = self.shown()
+        names = self.displayed_figures()
         head = [*(axis.key for axis in self.axes), *map(in_words, names), "failed"]
         rows = [
             [
@@ -218,7 +220,7 @@ class Sweep(Record):
         ]
         return html_table(repr(self), head, rows)
 
-    def shown(self, names: Sequence[str] = ()) -> list[str]:
+    def displayed_figures(self, names: Sequence[str] = ()) -> list[str]:
         """Choose the figures that tables show.
 
         Parameters

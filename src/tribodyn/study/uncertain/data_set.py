@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tribodyn.aliases import with_old_names
 from tribodyn.errors import Argument, InputError
 from tribodyn.files import atomic_write, check_new
 from tribodyn.record import Parts, Record, fact, record
@@ -50,14 +51,15 @@ class DataSet(Record):
             raise InputError(f'no column "{name}"', "", "", remedy)
         return self.columns[name]
 
-    def where(self, kept: Mask) -> DataSet:
+    @with_old_names
+    def where(self, mask: Mask) -> DataSet:
         """Return some of the rows.
 
         Parameters
         ----------
-        kept : (rows,) bool array
+        mask : (rows,) bool array
         """
-        columns = {name: values[kept] for name, values in self.columns.items()}
+        columns = {name: values[mask] for name, values in self.columns.items()}
         return DataSet(columns, self.units, self.case, self.settings, self.version)
 
     def _parts(self) -> Parts:
