@@ -97,7 +97,7 @@ def write_signal_report(
         None,
         path,
         kind="signal analysis",
-        told=answer.statements,
+        results=answer.statements,
         figures=answer.figures,
         head=answer.head,
         rows=answer.rows,

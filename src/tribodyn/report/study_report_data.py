@@ -63,7 +63,7 @@ def save_study(
             case,
             place / "report.html",
             kind=kind,
-            told=report.statements,
+            results=report.statements,
             figures=report.figures,
             head=report.head,
             rows=report.rows,
@@ -85,7 +85,7 @@ def save_bifurcation(
             case,
             place / "bifurcation.html",
             lead=findings.lead(),
-            told=findings.sentences(),
+            results=findings.sentences(),
             head=head,
             rows=rows,
         )

@@ -194,7 +194,7 @@ def friction_from_loss(
             None,
             place / "report.html",
             kind="friction from losses",
-            told=statements,
+            results=statements,
             figures=[figure],
             head=head,
             rows=rows,
