@@ -68,7 +68,7 @@ def _makes(function: Any) -> bool:
 def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict[str, Wanted]:
     """Checks of the parameters of a function by name."""
     homes = [each.__module__ for each in getattr(owner, "__mro__", [])]
-    names = _Names([*homes, getattr(inspect.unwrap(function), "__globals__", {}).get("__name__", "")])
+    names = _Names([*homes, getattr(function, "__module__", "")])
     wants, makes = {}, _makes(function)
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.VAR_KEYWORD:
