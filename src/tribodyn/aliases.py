@@ -68,18 +68,7 @@ class Alias:
 
 
 def with_old_names(named: _Named) -> _Named:
-    """Give a class its old names of attributes, a function or constructor those of its parameters.
-
-    Parameters
-    ----------
-    named : function or class
-        Definition with the new names.
-
-    Returns
-    -------
-    function or class
-        The same class, or the function that accepts old names as well.
-    """
+    """Give a class its old names of attributes, a function or constructor those of parameters."""
     if not isinstance(named, type):
         return cast("_Named", _accepting(named, named.__qualname__))
     for name, new in RENAMED.items():
