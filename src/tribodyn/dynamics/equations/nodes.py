@@ -187,7 +187,7 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         gap=gap,
         direction=direction,
         direction_slope=vector("direction", rows.derivatives),
-        force_direction=direction + vector("friction", rows.values),
+        force_direction=combined(np.add, direction, vector("friction", rows.values)),
         force=rows.values("force", system.force, size),
         weight=step_weights(grid),
         friction_direction=friction_directions(system, rows),
@@ -197,6 +197,13 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     if grid.width.sum() > 0.99:
         object.__setattr__(system, "_checked", min(widest, system._checked))
     return nodes
+
+
+def combined(operation: Callable[[Array, Array], Array], first: Array, second: Array) -> Array:
+    """Combine values at all nodes of a grid, those that are the same at all of them only once."""
+    if first.strides[:2] == second.strides[:2] == (0, 0):
+        return np.broadcast_to(operation(first[:1, :1], second[:1, :1]), first.shape)
+    return operation(first, second)
 
 
 def _one_row(row: Array, grid: Grid) -> Array:

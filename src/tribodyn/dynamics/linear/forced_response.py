@@ -165,6 +165,7 @@ def _solve(
     w = omega[:, None, None]
     spring = linear.stiffness + (linear.friction_stiffness if friction else 0.0)
     damper = linear.damping + (linear.friction_damping if friction else 0.0)
+    damper = damper if linear.gyroscopic is None else damper + linear.gyroscopic
     push = linear.push if friction else linear.direction
     dynamic = spring - w**2 * linear.mass + 1j * w * damper
     force = (linear.spring + 1j * omega[:, None] * linear.damper) * contact_error @ push

@@ -9,10 +9,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.grid import system_events
+from tribodyn.dynamics.equations.grid import system_events, unrepeated
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
+    combined,
     force_laws,
     friction_secant,
     friction_tangent,
@@ -44,6 +45,7 @@ class LinearSystem:
     contact_stiffness: Array  #: share of each contact in ``stiffness`` [N/m, ...]
     direction: Array  #: [1 or m]
     push: Array  #: [1 or m]
+    gyroscopic: Array | None  #: skew matrix of the gyroscopic moments [N*s/m, ...]
     spring: Array  #: stiffness of each contact, mean over the cycle [N/m]
     damper: Array  #: damping of each contact, mean over the cycle [N*s/m]
     bundle: Index  #: number of the force law to which each contact belongs
@@ -53,7 +55,7 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
     """Replace every contact by the spring and the damper that act at the static load."""
     nodes, weight = _rows(system, phase)
     closed, push = _at_rest(system, nodes)
-    along, rub = nodes.direction, push - nodes.direction
+    along, rub = nodes.direction, combined(np.subtract, push, nodes.direction)
     spring = weight[:, :, None] * np.where(closed, nodes.stiffness, 0.0)
     free = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
     damper = weight[:, :, None] * np.where(closed | free, nodes.damping, 0.0)
@@ -66,19 +68,32 @@ def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
         friction_damping=_over_cycle(damper, rub, along).sum(axis=0),
         friction_stiffness=_over_cycle(spring, rub, along).sum(axis=0),
         contact_stiffness=contact_stiffness,
-        direction=np.einsum("rs,rsji->ji", weight, nodes.direction),
-        push=np.einsum("rs,rsji->ji", weight, push),
+        direction=_mean(weight, along),
+        push=_mean(weight, push),
+        gyroscopic=None if system.gyroscopic is None else np.asarray(system.gyroscopic),
         spring=spring.sum(axis=(0, 1)),
         damper=damper.sum(axis=(0, 1)),
         bundle=force_laws(nodes),
     )
 
 
+def _mean(weight: Array, directions: Array) -> Array:
+    """Mean of directions over the cycle, (contacts, n)."""
+    directions = unrepeated(directions, 2)
+    weight = weight if directions.shape[:2] == weight.shape else np.ones((1, 1))
+    return np.asarray(np.einsum("rs,rsji->ji", weight, directions))
+
+
 def _over_cycle(factor: Array, rows: Array, columns: Array) -> Array:
     """Sum over the cycle of a factor times two directions, for each contact (contacts, n, n)."""
-    shape = (rows.shape[0] * rows.shape[1], *rows.shape[2:])
+    rows, columns = unrepeated(rows, 2), unrepeated(columns, 2)
+    if rows.shape[:2] == columns.shape[:2] == (1, 1):
+        factor = factor.sum(axis=(0, 1), keepdims=True)
+    shape = (factor.shape[0] * factor.shape[1], *rows.shape[2:])
     left = (factor[..., None] * rows).reshape(shape).transpose(1, 2, 0)
-    return np.asarray(left @ columns.reshape(shape).transpose(1, 0, 2))
+    return np.asarray(
+        left @ (columns + np.zeros_like(factor[..., None])).reshape(shape).transpose(1, 0, 2)
+    )
 
 
 def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
@@ -146,7 +161,8 @@ _RIGID = 1e-12
 class NaturalModes(Record):
     """Undamped modes of a system about its static load, and its damped eigenvalues.
 
-    Modes are sorted by frequency; rigid ones come first, with exactly 0 Hz.
+    Modes are sorted by frequency; rigid ones come first, with exactly 0 Hz. With gyroscopic
+    moments the shapes are complex, ``Re(shape*exp(2 pi i f t))``, and stay so normalised.
 
     Parameters
     ----------
@@ -155,7 +171,7 @@ class NaturalModes(Record):
     frequency : (n,) array
         Natural frequencies [Hz].
     shape : (n, n) array
-        One mode per row, with ``shape M shape^T = 1`` [1/sqrt(kg) or 1/sqrt(kg*m^2)].
+        One mode per row, with ``conj(shape) M shape^T = 1`` [1/sqrt(kg) or 1/sqrt(kg*m^2)].
     damping_ratio : (n,) array
         Part of the critical damping from the diagonal of the modal damping matrix; NaN for rigid
         modes [1].
@@ -183,7 +199,7 @@ class NaturalModes(Record):
 
     names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
     frequency: Array = quantity("mode", unit="Hz")
-    shape: Array = quantity("mode", "coordinate", unit="kg^-1/2 or kg^-1/2/m")
+    shape: Array | ComplexArray = quantity("mode", "coordinate", unit="kg^-1/2 or kg^-1/2/m")
     damping_ratio: Array = quantity("mode", unit="1")
     kinetic_share: Array = quantity("mode", "coordinate", unit="1")
     elements: tuple[str, ...] = quantity("element", axis=True, name="element")
@@ -287,7 +303,9 @@ def natural_modes(
     -----
     A contact with backlash is closed, as under load; of a force law the ramps that are closed at
     the static load count. ``frequency`` neglects damping and friction; ``eigenvalues`` belong to
-    ``M q'' + C q' + K q = 0`` with the damping of the contacts and, if requested, friction.
+    ``M q'' + (C + G) q' + K q = 0`` with the damping of the contacts, the gyroscopic moments G of
+    the system and, if requested, friction. With gyroscopic moments ``frequency`` and ``shape`` are
+    those of ``M q'' + G q' + K q = 0``.
 
     Examples
     --------
@@ -305,14 +323,17 @@ def natural_modes(
         -1, system.size, system.size
     )
     eigenvalues, complex_shape = _damped(linear, frequency, shape, friction)
+    modes: Array | ComplexArray = shape
+    if linear.gyroscopic is not None:
+        frequency, modes = _whirling(linear.gyroscopic, frequency, shape)
     return NaturalModes(
         names=linear.names,
         frequency=frequency,
-        shape=shape,
-        damping_ratio=_damping_ratio(linear.damping, frequency, shape),
-        kinetic_share=shape * (shape @ linear.mass),
+        shape=modes,
+        damping_ratio=_damping_ratio(linear, frequency, modes),
+        kinetic_share=np.real(modes.conj() * (modes @ linear.mass)),
         elements=tuple(names),
-        strain_share=_shares(matrices, frequency, shape),
+        strain_share=_shares(matrices, frequency, modes),
         contacts=len(linear.contact_stiffness),
         eigenvalues=eigenvalues,
         complex_shape=complex_shape,
@@ -336,14 +357,51 @@ def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     return frequency, shape * np.sign(largest)
 
 
-def _damping_ratio(damping: Array, frequency: Array, shape: Array) -> Array:
-    modal = np.einsum("mi,ik,mk->m", shape, damping, shape)
-    critical = 4.0 * np.pi * np.where(frequency > 0.0, frequency, np.nan)
-    return np.asarray(modal / critical)
+def _whirling(gyroscopic: Array, frequency: Array, shape: Array) -> tuple[Array, ComplexArray]:
+    """Frequencies and shapes with gyroscopic moments, from those of the system at rest.
+
+    In the modes at rest, ``a = rate*position`` and ``b = velocity`` follow ``(a, b)' = S (a, b)``
+    with a skew matrix S: its eigenvalues are imaginary whatever the speed.
+    """
+    modal = shape @ gyroscopic @ shape.T
+    size, rigid = len(frequency), int(np.count_nonzero(frequency == 0.0))
+    rate = 2.0 * np.pi * frequency[rigid:]
+    state = np.zeros((2 * size - rigid,) * 2)
+    state[: size - rigid, size:] = np.diag(rate)
+    state -= state.T
+    state[size - rigid :, size - rigid :] = 0.5 * (modal.T - modal)
+    values, vectors = np.linalg.eigh(-1j * state)
+    whirls = values > np.sqrt(_RIGID) * np.abs(values).max(initial=0.0)
+    motion = vectors[size - rigid :, whirls].T
+    motion /= np.linalg.norm(motion, axis=1, keepdims=True)
+    still = np.linalg.svd(modal[:, :rigid])[2][rigid - (size - len(motion)) :]
+    shapes = np.vstack((still @ shape[:rigid], motion @ shape))
+    top = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=1)[:, None], axis=1)
+    return (
+        np.concatenate((np.zeros(len(still)), values[whirls] / (2.0 * np.pi))),
+        np.asarray(shapes * np.conj(top) / np.abs(top), dtype=complex),
+    )
 
 
-def _shares(matrices: Array, frequency: Array, shape: Array) -> Array:
-    energy = np.einsum("mi,eik,mk->me", shape, matrices, shape)
+def _damping_ratio(linear: LinearSystem, frequency: Array, shape: Array | ComplexArray) -> Array:
+    """Share of critical damping, to the first order in the damping."""
+    modal = np.einsum("mi,ik,mk->m", shape.conj(), linear.damping, shape, optimize=True).real
+    inertia = 4.0 * np.pi * np.where(frequency > 0.0, frequency, np.nan)
+    if linear.gyroscopic is not None:
+        turned = np.einsum("mi,ik,mk->m", shape.conj(), linear.gyroscopic, shape, optimize=True)
+        inertia = inertia + turned.imag
+    return np.asarray(modal / inertia)
+
+
+def _shares(matrices: Array, frequency: Array, shape: Array | ComplexArray) -> Array:
+    energy = (
+        np.stack(
+            [np.real(np.sum(shape.conj() * (shape @ matrix), axis=1)) for matrix in matrices],
+            axis=1,
+        )
+        if len(matrices)
+        else np.zeros((len(frequency), 0))
+    )
     total = np.where(frequency > 0.0, energy.sum(axis=1), np.inf)
     return np.asarray(energy / total[:, None])
 
@@ -354,6 +412,7 @@ def _damped(
     """Eigenvalues and shapes in the undamped modes, without the position of the rigid ones."""
     spring = linear.stiffness + (linear.friction_stiffness if friction else 0.0)
     damper = linear.damping + (linear.friction_damping if friction else 0.0)
+    damper = damper if linear.gyroscopic is None else damper + linear.gyroscopic
     size, rigid = len(frequency), int(np.count_nonzero(frequency == 0.0))
     swinging = size - rigid
     # Displacements are scaled by a typical rate, so that all entries have similar magnitude.
