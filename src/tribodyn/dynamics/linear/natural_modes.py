@@ -358,11 +358,9 @@ def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:
 
 
 def _whirling(gyroscopic: Array, frequency: Array, shape: Array) -> tuple[Array, ComplexArray]:
-    """Frequencies and shapes with gyroscopic moments, from those of the system at rest.
-
-    In the modes at rest, ``a = rate*position`` and ``b = velocity`` follow ``(a, b)' = S (a, b)``
-    with a skew matrix S: its eigenvalues are imaginary whatever the speed.
-    """
+    """Frequencies and shapes with gyroscopic moments, from those of the system at rest."""
+    # In the modes at rest, a = rate*position and b = velocity follow (a, b)' = S (a, b) with a
+    # skew matrix S: its eigenvalues are imaginary whatever the speed.
     modal = shape @ gyroscopic @ shape.T
     size, rigid = len(frequency), int(np.count_nonzero(frequency == 0.0))
     rate = 2.0 * np.pi * frequency[rigid:]
