@@ -57,9 +57,10 @@ def check_name(part: object, name: str) -> None:
     """Refuse a field that is not the name of a part."""
     value = getattr(part, name)
     if not isinstance(value, str) or not value:
-        what, where = f"{name} = {_quoted(value)}", Argument(f"{type(part).__name__}.{name}")
+        what, where = f"{name} = {quoted(value)}", Argument(f"{type(part).__name__}.{name}")
         raise InputError(what, where, "Wanted: the name of a part", "Give its name as a text")
 
 
-def _quoted(value: Any) -> str:
+def quoted(value: Any) -> str:
+    """Quote a value of any kind, shortened."""
     return f'"{value}"' if isinstance(value, str) else shortened(repr(value), 60)

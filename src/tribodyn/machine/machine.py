@@ -13,7 +13,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.machine.bearing import Bearing
-from tribodyn.machine.fields import check_name, check_number
+from tribodyn.machine.fields import check_name, check_number, quoted
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.bodies import GearBody, body_problems, gear_body
 from tribodyn.machine.graph.clock import Clock, clock_of
@@ -112,7 +112,7 @@ class Machine:
         for group, kind in kinds.items():
             object.__setattr__(self, group, _parts(group, getattr(self, group), kind))
         if not isinstance(self.operation, Operation):
-            what, remedy = f"operation = {self.operation!r}", "Give an Operation"
+            what, remedy = f"operation = {quoted(self.operation)}", "Give an Operation"
             raise InputError(what, "operation", "A machine runs at a speed under a torque", remedy)
         for problems in (self._reference_problems, self._mesh_problems, self._place_problems):
             if listed := list(problems()):

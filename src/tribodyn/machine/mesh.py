@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.errors import Argument, InputError, real_numbers
-from tribodyn.machine.fields import check_number
+from tribodyn.machine.fields import check_number, quoted
 
 Hand = Literal["right", "left"]
 
@@ -85,7 +85,7 @@ class Mesh:
     def __post_init__(self) -> None:
         gears = () if isinstance(self.gears, str) else tuple(self.gears)
         if len(gears) != 2 or gears[0] == gears[1] or not all(isinstance(g, str) for g in gears):
-            what, where = f"gears = {self.gears!r}", Argument("Mesh.gears")
+            what, where = f"gears = {quoted(self.gears)}", Argument("Mesh.gears")
             remedy = 'Give the names of its first and second gear: ("z1", "z2")'
             raise InputError(what, where, "A mesh has two gears", remedy)
         object.__setattr__(self, "gears", gears)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tribodyn.errors import Argument, InputError
+from tribodyn.machine.fields import quoted
 from tribodyn.machine.section import STEEL, Material, Section
 
 
@@ -38,11 +39,11 @@ class Shaft:
     def __post_init__(self) -> None:
         sections = tuple(self.sections)
         if not all(isinstance(section, Section) for section in sections):
-            what, where = f"sections = {sections!r}", Argument("Shaft.sections")
+            what, where = f"sections = {quoted(sections)}", Argument("Shaft.sections")
             raise InputError(what, where, "Wanted: a list of Sections", "Give [Section(...), ...]")
         object.__setattr__(self, "sections", sections)
         if not isinstance(self.material, Material):
-            what, remedy = f"material = {self.material!r}", "Give a Material, such as STEEL"
+            what, remedy = f"material = {quoted(self.material)}", "Give a Material, such as STEEL"
             raise InputError(what, Argument("Shaft.material"), "Wanted: a Material", remedy)
 
     @property
