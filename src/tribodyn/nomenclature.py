@@ -51,9 +51,9 @@ class Quantity:
     @property
     def label(self) -> str:
         """Axis label: name in words with the display unit."""
-        words = self.name.replace("_", " ")
-        words = words[0].upper() + words[1:]
-        return f"{words} [{self.display_unit}]" if self.display_unit else words
+        label = self.name.replace("_", " ")
+        label = label[0].upper() + label[1:]
+        return f"{label} [{self.display_unit}]" if self.display_unit else label
 
 
 _TABLE = """
@@ -243,8 +243,8 @@ def lookup(name: str) -> Quantity:
     """
     if name in QUANTITIES:
         return QUANTITIES[name]
-    near = difflib.get_close_matches(name, QUANTITIES, n=1)
-    hint = f'; did you mean "{near[0]}"?' if near else ""
+    matches = difflib.get_close_matches(name, QUANTITIES, n=1)
+    hint = f'; did you mean "{matches[0]}"?' if matches else ""
     what, why = f'no quantity is called "{name}"{hint}', "QUANTITIES holds all names"
     raise UnknownQuantityError(what, Argument("name"), why, "Look for it with find(name)")
 

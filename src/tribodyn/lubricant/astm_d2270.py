@@ -155,8 +155,8 @@ def viscosity_at_100_degc(viscosity_at_40: float, index: float) -> float:
     ends = [viscosity_at_40_degc(end, index) for end in (low, high)]
     if not ends[0] <= viscosity_at_40 <= ends[1]:
         what = f"{viscosity_at_40 * 1e6:g} mm^2/s at 40 degC with a viscosity index of {index:g}"
-        shown = f"{ends[0] * 1e6:.4g} to {ends[1] * 1e6:.4g} mm^2/s"
-        why = f"With that index an oil has {shown} at 40 degC: 2 to 1000 mm^2/s at 100 degC"
+        span = f"{ends[0] * 1e6:.4g} to {ends[1] * 1e6:.4g} mm^2/s"
+        why = f"With that index an oil has {span} at 40 degC: 2 to 1000 mm^2/s at 100 degC"
         raise InputError(what, Argument("viscosity_at_40"), why, "Check the value and its unit")
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

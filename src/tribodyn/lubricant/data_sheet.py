@@ -46,8 +46,8 @@ def sheet_points(
 def _contradiction(at_40: float, at_100: float, stated: float, index: float) -> None:
     """Refuse a viscosity index that the viscosities do not have."""
     what = f"viscosity index {stated:g}"
-    both = f"{at_40 * 1e6:g} mm^2/s at 40 degC and {at_100 * 1e6:g} mm^2/s at 100 degC"
-    why = f"{both} have an index of {index:.0f} by ISO 2909"
+    viscosities = f"{at_40 * 1e6:g} mm^2/s at 40 degC and {at_100 * 1e6:g} mm^2/s at 100 degC"
+    why = f"{viscosities} have an index of {index:.0f} by ISO 2909"
     raise InputError(what, Argument("index"), why, "Correct one of the three, or leave one out")
 
 

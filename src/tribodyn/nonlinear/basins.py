@@ -110,8 +110,8 @@ def basins(
     beat = float(mesh_frequency)
     plane = start_plane(compiled, beat, coordinates)
     axes = _axes(between, points, cycles)
-    rest = static_start(compiled) if start is None else read_start(system, start)
-    starts = plane.starts(axes, rest)
+    state = static_start(compiled) if start is None else read_start(system, start)
+    starts = plane.starts(axes, state)
     force = np.zeros(system.size) if extra_force is None else np.asarray(extra_force, dtype=float)
     name = signal_name(system, signal)
     quantity = signal if system.contacts else name

@@ -48,8 +48,8 @@ class SobolIndices(Record):
     def __repr__(self) -> str:
         """One line."""
         shares = zip(self.name, self.first_order, self.total_order, strict=True)
-        words = ", ".join(f"{name} {first:.2g} ({whole:.2g})" for name, first, whole in shares)
-        return f"SobolIndices(alone, with interactions in brackets: {words})"
+        text = ", ".join(f"{name} {first:.2g} ({total:.2g})" for name, first, total in shares)
+        return f"SobolIndices(alone, with interactions in brackets: {text})"
 
 
 def sobol_indices(

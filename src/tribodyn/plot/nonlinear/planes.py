@@ -205,7 +205,7 @@ def _range(rms: Any) -> dict[str, float]:
 
 def _periods(survey: ParameterMap, x: Any, y: Any) -> dict[str, Any]:
     scale = _stepped([color for _, color in _PERIODS])
-    ticks = {"tickvals": list(range(len(_PERIODS))), "ticktext": [word for word, _ in _PERIODS]}
+    ticks = {"tickvals": list(range(len(_PERIODS))), "ticktext": [text for text, _ in _PERIODS]}
     return _heat(
         x,
         y,
