@@ -31,12 +31,20 @@ from tribodyn.machine.rolling.roller_bearing import CylindricalRollerBearing, Ta
 from tribodyn.machine.section import STEEL, Material, Section
 from tribodyn.machine.shaft import Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices
+from tribodyn.machine.static import (
+    BearingBalance,
+    MeshBalance,
+    ShaftDeflection,
+    StaticBalance,
+    static_balance,
+)
 
 __all__ = [
     "ROLLING_BEARINGS",
     "STEEL",
     "AngularContactBallBearing",
     "Bearing",
+    "BearingBalance",
     "BearingState",
     "Clock",
     "CylindricalRollerBearing",
@@ -48,6 +56,7 @@ __all__ = [
     "Machine",
     "Material",
     "Mesh",
+    "MeshBalance",
     "MeshDirection",
     "MeshLoad",
     "Operation",
@@ -55,9 +64,12 @@ __all__ = [
     "RollingElementBearing",
     "Section",
     "Shaft",
+    "ShaftDeflection",
     "ShaftLoad",
     "ShaftMatrices",
+    "StaticBalance",
     "TaperedRollerBearing",
+    "static_balance",
 ]
 
 guard(__name__)

@@ -1,0 +1,499 @@
+"""Static balance of a machine: shafts, meshes, bearings and housing under the torque.
+
+The potential energy of the machine is convex in the coordinates of all nodes, so Newton's method
+with a limited step finds its minimum even where a clearance leaves shafts free at first. The
+output is held against rotation; the torque there is a result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.dynamics.equations.entry import varies
+from tribodyn.errors import Argument, ComputationError, InputError, real_numbers, warn
+from tribodyn.machine.bearing import HELD
+from tribodyn.machine.machine import Machine
+from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
+from tribodyn.machine.shaft_matrices import ShaftMatrices
+from tribodyn.types import Array
+
+#: Force and moment of a mesh over the face, and their derivatives (2, 2), of the compression [m]
+#: at mid face and its slope over the face [1].
+MeshLaw = Callable[[float, float], tuple[float, float, ArrayLike]]
+
+#: Usual mean mesh stiffness per face width [Pa].
+USUAL_STIFFNESS = 14e9
+#: Most Newton steps, greatest displacement in one of them [m], greatest residual over the loads.
+_STEPS, _STRIDE, _TOLERANCE = 200, 2e-4, 1e-12
+#: Lever that makes moments and rotations comparable with forces and displacements [m].
+_LEVER = 0.05
+#: Points at which the deflection of a shaft is sampled, besides its nodes.
+_POINTS = 41
+_PHASES = (np.arange(256) + 0.5) / 256
+
+
+@dataclass(frozen=True, eq=False)
+class MeshBalance:
+    """A mesh in static balance.
+
+    Parameters
+    ----------
+    force : float [N]
+        Force along the transverse line of action.
+    moment : float [N*m]
+        Moment of the force about mid face, in the plane of action; zero unless a law gives one.
+    compression : float [m]
+        Compression along the line of action at mid face, deflection of shafts and bearings left
+        out.
+    misalignment : float [m]
+        Increase of the compression over the common face width along x, by the deflection of
+        shafts, bearings and housing.
+    stiffness : (2, 2) array
+        Derivative of force and moment with respect to compression and its slope [N/m, N, N*m].
+    """
+
+    force: float
+    moment: float
+    compression: float
+    misalignment: float
+    stiffness: Array
+
+
+@dataclass(frozen=True, eq=False)
+class BearingBalance:
+    """A bearing in static balance.
+
+    Parameters
+    ----------
+    displacement : (6,) array [m, rad]
+        Of the shaft against the housing.
+    load : (6,) array [N, N*m]
+        Force and moment of the shaft on the bearing.
+    stiffness : (6, 6) array
+        Stiffness at this load [N/m, N, N*m].
+    state : BearingState or None
+        Loads and pressures of the rolling elements; None for a linear bearing.
+    """
+
+    displacement: Array
+    load: Array
+    stiffness: Array
+    state: BearingState | None
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftDeflection:
+    """A shaft in static balance.
+
+    Parameters
+    ----------
+    position : (points,) array [m]
+        From the beginning of the shaft: gears, bearings, ends of sections, and points in between.
+    displacement : (points, 6) array [m, rad]
+        x, y, z, theta_x, theta_y, theta_z.
+    """
+
+    position: Array
+    displacement: Array
+
+
+@dataclass(frozen=True, eq=False)
+class StaticBalance:
+    """Static balance of a machine.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    meshes : mapping of str to MeshBalance
+        Forces and misalignment of the meshes.
+    bearings : mapping of str to BearingBalance
+        Displacements, loads and stiffness of the bearings.
+    shafts : mapping of str to ShaftDeflection
+        Deflection of the shafts.
+    gears : mapping of str to array
+        Displacement of each gear (6,) [m, rad].
+    housing : array [m, rad]
+        Displacement of the coordinates of the housing; empty where it is rigid.
+    output_torque : float [N*m]
+        Torque about x that holds the output.
+    steps : int
+        Newton steps.
+    assumptions : tuple of str
+        What was assumed because it was not given.
+    """
+
+    machine: Machine
+    meshes: Mapping[str, MeshBalance]
+    bearings: Mapping[str, BearingBalance]
+    shafts: Mapping[str, ShaftDeflection]
+    gears: Mapping[str, Array]
+    housing: Array
+    output_torque: float
+    steps: int
+    assumptions: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        """One line."""
+        forces = ", ".join(f"{name} {mesh.force:.6g} N" for name, mesh in self.meshes.items())
+        return f"StaticBalance({forces}; {len(self.bearings)} bearings)"
+
+    def linearized(self) -> Machine:
+        """Machine whose rolling bearings are springs with the stiffness at the working load.
+
+        Returns
+        -------
+        Machine
+        """
+        bearings = dict(self.machine.bearings)
+        for name, bearing in bearings.items():
+            if bearing.rolling is not None:
+                stiffness = self.bearings[name].stiffness
+                bearings[name] = replace(bearing, rolling=None, stiffness=stiffness)
+                if not stiffness.any():
+                    warn(
+                        "unloaded-bearing",
+                        f'bearing "{name}" carries no load, so that its stiffness is zero: reduce '
+                        "its clearance, or preload it",
+                    )
+        return replace(self.machine, bearings=bearings)
+
+
+class _Model:
+    """Coordinates and matrices of a machine, and the laws of its meshes and bearings."""
+
+    def __init__(self, machine: Machine, laws: Mapping[str, MeshLaw]) -> None:
+        self.machine, self.laws = machine, laws
+        self.assumptions: list[str] = []
+        places: dict[str, list[float]] = {name: [] for name in machine.shafts}
+        for part in (*machine.gears.values(), *machine.bearings.values()):
+            places[part.shaft].append(part.position or 0.0)
+        self.shafts = {
+            name: ShaftMatrices(shaft, tuple(places[name]), shaft.length or None)
+            for name, shaft in machine.shafts.items()
+        }
+        ends = np.cumsum([0, *(shaft.size for shaft in self.shafts.values())]).tolist()
+        self.slices = {
+            name: slice(*pair) for name, pair in zip(self.shafts, pairwise(ends), strict=True)
+        }
+        housing = machine.housing
+        self.size = ends[-1] + (housing.size if housing else 0)
+        self.housing = slice(ends[-1], self.size)
+        self.stiffness = np.zeros((self.size, self.size))
+        for name, shaft in self.shafts.items():
+            self.stiffness[self.slices[name], self.slices[name]] = shaft.stiffness
+        if housing:
+            self.stiffness[self.housing, self.housing] = housing.stiffness
+        self.scale = np.ones(self.size)
+        for part in self.slices.values():
+            self.scale[part].reshape(-1, 6)[:, 3:] = 1.0 / _LEVER
+
+    def at(self, shaft: str, position: float) -> Array:
+        """Displacement of a point of a shaft per coordinate, (6, size)."""
+        out = np.zeros((6, self.size))
+        out[:, self.slices[shaft]] = self.shafts[shaft].at(position)
+        return out
+
+    @cached_property
+    def gears(self) -> dict[str, Array]:
+        """Displacement of each gear per coordinate."""
+        return {n: self.at(g.shaft, g.position or 0.0) for n, g in self.machine.gears.items()}
+
+    @cached_property
+    def bearings(self) -> dict[str, Array]:
+        """Displacement of the shaft against the housing at each bearing, per coordinate."""
+        rows = {}
+        for name, bearing in self.machine.bearings.items():
+            row = self.at(bearing.shaft, bearing.position)
+            if bearing.node is not None and self.machine.housing is not None:
+                for k, number in enumerate((self.machine.housing.nodes or {})[bearing.node]):
+                    if number >= 0:
+                        row[k, self.housing.start + number] -= 1.0
+            rows[name] = row
+        return rows
+
+    @cached_property
+    def meshes(self) -> dict[str, Array]:
+        """Compression at mid face and its slope over the face, per coordinate, (2, size)."""
+        rows = {}
+        for name, mesh in self.machine.meshes.items():
+            direction = self.machine.directions[name]
+            first, second = (self.gears[gear] for gear in mesh.gears)
+            turn = np.cross([1.0, 0.0, 0.0], direction.normal)
+            rows[name] = np.array(
+                [
+                    direction.direction[:6] @ first + direction.direction[6:] @ second,
+                    turn @ (first[3:] - second[3:]),
+                ]
+            )
+        return rows
+
+    def law(self, name: str) -> MeshLaw:
+        """Law of a mesh: the caller's, or a constant stiffness."""
+        if name in self.laws:
+            return self.laws[name]
+        mesh = self.machine.meshes[name]
+        if mesh.stiffness is None:
+            stiffness = USUAL_STIFFNESS * self.face_width(name)
+            self.assumptions.append(
+                f"meshes.{name}.stiffness = {stiffness:.4g} N/m: 14 N/(mm um) over the face width"
+            )
+        else:
+            stiffness = _mean(mesh.stiffness)
+        error = _mean(mesh.error)
+
+        def linear(compression: float, slope: float) -> tuple[float, float, ArrayLike]:
+            return stiffness * (compression - error), 0.0, ((stiffness, 0.0), (0.0, 0.0))
+
+        return linear
+
+    def face_width(self, name: str) -> float:
+        """Common face width of a mesh."""
+        return min(self.machine.gears[gear].face_width for gear in self.machine.meshes[name].gears)
+
+    def bearing(self, name: str, displacement: Array) -> tuple[Array, Array]:
+        """Load and stiffness of a bearing."""
+        part = self.machine.bearings[name]
+        if part.rolling is None:
+            matrix = part.stiffness_matrix
+            return matrix @ displacement, matrix
+        load, matrix = np.zeros(6), np.zeros((6, 6))
+        _, load[list(HELD)], matrix[np.ix_(HELD, HELD)] = part.rolling.response(
+            displacement[list(HELD)]
+        )
+        return load, matrix
+
+
+def _mean(entry: Any) -> float:
+    """Mean of an entry over the phase of its mesh."""
+    return float(np.mean(entry(_PHASES) if varies(entry) else entry))
+
+
+def static_balance(
+    machine: Machine,
+    *,
+    laws: Mapping[str, MeshLaw] | None = None,
+    loads: Mapping[str, ArrayLike] | None = None,
+) -> StaticBalance:
+    """Balance of a machine at rest under its torque.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine; its torque acts on the beginning of the input shaft, and the end of the
+        output shaft is held.
+    laws : mapping of str to function, optional
+        Laws of meshes in place of their mean stiffness: force [N] and moment about mid face
+        [N*m] of the compression [m] at mid face and its slope over the face [1], and the
+        derivatives of both, (2, 2).
+    loads : mapping of str to (6,) array, optional
+        Further forces and moments on gears, by name [N, N*m].
+
+    Returns
+    -------
+    StaticBalance
+
+    Raises
+    ------
+    InputError
+        If a law or a load names a part that the machine does not have.
+    ComputationError
+        If nothing balances the loads; the message names the shaft.
+
+    Notes
+    -----
+    Meshes carry on the flank that the torque presses; errors enter with their mean.
+
+    Examples
+    --------
+    >>> from tribodyn.machine import Bearing, Gear, Mesh, Operation, Section, Shaft
+    >>> shaft = Shaft([Section(0.2, 0.04)])
+    >>> machine = Machine(
+    ...     shafts={"in": shaft, "out": shaft},
+    ...     gears={"z1": Gear("in", 0.05, 20, 0.02), "z2": Gear("out", 0.05, 40, 0.02)},
+    ...     meshes={"first": Mesh(("z1", "z2"), 3e-3, stiffness=3e8)},
+    ...     bearings={f"{s}{x}": Bearing(s, x) for s in ("in", "out") for x in (0.0, 0.2)},
+    ...     operation=Operation("in", "out", 100.0, 60.0))
+    >>> balance = static_balance(machine)
+    >>> round(balance.meshes["first"].force, 3), round(balance.output_torque, 6)
+    (2128.356, 120.0)
+    >>> round(float(np.hypot(*balance.bearings["in0.0"].load[1:3])), 3)  # three quarters of it
+    1596.267
+    """
+    model = _Model(machine, laws or {})
+    for kind, names, parts in (
+        ("mesh", laws or {}, machine.meshes),
+        ("gear", loads or {}, machine.gears),
+    ):
+        for name in names:
+            if name not in parts:
+                what, where = f'there is no {kind} "{name}"', Argument("laws and loads")
+                raise InputError(what, where, f"Known: {', '.join(parts)}", "Correct the name")
+    run = machine.operation
+    torque = np.copysign(1.0, run.speed) * run.torque
+    external = torque * model.at(run.input, 0.0)[3]
+    for name, load in (loads or {}).items():
+        values = real_numbers(Argument(f"loads[{name}]"), load)
+        if values.shape != (6,):
+            what, why = f"the load has the shape {values.shape}", "Wanted: forces and moments, (6,)"
+            raise InputError(what, Argument(f"loads[{name}]"), why, "Give six numbers")
+        external += values @ model.gears[name]
+    held = model.at(run.output, machine.shafts[run.output].length)[3]
+    displacement, output, steps = _solve(model, external, held)
+    return _balance(model, displacement, output, steps)
+
+
+class _Forces:
+    """Loads and stiffness of all parts at a displacement of all coordinates."""
+
+    def __init__(self, model: _Model, laws: Mapping[str, MeshLaw], displacement: Array) -> None:
+        self.total, self.tangent = model.stiffness @ displacement, model.stiffness.copy()
+        self.meshes: dict[str, tuple[Array, Array]] = {}
+        self.bearings: dict[str, tuple[Array, Array]] = {}
+        for name, rows in model.meshes.items():
+            force, moment, stiffness = laws[name](*(rows @ displacement).tolist())
+            self.meshes[name] = np.array([force, moment]), np.asarray(stiffness, dtype=float)
+        for name, rows in model.bearings.items():
+            self.bearings[name] = model.bearing(name, rows @ displacement)
+        for group, kind in ((self.meshes, model.meshes), (self.bearings, model.bearings)):
+            for name, (load, stiffness) in group.items():
+                self.total += load @ kind[name]
+                self.tangent += kind[name].T @ stiffness @ kind[name]
+
+
+def _solve(model: _Model, external: Array, held: Array) -> tuple[Array, float, int]:
+    """Displacement of all coordinates, torque that holds the output, number of steps."""
+    laws = {name: model.law(name) for name in model.meshes}
+    rolling = [n for n, b in model.machine.bearings.items() if b.rolling is not None]
+    reach = np.concatenate([model.bearings[n][:3] for n in rolling] or [np.zeros((0, model.size))])
+    shift, softest = (1e7 if rolling else 0.0), 1e-3
+    displacement, best, torque = np.zeros(model.size), np.inf, 0.0
+    limit = _TOLERANCE * float(np.abs(external * model.scale).max()) + 1e-12
+    for step in range(_STEPS):
+        forces = _Forces(model, laws, displacement)
+        residual = external - forces.total
+        shift = max(0.1 * shift, softest)
+        matrix = np.zeros((model.size + 1, model.size + 1))
+        matrix[:-1, :-1] = forces.tangent + np.diag(shift / model.scale**2)
+        matrix[:-1, -1] = matrix[-1, :-1] = held
+        change, torque = _split(np.linalg.solve(matrix, np.append(residual, 0.0)))
+        rest = float(np.abs((residual - torque * held) * model.scale).max())
+        if rest <= limit or (rest <= 1e4 * limit and rest > 0.5 * best):
+            return displacement, -torque, step
+        best = min(rest, best)
+        if not np.abs(displacement / model.scale).max() < 1.0:
+            break
+        share = min(1.0, _STRIDE / max(float(np.abs(reach @ change).max(initial=0.0)), 1e-30))
+        displacement, shortened = _advance(model, laws, external, displacement, share * change)
+        shift *= 100.0 if shortened else 1.0
+    raise _unbalanced(model, (residual - torque * held) * model.scale, displacement)
+
+
+def _split(solution: Array) -> tuple[Array, float]:
+    return solution[:-1], float(solution[-1])
+
+
+def _advance(
+    model: _Model,
+    laws: Mapping[str, MeshLaw],
+    external: Array,
+    displacement: Array,
+    change: Array,
+) -> tuple[Array, bool]:
+    """Go along a step until the energy no longer falls; whether the step was shortened."""
+
+    def slope(share: float) -> float:
+        forces = _Forces(model, laws, displacement + share * change)
+        return float((external - forces.total) @ change)
+
+    start, share = slope(0.0), 1.0
+    for _ in range(20):
+        end = slope(share)
+        if start <= 0.0 or end >= -0.5 * start:
+            break
+        share *= max(0.1, start / (start - end))
+    return displacement + share * change, share < 1.0
+
+
+def _unbalanced(model: _Model, residual: Array, displacement: Array) -> ComputationError:
+    """Error that names the shaft that nothing holds."""
+    moved = np.abs(displacement / model.scale)
+    values = moved if moved.max() > 1e-2 else np.abs(residual)
+    names = {name: float(values[part].max()) for name, part in model.slices.items()}
+    shaft = max(names, key=lambda name: names[name])
+    part = model.slices[shaft]
+    way = ["x", "y", "z", "theta_x", "theta_y", "theta_z"][int(values[part].argmax()) % 6]
+    bearings = [n for n, b in model.machine.bearings.items() if b.shaft == shaft]
+    return ComputationError(
+        f"nothing balances the load on {way} of the shaft: after {_STEPS} steps or less it is "
+        f"displaced by {1e3 * moved[part].max():.4g} mm, and "
+        f"{np.abs(residual[part]).max():.4g} N is left",
+        f"shafts.{shaft}",
+        f"It is held by {', '.join(bearings) or 'no bearing'}; bearings without axial or tilting "
+        "stiffness, of one axial direction only, or too much clearance leave it free",
+        "Add a bearing that takes this load, or correct direction, clearance and preload",
+    )
+
+
+def _check_direction(name: str, bearing: RollingElementBearing, load: Array) -> None:
+    """Refuse an axial load that an angular contact bearing does not carry."""
+    angle = getattr(bearing, "contact_angle", 0.0)
+    if angle and bearing.direction * load[0] < -1e-6 * np.abs(load[:3]).max():
+        ways = "+x" if load[0] > 0.0 else "-x", "+x" if bearing.direction > 0 else "-x"
+        raise ComputationError(
+            f"the shaft presses the bearing along {ways[0]} by {abs(load[0]):.4g} N",
+            f"bearings.{name}.direction",
+            f"A bearing with a contact angle of {np.degrees(angle):.3g} deg and this direction "
+            f"carries axial forces along {ways[1]} only",
+            "Turn it, add a bearing of the other direction, or preload it",
+        )
+
+
+def _balance(model: _Model, displacement: Array, output: float, steps: int) -> StaticBalance:
+    """Collect the results by part."""
+    laws = {name: model.law(name) for name in model.meshes}
+    forces = _Forces(model, laws, displacement)
+    meshes = {}
+    for name, (load, stiffness) in forces.meshes.items():
+        compression, slope = (model.meshes[name] @ displacement).tolist()
+        misalignment = slope * model.face_width(name)
+        meshes[name] = MeshBalance(
+            float(load[0]), float(load[1]), compression, misalignment, stiffness
+        )
+    bearings = {}
+    for name, (load, stiffness) in forces.bearings.items():
+        moved = model.bearings[name] @ displacement
+        rolling = model.machine.bearings[name].rolling
+        if rolling is not None:
+            _check_direction(name, rolling, load)
+        state = rolling.state(moved[list(HELD)]) if rolling else None
+        bearings[name] = BearingBalance(moved, load, stiffness, state)
+    shafts = {}
+    for name, shaft in model.shafts.items():
+        position = np.union1d(shaft.nodes, np.linspace(0.0, shaft.shaft.length, _POINTS))
+        rows = np.array([shaft.at(place) for place in position])
+        shafts[name] = ShaftDeflection(position, rows @ displacement[model.slices[name]])
+    notes = list(model.assumptions)
+    for name, bearing in model.machine.bearings.items():
+        if bearing.rolling is not None:
+            notes += [f"bearings.{name}.{note}" for note in bearing.rolling.assumptions]
+        elif bearing.is_default:
+            notes.append(f"bearings.{name} is stiff: 1e9 N/m along x, y and z")
+    return StaticBalance(
+        machine=model.machine,
+        meshes=meshes,
+        bearings=bearings,
+        shafts=shafts,
+        gears={name: rows @ displacement for name, rows in model.gears.items()},
+        housing=displacement[model.housing],
+        output_torque=output,
+        steps=steps,
+        assumptions=tuple(dict.fromkeys(notes)),
+    )
