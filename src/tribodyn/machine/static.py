@@ -173,8 +173,10 @@ class _Model:
         self.machine, self.laws = machine, laws
         self.assumptions: list[str] = []
         places: dict[str, list[float]] = {name: [] for name in machine.shafts}
-        for part in (*machine.gears.values(), *machine.bearings.values()):
-            places[part.shaft].append(part.position or 0.0)
+        for gear in machine.gears.values():
+            places[gear.shaft].append(gear.node_position)
+        for bearing in machine.bearings.values():
+            places[bearing.shaft].append(bearing.position)
         self.shafts = {
             name: ShaftMatrices(shaft, tuple(places[name]), shaft.length or None)
             for name, shaft in machine.shafts.items()
@@ -204,7 +206,7 @@ class _Model:
     @cached_property
     def gears(self) -> dict[str, Array]:
         """Displacement of each gear per coordinate."""
-        return {n: self.at(g.shaft, g.position or 0.0) for n, g in self.machine.gears.items()}
+        return {n: self.at(g.shaft, g.node_position) for n, g in self.machine.gears.items()}
 
     @cached_property
     def bearings(self) -> dict[str, Array]:
@@ -345,8 +347,8 @@ def static_balance(
             what, why = f"the load has the shape {values.shape}", "Wanted: forces and moments, (6,)"
             raise InputError(what, Argument(f"loads[{name}]"), why, "Give six numbers")
         external += values @ model.gears[name]
-    held = model.at(run.output, machine.shafts[run.output].length)[3]
-    displacement, output, steps = _solve(model, external, held)
+    output_row = model.at(run.output, machine.shafts[run.output].length)[3]
+    displacement, output, steps = _solve(model, external, output_row)
     return _balance(model, displacement, output, steps)
 
 
@@ -368,7 +370,7 @@ class _Forces:
                 self.tangent += kind[name].T @ stiffness @ kind[name]
 
 
-def _solve(model: _Model, external: Array, held: Array) -> tuple[Array, float, int]:
+def _solve(model: _Model, external: Array, output_row: Array) -> tuple[Array, float, int]:
     """Displacement of all coordinates, torque that holds the output, number of steps."""
     laws = {name: model.law(name) for name in model.meshes}
     rolling = [n for n, b in model.machine.bearings.items() if b.rolling is not None]
@@ -382,18 +384,18 @@ def _solve(model: _Model, external: Array, held: Array) -> tuple[Array, float, i
         shift = max(0.1 * shift, softest)
         matrix = np.zeros((model.size + 1, model.size + 1))
         matrix[:-1, :-1] = forces.tangent + np.diag(shift / model.scale**2)
-        matrix[:-1, -1] = matrix[-1, :-1] = held
+        matrix[:-1, -1] = matrix[-1, :-1] = output_row
         change, torque = _split(np.linalg.solve(matrix, np.append(residual, 0.0)))
-        rest = float(np.abs((residual - torque * held) * model.scale).max())
-        if rest <= limit or (rest <= 1e4 * limit and rest > 0.5 * best):
+        remainder = float(np.abs((residual - torque * output_row) * model.scale).max())
+        if remainder <= limit or (remainder <= 1e4 * limit and remainder > 0.5 * best):
             return displacement, -torque, step
-        best = min(rest, best)
+        best = min(remainder, best)
         if not np.abs(displacement / model.scale).max() < 1.0:
             break
         share = min(1.0, _STRIDE / max(float(np.abs(reach @ change).max(initial=0.0)), 1e-30))
         displacement, shortened = _advance(model, laws, external, displacement, share * change)
         shift *= 100.0 if shortened else 1.0
-    raise _unbalanced(model, (residual - torque * held) * model.scale, displacement)
+    raise _unbalanced(model, (residual - torque * output_row) * model.scale, displacement)
 
 
 def _split(solution: Array) -> tuple[Array, float]:

@@ -166,9 +166,9 @@ def test_reciprocity_and_proportion():
     machine = helical_stage(torque=0.0)
     unit = np.eye(6)
     for i, j in ((1, 2), (0, 4), (3, 1), (5, 5)):
-        there = static_balance(machine, loads={"z1": unit[i]}).gears["z2"][j]
+        forward = static_balance(machine, loads={"z1": unit[i]}).gears["z2"][j]
         back = static_balance(machine, loads={"z2": unit[j]}).gears["z1"][i]
-        assert there == pytest.approx(back, rel=1e-8, abs=1e-18)
+        assert forward == pytest.approx(back, rel=1e-8, abs=1e-18)
     single, double = (static_balance(helical_stage(torque=t)) for t in (200.0, 400.0))
     for name, deflection in single.gears.items():
         assert double.gears[name] == pytest.approx(2.0 * deflection, rel=1e-7, abs=1e-15)

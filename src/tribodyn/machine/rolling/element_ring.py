@@ -235,9 +235,10 @@ class RollingElementBearing(ABC):
         def excess(offset: float) -> float:
             none = np.zeros(self.elements)
             law = self.element_law(none + self.direction * offset, none, none)
-            return float(np.abs(law.force[:, 0].sum()) - self.preload)
+            return float(self.direction * law.force[:, 0].sum() - self.preload)
 
         high = 1e-3 * self.element_diameter
+        low = 0.0 if excess(0.0) < 0.0 else -self.element_diameter  # an interference presses too
         while excess(high) < 0.0:
             high *= 2.0
             if high > 0.5 * self.element_diameter:
@@ -247,7 +248,7 @@ class RollingElementBearing(ABC):
                     "The bearing cannot carry it along its axis",
                     "Give a force of the order of the load rating in N, or none",
                 )
-        return self.direction * float(brentq(excess, 0.0, high, xtol=1e-18, rtol=1e-14))
+        return self.direction * float(brentq(excess, low, high, xtol=1e-18, rtol=1e-14))
 
     def _local(self, displacement: Array) -> tuple[Array, Array, Array]:
         axial, radial, tilt = np.moveaxis(self._to_element @ displacement, -1, 0)

@@ -83,6 +83,14 @@ def test_opposite_mounting_is_the_mirror_image():
             assert left.load(mirror * position) == pytest.approx(mirror * right.load(position))
 
 
+def test_preload_of_a_bearing_with_interference_is_its_axial_force():
+    bearing = TaperedRollerBearing(
+        **ROLLERS, contact_angle=14 * DEG, preload=300.0, radial_clearance=-10e-6, direction=-1
+    )
+    assert bearing.axial_offset > 0.0
+    assert bearing.load([0.0] * 5)[0] == pytest.approx(-300.0, rel=1e-9)
+
+
 def test_axial_load_against_the_equation_of_the_contact_angle():
     """F / Z = c A^1.5 sin(a) (cos(a0)/cos(a) - 1)^1.5, x = A sin(a - a0) / cos(a)."""
     free = 40 * DEG
