@@ -55,7 +55,7 @@ def random_parts(draw: Random) -> Parts:
         bearings[f"b{number}"] = Bearing(name, 0.01, draw.choice([None, 1e8]), 1e8, 1e4)
         bearings[f"c{number}"] = Bearing(name, place + 0.04, (1e8, 2e8))
     ends = draw.sample(sorted(shafts), 2)
-    operation = Operation(*ends, draw.uniform(-300, 300), draw.uniform(-500, 500))
+    operation = Operation(ends[0], ends[1], draw.uniform(-300, 300), draw.uniform(-500, 500))
     return dict(zip((*GROUPS, "operation"), (shafts, gears, meshes, bearings, operation),
                     strict=True))  # fmt: skip
 
