@@ -156,9 +156,10 @@ def _outdated(desk: TabSession) -> list[Any]:
 def _drawing(case: Case) -> list[Any]:
     from tribodyn import plot
 
-    figure = plot.hypoid_pair if case.gears.kind == "hypoid" else plot.gear_pair
     try:
-        subject = case.hypoid_flanks if case.gears.kind == "hypoid" else case.gear_pair
+        flanks = case.hypoid_flanks
+        figure = plot.gear_pair if flanks is None else plot.hypoid_pair
+        subject = case.gear_pair if flanks is None else flanks
         sketch = figure.sketch(subject)
     except InputError as error:
         return [html.Div(html.P(error.problems[0].what), className="block")]

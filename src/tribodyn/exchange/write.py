@@ -71,7 +71,7 @@ def write_rexs(case: Case, path: str | PathLike[str], *, force: bool = False) ->
         why = "The suffix determines the format of the model"
         remedy = f"Use a suffix of {', '.join(_WRITERS)}"
         raise InputError(f'the name ends in "{target.suffix}"', str(path), why, remedy)
-    if case.gears.kind != "spur":
+    if case.spur_pair is None:
         what = f'gears of the kind "{case.gears.kind}" are not a cylindrical stage'
         raise InputError(what, "gears.kind", "", "Write a case of spur gears")
     if target.exists() and (target.is_dir() or not force):

@@ -123,7 +123,7 @@ def _joined(blocks: Iterable[Block]) -> list[Block]:
 
 def sections_of(case: Any) -> tuple[str, ...]:
     """Names of the figures of a report, in their order."""
-    return HYPOID_SECTIONS if case.gears.kind == "hypoid" else SECTIONS
+    return SECTIONS if case.hypoid_flanks is None else HYPOID_SECTIONS
 
 
 def figure_blocks(result: Any) -> list[Block]:

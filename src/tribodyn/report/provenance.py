@@ -24,29 +24,18 @@ def _with_unit(name: str, value: float) -> str:
     return f"{float(displayed(name, value)):.5g} {display_unit(name)}"
 
 
-def _stiffness(case: Any) -> str:
-    if case.gears.kind == "hypoid":
-        return "contact lines"
-    return f"table {case.gears.table}" if case.gears.kind == "table" else str(case.stiffness.model)
-
-
-def _film(case: Any) -> str:
-    from tribodyn.mesh.hypoid.friction import ELLIPTICAL
-
-    return ELLIPTICAL if case.gears.kind == "hypoid" else str(case.film.model)
-
-
 def operating_point(case: Any) -> list[tuple[str, str]]:
     """Speed, load, surfaces, oil and models of a case as formatted (name, value) pairs."""
     gears, operation = case.gears, case.operation
+    stiffness, film = case.contact_models
     point = [
         ("Teeth", f"{gears.pinion.teeth} : {gears.wheel.teeth}"),
         ("Speed", f"{_with_unit('speed', operation.speed)} ({operation.speed_of})"),
         ("Torque", f"{_with_unit('torque', operation.torque)} ({operation.speed_of})"),
         ("Driver", gears.driver),
-        ("Film model", _film(case)),
+        ("Film model", film),
         ("Friction law", case.friction.law),
-        ("Stiffness model", _stiffness(case)),
+        ("Stiffness model", stiffness),
         ("Structure", case.dynamics.model),
         ("Method", case.solver.method),
     ]

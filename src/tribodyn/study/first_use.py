@@ -60,7 +60,7 @@ def _missing_jobs(case: Case, study: str = "run") -> Sequence[str]:
     if not hasattr(march_block, "_cache"):  # Numba is disabled
         return []
     uncached = set()
-    if case.gears.kind == "spur":
+    if case.spur_pair is not None:
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
         uncached |= set() if is_cached(solve_loads) else {"loads"}

@@ -211,3 +211,9 @@ def test_tables_and_those_figures_that_its_gears_have_are_exported(result, tmp_p
     assert "figure_path_of_contact" not in written
     cells = json.loads((place / "summary.json").read_text(encoding="utf-8"))
     assert dict(zip(cells["figure"], cells["value"], strict=True)) == result.summary()
+
+
+def test_contact_lines_in_elliptical_contacts_are_its_models():
+    case = tribodyn.load_case(NAME)
+    assert case.spur_pair is None
+    assert case.contact_models == ("contact lines", "hamrock-dowson")

@@ -331,3 +331,12 @@ def test_a_table_case_has_a_bifurcation_diagram(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         assert "3" in repr(bifurcation(case, **SPEEDS))
+
+
+def test_a_table_has_no_spur_pair_and_is_its_own_stiffness_model(spur, tmp_path):
+    path = written(tmp_path / "k.csv", sinusoid())
+    case = table_case(path)
+    assert case.spur_pair is None
+    assert case.contact_models[0] == f"table {path}"
+    assert spur.case.spur_pair is spur.case.gear_pair
+    assert spur.case.contact_models == (spur.case.stiffness.model, spur.case.film.model)

@@ -53,12 +53,12 @@ class Meshes:
         """Mesh table of a case."""
         from tribodyn.mesh.build import loaded_mesh
 
-        if case.gears.kind != "spur":
+        if case.spur_pair is None:
             return mesh_of(case)
         key = loads_of(case)
         if key not in self._loaded:
             self._loaded[key] = loaded_mesh(
-                case.gear_pair,
+                case.spur_pair,
                 contact_settings(case),
                 (case.pinion_speed, case.pinion_torque),
                 force_law=mesh_law_of(case) == "force-law",
@@ -85,15 +85,16 @@ def _check(case: Case, meshes: Meshes) -> Figures:
         "wheel_speed": case.pinion_speed / case.gear_ratio,
         "mesh_frequency": case.pinion_speed * case.gears.pinion.teeth / (2.0 * math.pi),
     }
-    spur = _spur_pair(case) if case.gears.kind == "spur" else {}
-    return {**numbers, **geometry(case), **oil, **turning, **spur}
+    return {**numbers, **geometry(case), **oil, **turning, **_spur_pair(case)}
 
 
 def _spur_pair(case: Case) -> dict[str, float]:
-    """Solid bodies of the same gears, and their contact at the pitch point."""
+    """Solid bodies of spur gears, and their contact at the pitch point."""
     from tribodyn.contact import effective_modulus
 
-    pair, steel = case.gear_pair, case.material_properties
+    pair, steel = case.spur_pair, case.material_properties
+    if pair is None:
+        return {}
     bodies = {
         f"gears.{gear}.{key}": None for gear in _GEARS for key in ("mass", "moment_of_inertia")
     }
@@ -116,12 +117,14 @@ def _mesh(case: Case, meshes: Meshes) -> Figures:
         "mean_friction_coefficient": mesh.mean_friction_coefficient,
         "friction_variation": float(np.ptp(sums) / sums.mean()) if sums.any() else math.nan,
     }
-    return figures | (_friction_places(case, mesh) if case.gears.kind == "spur" else {})
+    return figures | _friction_places(case, mesh)
 
 
 def _friction_places(case: Case, mesh: MeshTable) -> dict[str, float]:
-    """Friction at both ends, in single contact, in the recess, at the pitch point."""
-    ratio = case.gear_pair.transverse_contact_ratio
+    """Friction of spur gears at both ends, in single contact, in the recess, at the pitch point."""
+    if case.spur_pair is None:
+        return {}
+    ratio = case.spur_pair.transverse_contact_ratio
     ages = {
         "start": _INSIDE,
         "single": 0.5 * ratio,
@@ -140,7 +143,7 @@ def _friction_places(case: Case, mesh: MeshTable) -> dict[str, float]:
 @COMPUTATIONS.register("run")
 def _run(case: Case, meshes: Meshes) -> Figures:
     """The summary of a run, and of both gears the acceleration in both directions together."""
-    mesh_source = None if case.gears.kind != "spur" else lambda: meshes.table(case)
+    mesh_source = None if case.spur_pair is None else lambda: meshes.table(case)
     result = computed(case, mesh_source=mesh_source)
     multipliers = np.abs(result.response.floquet_multipliers)
     figures = result.summary()

@@ -93,6 +93,16 @@ class CaseData(CaseTables):
         pair = partial(derive.gear_pair, self.gears, self.dynamics.backlash)
         return self._once("gear_pair", ("gears", "dynamics"), pair)
 
+    @property
+    def spur_pair(self) -> SpurPair | None:
+        """Both gears in their working position; None where they are no spur gears."""
+        return self.gear_pair if self.gears.kind == "spur" else None
+
+    @property
+    def contact_models(self) -> tuple[str, str]:
+        """Names of the models of the tooth contact in force: stiffness, and film."""
+        return derive.contact_models(self)
+
     @cached_property
     def hypoid_flanks(self) -> HypoidFlanks | None:
         """Flanks of the side that carries; None where the gears are no hypoid pair."""

@@ -222,9 +222,9 @@ def mesh_law_of(case: CaseData) -> MeshForce:
         return cast("MeshForce", case.dynamics.mesh_law)
     if case.mesh_table is not None:
         return "force-law" if case.mesh_table.has_force_law else "stiffness"
-    if case.gears.kind != "spur":
+    if case.spur_pair is None:
         return "stiffness"
-    nonlinear = MODELS[case.stiffness.model].coupled or case.gear_pair.has_modification
+    nonlinear = MODELS[case.stiffness.model].coupled or case.spur_pair.has_modification
     return "force-law" if nonlinear else "stiffness"
 
 
@@ -333,6 +333,16 @@ def no_gear_pair(kind: str) -> Problem:
     what = f'a case with gears.kind = "{kind}" has no gear pair'
     remedy = 'Give the gears with kind = "spur" to use their geometry'
     return Problem(what, "gears.kind", _NO_PAIR_REASONS[kind], remedy)
+
+
+def contact_models(case: CaseData) -> tuple[str, str]:
+    """Return the names of the stiffness and the film model of the tooth contact."""
+    from tribodyn.mesh.hypoid.friction import ELLIPTICAL
+
+    if case.gears.kind == "hypoid":
+        return "contact lines", ELLIPTICAL
+    stiffness = case.stiffness.model if case.gears.table is None else f"table {case.gears.table}"
+    return str(stiffness), str(case.film.model)
 
 
 def backlash(case: CaseData) -> float:

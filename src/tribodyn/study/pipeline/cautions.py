@@ -47,9 +47,9 @@ _INERTIAS = (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6))
 
 def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
     """Return warnings about the gears of a case, before anything is computed."""
-    if case.gears.kind == "hypoid":
+    if case.hypoid_flanks is not None:
         return hypoid_warnings(case.gears)
-    if case.gears.kind == "table":
+    if case.spur_pair is None:
         return ()
     tables = ("gears", "dynamics", "material", "stiffness", "film")
     return case._once("cautions", tables, lambda: _of_gears(case))
@@ -294,7 +294,7 @@ def motion_cautions(case: Case, system: System, response: Response) -> tuple[Mod
 
 def teeth_cautions(case: Case) -> tuple[ModelWarning, ...]:
     """Warn that the motion ignores deviations from tooth to tooth."""
-    if case.gears.kind != "spur" or not case.gear_pair.teeth_differ:
+    if case.spur_pair is None or not case.spur_pair.teeth_differ:
         return ()
     message = (
         "pitch deviations and run-out differ from tooth to tooth: the static transmission error "

@@ -32,8 +32,7 @@ def operating_figures(case: Case) -> dict[str, float]:
     """Speed and force at the pitch line, power, and the oil at its operating temperature."""
     torque, speed = case.pinion_torque, case.pinion_speed
     figures = {"input_power": torque * speed}
-    if case.gears.kind == "spur":
-        pair = case.gear_pair
+    if (pair := case.spur_pair) is not None:
         radius = pair.pinion.base_radius / np.cos(pair.operating_pressure_angle)
         figures |= {
             "pitch_line_velocity": speed * radius,
@@ -63,7 +62,7 @@ def load_figures(case: Case, mesh: MeshTable, figures: Mapping[str, float]) -> d
         "efficiency": 1.0 - lost / power,
         **_dynamic_factors(figures),
     } | gearbox_figures(case, lost)
-    return loads | (standard_figures(case) if case.gears.kind == "spur" else {})
+    return loads | (standard_figures(case) if case.spur_pair is not None else {})
 
 
 def _dynamic_factors(figures: Mapping[str, float]) -> dict[str, float]:

@@ -211,7 +211,8 @@ def _static_error_figures(result: Computed) -> dict[str, Any]:
     """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
     name = "static_transmission_error"
     figures: tuple[Any, Any, Any]
-    if result.case.gears.kind == "spur" and result.case.gear_pair.teeth_differ:
+    pair = result.case.spur_pair
+    if pair is not None and pair.teeth_differ:
         loaded = result.loaded_contact()
         error = loaded.transmission_error + static_error(result.case, loaded.phase)
         loaded = replace(loaded, transmission_error=error)

@@ -79,7 +79,7 @@ def mesh_of(
             pinion_torque=case.pinion_torque,
             friction_coefficient=friction_of_table(case),
         )
-    if case.gears.kind == "hypoid":
+    if case.hypoid_flanks is not None:
         return hypoid_friction_of(case, load=load, rehearsal=rehearsal).table()
     settings = contact_settings(case)
     if rehearsal:
@@ -107,20 +107,21 @@ def teeth_contact_ratio(case: Case) -> float | None:
     from tribodyn.mesh.build import teeth_under_load
     from tribodyn.mesh.loaded_intervals import contact_ratio
 
-    if case.gears.kind != "spur" or not case.gear_pair.has_profile_modification:
+    pair = case.spur_pair
+    if pair is None or not pair.has_profile_modification:
         return None
     settings = contact_settings(case)
-    cycle, teeth = teeth_under_load(case.gear_pair, settings, case.pinion_torque, None, None)
+    cycle, teeth = teeth_under_load(pair, settings, case.pinion_torque, None, None)
     shared = teeth.shared_load()
     return contact_ratio(cycle.grid, shared.share, shared.corner_share)
 
 
 def film_group(case: Case) -> object:
     """Key of cases whose tooth contacts differ in speed and load alone; None for other cases."""
-    if case.gears.kind != "spur" or case._named_files():
+    if case.spur_pair is None or case._named_files():
         return None
     try:
-        return case.gear_pair, contact_settings(case), mesh_law_of(case)
+        return case.spur_pair, contact_settings(case), mesh_law_of(case)
     except InputError:
         return None  # preparing the run reports the error
 

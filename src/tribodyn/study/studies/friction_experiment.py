@@ -143,7 +143,7 @@ def _with_film(case: Case, laws: Sequence[str]) -> Case:
     from tribodyn.ehl import FILM_MODELS
     from tribodyn.friction import LAWS as LAW_REGISTRY
 
-    if case.gears.kind != "spur":
+    if case.spur_pair is None:
         remedy = "Take a case of spur gears"
         what, why = f'gears.kind = "{case.gears.kind}"', "The experiment solves films of spur gears"
         raise InputError(what, "argument case", why, remedy)

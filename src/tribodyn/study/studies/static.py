@@ -100,7 +100,7 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     torques = pinion_torques(case, torque)
     if torque is None:
         torques = list(np.linspace(*_RANGE, _TORQUES) * torques[0])
-    if case.gears.kind == "hypoid":
+    if case.hypoid_flanks is not None:
         return _hypoid_map(case, torques, phases)
     with locate_errors(case):
         return transmission_error_over_torque(
