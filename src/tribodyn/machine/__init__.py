@@ -10,10 +10,14 @@ positive speed turns y towards z.
 | ``bearing``, ``housing`` | what carries the shafts |
 | ``machine`` | which parts form a machine |
 | ``beam``, ``shaft_matrices`` | how stiff and how heavy a shaft is |
+| ``structure``, ``reduction`` | matrices of all parts but the meshes, full and reduced |
+| ``assembly`` | equations of motion |
+| ``modes`` | natural frequencies, and which parts store the energy |
 | ``graph`` | speeds, torques, clock, directions, places and masses that follow from it |
 """
 
 from tribodyn.arguments import guard
+from tribodyn.machine.assembly import system
 from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.bodies import GearBody
@@ -24,6 +28,8 @@ from tribodyn.machine.graph.placement import Placement
 from tribodyn.machine.housing import Housing
 from tribodyn.machine.machine import Machine, Operation
 from tribodyn.machine.mesh import Mesh
+from tribodyn.machine.modes import MachineModes, machine_modes
+from tribodyn.machine.reduction import machine_structure, reduce_structure
 from tribodyn.machine.rolling.ball_bearing import AngularContactBallBearing, DeepGrooveBallBearing
 from tribodyn.machine.rolling.bearing_types import ROLLING_BEARINGS
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
@@ -38,6 +44,7 @@ from tribodyn.machine.static import (
     StaticBalance,
     static_balance,
 )
+from tribodyn.machine.structure import MachineStructure, Reduction
 
 __all__ = [
     "ROLLING_BEARINGS",
@@ -54,6 +61,8 @@ __all__ = [
     "Housing",
     "Kinematics",
     "Machine",
+    "MachineModes",
+    "MachineStructure",
     "Material",
     "Mesh",
     "MeshBalance",
@@ -61,6 +70,7 @@ __all__ = [
     "MeshLoad",
     "Operation",
     "Placement",
+    "Reduction",
     "RollingElementBearing",
     "Section",
     "Shaft",
@@ -69,7 +79,11 @@ __all__ = [
     "ShaftMatrices",
     "StaticBalance",
     "TaperedRollerBearing",
+    "machine_modes",
+    "machine_structure",
+    "reduce_structure",
     "static_balance",
+    "system",
 ]
 
 guard(__name__)

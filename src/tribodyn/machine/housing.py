@@ -11,6 +11,11 @@ from numpy.typing import ArrayLike
 from tribodyn.errors import Argument, InputError, real_numbers
 from tribodyn.types import Array
 
+#: Coordinates of a node, in their order.
+AXES = ("x", "y", "z", "theta_x", "theta_y", "theta_z")
+#: Eigenvalue of a scaled matrix below which it is singular, over the greatest.
+_SINGULAR = 1e-12
+
 
 @dataclass(frozen=True, eq=False)
 class Housing:
@@ -29,8 +34,8 @@ class Housing:
     Raises
     ------
     InputError
-        If a matrix has a wrong shape or is not finite and symmetric, or a node has a coordinate
-        that the matrices do not have.
+        If a matrix has a wrong shape, is not finite and symmetric, or mass or stiffness is
+        singular, or a node has a coordinate that the matrices do not have.
 
     Examples
     --------
@@ -58,6 +63,41 @@ class Housing:
             for name, numbers in (self.nodes or {}).items()
         }
         object.__setattr__(self, "nodes", nodes)
+        self._refuse_singular()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the coordinates: ``housing_seat A_x``, or by their number."""
+        names = [f"housing_{number}" for number in range(self.size)]
+        for node, numbers in (self.nodes or {}).items():
+            for axis, number in zip(AXES, numbers, strict=True):
+                if number >= 0:
+                    names[number] = f"housing_{node}_{axis}"
+        return tuple(names)
+
+    def _refuse_singular(self) -> None:
+        """Refuse motions without kinetic energy, and a housing that nothing holds."""
+        for name, energy, remedy in (
+            ("mass", "kinetic", "Remove coordinates without inertia before the reduction"),
+            ("stiffness", "strain", "Hold the housing at its feet before the reduction"),
+        ):
+            matrix = np.asarray(getattr(self, name))
+            size = np.sqrt(np.abs(np.diag(matrix)))
+            size[size == 0.0] = 1.0
+            values, motions = np.linalg.eigh(matrix / np.outer(size, size))
+            if values[0] > _SINGULAR * values[-1]:
+                continue
+            motion = np.abs(motions[:, 0] / size)
+            most = [
+                self.names[i] for i in np.argsort(-motion)[:3] if motion[i] > 0.3 * motion.max()
+            ]
+            raise InputError(
+                f"the {name} matrix is singular or not positive: a motion of {', '.join(most)} has "
+                f"no {energy} energy",
+                Argument(f"Housing.{name}"),
+                f"Its least eigenvalue is {values[0] / values[-1]:.2g} of the greatest",
+                remedy,
+            )
 
     @property
     def size(self) -> int:

@@ -6,11 +6,15 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.errors import Argument, InputError, real_numbers
 from tribodyn.machine.fields import check_number, quoted
 
 Hand = Literal["right", "left"]
+#: Phases over which an entry is averaged.
+_PHASES = (np.arange(256) + 0.5) / 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,6 +126,11 @@ class Mesh:
     def base_helix_angle(self) -> float:
         """Helix angle at the base circle, without a sign [rad]."""
         return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
+
+
+def mean_over_phase(entry: Any) -> float:
+    """Mean of an entry of a mesh over its phase."""
+    return float(np.mean(entry(_PHASES) if varies(entry) else entry))
 
 
 def _check_entry(mesh: Mesh, name: str, positive: bool | None) -> None:

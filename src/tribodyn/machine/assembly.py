@@ -1,0 +1,110 @@
+"""The system of a machine: its matrices, and one contact per mesh."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.system import Contact, System
+from tribodyn.machine.machine import Machine
+from tribodyn.machine.reduction import machine_structure
+from tribodyn.machine.structure import MachineStructure
+from tribodyn.types import Array
+
+
+def system(machine: Machine | MachineStructure) -> System:
+    """Assemble the equations of motion of a machine.
+
+    Parameters
+    ----------
+    machine : Machine or MachineStructure
+        The machine, whose matrices :func:`machine_structure` computes, or its matrices.
+
+    Returns
+    -------
+    System
+        One contact per mesh, in the order of the meshes, with its mesh cycles in a period of
+        ``machine.clock``; gyroscopic moments at the speed of the operation. The torque of the
+        input is that of the operation, the torque of the output keeps the mean speed.
+
+    Raises
+    ------
+    InputError
+        If a mesh has no stiffness.
+
+    Examples
+    --------
+    >>> from tribodyn.machine import Bearing, Gear, Mesh, Operation, Shaft
+    >>> machine = Machine(
+    ...     shafts={"input": Shaft(), "output": Shaft()},
+    ...     gears={"z1": Gear("input", 0.0, 27, 0.05), "z2": Gear("output", 0.0, 51, 0.05)},
+    ...     meshes={"first": Mesh(("z1", "z2"), normal_module=4.5e-3, stiffness=5e8)},
+    ...     bearings={"A": Bearing("input", 0.0, radial_stiffness=4e8)},
+    ...     operation=Operation("input", "output", speed=100.0, torque=400.0))
+    >>> system(machine)
+    System(4 coordinates, 1 contact)
+    """
+    structure = machine_structure(machine) if isinstance(machine, Machine) else machine
+    machine = structure.machine
+    gyroscopic = structure.gyroscopic()
+    return System(
+        mass=structure.mass,
+        damping=structure.damping,
+        stiffness=structure.stiffness,
+        force=structure.force,
+        contacts=[_contact(structure, name) for name in machine.meshes],
+        names=structure.names,
+        balance=structure.balance,
+        gyroscopic=gyroscopic if gyroscopic.any() else None,
+    )
+
+
+def _contact(structure: MachineStructure, name: str) -> Contact:
+    mesh, clock = structure.machine.meshes[name], structure.machine.clock
+    return Contact(
+        direction=structure.mesh(name),
+        stiffness=structure.mesh_stiffness(name) if mesh.stiffness is None else mesh.stiffness,
+        damping=_damping(structure, name),
+        error=mesh.error,
+        gap=mesh.gap,
+        friction=None if mesh.friction is None else _friction(structure, name),
+        events=mesh.events,
+        cycles=clock.cycles[name],
+        offset=mesh.offset,
+    )
+
+
+def _damping(structure: MachineStructure, name: str) -> Entry:
+    """Damping of a mesh: as given, or by its ratio for both shafts that turn rigidly."""
+    machine, mesh = structure.machine, structure.machine.meshes[name]
+    if mesh.damping_ratio is None:
+        return mesh.damping
+    mobility = 0.0
+    for gear, radius in zip(mesh.gears, machine.directions[name].base_radius, strict=True):
+        shaft = machine.gears[gear].shaft
+        inertia = structure.shafts[shaft].mass[3::6, 3::6].sum()
+        inertia += sum(
+            machine.gear_bodies[other].moment_of_inertia
+            for other, part in machine.gears.items()
+            if part.shaft == shaft
+        )
+        mobility += radius**2 / inertia
+    return 2.0 * mesh.damping_ratio * float(np.sqrt(structure.mesh_stiffness(name) / mobility))
+
+
+def _friction(structure: MachineStructure, name: str) -> Any:
+    mesh, direction = structure.machine.meshes[name], structure.machine.directions[name]
+    functions = mesh.friction
+    gears = np.vstack([structure.gear(gear) for gear in mesh.gears])
+
+    def friction(phase: Array) -> Array:
+        forces = direction.friction(
+            functions.friction_sum(phase),
+            functions.friction_moment_pinion(phase),
+            functions.friction_moment_wheel(phase),
+        )
+        return np.asarray(forces @ gears)
+
+    return friction

@@ -1,0 +1,136 @@
+"""Natural modes of a machine at a speed, and the parts that store their energy."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tribodyn.dynamics.equations.system import Contact
+from tribodyn.dynamics.linear.natural_modes import natural_modes
+from tribodyn.machine.assembly import system
+from tribodyn.machine.machine import Machine
+from tribodyn.machine.mesh import mean_over_phase
+from tribodyn.machine.reduction import machine_structure
+from tribodyn.machine.structure import MachineStructure
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array, ComplexArray
+
+
+@record
+class MachineModes(Record):
+    """Natural modes of a machine, without its free rotation.
+
+    Parameters
+    ----------
+    speed : float
+        Speed of the input shaft, whose gyroscopic moments are included [rad/s].
+    names : tuple of str
+        Names of the coordinates.
+    frequency : (m,) array
+        Natural frequencies, rising [Hz].
+    shape : (m, n) complex array
+        Displacements ``Re(shape*exp(2 pi i f t))``, the greatest of them 1 [m or rad].
+    damping_ratio : (m,) array
+        Damping over its critical value [1].
+    parts : tuple of str
+        Parts that store energy: ``shafts.input``, ``bearings.A``, ``meshes.first``, ``housing``.
+    strain_share : (m, parts) array
+        Share of each part in the strain energy of each mode; rows sum to 1.
+    structure : MachineStructure
+        Matrices of the machine; its ``at`` turns a shape into the deflection of a shaft.
+    """
+
+    speed: float = fact()
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
+    frequency: Array = quantity("mode", unit="Hz")
+    shape: ComplexArray = quantity("mode", "coordinate", unit="m or rad")
+    damping_ratio: Array = quantity("mode", unit="1")
+    parts: tuple[str, ...] = quantity("part", axis=True, name="part")
+    strain_share: Array = quantity("mode", "part", unit="1")
+    structure: MachineStructure
+
+    def share_by_kind(self) -> dict[str, Array]:
+        """Share of meshes, shafts, bearings and housing in the strain energy.
+
+        Returns
+        -------
+        dict
+            ``meshes``, ``shafts``, ``bearings``, ``housing``, (m,) each; their sum is 1.
+        """
+        kinds = np.array([part.partition(".")[0] for part in self.parts])
+        return {
+            kind: np.asarray(self.strain_share[:, kinds == kind].sum(axis=1))
+            for kind in ("meshes", "shafts", "bearings", "housing")
+        }
+
+    def __repr__(self) -> str:
+        """One line."""
+        first = f", first {self.frequency[0]:.6g} Hz" if self.frequency.size else ""
+        rpm = 30.0 / np.pi * self.speed
+        return f"MachineModes({self.frequency.size} modes at {rpm:.6g} rpm{first})"
+
+
+def machine_modes(machine: Machine | MachineStructure, speed: float | None = None) -> MachineModes:
+    """Compute the natural modes of a machine with the mean stiffness of its meshes.
+
+    Parameters
+    ----------
+    machine : Machine or MachineStructure
+        The machine, whose matrices :func:`machine_structure` computes, or its matrices.
+    speed : float, optional
+        Speed of the input shaft [rad/s]; that of the operation by default, 0 at rest.
+
+    Raises
+    ------
+    InputError
+        If a mesh has no stiffness.
+
+    Notes
+    -----
+    Backlash is closed, as under load. Motions without strain, of which the rotation of the whole
+    drive is one, are left out.
+
+    Examples
+    --------
+    >>> from tribodyn.machine import Gear, Machine, Mesh, Operation, Shaft
+    >>> machine = Machine(
+    ...     shafts={"input": Shaft(), "output": Shaft()},
+    ...     gears={"z1": Gear("input", 0.0, 20, 0.05, 1.0, 1e-3, 1e-3),
+    ...            "z2": Gear("output", 0.0, 20, 0.05, 1.0, 1e-3, 1e-3)},
+    ...     meshes={"first": Mesh(("z1", "z2"), normal_module=4e-3, stiffness=5e8)},
+    ...     operation=Operation("input", "output", speed=100.0, torque=400.0))
+    >>> modes = machine_modes(machine)
+    >>> modes.frequency.round(1), modes.share_by_kind()["meshes"]
+    (array([5982.3]), array([1.]))
+    """
+    structure = machine_structure(machine) if isinstance(machine, Machine) else machine
+    names = tuple(structure.machine.meshes)
+    speed = structure.machine.operation.speed if speed is None else float(speed)
+    nonlinear = system(structure)
+    linear = replace(
+        nonlinear,
+        contacts=[
+            Contact(
+                structure.mesh(name),
+                structure.mesh_stiffness(name),
+                damping=mean_over_phase(contact.damping),
+            )
+            for name, contact in zip(names, nonlinear.contacts, strict=True)
+        ],
+        gyroscopic=structure.gyroscopic(speed) if speed else None,
+    )
+    modes = natural_modes(linear, elements=structure.elements)
+    elastic = modes.frequency > 0.0
+    shape = modes.shape[elastic].astype(complex)
+    top = np.take_along_axis(shape, np.abs(shape).argmax(axis=1)[:, None], axis=1)
+    return MachineModes(
+        speed=speed,
+        names=structure.names,
+        frequency=modes.frequency[elastic],
+        shape=shape / top,
+        damping_ratio=modes.damping_ratio[elastic],
+        parts=(*structure.elements, *(f"meshes.{name}" for name in names)),
+        strain_share=modes.strain_share[elastic],
+        structure=structure,
+    )
