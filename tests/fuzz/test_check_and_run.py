@@ -21,11 +21,11 @@ from tribodyn.friction import LAWS
 from tribodyn.model import Option
 from tribodyn.stiffness import MODELS
 from tribodyn.study import Case
-from tribodyn.study.case.derive import options_of
 from tribodyn.study.case.provenance import assumptions
+from tribodyn.study.case.to_models import options_of
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.cautions import case_cautions
-from tribodyn.study.pipeline.first_look import operating_figures
+from tribodyn.study.pipeline.preview import operating_figures
 from tribodyn.study.pipeline.run import computed, rehearse
 
 Draws = Callable[[int], Iterator[random.Random]]

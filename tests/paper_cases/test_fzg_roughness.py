@@ -13,7 +13,7 @@ from tribodyn.mesh.grid import PhaseFunction
 from tribodyn.study.case.provenance import provenance
 from tribodyn.study.coupling import balanced_load
 from tribodyn.study.pipeline.assembly import geometry
-from tribodyn.study.pipeline.series import measured, mesh_force, one_sided_phase
+from tribodyn.study.pipeline.response_series import measured, mesh_force, one_sided_phase
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 _ROUGHNESS = ("0.325 um", "0.53 um", "0.991 um")

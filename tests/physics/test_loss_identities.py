@@ -7,7 +7,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.mesh.functions import PhaseFunction
-from tribodyn.study.pipeline.series import measured, mesh_force, one_sided_phase
+from tribodyn.study.pipeline.response_series import measured, mesh_force, one_sided_phase
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 

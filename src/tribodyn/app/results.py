@@ -124,7 +124,7 @@ def pair(desk: TabSession) -> list[Any]:
     from tribodyn.report.numbers import describe
     from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions
-    from tribodyn.study.pipeline.first_look import operating_figures
+    from tribodyn.study.pipeline.preview import operating_figures
 
     case = desk.case
     with collected():

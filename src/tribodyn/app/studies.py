@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.app.case_form import field_of
 from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
-from tribodyn.study.studies.range_words import UnreadError, read_list, read_range, read_values
+from tribodyn.study.studies.range_syntax import UnreadError, read_list, read_range, read_values
 
 if TYPE_CHECKING:
     from tribodyn.progress import Progress
@@ -63,7 +63,7 @@ def _ends(name: str, text: str) -> tuple[Any, Any]:
 
 def _points(case: Case, key: str, text: str) -> list[float] | None:
     """Parse torques or speeds like the keys of the case."""
-    from tribodyn.study.studies.axes import points_of
+    from tribodyn.study.studies.study_axes import points_of
 
     return points_of(case, key, _read(key, text, read_values), by="study") if text else None
 
@@ -82,7 +82,7 @@ def _of(answer: Any, kind: str, case: Case, target: Path) -> Shown:
 
 def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn import plot
-    from tribodyn.study.pipeline.words import in_words
+    from tribodyn.study.pipeline.summary_labels import in_words
     from tribodyn.study.studies.sweep import sweep
 
     result = sweep(case, dict(_varied(values)), by="study", progress=progress)

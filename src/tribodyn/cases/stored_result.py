@@ -13,7 +13,7 @@ import numpy as np
 
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
-from tribodyn.study.case.derive import locate_errors
+from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.save import RESULT_FILES

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 
 from tribodyn.cli.console import show_warnings
 from tribodyn.errors import InputError, OutputExistsError, Problem, collected
-from tribodyn.study.studies.range_words import UnreadError, read_range, read_values, toml_value
+from tribodyn.study.studies.range_syntax import UnreadError, read_range, read_values, toml_value
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case

@@ -12,7 +12,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.pipeline.summary import SUMMARY
-from tribodyn.study.studies.axes import Axis
+from tribodyn.study.studies.study_axes import Axis
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Basins, LyapunovExponents

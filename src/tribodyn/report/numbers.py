@@ -8,7 +8,7 @@ from typing import Any
 
 from tribodyn.plot.theme.labels import display_unit, displayed, engineering, readable, significant
 from tribodyn.study.pipeline.summary import SUMMARY, by_topic
-from tribodyn.study.pipeline.words import in_words
+from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.study.studies.modes import ORDERS, Mode, mode_rows
 from tribodyn.units import convert
 

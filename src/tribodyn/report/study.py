@@ -18,7 +18,7 @@ from tribodyn.report.provenance import operating_point, provenance, version
 from tribodyn.study.case.provenance import assumptions
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary import SUMMARY
-from tribodyn.study.pipeline.words import in_words
+from tribodyn.study.pipeline.summary_labels import in_words
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Bifurcation

@@ -95,9 +95,9 @@ def modes_report_data(case: Case, ends: Any, progress: Progress = SILENT) -> Stu
     """Natural frequencies and critical speeds; ``ends`` limits the speeds [rad/s]."""
     from tribodyn.dynamics import natural_modes
     from tribodyn.report.numbers import HEAD, cells
-    from tribodyn.study.studies.axes import operation_values
     from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows
     from tribodyn.study.studies.structure import build_system
+    from tribodyn.study.studies.study_axes import operation_values
 
     speeds = None if ends is None else operation_values("speed", ends, case)
     system, mesh_frequency = build_system(case, progress=progress)

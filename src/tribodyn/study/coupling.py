@@ -16,11 +16,11 @@ import numpy as np
 from tribodyn.errors import ComputationError, Problem, collected, warn
 from tribodyn.mesh.gears import COORDINATES
 from tribodyn.progress import Progress
-from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.computed import Coupling
 from tribodyn.study.pipeline.motion import motion_of
-from tribodyn.study.pipeline.series import mesh_force, one_sided_phase
+from tribodyn.study.pipeline.response_series import mesh_force, one_sided_phase
 from tribodyn.study.pipeline.tooth_contact import contact_settings, mesh_of
 from tribodyn.types import Array
 

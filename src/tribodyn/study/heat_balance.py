@@ -11,7 +11,7 @@ from tribodyn.errors import ComputationError, collected
 from tribodyn.lubricant import temperature_range
 from tribodyn.lubricant.data_sheet import SHEET_RANGE
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.study.pipeline.first_look import gearbox_losses_of
+from tribodyn.study.pipeline.preview import gearbox_losses_of
 from tribodyn.types import Array
 from tribodyn.units import ZERO_CELSIUS
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.study.studies.axes import Axis
+from tribodyn.study.studies.study_axes import Axis
 from tribodyn.types import Index
 
 #: Fields of a list that a store records.

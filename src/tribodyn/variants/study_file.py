@@ -24,8 +24,8 @@ from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.read import key_lines, parse_toml, read_text
 from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import FaultError, read_value, written
-from tribodyn.study.studies.axes import Axis, member_value, read_axis
-from tribodyn.study.studies.range_words import UnreadError, read_values, toml_value
+from tribodyn.study.studies.range_syntax import UnreadError, read_values, toml_value
+from tribodyn.study.studies.study_axes import Axis, member_value, read_axis
 from tribodyn.study.uncertain.lanes import draw
 from tribodyn.validated_files import read_bytes
 from tribodyn.variants.compute import KINDS

@@ -14,7 +14,7 @@ from known_figures import caption, curve
 from tribodyn.drawing import Sketch
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, Drawing
-from tribodyn.study.pipeline import series
+from tribodyn.study.pipeline import response_series
 
 NAMES = (
     "gear_pair",
@@ -243,7 +243,7 @@ def test_no_friction_is_told_instead_of_drawn(drawable: Any) -> None:
     rubbing = drawable()
     fine, static = rubbing.response.fine, rubbing.mesh.total_normal_force
     for factor, words in ((1.02, "2 % above the static force"), (0.97, "3 % below the static")):
-        mean = float(fine.weight @ series.mesh_force(fine))
+        mean = float(fine.weight @ response_series.mesh_force(fine))
         fine.contact_force[:] *= factor * static / mean
         assert words in caption("mesh_force", rubbing)
         assert "friction carries a part" in caption("mesh_force", rubbing)

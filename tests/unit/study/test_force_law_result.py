@@ -15,7 +15,7 @@ from tribodyn.mesh import MeshTable
 from tribodyn.plot import FIGURES
 from tribodyn.study import Result, read_case
 from tribodyn.study.pipeline.assembly import damping_of, system_of
-from tribodyn.study.pipeline.series import first_touch
+from tribodyn.study.pipeline.response_series import first_touch
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 #: Deflection at which the relieved flanks touch, mean and swing over the mesh cycle [m].

@@ -15,7 +15,7 @@ from broken import SOUND
 import tribodyn as td
 from tribodyn.drawing import figures_of
 from tribodyn.study import read_case
-from tribodyn.study.pipeline import series
+from tribodyn.study.pipeline import response_series
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -130,7 +130,7 @@ def test_a_long_run_is_stored_by_its_last_mesh_cycles(
 ) -> None:
     result = td.run(_SOUND.replace({"solver.method": "transient", "solver.cycles": 40}))
     whole = sum(v.nbytes for v in result.to_xarray().variables.values() if "time" in v.dims)
-    monkeypatch.setattr(series, "LARGEST", whole // 4)
+    monkeypatch.setattr(response_series, "LARGEST", whole // 4)
     place = result.save(tmp_path / "out")
     loaded = td.load_result(place)
     assert loaded.response.periods == 10

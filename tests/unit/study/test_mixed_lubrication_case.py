@@ -15,8 +15,8 @@ from tribodyn.mesh import MeshTable
 from tribodyn.mesh.grid import PhaseFunction
 from tribodyn.plot import FIGURES
 from tribodyn.study.pipeline.cautions import mesh_cautions
+from tribodyn.study.pipeline.response_series import mesh_force, one_sided_phase, signals
 from tribodyn.study.pipeline.run import rehearse
-from tribodyn.study.pipeline.series import mesh_force, one_sided_phase, signals
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 _CASE = """

@@ -14,7 +14,7 @@ import xarray
 import tribodyn as td
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.study import Sweep
-from tribodyn.study.studies.axes import read_axes
+from tribodyn.study.studies.study_axes import read_axes
 from tribodyn.study.studies.sweep_result import SweepPoint
 
 FIGURE = "rms_mesh_force"

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-import tribodyn.study.studies.grid as grid
+import tribodyn.study.studies.case_grid as grid
 import tribodyn.study.studies.sweep as sweeps
 from tribodyn import load_case
 from tribodyn.checkpoints import Checkpoints

@@ -14,7 +14,7 @@ from tribodyn.analysis import parameter_map
 from tribodyn.errors import quiet
 from tribodyn.interrupt import alone
 from tribodyn.study.pipeline.run import computed
-from tribodyn.study.studies.grid import built
+from tribodyn.study.studies.case_grid import built
 from tribodyn.variants import open_study, read_study, run_study
 from tribodyn.variants.compute import VERDICTS, Job, Part
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from tribodyn.errors import collected
 from tribodyn.model import Registry
-from tribodyn.study.case.derive import locate_errors, mesh_law_of, unused_lubricant
+from tribodyn.study.case.to_models import locate_errors, mesh_law_of, unused_lubricant
 from tribodyn.study.pipeline.assembly import geometry
-from tribodyn.study.pipeline.first_look import operating_figures
+from tribodyn.study.pipeline.preview import operating_figures
 from tribodyn.study.pipeline.run import computed
 from tribodyn.study.pipeline.tooth_contact import contact_settings, mesh_of
 
@@ -158,7 +158,7 @@ def _run(case: Case, meshes: Meshes) -> Figures:
 
 def _accelerations(result: Result) -> dict[str, float]:
     from tribodyn.analysis import alternating_rms, mesh_harmonics
-    from tribodyn.study.pipeline.series import centre_column, measured
+    from tribodyn.study.pipeline.response_series import centre_column, measured
 
     samples, figures = measured(result.response), dict[str, float]()
     for gear in _GEARS:

@@ -14,7 +14,7 @@ from tribodyn.cases.papers.printed import PrintedRow, course
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.studies.grid import over_cases
+from tribodyn.study.studies.case_grid import over_cases
 from tribodyn.units import shown_in
 
 if TYPE_CHECKING:

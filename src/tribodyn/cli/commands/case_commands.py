@@ -39,7 +39,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     from tribodyn.study.case.provenance import assumptions
     from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions
-    from tribodyn.study.pipeline.first_look import operating_figures
+    from tribodyn.study.pipeline.preview import operating_figures
     from tribodyn.study.pipeline.run import rehearse
 
     ready = changed_case(case, set_ or [])

@@ -84,7 +84,7 @@ def losses(
 
 def _values(case: Case, name: str, text: Text) -> list[float] | None:
     """Return torques or speeds of an option, checked like the key of the case."""
-    from tribodyn.study.studies.axes import points_of
+    from tribodyn.study.studies.study_axes import points_of
 
     if text is None:
         return None

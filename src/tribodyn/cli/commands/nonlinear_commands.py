@@ -68,9 +68,9 @@ def bifurcation(
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
     with Checkpoints(target, force) as checkpoints:
         with progress_bar() as progress:
-            from tribodyn.study.studies.axes import read_axes
             from tribodyn.study.studies.bifurcation import Findings
             from tribodyn.study.studies.bifurcation import bifurcation as compute
+            from tribodyn.study.studies.study_axes import read_axes
 
             read_axes(ready, {key: (first, last, points)}, by="bifurcation")
             diagram = compute(

@@ -183,7 +183,7 @@ def _quantity(option: str, text: str) -> float:
 
 def _ends(option: str, text: str) -> tuple[float, float]:
     """Two ends of a range, in SI."""
-    from tribodyn.study.studies.range_words import UnreadError, read_range
+    from tribodyn.study.studies.range_syntax import UnreadError, read_range
     from tribodyn.units import UnitProblemError, parse
 
     unit, example = _EXAMPLES[option]

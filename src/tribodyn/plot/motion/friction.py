@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import INK, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
-from tribodyn.study.pipeline.words import in_a_sentence
+from tribodyn.study.pipeline.summary_labels import in_a_sentence
 from tribodyn.study.studies.friction_claims import DRIVING, HELD
 
 if TYPE_CHECKING:

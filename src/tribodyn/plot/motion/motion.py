@@ -12,7 +12,7 @@ from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, button_row, line
-from tribodyn.study.pipeline import series
+from tribodyn.study.pipeline import response_series
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ _JUMP = 1e-6
 
 def no_translation(result: Result) -> str:
     """Reason why a result has no motion of the gear centres; empty if it has."""
-    if series.centre_column(result.response.names, "pinion", "y") is not None:
+    if response_series.centre_column(result.response.names, "pinion", "y") is not None:
         return ""
     return (
         "The gears of this model only rotate: their centres are fixed and no bearing is loaded. "
@@ -67,12 +67,12 @@ class Motion:
         self._response = result.response
         self._mesh = result.mesh
         #: Whether the response is a steady state.
-        self.periodic = series.is_steady(result.response)
+        self.periodic = response_series.is_steady(result.response)
         label = "Mesh cycles"
         self.label = axis_label("mesh_phase", label) if self.periodic else axis_label("time")
         #: Number of mesh cycles in the plot of a steady state.
         self.shown = max(CYCLES, self._response.periods)
-        self._measured = len(series.measured(self._response).phase)
+        self._measured = len(response_series.measured(self._response).phase)
         periods = self._response.periods
         last = round(periods * self._measured / len(self._response.fine.phase))
         self.window = "" if self.periodic else f" in the last {last} of {periods} mesh cycles"
@@ -80,20 +80,20 @@ class Motion:
     @property
     def mesh_force(self) -> Array:
         """Dynamic force along the line of action, summed over the ramps of the force law."""
-        return series.mesh_force(self._response.fine)
+        return response_series.mesh_force(self._response.fine)
 
     @property
     def transmission_error(self) -> Array:
         """Dynamic transmission error, zero where perfect rigid driving flanks touch."""
-        return series.transmission_error(self._result, self._response.fine)
+        return response_series.transmission_error(self._result, self._response.fine)
 
     def of_gear(self, quantity: str, gear: str, axis: str) -> Array:
         """Acceleration of a gear centre, or its force on the support (``"bearing_force"``)."""
-        column = series.centre_column(self._response.names, gear, axis)
+        column = response_series.centre_column(self._response.names, gear, axis)
         if quantity == "acceleration":
             return np.asarray(self._response.fine.acceleration[:, column])
         assert column is not None  # callers check that the gear centres move
-        return series.support_force(self._result.system, self._response.fine, column)
+        return response_series.support_force(self._result.system, self._response.fine, column)
 
     def measured(self, values: Array) -> Array:
         """Return the part of a signal over which summary figures are evaluated."""

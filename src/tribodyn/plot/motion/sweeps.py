@@ -12,13 +12,13 @@ from tribodyn.plot.theme.labels import axis_label, displayed, engineering, reada
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, marked
 from tribodyn.study.pipeline.summary import SUMMARY
-from tribodyn.study.pipeline.words import in_a_sentence, in_words
+from tribodyn.study.pipeline.summary_labels import in_a_sentence, in_words
 from tribodyn.units import convert
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import SpeedSweep
     from tribodyn.study import Sweep
-    from tribodyn.study.studies.axes import Axis
+    from tribodyn.study.studies.study_axes import Axis
 
 _WAYS = {"up": (PINION, "solid"), "down": (WHEEL, "dash")}
 _WORDS = {"up": "upwards", "down": "downwards"}

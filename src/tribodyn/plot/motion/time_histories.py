@@ -11,7 +11,7 @@ from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, quantity_label, rounded
 from tribodyn.plot.theme.panels import Panel
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
-from tribodyn.study.pipeline import series
+from tribodyn.study.pipeline import response_series
 
 if TYPE_CHECKING:
     from tribodyn.study import Result
@@ -28,7 +28,11 @@ _ALONG = "along the line of action"
 def directions(result: Result) -> tuple[tuple[str, str], ...]:
     """Axes of a gear's coordinates and their descriptions, for planar and spatial models."""
     in_space = "pinion_z" in result.response.names
-    return tuple(series.directions_of(result.response.names).values()) if in_space else DIRECTIONS
+    return (
+        tuple(response_series.directions_of(result.response.names).values())
+        if in_space
+        else DIRECTIONS
+    )
 
 
 def _along(result: Result) -> str:
@@ -60,11 +64,13 @@ def _motion_panels(result: Result, quantity: str) -> list[Panel]:
 def _below_zero(result: Result) -> str:
     """Explain a negative mesh force, which the driving flanks cannot transmit."""
     fine = result.response.fine
-    if np.min(series.mesh_force(fine)) >= 0.0:
+    if np.min(response_series.mesh_force(fine)) >= 0.0:
         return ""
     if result.half_backlash == 0.0:
         return "Where it is negative, the flanks would separate, but the case has no backlash."
-    if np.any(series.compression(fine) < -series.first_touch(result.system, fine)):
+    if np.any(
+        response_series.compression(fine) < -response_series.first_touch(result.system, fine)
+    ):
         return "Where it is negative, the backlash is crossed and the back flanks touch."
     return "Where it is negative, the contact damping pulls just before the flanks separate."
 
@@ -111,7 +117,7 @@ def mesh_force(result: Result) -> Any:
 
 
 def _friction_caption(result: Result) -> str:
-    split = "film_friction_force" in series.friction_forces(result, result.response.fine)
+    split = "film_friction_force" in response_series.friction_forces(result, result.response.fine)
     parts = (
         "The parts of the oil films and of the asperities add up to the total."
         if split
@@ -135,7 +141,7 @@ def _friction_caption(result: Result) -> str:
 def friction_force(result: Result) -> Any:
     """Draw the friction force of all tooth pairs and its film and asperity parts."""
     motion = Motion(result)
-    forces = series.friction_forces(result, result.response.fine)
+    forces = response_series.friction_forces(result, result.response.fine)
     parts = (
         ("friction_force", "total", TOTAL),
         ("film_friction_force", "oil films", PAIR_COLORS[2]),
@@ -257,7 +263,9 @@ def _in_a_plane(result: Result) -> str:
 def tooth_force(result: Result) -> Any:
     """Draw the three components of the tooth force."""
     motion, fine = Motion(result), result.response.fine
-    components = series.tooth_force(result, series.one_sided_phase(fine), motion.mesh_force)
+    components = response_series.tooth_force(
+        result, response_series.one_sided_phase(fine), motion.mesh_force
+    )
     values = np.zeros((fine.phase.size, 3)) if components is None else components
     panels = []
     for axis, color, component in zip("xyz", (PINION, WHEEL, TOTAL), values.T, strict=True):

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem
-from tribodyn.study.case import derive
+from tribodyn.study.case import to_models
 from tribodyn.study.case.case_data import CaseData
 from tribodyn.study.case.checks import cross_problems, dropped_options
 from tribodyn.study.case.gears import is_needed
@@ -103,11 +103,11 @@ class Case(CaseData, case=True):
         readable = not any(key.startswith("gears") for key, _ in problems)
         problems += cross_problems(inputs, chosen, {key for key, _ in problems})
         if not problems:
-            problems = derive.case_problems(self)
+            problems = to_models.case_problems(self)
         elif readable and self.gears is not None:
             reported = {key for key, _ in problems}
             problems += [
-                fault for fault in derive.gear_problems(self.gears) if fault[0] not in reported
+                fault for fault in to_models.gear_problems(self.gears) if fault[0] not in reported
             ]
         if problems:
             raise InputError(source.place(with_typed_keys(problems, typed_keys)))
@@ -199,7 +199,7 @@ class Case(CaseData, case=True):
             section = copy(getattr(changed, table))
             vars(section)[name] = numbers[key]
             vars(changed)[table] = section
-        if derive.case_problems(changed):
+        if to_models.case_problems(changed):
             return None
         changed._files = self._named_files()
         changed._effective, changed._changed = self._effective | numbers, None

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError
 from tribodyn.model import text
-from tribodyn.study.case import derive
+from tribodyn.study.case import to_models
 from tribodyn.study.case.gears import Gears
 from tribodyn.study.case.hypoid import hypoid_flanks
 from tribodyn.study.case.section import CaseTables, flat, table
@@ -72,7 +72,7 @@ class CaseData(CaseTables):
     @cached_property
     def mesh_table(self) -> TableFile | None:
         """The mesh table of another program; None where the teeth are computed."""
-        return derive.mesh_table(self.gears)
+        return to_models.mesh_table(self.gears)
 
     @property
     def gear_ratio(self) -> float:
@@ -89,8 +89,8 @@ class CaseData(CaseTables):
             If the case has a mesh table of another program, or a hypoid pair.
         """
         if self.gears.kind != "spur":
-            raise InputError(derive.no_gear_pair(self.gears.kind))
-        pair = partial(derive.gear_pair, self.gears, self.dynamics.backlash)
+            raise InputError(to_models.no_gear_pair(self.gears.kind))
+        pair = partial(to_models.gear_pair, self.gears, self.dynamics.backlash)
         return self._once("gear_pair", ("gears", "dynamics"), pair)
 
     @property
@@ -101,7 +101,7 @@ class CaseData(CaseTables):
     @property
     def contact_models(self) -> tuple[str, str]:
         """Names of the models of the tooth contact in force: stiffness, and film."""
-        return derive.contact_models(self)
+        return to_models.contact_models(self)
 
     @cached_property
     def hypoid_flanks(self) -> HypoidFlanks | None:
@@ -111,7 +111,7 @@ class CaseData(CaseTables):
     @cached_property
     def material_properties(self) -> Material:
         """Material of both gears."""
-        return self._once("material", ("material",), lambda: derive.material(self.material))
+        return self._once("material", ("material",), lambda: to_models.material(self.material))
 
     def density(self, gear: str) -> float:
         """Density of one gear [kg/m^3]: its own, or that of the material.
@@ -137,24 +137,24 @@ class CaseData(CaseTables):
     @property
     def thermal_contact_coefficients(self) -> tuple[float, float]:
         """``sqrt(k rho c)`` of pinion and wheel [J/(m^2 K s^0.5)]; gear steel if not given."""
-        return derive.thermal_contact_coefficients(self)
+        return to_models.thermal_contact_coefficients(self)
 
     @cached_property
     def lubricant_properties(self) -> Lubricant | None:
         """The oil at its working temperature; None if the case has none."""
-        return None if self.lubricant is None else derive.lubricant(self.lubricant)
+        return None if self.lubricant is None else to_models.lubricant(self.lubricant)
 
     @cached_property
     def gearbox(self) -> Gearbox | None:
         """Shafts, seals and oil bath; None if the case has no ``[losses]``."""
-        return None if self.losses is None else derive.gearbox(self.losses)
+        return None if self.losses is None else to_models.gearbox(self.losses)
 
     @property
     def backlash(self) -> float:
         """Total play on the line of action [m]: given, or that of the tooth thicknesses."""
         value = self.dynamics.backlash
         if value is None:
-            return derive.backlash(self)
+            return to_models.backlash(self)
         return value
 
     @property

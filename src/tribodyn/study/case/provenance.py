@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import Problem
 from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
-from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.gears import RQ_OVER_RA, is_idle
 from tribodyn.study.case.hypoid import solid
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.sections import PROPERTIES, SHEET
+from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.study.case.user_input import Stated, UserInput
 from tribodyn.study.case.values import FaultError, Plain, read_value, written
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.study.case.derive import chosen_options, mesh_law_of
 from tribodyn.study.case.hypoid import contact_ratio, levers, solid
 from tribodyn.study.case.provenance import effective
+from tribodyn.study.case.to_models import chosen_options, mesh_law_of
 from tribodyn.study.pipeline.tooth_contact import load_friction_of
 from tribodyn.types import Array
 

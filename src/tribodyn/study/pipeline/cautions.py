@@ -12,10 +12,16 @@ import numpy as np
 
 from tribodyn.ehl import film_load_share
 from tribodyn.errors import ComputationError, ModelWarning, Problem, collected
-from tribodyn.study.case.derive import gear_warnings
 from tribodyn.study.case.hypoid import hypoid_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
-from tribodyn.study.pipeline.series import compression, first_touch, is_steady, measured, mesh_force
+from tribodyn.study.case.to_models import gear_warnings
+from tribodyn.study.pipeline.response_series import (
+    compression,
+    first_touch,
+    is_steady,
+    measured,
+    mesh_force,
+)
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System

@@ -11,9 +11,9 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, collected, warn
 from tribodyn.progress import Progress
-from tribodyn.study.case.derive import mesh_law_of
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.sections import Solver
+from tribodyn.study.case.to_models import mesh_law_of
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System

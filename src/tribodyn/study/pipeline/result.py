@@ -14,10 +14,10 @@ from tribodyn.record import Parts, html_table, record
 from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.pipeline.computed import Computed
+from tribodyn.study.pipeline.response_series import parts_of, stored, to_csv
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.study.pipeline.series import parts_of, stored, to_csv
 from tribodyn.study.pipeline.summary import SUMMARY, by_topic, summarize
-from tribodyn.study.pipeline.words import in_words
+from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.validated_files import write_dataset
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.errors import ModelWarning, collected, frames
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.read import unchanged_files
+from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.coupling import Follow, coupled
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.heat_balance import balanced

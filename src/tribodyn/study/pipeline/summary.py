@@ -14,8 +14,8 @@ import numpy as np
 from tribodyn.model import Registry
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.study.pipeline.assembly import geometry, static_error
-from tribodyn.study.pipeline.first_look import load_figures, mode_figures, operating_figures
-from tribodyn.study.pipeline.series import (
+from tribodyn.study.pipeline.preview import load_figures, mode_figures, operating_figures
+from tribodyn.study.pipeline.response_series import (
     centre_column,
     compression,
     directions_of,

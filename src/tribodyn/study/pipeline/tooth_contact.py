@@ -12,10 +12,15 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, InputError, ModelWarning, collected, warn
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case import derive
-from tribodyn.study.case.derive import chosen_options, friction_of_table, locate_errors, mesh_law_of
+from tribodyn.study.case import to_models
 from tribodyn.study.case.hypoid import mounting
-from tribodyn.study.studies.axes import pinion_torques
+from tribodyn.study.case.to_models import (
+    chosen_options,
+    friction_of_table,
+    locate_errors,
+    mesh_law_of,
+)
+from tribodyn.study.studies.study_axes import pinion_torques
 
 if TYPE_CHECKING:
     from tribodyn.mesh import HypoidFriction, HypoidLoadedContact, MeshFriction, MeshTable
@@ -39,7 +44,7 @@ def model_settings(case: Case) -> dict[str, Any]:
         "material": case.material_properties,
         "stiffness_model": case.stiffness.model,
         "stiffness_options": chosen_options(case, "stiffness"),
-        "lubricant": case.lubricant_properties or derive.unused_lubricant(),
+        "lubricant": case.lubricant_properties or to_models.unused_lubricant(),
         "composite_roughness": case.composite_roughness or 0.0,
         "film_model": case.film.model,
         "film_options": chosen_options(case, "film"),
@@ -151,7 +156,7 @@ def hypoid_friction_of(case: Case, *, load: float = 1.0, rehearsal: bool = False
     return hypoid_friction(
         loaded,
         case.pinion_speed,
-        lubricant=case.lubricant_properties or derive.unused_lubricant(),
+        lubricant=case.lubricant_properties or to_models.unused_lubricant(),
         composite_roughness=case.composite_roughness or 0.0,
         friction_law=case.friction.law,
         friction_options=chosen_options(case, "friction"),

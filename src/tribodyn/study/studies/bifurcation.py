@@ -12,12 +12,12 @@ from tribodyn.aliases import with_old_names
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.provenance import spec_of
+from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.studies.axes import Axis, ends_of
-from tribodyn.study.studies.grid import contact_without_speed, identity, varied
+from tribodyn.study.studies.case_grid import contact_without_speed, identity, varied
 from tribodyn.study.studies.structure import study_steps
+from tribodyn.study.studies.study_axes import Axis, ends_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

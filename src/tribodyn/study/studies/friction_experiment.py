@@ -15,10 +15,10 @@ from tribodyn.aliases import with_old_names
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import locate_errors, mesh_law_of
+from tribodyn.study.case.to_models import locate_errors, mesh_law_of
 from tribodyn.study.pipeline.run import PendingRun
 from tribodyn.study.pipeline.tooth_contact import contact_settings
-from tribodyn.study.studies.axes import Axis, ends_of
+from tribodyn.study.studies.case_grid import identity, over_cases
 from tribodyn.study.studies.friction_claims import (
     CONSTANT,
     MIXED,
@@ -26,7 +26,7 @@ from tribodyn.study.studies.friction_claims import (
     FrictionExperiment,
     Rubbing,
 )
-from tribodyn.study.studies.grid import identity, over_cases
+from tribodyn.study.studies.study_axes import Axis, ends_of
 from tribodyn.study.studies.sweep import compute_points
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ import numpy as np
 
 from tribodyn.errors import ModelWarning, collected, warn
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import locate_errors
-from tribodyn.study.pipeline.first_look import gearbox_losses_of
+from tribodyn.study.case.to_models import locate_errors
+from tribodyn.study.pipeline.preview import gearbox_losses_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
-from tribodyn.study.studies.axes import pinion_speeds, pinion_torques
+from tribodyn.study.studies.study_axes import pinion_speeds, pinion_torques
 
 if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses, RigPowerFlow

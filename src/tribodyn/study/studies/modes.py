@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.studies.axes import operation_values
 from tribodyn.study.studies.structure import build_system
+from tribodyn.study.studies.study_axes import operation_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -9,12 +9,12 @@ import numpy as np
 
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.sections import Operation
+from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.studies.axes import read_axes
-from tribodyn.study.studies.grid import varied
+from tribodyn.study.studies.case_grid import varied
+from tribodyn.study.studies.study_axes import read_axes
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp, SpeedSweep, System

@@ -12,15 +12,15 @@ from tribodyn.errors import Argument, InputError, require_between, shortened
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import record
 from tribodyn.stiffness import TipReliefOptimum
-from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.gears import Modification
+from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.pipeline.tooth_contact import (
     hypoid_loaded_contact_of,
     loaded_settings,
     model_settings,
 )
-from tribodyn.study.studies.axes import pinion_speeds, pinion_torques
+from tribodyn.study.studies.study_axes import pinion_speeds, pinion_torques
 from tribodyn.units import format_quantity
 
 if TYPE_CHECKING:

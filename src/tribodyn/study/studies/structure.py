@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from tribodyn.errors import collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import locate_errors
+from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.pipeline.motion import steps_of
-from tribodyn.study.studies.grid import built
+from tribodyn.study.studies.case_grid import built
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System

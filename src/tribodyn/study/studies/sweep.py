@@ -29,8 +29,8 @@ from tribodyn.study.pipeline.run import (
     with_tables,
 )
 from tribodyn.study.processes import helpers
-from tribodyn.study.studies.axes import Axis, read_axes
-from tribodyn.study.studies.grid import finished, identity
+from tribodyn.study.studies.case_grid import finished, identity
+from tribodyn.study.studies.study_axes import Axis, read_axes
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:

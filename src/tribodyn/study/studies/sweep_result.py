@@ -19,8 +19,8 @@ from tribodyn.errors import InputError, did_you_mean
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary import SUMMARY
-from tribodyn.study.pipeline.words import in_words
-from tribodyn.study.studies.axes import Axis
+from tribodyn.study.pipeline.summary_labels import in_words
+from tribodyn.study.studies.study_axes import Axis
 from tribodyn.types import Array
 from tribodyn.validated_files import csv_text, write_dataset
 

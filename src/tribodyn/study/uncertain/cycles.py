@@ -17,7 +17,7 @@ from tribodyn.nonlinear.attractors import settle
 from tribodyn.nonlinear.survey import Outcomes, Points
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.motion import engine_arguments
-from tribodyn.study.pipeline.series import centre_column
+from tribodyn.study.pipeline.response_series import centre_column
 from tribodyn.study.uncertain.lanes import Lanes
 from tribodyn.types import Array, Index
 

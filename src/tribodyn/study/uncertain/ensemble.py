@@ -76,7 +76,7 @@ class CaseEnsemble(Record):
             If an input is a factor and no key of a case, so that its variants are no cases.
         """
         from tribodyn.study.pipeline.run import computed
-        from tribodyn.study.studies.grid import over_cases
+        from tribodyn.study.studies.case_grid import over_cases
 
         keys = [str(key) for key in self.input]
         factors = [key for key in keys if "." not in key]

@@ -12,11 +12,11 @@ from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.errors import Argument, InputError, quiet
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.derive import locate_errors
 from tribodyn.study.case.provenance import effective, spec_of
+from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.user_input import spread_problem
 from tribodyn.study.pipeline.motion import steps_of
-from tribodyn.study.studies.grid import Member, built, contact_without_speed, varied
+from tribodyn.study.studies.case_grid import Member, built, contact_without_speed, varied
 from tribodyn.types import Array, Index
 from tribodyn.uncertainty import distribution, sample
 

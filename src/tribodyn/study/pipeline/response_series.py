@@ -12,7 +12,7 @@ import numpy as np
 
 from tribodyn.mesh.gears import SPATIAL_COORDINATES
 from tribodyn.record import Parts
-from tribodyn.study.case.derive import mesh_law_of
+from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import InputError, collected
-from tribodyn.study.case.derive import chosen_options
+from tribodyn.study.case.to_models import chosen_options
 from tribodyn.study.pipeline.tooth_contact import loaded_settings
 from tribodyn.types import Array
 

@@ -10,7 +10,7 @@ from broken import SOUND
 
 import tribodyn as td
 from tribodyn.study import read_case
-from tribodyn.study.pipeline.first_look import operating_figures, standard_figures
+from tribodyn.study.pipeline.preview import operating_figures, standard_figures
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
