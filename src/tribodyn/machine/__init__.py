@@ -37,13 +37,14 @@ from tribodyn.machine.rolling.roller_bearing import CylindricalRollerBearing, Ta
 from tribodyn.machine.section import STEEL, Material, Section
 from tribodyn.machine.shaft import Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices
-from tribodyn.machine.static import (
+from tribodyn.machine.static.balance import (
     BearingBalance,
     MeshBalance,
     ShaftDeflection,
     StaticBalance,
     static_balance,
 )
+from tribodyn.machine.static.face_law import FaceLaw, face_laws
 from tribodyn.machine.structure import MachineStructure, Reduction
 
 __all__ = [
@@ -56,6 +57,7 @@ __all__ = [
     "Clock",
     "CylindricalRollerBearing",
     "DeepGrooveBallBearing",
+    "FaceLaw",
     "Gear",
     "GearBody",
     "Housing",
@@ -79,6 +81,7 @@ __all__ = [
     "ShaftMatrices",
     "StaticBalance",
     "TaperedRollerBearing",
+    "face_laws",
     "machine_modes",
     "machine_structure",
     "reduce_structure",

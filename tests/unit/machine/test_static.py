@@ -12,6 +12,7 @@ from tribodyn.machine import (
     Bearing,
     CylindricalRollerBearing,
     DeepGrooveBallBearing,
+    FaceLaw,
     Gear,
     Housing,
     Machine,
@@ -19,6 +20,7 @@ from tribodyn.machine import (
     Operation,
     Section,
     Shaft,
+    face_laws,
     static_balance,
 )
 
@@ -123,7 +125,7 @@ def test_torque_ratio_of_three_stages():
     ratio = 61 / 19 * 67 / 23 * 50 / 21
     # Input against x, output along x, held against it.
     assert balance.output_torque == pytest.approx(-100.0 * ratio, rel=1e-10)
-    assert any("meshes.second.stiffness" in note for note in balance.assumptions)
+    assert any("meshes.second.stiffness: 14" in note for note in balance.assumptions)
     assert any("bearings.a0.0 is stiff" in note for note in balance.assumptions)
 
 
@@ -291,29 +293,57 @@ def test_a_housing_gives_way_under_the_bearings():
     assert balance.housing == pytest.approx(load[:3] / stiffness, rel=1e-9)
 
 
-def test_a_law_with_the_tilt_of_the_teeth():
-    """Thin slices: k delta, and k b^2/12 of the slope; the moment tilts the shafts back."""
-    stiffness, width = 3e8, 0.03
-    tilting = stiffness * width**2 / 12.0
-
-    def slices(compression, slope):
-        matrix = ((stiffness, 0.0), (0.0, tilting))
-        return stiffness * compression, tilting * slope, matrix
-
-    machine = spur_stage(stiffness=2e8)
+def test_slices_tilt_the_shafts_back_and_give_the_face_load_factor():
+    """Slices: k delta, and k b^2/12 of the slope, while the full face carries."""
+    width = 0.03
+    machine = spur_stage(stiffness=4e8)
     free = static_balance(machine).meshes["first"]
-    bound = static_balance(machine, laws={"first": slices}).meshes["first"]
+    bound = static_balance(machine, laws=face_laws(machine)).meshes["first"]
+    assert free.face_load_factor is None
     assert bound.force == pytest.approx(free.force, rel=1e-9)
-    assert bound.moment == pytest.approx(tilting * bound.misalignment / width, rel=1e-9)
-    assert 0.3 < bound.misalignment / free.misalignment < 0.95
+    assert bound.moment == pytest.approx(3e8 * width / 12.0 * bound.misalignment, rel=1e-9)
+    assert 0.3 < bound.misalignment / free.misalignment < 0.98
+    factor = 1.0 + 3e8 * abs(bound.misalignment) / (2.0 * bound.force)
+    assert bound.face_load_factor == pytest.approx(factor, rel=1e-9)
+
+
+@pytest.mark.parametrize("helix", [10e-6, 40e-6])
+def test_face_load_factor_of_a_linear_gap(helix):
+    """1 + F k/(2 N) while the full face carries, sqrt(2 F k/N) beyond (thin slices)."""
+    stiffness, width, force = 4e8, 0.02, 3000.0
+    law = FaceLaw(stiffness, width, gap=helix * np.linspace(0.0, 1.0, 81))
+    low, high = 0.0, 1e-4
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if law(middle, 0.0)[0] > force else (middle, high)
+    share = helix * stiffness / force
+    expected = 1.0 + share / 2.0 if share < 2.0 else math.sqrt(2.0 * share)
+    assert law.face_load_factor(low, 0.0) == pytest.approx(expected, rel=2e-3)
+    step = 1e-9
+    for k, change in enumerate(([step, 0.0], [0.0, step / width])):
+        upper = law(low + change[0], change[1])
+        lower = law(low - change[0], -change[1])
+        slopes = (np.array(upper[:2]) - lower[:2]) / (2 * max(change))
+        assert law(low, 0.0)[2][:, k] == pytest.approx(slopes, rel=0.02, abs=1e-5)
 
 
 def test_what_nothing_holds_is_named():
     roller = CylindricalRollerBearing(bore_diameter=0.055, outer_diameter=0.1, width=0.021)
     machine = rolling_stage()
     loose = {**machine.bearings, "A": Bearing("in", 0.02, rolling=roller)}
-    with pytest.raises((ComputationError, InputError), match=r"(?s)shafts\.in"):
-        static_balance(replace(machine, bearings=loose))
+    with pytest.raises(InputError, match=r"shafts\.in: no bearing holds the shaft along its axis"):
+        replace(machine, bearings=loose)
+    only_rollers = replace(
+        spur_stage(),
+        bearings={
+            n: replace(loose["A"], shaft=n[:-4], position=float(n[-3:]))
+            for n in spur_stage().bearings
+        },
+    )
+    assert abs(static_balance(only_rollers).gears["z1"][0]) < 1e-9  # free along x, and unloaded
+    loads = {"z1": [50.0, 0.0, 0.0, 0.0, 0.0, 0.0]}
+    with pytest.raises(ComputationError, match=r"shafts\.in: nothing balances the load on x"):
+        static_balance(only_rollers, loads=loads)
     turned = {
         n: replace(b, rolling=replace(b.rolling, direction=-1)) if n == "D" else b
         for n, b in machine.bearings.items()

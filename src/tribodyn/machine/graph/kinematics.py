@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from tribodyn.dynamics.equations.entry import varies
+from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.errors import Problem
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
@@ -201,15 +201,23 @@ def _leads(graph: ShaftGraph, mesh: str) -> bool:
     return len(graph.path(first)) <= len(graph.path(second))
 
 
+def mean_stiffness(mesh: Mesh, gears: tuple[Gear, Gear]) -> float:
+    """Mean mesh stiffness [N/m]; without data the usual 14 N/(mm um) over the common face."""
+    if mesh.stiffness is None:
+        return _USUAL_STIFFNESS * min(gear.face_width for gear in gears)
+    return mean_of(mesh.stiffness)
+
+
+def mean_of(entry: Entry) -> float:
+    """Mean of an entry over the phase of its mesh."""
+    return float(np.mean(entry(_PHASES) if callable(entry) else np.asarray(entry)))
+
+
 def _conductance(mesh: Mesh, gears: Mapping[str, Gear], ratios: Mapping[str, Fraction]) -> float:
     """Torsional stiffness of a mesh, referred to the input."""
     first, second = (gears[gear] for gear in mesh.gears)
-    stiffness = _USUAL_STIFFNESS * min(first.face_width, second.face_width)
-    if callable(mesh.stiffness):
-        stiffness = float(np.mean(mesh.stiffness(_PHASES)))
-    elif mesh.stiffness is not None and not varies(mesh.stiffness):
-        stiffness = float(np.mean(np.asarray(mesh.stiffness)))
-    return stiffness * (base_radius(mesh, first) * float(ratios[first.shaft])) ** 2
+    lever = base_radius(mesh, first) * float(ratios[first.shaft])
+    return mean_stiffness(mesh, (first, second)) * lever**2
 
 
 def _flows(

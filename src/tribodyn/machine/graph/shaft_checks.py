@@ -109,8 +109,8 @@ def support_problems(
                 f"no bearing holds the shaft along its axis, and its helical meshes push it with "
                 f"{force:.6g} N",
                 where,
-                "axial_stiffness is 0 by default",
-                "Give one of its bearings an axial_stiffness",
+                "axial_stiffness is 0 by default, and cylindrical roller bearings have none",
+                "Give one of its bearings an axial_stiffness, or another type",
             )
 
 
@@ -118,7 +118,7 @@ def _support_matrix(bearing: Bearing) -> Array:
     """Stiffness of a bearing at the beginning of its shaft; of a rolling bearing a stand-in."""
     matrix = bearing.stiffness_matrix
     if bearing.rolling is not None:
-        matrix = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+        matrix = np.diag([float(bearing.rolling.takes_axial_force), 1.0, 1.0, 0.0, 0.0, 0.0])
     arm = bearing.position
     shift = np.eye(6)
     shift[1, 5], shift[2, 4] = arm, -arm

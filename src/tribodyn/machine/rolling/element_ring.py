@@ -201,6 +201,11 @@ class RollingElementBearing(ABC):
         """Force, contact angle, inner and outer pressure of each element."""
 
     @property
+    def takes_axial_force(self) -> bool:
+        """Whether it holds the shaft along its axis, in one direction at least."""
+        return True
+
+    @property
     def pitch(self) -> float:
         """Diameter of the pitch circle [m]."""
         return float(self.pitch_diameter or 0.0)

@@ -191,6 +191,11 @@ class CylindricalRollerBearing(RollerBearing):
                 )
         super()._complete()
 
+    @property
+    def takes_axial_force(self) -> bool:
+        """Whether it holds the shaft along its axis: never."""
+        return False
+
     def _limits(self) -> str:
         return "A cylindrical roller bearing carries no axial force"
 

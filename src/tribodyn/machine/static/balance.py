@@ -7,36 +7,24 @@ output is held against rotation; the torque there is a result.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
-from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.entry import varies
 from tribodyn.errors import Argument, ComputationError, InputError, real_numbers, warn
 from tribodyn.machine.bearing import HELD
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
-from tribodyn.machine.shaft_matrices import ShaftMatrices
+from tribodyn.machine.static.face_law import FaceLaw
+from tribodyn.machine.static.static_model import MeshLaw, StaticModel
 from tribodyn.types import Array
 
-#: Force and moment of a mesh over the face, and their derivatives (2, 2), of the compression [m]
-#: at mid face and its slope over the face [1].
-MeshLaw = Callable[[float, float], tuple[float, float, ArrayLike]]
-
-#: Usual mean mesh stiffness per face width [Pa].
-USUAL_STIFFNESS = 14e9
 #: Most Newton steps, greatest displacement in one of them [m], greatest residual over the loads.
 _STEPS, _STRIDE, _TOLERANCE = 200, 2e-4, 1e-12
-#: Lever that makes moments and rotations comparable with forces and displacements [m].
-_LEVER = 0.05
 #: Points at which the deflection of a shaft is sampled, besides its nodes.
 _POINTS = 41
-_PHASES = (np.arange(256) + 0.5) / 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +45,8 @@ class MeshBalance:
         shafts, bearings and housing.
     stiffness : (2, 2) array
         Derivative of force and moment with respect to compression and its slope [N/m, N, N*m].
+    face_load_factor : float or None
+        Greatest over mean load per face width; None without a :class:`FaceLaw`.
     """
 
     force: float
@@ -64,6 +54,7 @@ class MeshBalance:
     compression: float
     misalignment: float
     stiffness: Array
+    face_load_factor: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,118 +157,6 @@ class StaticBalance:
         return replace(self.machine, bearings=bearings)
 
 
-class _Model:
-    """Coordinates and matrices of a machine, and the laws of its meshes and bearings."""
-
-    def __init__(self, machine: Machine, laws: Mapping[str, MeshLaw]) -> None:
-        self.machine, self.laws = machine, laws
-        self.assumptions: list[str] = []
-        places: dict[str, list[float]] = {name: [] for name in machine.shafts}
-        for gear in machine.gears.values():
-            places[gear.shaft].append(gear.node_position)
-        for bearing in machine.bearings.values():
-            places[bearing.shaft].append(bearing.position)
-        self.shafts = {
-            name: ShaftMatrices(shaft, tuple(places[name]), shaft.length or None)
-            for name, shaft in machine.shafts.items()
-        }
-        ends = np.cumsum([0, *(shaft.size for shaft in self.shafts.values())]).tolist()
-        self.slices = {
-            name: slice(*pair) for name, pair in zip(self.shafts, pairwise(ends), strict=True)
-        }
-        housing = machine.housing
-        self.size = ends[-1] + (housing.size if housing else 0)
-        self.housing = slice(ends[-1], self.size)
-        self.stiffness = np.zeros((self.size, self.size))
-        for name, shaft in self.shafts.items():
-            self.stiffness[self.slices[name], self.slices[name]] = shaft.stiffness
-        if housing:
-            self.stiffness[self.housing, self.housing] = housing.stiffness
-        self.scale = np.ones(self.size)
-        for part in self.slices.values():
-            self.scale[part].reshape(-1, 6)[:, 3:] = 1.0 / _LEVER
-
-    def at(self, shaft: str, position: float) -> Array:
-        """Displacement of a point of a shaft per coordinate, (6, size)."""
-        out = np.zeros((6, self.size))
-        out[:, self.slices[shaft]] = self.shafts[shaft].at(position)
-        return out
-
-    @cached_property
-    def gears(self) -> dict[str, Array]:
-        """Displacement of each gear per coordinate."""
-        return {n: self.at(g.shaft, g.node_position) for n, g in self.machine.gears.items()}
-
-    @cached_property
-    def bearings(self) -> dict[str, Array]:
-        """Displacement of the shaft against the housing at each bearing, per coordinate."""
-        rows = {}
-        for name, bearing in self.machine.bearings.items():
-            row = self.at(bearing.shaft, bearing.position)
-            if bearing.node is not None and self.machine.housing is not None:
-                for k, number in enumerate((self.machine.housing.nodes or {})[bearing.node]):
-                    if number >= 0:
-                        row[k, self.housing.start + number] -= 1.0
-            rows[name] = row
-        return rows
-
-    @cached_property
-    def meshes(self) -> dict[str, Array]:
-        """Compression at mid face and its slope over the face, per coordinate, (2, size)."""
-        rows = {}
-        for name, mesh in self.machine.meshes.items():
-            direction = self.machine.directions[name]
-            first, second = (self.gears[gear] for gear in mesh.gears)
-            turn = np.cross([1.0, 0.0, 0.0], direction.normal)
-            rows[name] = np.array(
-                [
-                    direction.direction[:6] @ first + direction.direction[6:] @ second,
-                    turn @ (first[3:] - second[3:]),
-                ]
-            )
-        return rows
-
-    def law(self, name: str) -> MeshLaw:
-        """Law of a mesh: the caller's, or a constant stiffness."""
-        if name in self.laws:
-            return self.laws[name]
-        mesh = self.machine.meshes[name]
-        if mesh.stiffness is None:
-            stiffness = USUAL_STIFFNESS * self.face_width(name)
-            self.assumptions.append(
-                f"meshes.{name}.stiffness = {stiffness:.4g} N/m: 14 N/(mm um) over the face width"
-            )
-        else:
-            stiffness = _mean(mesh.stiffness)
-        error = _mean(mesh.error)
-
-        def linear(compression: float, slope: float) -> tuple[float, float, ArrayLike]:
-            return stiffness * (compression - error), 0.0, ((stiffness, 0.0), (0.0, 0.0))
-
-        return linear
-
-    def face_width(self, name: str) -> float:
-        """Common face width of a mesh."""
-        return min(self.machine.gears[gear].face_width for gear in self.machine.meshes[name].gears)
-
-    def bearing(self, name: str, displacement: Array) -> tuple[Array, Array]:
-        """Load and stiffness of a bearing."""
-        part = self.machine.bearings[name]
-        if part.rolling is None:
-            matrix = part.stiffness_matrix
-            return matrix @ displacement, matrix
-        load, matrix = np.zeros(6), np.zeros((6, 6))
-        _, load[list(HELD)], matrix[np.ix_(HELD, HELD)] = part.rolling.response(
-            displacement[list(HELD)]
-        )
-        return load, matrix
-
-
-def _mean(entry: Any) -> float:
-    """Mean of an entry over the phase of its mesh."""
-    return float(np.mean(entry(_PHASES) if varies(entry) else entry))
-
-
 def static_balance(
     machine: Machine,
     *,
@@ -329,7 +208,7 @@ def static_balance(
     >>> round(float(np.hypot(*balance.bearings["in0.0"].load[1:3])), 3)  # three quarters of it
     1596.267
     """
-    model = _Model(machine, laws or {})
+    model = StaticModel(machine, laws or {})
     for kind, names, parts in (
         ("mesh", laws or {}, machine.meshes),
         ("gear", loads or {}, machine.gears),
@@ -349,13 +228,15 @@ def static_balance(
         external += values @ model.gears[name]
     output_row = model.at(run.output, machine.shafts[run.output].length)[3]
     displacement, output, steps = _solve(model, external, output_row)
-    return _balance(model, displacement, output, steps)
+    return _balance(model, external, displacement, output, steps)
 
 
 class _Forces:
     """Loads and stiffness of all parts at a displacement of all coordinates."""
 
-    def __init__(self, model: _Model, laws: Mapping[str, MeshLaw], displacement: Array) -> None:
+    def __init__(
+        self, model: StaticModel, laws: Mapping[str, MeshLaw], displacement: Array
+    ) -> None:
         self.total, self.tangent = model.stiffness @ displacement, model.stiffness.copy()
         self.meshes: dict[str, tuple[Array, Array]] = {}
         self.bearings: dict[str, tuple[Array, Array]] = {}
@@ -370,7 +251,7 @@ class _Forces:
                 self.tangent += kind[name].T @ stiffness @ kind[name]
 
 
-def _solve(model: _Model, external: Array, output_row: Array) -> tuple[Array, float, int]:
+def _solve(model: StaticModel, external: Array, output_row: Array) -> tuple[Array, float, int]:
     """Displacement of all coordinates, torque that holds the output, number of steps."""
     laws = {name: model.law(name) for name in model.meshes}
     rolling = [n for n, b in model.machine.bearings.items() if b.rolling is not None]
@@ -403,7 +284,7 @@ def _split(solution: Array) -> tuple[Array, float]:
 
 
 def _advance(
-    model: _Model,
+    model: StaticModel,
     laws: Mapping[str, MeshLaw],
     external: Array,
     displacement: Array,
@@ -424,7 +305,7 @@ def _advance(
     return displacement + share * change, share < 1.0
 
 
-def _unbalanced(model: _Model, residual: Array, displacement: Array) -> ComputationError:
+def _unbalanced(model: StaticModel, residual: Array, displacement: Array) -> ComputationError:
     """Error that names the shaft that nothing holds."""
     moved = np.abs(displacement / model.scale)
     values = moved if moved.max() > 1e-2 else np.abs(residual)
@@ -458,7 +339,9 @@ def _check_direction(name: str, bearing: RollingElementBearing, load: Array) -> 
         )
 
 
-def _balance(model: _Model, displacement: Array, output: float, steps: int) -> StaticBalance:
+def _balance(
+    model: StaticModel, external: Array, displacement: Array, output: float, steps: int
+) -> StaticBalance:
     """Collect the results by part."""
     laws = {name: model.law(name) for name in model.meshes}
     forces = _Forces(model, laws, displacement)
@@ -466,9 +349,16 @@ def _balance(model: _Model, displacement: Array, output: float, steps: int) -> S
     for name, (load, stiffness) in forces.meshes.items():
         compression, slope = (model.meshes[name] @ displacement).tolist()
         misalignment = slope * model.face_width(name)
-        meshes[name] = MeshBalance(
-            float(load[0]), float(load[1]), compression, misalignment, stiffness
-        )
+        law = laws[name]
+        factor = law.face_load_factor(compression, slope) if isinstance(law, FaceLaw) else None
+        force, moment = load.tolist()
+        meshes[name] = MeshBalance(force, moment, compression, misalignment, stiffness, factor)
+        if load[0] < -1e-9 * np.abs(external).max():
+            warn(
+                "negative-mesh-force",
+                f'mesh "{name}" carries {load[0]:.4g} N: in its loop the other flank would carry '
+                "after the backlash; correct stiffness or errors of the loop",
+            )
     bearings = {}
     for name, (load, stiffness) in forces.bearings.items():
         moved = model.bearings[name] @ displacement
@@ -482,7 +372,11 @@ def _balance(model: _Model, displacement: Array, output: float, steps: int) -> S
         position = np.union1d(shaft.nodes, np.linspace(0.0, shaft.shaft.length, _POINTS))
         rows = np.array([shaft.at(place) for place in position])
         shafts[name] = ShaftDeflection(position, rows @ displacement[model.slices[name]])
-    notes = list(model.assumptions)
+    notes = [
+        f"meshes.{name}.stiffness: 14 N/(mm um) over the face width"
+        for name, mesh in model.machine.meshes.items()
+        if mesh.stiffness is None
+    ]
     for name, bearing in model.machine.bearings.items():
         if bearing.rolling is not None:
             notes += [f"bearings.{name}.{note}" for note in bearing.rolling.assumptions]
