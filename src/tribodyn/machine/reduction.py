@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.machine.machine import Machine
-from tribodyn.machine.static import static_balance
+from tribodyn.machine.static.balance import static_balance
 from tribodyn.machine.structure import MachineStructure, Reduction
 from tribodyn.types import Array, Index, Mask
 

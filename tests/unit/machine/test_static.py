@@ -208,6 +208,46 @@ def test_a_split_of_power_follows_the_stiffness():
     assert balance.output_torque == pytest.approx(-90.0, rel=1e-10)
 
 
+def test_rigid_shafts_without_bearings_only_turn():
+    machine = Machine(
+        shafts={"in": Shaft(), "out": Shaft()},
+        gears={"z1": Gear("in", None, 20, 0.02), "z2": Gear("out", None, 40, 0.02)},
+        meshes={"first": Mesh(("z1", "z2"), 3e-3, helix_angle=10 * DEG, stiffness=3e8)},
+        operation=Operation("in", "out", 100.0, 60.0),
+    )
+    balance = static_balance(machine)
+    radius = machine.directions["first"].base_radius[0]
+    assert balance.gears["z1"][3] == pytest.approx(60.0 / radius**2 / 3e8, rel=1e-9)
+    assert balance.output_torque == pytest.approx(120.0, rel=1e-12)
+    assert balance.meshes["first"].misalignment == 0.0
+
+
+def test_a_loop_whose_errors_load_the_other_flank_warns():
+    gears = {
+        f"{shaft}{k}": Gear(shaft, 0.05 + 0.1 * k, teeth, 0.02)
+        for k in (0, 1)
+        for shaft, teeth in (("in", 20), ("out", 40))
+    }
+    shaft = sections((0.2, 0.05, 0.0))
+    machine = Machine(
+        shafts={"in": shaft, "out": shaft},
+        gears=gears,
+        meshes={
+            f"m{k}": Mesh((f"in{k}", f"out{k}"), 3e-3, stiffness=3e8, error=40e-6 * k)
+            for k in (0, 1)
+        },
+        bearings={f"{s}{x}": Bearing(s, x) for s in ("in", "out") for x in (0.0, 0.2)},
+        operation=Operation("in", "out", 100.0, 20.0),
+    )
+    with pytest.warns(ModelWarning, match='mesh "m1" carries -'):
+        balance = static_balance(machine)
+    total = sum(mesh.force for mesh in balance.meshes.values())
+    assert total == pytest.approx(20.0 / (0.03 * math.cos(20 * DEG)), rel=1e-9)
+    separated = static_balance(machine, laws=face_laws(machine)).meshes
+    assert separated["m1"].force == 0.0
+    assert separated["m0"].force == pytest.approx(total, rel=1e-9)
+
+
 def rolling_stage(**clearance) -> Machine:
     """Helical stage: deep groove and cylindrical roller bearings, angular contact pair."""
     ball = DeepGrooveBallBearing(bore_diameter=0.055, outer_diameter=0.12, **clearance)

@@ -219,14 +219,14 @@ def static_balance(
                 raise InputError(what, where, f"Known: {', '.join(parts)}", "Correct the name")
     run = machine.operation
     torque = np.copysign(1.0, run.speed) * run.torque
-    external = torque * model.at(run.input, 0.0)[3]
+    external = torque * model.structure.at(run.input, 0.0)[3]
     for name, load in (loads or {}).items():
         values = real_numbers(Argument(f"loads[{name}]"), load)
         if values.shape != (6,):
             what, why = f"the load has the shape {values.shape}", "Wanted: forces and moments, (6,)"
             raise InputError(what, Argument(f"loads[{name}]"), why, "Give six numbers")
         external += values @ model.gears[name]
-    output_row = model.at(run.output, machine.shafts[run.output].length)[3]
+    output_row = model.structure.balance
     displacement, output, steps = _solve(model, external, output_row)
     return _balance(model, external, displacement, output, steps)
 
@@ -309,10 +309,13 @@ def _unbalanced(model: StaticModel, residual: Array, displacement: Array) -> Com
     """Error that names the shaft that nothing holds."""
     moved = np.abs(displacement / model.scale)
     values = moved if moved.max() > 1e-2 else np.abs(residual)
-    names = {name: float(values[part].max()) for name, part in model.slices.items()}
-    shaft = max(names, key=lambda name: names[name])
-    part = model.slices[shaft]
-    way = ["x", "y", "z", "theta_x", "theta_y", "theta_z"][int(values[part].argmax()) % 6]
+    shafts = {
+        name: np.abs(model.nodes(name)).max(axis=(0, 1)) > 0.0 for name in model.machine.shafts
+    }
+    shaft = max(shafts, key=lambda name: float(values[shafts[name]].max(initial=-1.0)))
+    part = shafts[shaft]
+    worst = np.array(model.structure.names)[part][values[part].argmax()]
+    way = f"theta_{worst[-1]}" if "_theta_" in worst else worst[-1]
     bearings = [n for n, b in model.machine.bearings.items() if b.shaft == shaft]
     return ComputationError(
         f"nothing balances the load on {way} of the shaft: after {_STEPS} steps or less it is "
@@ -368,10 +371,10 @@ def _balance(
         state = rolling.state(moved[list(HELD)]) if rolling else None
         bearings[name] = BearingBalance(moved, load, stiffness, state)
     shafts = {}
-    for name, shaft in model.shafts.items():
+    for name, shaft in model.structure.shafts.items():
         position = np.union1d(shaft.nodes, np.linspace(0.0, shaft.shaft.length, _POINTS))
-        rows = np.array([shaft.at(place) for place in position])
-        shafts[name] = ShaftDeflection(position, rows @ displacement[model.slices[name]])
+        rows = np.array([model.structure.at(name, place) for place in position])
+        shafts[name] = ShaftDeflection(position, rows @ displacement)
     notes = [
         f"meshes.{name}.stiffness: 14 N/(mm um) over the face width"
         for name, mesh in model.machine.meshes.items()
@@ -382,13 +385,14 @@ def _balance(
             notes += [f"bearings.{name}.{note}" for note in bearing.rolling.assumptions]
         elif bearing.is_default:
             notes.append(f"bearings.{name} is stiff: 1e9 N/m along x, y and z")
+    housing = model.machine.housing
     return StaticBalance(
         machine=model.machine,
         meshes=meshes,
         bearings=bearings,
         shafts=shafts,
         gears={name: rows @ displacement for name, rows in model.gears.items()},
-        housing=displacement[model.housing],
+        housing=displacement[model.size - (housing.size if housing else 0) :],
         output_torque=output,
         steps=steps,
         assumptions=tuple(dict.fromkeys(notes)),

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import Argument, InputError, real_numbers
 from tribodyn.machine.fields import check_number
-from tribodyn.machine.graph.kinematics import mean_stiffness
+from tribodyn.machine.graph.kinematics import mean_of, mean_stiffness
 from tribodyn.machine.machine import Machine
 from tribodyn.types import Array
 
@@ -154,7 +154,8 @@ def face_laws(machine: Machine) -> dict[str, FaceLaw]:
     Returns
     -------
     dict
-        :class:`FaceLaw` by mesh, of its mean stiffness and common face width, without gap.
+        :class:`FaceLaw` by mesh, of its mean stiffness, mean error and common face width, without
+        gap.
 
     Examples
     --------
@@ -171,5 +172,5 @@ def face_laws(machine: Machine) -> dict[str, FaceLaw]:
     for name, mesh in machine.meshes.items():
         gears = machine.gears[mesh.gears[0]], machine.gears[mesh.gears[1]]
         width = min(gear.face_width for gear in gears)
-        laws[name] = FaceLaw(mean_stiffness(mesh, gears), width)
+        laws[name] = FaceLaw(mean_stiffness(mesh, gears), width, error=mean_of(mesh.error))
     return laws

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.machine.bearing import HELD
+from tribodyn.machine.bearing import HELD, Bearing
 from tribodyn.machine.graph.kinematics import mean_of, mean_stiffness
 from tribodyn.machine.machine import Machine
-from tribodyn.machine.shaft_matrices import ShaftMatrices
+from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
 
 #: Force and moment of a mesh over the face, and their derivatives (2, 2), of the compression [m]
@@ -27,54 +27,23 @@ class StaticModel:
 
     def __init__(self, machine: Machine, laws: Mapping[str, MeshLaw]) -> None:
         self.machine, self.laws = machine, laws
-        places: dict[str, list[float]] = {name: [] for name in machine.shafts}
-        for gear in machine.gears.values():
-            places[gear.shaft].append(gear.node_position)
-        for bearing in machine.bearings.values():
-            places[bearing.shaft].append(bearing.position)
-        self.shafts = {
-            name: ShaftMatrices(shaft, tuple(places[name]), shaft.length or None)
-            for name, shaft in machine.shafts.items()
-        }
-        ends = np.cumsum([0, *(shaft.size for shaft in self.shafts.values())]).tolist()
-        self.slices = {
-            name: slice(*pair) for name, pair in zip(self.shafts, pairwise(ends), strict=True)
-        }
-        housing = machine.housing
-        self.size = ends[-1] + (housing.size if housing else 0)
-        self.housing = slice(ends[-1], self.size)
-        self.stiffness = np.zeros((self.size, self.size))
-        for name, shaft in self.shafts.items():
-            self.stiffness[self.slices[name], self.slices[name]] = shaft.stiffness
-        if housing:
-            self.stiffness[self.housing, self.housing] = housing.stiffness
-        self.scale = np.ones(self.size)
-        for part in self.slices.values():
-            self.scale[part].reshape(-1, 6)[:, 3:] = 1.0 / _LEVER
+        # Beam elements are exact under forces at their ends, however long they are.
+        longest = max(shaft.length for shaft in machine.shafts.values()) or 1.0
+        springs = {name: _as_spring(bearing) for name, bearing in machine.bearings.items()}
+        self.structure = MachineStructure(replace(machine, bearings=springs), 0.0, longest)
+        self.size = self.structure.size
+        parts = self.structure.elements.items()
+        matrices = [matrix for name, matrix in parts if not name.startswith("bearings.")]
+        self.stiffness = sum(matrices, np.zeros((self.size, self.size)))
+        turns = ["_theta_" in name for name in self.structure.names]
+        self.scale = np.where(turns, 1.0 / _LEVER, 1.0)
+        self.gears = {name: self.structure.gear(name) for name in machine.gears}
+        self.bearings = {name: self.structure.bearing(name) for name in machine.bearings}
 
-    def at(self, shaft: str, position: float) -> Array:
-        """Displacement of a point of a shaft per coordinate, (6, size)."""
-        out = np.zeros((6, self.size))
-        out[:, self.slices[shaft]] = self.shafts[shaft].at(position)
-        return out
-
-    @cached_property
-    def gears(self) -> dict[str, Array]:
-        """Displacement of each gear per coordinate."""
-        return {n: self.at(g.shaft, g.node_position) for n, g in self.machine.gears.items()}
-
-    @cached_property
-    def bearings(self) -> dict[str, Array]:
-        """Displacement of the shaft against the housing at each bearing, per coordinate."""
-        rows = {}
-        for name, bearing in self.machine.bearings.items():
-            row = self.at(bearing.shaft, bearing.position)
-            if bearing.node is not None and self.machine.housing is not None:
-                for k, number in enumerate((self.machine.housing.nodes or {})[bearing.node]):
-                    if number >= 0:
-                        row[k, self.housing.start + number] -= 1.0
-            rows[name] = row
-        return rows
+    def nodes(self, shaft: str) -> Array:
+        """Displacement of all nodes of a shaft per coordinate, (nodes, 6, size)."""
+        places = self.structure.shafts[shaft].nodes
+        return np.array([self.structure.at(shaft, place) for place in places])
 
     @cached_property
     def meshes(self) -> dict[str, Array]:
@@ -120,3 +89,11 @@ class StaticModel:
             displacement[list(HELD)]
         )
         return load, matrix
+
+
+def _as_spring(bearing: Bearing) -> Bearing:
+    """Stand-in for a rolling bearing that holds what it can hold under some load."""
+    if bearing.rolling is None:
+        return bearing
+    holds = np.diag([float(bearing.rolling.takes_axial_force), 1.0, 1.0, 1.0, 1.0])
+    return replace(bearing, rolling=None, stiffness=holds)
