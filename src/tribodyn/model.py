@@ -48,7 +48,7 @@ class Option:
     low: float = -math.inf
     high: float = math.inf
     positive: bool = False  #: zero is refused although ``low`` is zero
-    pair: bool = False  #: a list of two, for pinion and wheel, is accepted too
+    pair: bool = False  #: a list of two, for both gears, is accepted too
     origin: str = ""  #: reason for the limits
     names: Names | None = None  #: allowed names of a choice
     meanings: Mapping[str, str] = field(default_factory=dict)  #: meanings of the names

@@ -8,11 +8,16 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass
+from typing import Final, Literal
 
 from tribodyn.arguments import guard
 from tribodyn.errors import Argument, InputError
 
-__all__ = ["QUANTITIES", "Quantity", "find", "lookup"]
+__all__ = ["GEARS", "QUANTITIES", "Quantity", "find", "lookup"]
+
+#: Names of both gears of a pair, the smaller one first.
+GEARS: Final = ("pinion", "wheel")
+GearName = Literal["pinion", "wheel"]
 
 
 class UnknownQuantityError(InputError, KeyError):

@@ -15,6 +15,7 @@ from tribodyn.cases.catalogue import case_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
+from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.result_comparison import differing
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
@@ -28,7 +29,6 @@ RUNS = 6
 #: Characters that a value may have.
 _LONGEST = 10_000
 #: Amount and length of a tip relief.
-_GEARS = ("pinion", "wheel")
 _RELIEF = ("tip_relief", "tip_relief_length")
 #: Origin of a change, in messages.
 _BY = "form"
@@ -152,7 +152,7 @@ class TabSession:
             self.case = self.case.replace(relief, by=_BY)
         self.edits += 1
         self.view = "pair"
-        gears = [g for g in _GEARS if f"gears.{g}.modification.tip_relief" in relief]
+        gears = [g for g in GEARS if f"gears.{g}.modification.tip_relief" in relief]
         values = [relief[f"gears.{gears[0]}.modification.{name}"] for name in _RELIEF]
         of = " over ".join(values)
         self.tell(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.app.case_form import field_of
 from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
+from tribodyn.nomenclature import GEARS
 from tribodyn.study.studies.range_syntax import UnreadError, read_list, read_range, read_values
 
 if TYPE_CHECKING:
@@ -21,8 +22,8 @@ Values = Mapping[str, str]
 #: What a study shows: ``sentences``, ``tables``, and figures as (heading, figure, caption).
 Shown = dict[str, Any]
 
-#: Gears that may have a tip relief, and the ends of the keys of one.
-_GEARS, _RELIEF = ("pinion", "wheel"), ("", "_length", "_shape")
+#: Ends of the keys of a tip relief.
+_RELIEF = ("", "_length", "_shape")
 _RANGE = "400..3500 rpm:20, or 50, 150, 300 N*m"
 _ENDS = "400..3500 rpm"
 
@@ -148,7 +149,7 @@ def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Sho
     torque = _read("torque", values["torque"], read_list) if values.get("torque") else None
     answer = relief_report_data(case, torque, values.get("gears") or "both")
     content = _of(answer, "relief", case, target)
-    gears = [values["gears"]] if values.get("gears") in _GEARS else list(_GEARS)
+    gears = [values["gears"]] if values.get("gears") in GEARS else list(GEARS)
     reliefs = [f"gears.{g}.modification.tip_relief{part}" for g in gears for part in _RELIEF]
     changes = answer.best.user_input if answer.best is not None else {}
     return {**content, "relief": {key: changes[key] for key in reliefs if key in changes}}
@@ -318,7 +319,7 @@ STUDIES: dict[str, Study] = {
         "The tip relief that leaves least transmission error, and the case with it.",
         {
             "torque": _LIST,
-            "gears": choice("both", ("both", "pinion", "wheel"), meaning="gears with relief"),
+            "gears": choice("both", ("both", *GEARS), meaning="gears with relief"),
         },
         _relief,
     ),

@@ -13,9 +13,11 @@ from xml.etree import ElementTree
 
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import atomic_write
+from tribodyn.nomenclature import GEARS
 from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
+    from tribodyn.gear import SpurPair
     from tribodyn.study.case.case import Case
 
 #: Attribute of the gear unit that holds the complete case.
@@ -86,7 +88,7 @@ def _parts(case: Case) -> dict[str, Any]:
 
     pair = case.gear_pair
     operation = case.operation
-    driver = 0 if operation.speed_of == "pinion" else 1
+    driver = GEARS.index(operation.speed_of)
     torque = operation.torque if case.gears.driver == operation.speed_of else -operation.torque
     load: list[dict[str, Any]] = [
         _part(_UNIT, "gear_unit", "", [("load_duration_fraction", "%", 100.0)]),
@@ -102,7 +104,7 @@ def _parts(case: Case) -> dict[str, Any]:
     if temperature is not None:
         kelvin = [("temperature_lubricant", "C", temperature - ZERO_CELSIUS)]
         load.append(_part(_CASING, "gear_casing", "", kelvin))
-    gears = [_gear(pair.pinion, case.gears.pinion, 0), _gear(pair.wheel, case.gears.wheel, 1)]
+    gears = [_gear(pair, case, which) for which in range(2)]
     components = [
         _part(_UNIT, "gear_unit", case.title, [(WHOLE_CASE, "none", case.to_toml())]),
         _part(_CASING, "gear_casing", "Casing", []),
@@ -116,7 +118,7 @@ def _parts(case: Case) -> dict[str, Any]:
         ]),
         _part(_LOAD, "external_load", "Load", [("defines_torque", "none", True)]),
         *(_part(n, "shaft", f"Shaft of the {name}", [])
-          for n, name in zip(_SHAFTS, ("pinion", "wheel"), strict=True)),
+          for n, name in zip(_SHAFTS, GEARS, strict=True)),
         _part(_TOOL, "rack_shaped_tool", "Rack", [
             ("addendum_coefficient_reference_profile", "none", case.gears.dedendum_coefficient),
             ("dedendum_coefficient_reference_profile", "none", case.gears.addendum_coefficient),
@@ -135,7 +137,8 @@ def _parts(case: Case) -> dict[str, Any]:
     }
 
 
-def _gear(gear: Any, options: Any, which: int) -> list[dict[str, Any]]:
+def _gear(pair: SpurPair, case: Case, which: int) -> list[dict[str, Any]]:
+    gear, options = pair.gears[GEARS[which]], case.gears.by_name[GEARS[which]]
     attributes: list[Attribute] = [
         ("number_of_teeth", "none", gear.teeth),
         ("normal_module", "mm", gear.normal_module * _TO_MM),
@@ -149,7 +152,7 @@ def _gear(gear: Any, options: Any, which: int) -> list[dict[str, Any]]:
         ("normal_pressure_angle", "deg", gear.normal_pressure_angle * _TO_DEG),
         ("addendum_modification_coefficient", "none", gear.profile_shift_coefficient),
     ]
-    name = ("Pinion", "Wheel")[which]
+    name = GEARS[which].capitalize()
     return [
         _part(_GEARS[which], "cylindrical_gear", name, attributes),
         *(_part(n, "cylindrical_gear_flank", name, flank) for n in _FLANKS[which]),
@@ -167,7 +170,7 @@ def _oil(case: Case) -> dict[str, Any]:
 def _forms(case: Case) -> list[tuple[tuple[int, int], dict[str, Any]]]:
     """Reliefs and crownings, each with the flanks to which it is attached."""
     forms: list[tuple[tuple[int, int], dict[str, Any]]] = []
-    for flanks, gear in zip(_FLANKS, (case.gears.pinion, case.gears.wheel), strict=True):
+    for flanks, gear in zip(_FLANKS, case.gears.by_name.values(), strict=True):
         for key, (kind, amounts, length) in _FORMS.items():
             amount = getattr(gear.modification, key, 0.0)
             if amount:

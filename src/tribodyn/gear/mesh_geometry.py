@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear.curves import inverse_involute, involute
@@ -161,6 +161,11 @@ class MeshGeometry:
     pinion: ToothForm
     wheel: ToothForm
     center_distance: float
+
+    @property
+    def gears(self) -> dict[str, Any]:
+        """Both tooth forms by the name of their gear."""
+        return {"pinion": self.pinion, "wheel": self.wheel}
 
     @cached_property
     def ratio(self) -> float:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 from tribodyn.errors import Argument, InputError, Problem, warn
 from tribodyn.gear.mesh_geometry import (
@@ -23,7 +24,9 @@ from tribodyn.gear.modification import (
 )
 from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.tooth_form import ToothForm
+from tribodyn.types import Array
 
+_Path = TypeVar("_Path", float, Array)
 #: Negative play over the module that printed, hence rounded, shift coefficients may leave.
 ROUNDING_TOLERANCE = 0.002
 #: Negative play over the module above which the rounding is worth a warning.
@@ -102,6 +105,26 @@ class SpurPair(MeshGeometry):
     def driving(self) -> SpurGear:
         """The gear that drives."""
         return self.pinion if self.driver == "pinion" else self.wheel
+
+    def driving_radius(self, path: _Path) -> _Path:
+        """Radius of curvature of the driving flank at positions on the line of action [m].
+
+        Parameters
+        ----------
+        path : float or array
+            Distance from the pinion's base tangent point [m].
+
+        Returns
+        -------
+        float or array
+            Distance from the base tangent point of the driving gear [m].
+        """
+        return path if self.driver == "pinion" else self.line_of_action_length - path
+
+    @property
+    def driven_gear(self) -> str:
+        """Name of the driven gear."""
+        return "wheel" if self.driver == "pinion" else "pinion"
 
     @cached_property
     def driven(self) -> SpurGear:

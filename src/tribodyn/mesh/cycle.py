@@ -25,7 +25,7 @@ class MeshCycle:
 
     contact: PathOfContact  #: path of contact of the pair
     grid: PhaseGrid  #: knots on the mesh phase, twice at each event
-    path: Array  #: distance of each contact from the pinion's base tangent point [m]
+    path: Array  #: position of each contact on the line of action [m]
     in_contact: Mask  #: whether the pair is in contact
 
     @cached_property
@@ -50,12 +50,12 @@ class MeshCycle:
     def named(self, knot: int, pair: int) -> str:
         """Name a tooth pair by its roll angle."""
         gears, path = self.contact.pair, float(self.path[knot, pair])
-        radius = path if self.contact.direction > 0 else gears.line_of_action_length - path
-        return f"the tooth pair at the roll angle {radius / gears.driving.base_radius:.4f} rad"
+        angle = gears.driving_radius(path) / gears.driving.base_radius
+        return f"the tooth pair at the roll angle {angle:.4f} rad"
 
-    def motion(self, pinion_speed: Array | float) -> Kinematics:
+    def motion(self, speed: Array | float) -> Kinematics:
         """Curvatures and speeds of the touching pairs; speeds in a column give them in rows."""
-        return self.contact.kinematics(self.path[self.in_contact], pinion_speed)
+        return self.contact.kinematics(self.path[self.in_contact], speed)
 
 
 def mesh_cycle(contact: PathOfContact, steps: int) -> MeshCycle:

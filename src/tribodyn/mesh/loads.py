@@ -39,7 +39,7 @@ def quasi_static_loads(
     teeth: Teeth,
     pairs: PairsInContact,
     settings: ToothContact,
-    pinion_speed: float,
+    speed: float,
     progress: Progress,
 ) -> Loads:
     """Share the load among the pairs and find their films."""
@@ -47,7 +47,7 @@ def quasi_static_loads(
         # What the table cannot settle, films of its own may.
         with suppress(OutsideTableError, ComputationError):
             return _under_load(cycle, teeth, settings, tabled)
-    film = film_of(settings, cycle, teeth, pairs, pinion_speed, progress)
+    film = film_of(settings, cycle, teeth, pairs, speed, progress)
     return _under_load(cycle, teeth, settings, film)
 
 

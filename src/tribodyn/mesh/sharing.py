@@ -52,7 +52,7 @@ class ToothContact:
     film_options: Mapping[str, Any] = field(default_factory=dict)
     friction_law: str = "none"
     friction_options: Mapping[str, Any] = field(default_factory=dict)
-    bodies: tuple[float, float] = STEEL_BODIES  #: sqrt(k rho c) of pinion and wheel
+    bodies: tuple[float, float] = STEEL_BODIES  #: sqrt(k rho c) of both gears
 
     def __post_init__(self) -> None:
         require_between(

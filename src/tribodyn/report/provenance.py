@@ -29,7 +29,7 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
     gears, operation = case.gears, case.operation
     stiffness, film = case.contact_models
     point = [
-        ("Teeth", f"{gears.pinion.teeth} : {gears.wheel.teeth}"),
+        ("Teeth", " : ".join(str(gear.teeth) for gear in gears.by_name.values())),
         ("Speed", f"{_with_unit('speed', operation.speed)} ({operation.speed_of})"),
         ("Torque", f"{_with_unit('torque', operation.torque)} ({operation.speed_of})"),
         ("Driver", gears.driver),

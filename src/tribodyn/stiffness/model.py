@@ -24,7 +24,7 @@ class MeshState(NamedTuple):
 
     pair: SpurPair
     material: Material
-    path: Array  #: distance of each contact from the pinion's base tangent point (n, pairs) [m]
+    path: Array  #: positions on the line of action, from the smaller gear (n, pairs) [m]
     in_contact: Mask
     phase: Array  #: (n,)
     normal_force: float  #: of all pairs together [N]
@@ -86,7 +86,7 @@ class StiffnessModel(Model):
         material : Material
             Material of both gears.
         path : array (n, pairs) [m]
-            Distance of each contact from the pinion's base tangent point.
+            Distance of each contact from the base tangent point of the smaller gear.
         in_contact : bool array (n, pairs)
             Whether the pair is in contact.
         phase : array (n,)

@@ -15,6 +15,7 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, Problem, collected, warn
 from tribodyn.mesh.gears import COORDINATES
+from tribodyn.nomenclature import GEARS
 from tribodyn.progress import Progress
 from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.study.pipeline.assembly import geometry, whole_system
@@ -99,7 +100,7 @@ def _mesh_under_load(case: Case, nominal: MeshTable, loading: Array) -> MeshTabl
     table = loaded_mesh(
         case.gear_pair,
         settings,
-        (case.pinion_speed, case.pinion_torque),
+        case.operating_point,
         force_law=mesh_law_of(case) == "force-law",
         loading=loading,
     ).table(settings)
@@ -133,11 +134,11 @@ def balanced_load(case: Case, mesh: MeshTable) -> Array:
     both gears have the same acceleration along the line of action.
     """
     held_gear = {"drive": case.gears.driver, "both": None}.get(
-        case.operation.torque_balance, "wheel" if case.gears.driver == "pinion" else "pinion"
+        case.operation.torque_balance, case.gears.driven
     )
     body, direction, friction = geometry(case), np.atleast_2d(mesh.direction), mesh.friction
     numerator = denominator = np.zeros(1)
-    for gear in ("pinion", "wheel"):
+    for gear in GEARS:
         if held_gear not in (gear, None):
             continue
         turn = COORDINATES.index(f"{gear}_theta")

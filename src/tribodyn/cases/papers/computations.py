@@ -10,6 +10,7 @@ import numpy as np
 
 from tribodyn.errors import collected
 from tribodyn.model import Registry
+from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.to_models import locate_errors, mesh_law_of, unused_lubricant
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.preview import operating_figures
@@ -29,7 +30,6 @@ COMPUTATIONS: Registry[Computation] = Registry("computation")
 
 #: Keys that do not affect loads and films of a mesh.
 _AFTER = ("friction.", "solver.", "losses.", "operation.torque_balance", "title", "origin")
-_GEARS = ("pinion", "wheel")
 #: Margin inside the path of contact [base pitches].
 _INSIDE = 1e-9
 _HARMONICS = 22
@@ -60,7 +60,7 @@ class Meshes:
             self._loaded[key] = loaded_mesh(
                 case.spur_pair,
                 contact_settings(case),
-                (case.pinion_speed, case.pinion_torque),
+                case.operating_point,
                 force_law=mesh_law_of(case) == "force-law",
             )
         return self._loaded[key].table(contact_settings(case))
@@ -96,7 +96,7 @@ def _spur_pair(case: Case) -> dict[str, float]:
     if pair is None:
         return {}
     bodies = {
-        f"gears.{gear}.{key}": None for gear in _GEARS for key in ("mass", "moment_of_inertia")
+        f"gears.{gear}.{key}": None for gear in GEARS for key in ("mass", "moment_of_inertia")
     }
     solid = geometry(case.replace(bodies))
     path = pair.pinion.base_radius * math.tan(pair.operating_pressure_angle)
@@ -161,7 +161,7 @@ def _accelerations(result: Result) -> dict[str, float]:
     from tribodyn.study.pipeline.response_series import centre_column, measured
 
     samples, figures = measured(result.response), dict[str, float]()
-    for gear in _GEARS:
+    for gear in GEARS:
         places = [centre_column(result.response.names, gear, letter) for letter in "xy"]
         columns = [place for place in places if place is not None]
         if len(columns) < len(places):
@@ -252,7 +252,7 @@ def _rig(case: Case, meshes: Meshes, *, slave: str = "QJ 308") -> Figures:
     """Return the motor torque of a back-to-back rig."""
     from tribodyn.study.studies.losses import rig_power_flow
 
-    bearings = {f"losses.{gear}.bearing": slave for gear in _GEARS}
+    bearings = {f"losses.{gear}.bearing": slave for gear in GEARS}
     with collected():
         flow = rig_power_flow(case, case.replace(bearings))
     return {"torque_loss": flow.motor_power / case.operation.speed}
@@ -268,7 +268,7 @@ def _modes(case: Case, meshes: Meshes) -> Figures:
         mesh = meshes.table(case)
         modes = natural_modes(whole_system(case, mesh))
     nearest = int(np.argmin(np.abs(modes.frequency - 5.0 * mesh.mesh_frequency)))
-    gears = [name.startswith(_GEARS) for name in modes.names]
+    gears = [name.startswith(GEARS) for name in modes.names]
     return {
         "first_elastic": float(modes.frequency[modes.rigid]),
         "next_to_fifth_harmonic": float(modes.frequency[nearest]),

@@ -22,6 +22,7 @@ from tribodyn.cli.settings import (
 )
 from tribodyn.errors import InputError, Problem, collected, did_you_mean
 from tribodyn.model import Option, number
+from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.values import FaultError, read_value
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def _values(case: Case, name: str, text: Text) -> list[float] | None:
 def _slave(case: Case, rig: Text) -> Case | None:
     if rig is None:
         return None
-    bearings = {f"losses.{gear}.bearing": rig for gear in ("pinion", "wheel")}
+    bearings = {f"losses.{gear}.bearing": rig for gear in GEARS}
     return case.replace(bearings, by="--rig")
 
 

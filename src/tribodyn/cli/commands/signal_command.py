@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import Output, check_place
 from tribodyn.errors import Argument, InputError, Problem, TribodynError, collected, did_you_mean
+from tribodyn.nomenclature import GEARS, GearName
 
 if TYPE_CHECKING:
     from tribodyn.measurement import Recording, SignalAnalysis
@@ -60,9 +61,7 @@ class Shaft:
             "Built-in case or case file whose teeth are taken, and its speed where none is known."
         ),
     ] = None
-    gear: Annotated[
-        Literal["pinion", "wheel"], _help("Gear of the case on that shaft: pinion or wheel.")
-    ] = "pinion"
+    gear: Annotated[GearName, _help("Gear of the case on that shaft.")] = GEARS[0]
 
 
 @Parameter(name="*")
@@ -294,9 +293,9 @@ def _teeth_and_speed(turning: Shaft) -> tuple[int | None, int | None, float | No
     from tribodyn.cases.load import load_case
 
     case = load_case(turning.case)
-    gears = {"pinion": case.gears.pinion, "wheel": case.gears.wheel}
-    other = "wheel" if turning.gear == "pinion" else "pinion"
-    teeth, mate = int(gears[turning.gear].teeth), int(gears[other].teeth)
+    counts = {name: int(gear.teeth) for name, gear in case.gears.by_name.items()}
+    teeth = counts.pop(turning.gear)
+    (mate,) = counts.values()
     if speed is None:
         is_speed_of_gear = case.operation.speed_of == turning.gear
         speed = case.operation.speed * (1.0 if is_speed_of_gear else mate / teeth)

@@ -29,7 +29,8 @@ def iso_14179_1(
     pitch_line_velocity : float or array [m/s]
         Speed of the pitch circles.
     load_intensity : float or array [Pa]
-        K-factor: pitch-line load over face width and pitch diameter of the pinion, times (u + 1)/u.
+        K-factor: pitch-line load over face width and pitch diameter of the smaller gear, times
+        (u + 1)/u.
     kinematic_viscosity : float or array [m^2/s]
         Viscosity over density at the temperature of the sump.
 

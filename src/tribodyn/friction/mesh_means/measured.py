@@ -16,7 +16,7 @@ from tribodyn.model import numbers
 from tribodyn.types import Array, Index, Mask
 from tribodyn.units import RPM
 
-#: Printed points of a back-to-back rig whose wheel of 24 teeth drives: torque [N*m] and speed
+#: Printed points of a back-to-back rig whose gear of 24 teeth drives: torque [N*m] and speed
 #: [rad/s] of the driving gear, and friction coefficient.
 FZG_POINTS = (
     (50.0, 150.0, 300.0, 150.0, 150.0),

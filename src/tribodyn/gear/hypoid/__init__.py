@@ -5,9 +5,9 @@
 | `pitch_cones` | the cones that touch in the calculation point |
 | `dimensions` | all dimensions of both blanks that follow from them |
 | `blank` | a pair of blanks from the figures of a drawing |
-| `ease_off` | what the pinion has less than its conjugate |
-| `formate` | the flank that a face-mill cutter leaves on the wheel |
-| `envelope` | the conjugate of any wheel flank, its curvature and its undercut |
+| `ease_off` | what a flank has less than its conjugate |
+| `formate` | the flank that a face-mill cutter leaves |
+| `envelope` | the conjugate of any flank, its curvature and its undercut |
 | `conjugate` | one side of a pair: both surfaces and the ends of the flanks |
 | `flank` | both flanks as grids of points, for export |
 | `tooth_contact` | path of contact, transmission error, pattern, with axes that are misplaced |

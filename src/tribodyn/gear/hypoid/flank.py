@@ -17,11 +17,11 @@ from tribodyn.gear.hypoid.blank import HypoidBlank
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks
 from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap, working_depth
 from tribodyn.gear.hypoid.envelope import turned
+from tribodyn.nomenclature import GEARS
 from tribodyn.record import Record, fact, figure_method, quantity, record
 from tribodyn.types import Array, Mask
 
 SIDES = ("drive", "coast")
-GEARS = ("pinion", "wheel")
 _GRID = ("length", "profile")
 
 

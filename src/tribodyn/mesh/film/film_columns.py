@@ -211,7 +211,7 @@ def moving_film(
     least_share : float
         Part of the load at the very entry and exit: a film needs some.
     roughness : two of RoughnessProfile or None
-        Heights of the pinion's and the wheel's flank, carried along at their speeds.
+        Heights of both flanks, carried along at their speeds.
     **options : Any
         Further options of :func:`tribodyn.ehl.solve_transient_line_contact`, such as ``nodes``
         and ``keep_every``.

@@ -320,7 +320,7 @@ def film_of(
     cycle: MeshCycle,
     teeth: Teeth,
     pairs: PairsInContact,
-    pinion_speed: float,
+    speed: float,
     progress: Progress,
 ) -> FormulaFilm | PathFilm:
     """Return the film by the settings: a formula, or solutions along the path of contact."""
@@ -329,7 +329,7 @@ def film_of(
     contact, side = cycle.contact, cycle.side
     places = path_positions(contact, settings.film["positions"], teeth.bends)
     path = contact.A + contact.direction * places.age * contact.pair.base_pitch
-    motion = contact.kinematics(path, pinion_speed)
+    motion = contact.kinematics(path, speed)
     solved = replace(
         pairs,
         age=places.age,

@@ -24,12 +24,12 @@ def hypoid_transmission_error_over_torque(
     loaded : HypoidLoadedContact
         The contact under any torque: its contact lines are those of all.
     torque : float or array (t,)
-        Torques on the pinion in its running sense, in any order [N*m].
+        Torques on the smaller gear in its running sense, in any order [N*m].
 
     Returns
     -------
     HarrisMap
-        The lag of the wheel on the line of action, without load and under each torque; its
+        The lag of the larger gear on the line of action, without load and under each torque; its
         ``gear_pair`` is None.
 
     Raises

@@ -233,7 +233,7 @@ def film_along_path(
         Contacts in the order in which the pair passes them, each with its own load, radius and
         speed; a batch solved with ``keep_solutions=True``.
     path : (n,) array [m]
-        Position of each on the line of action, from the pinion's base tangent point.
+        Position of each on the line of action, from the base tangent point of the smaller gear.
     path_of_contact : PathOfContact, optional
         Marks the positions A to E.
 

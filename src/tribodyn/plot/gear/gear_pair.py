@@ -47,8 +47,8 @@ def _curve(points: Array, name: str, color: str, **more: Any) -> dict[str, Any]:
 
 def _gears_and_centers(pair: SpurPair) -> tuple[tuple[SpurGear, str, float, str], ...]:
     """Both gears with name, centre position and colour."""
-    wheel = (pair.wheel, "wheel", pair.center_distance, WHEEL)
-    return (pair.pinion, "pinion", 0.0, PINION), wheel
+    places = zip(pair.gears.items(), (0.0, pair.center_distance), (PINION, WHEEL), strict=True)
+    return tuple((gear, name, center, color) for (name, gear), center, color in places)
 
 
 def _gears(pair: SpurPair, touching: float) -> list[Trace]:
@@ -229,8 +229,9 @@ def gear_pair(pair: SpurPair) -> Any:
         "hovermode": "closest",
         "legend": {"orientation": "h", "y": -0.16, "yanchor": "top", "x": 0.0},
     }
+    teeth, mate = (gear.teeth for gear in pair.gears.values())
     title = (
-        f"{pair.pinion.teeth} teeth against {pair.wheel.teeth}: on average "
+        f"{teeth} teeth against {mate}: on average "
         f"{path.contact_ratio:.2f} tooth pairs are between A and E"
     )
     return figure(title, [*traces, *_arrows(pair), *enlarged], layout)

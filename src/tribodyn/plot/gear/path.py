@@ -26,8 +26,7 @@ _NUMBER_WORDS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
 def roll_angle_of(pair: Gears, age: Any) -> Array:
     """Roll angle of the driving gear at an age of a tooth pair."""
     contact = path_of_contact(pair)
-    first = contact.A if pair.driver == "pinion" else pair.line_of_action_length - contact.A
-    radius = first + np.asarray(age, dtype=float) * pair.base_pitch
+    radius = pair.driving_radius(contact.A) + np.asarray(age, dtype=float) * pair.base_pitch
     return np.asarray(radius / pair.driving.base_radius)
 
 

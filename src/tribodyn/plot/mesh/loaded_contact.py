@@ -236,8 +236,7 @@ def loaded_contact(contact: LoadedContact) -> Any:
 
 
 def _caption(contact: LoadedContact) -> str:
-    driving = contact.gear_pair.driver
-    driven = "wheel" if driving == "pinion" else "pinion"
+    driving, driven = contact.gear_pair.driver, contact.gear_pair.driven_gear
     return (
         "A pair takes over load as it enters and sheds it before it leaves. In the grey ranges a "
         f"tip corner carries load off the line of action: before A that of the {driven}, after E "

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribodyn.drawing import Sketch, drawing
+from tribodyn.nomenclature import GEARS
 from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
@@ -28,7 +29,7 @@ _JUMP = 1e-6
 
 def no_translation(result: Result) -> str:
     """Reason why a result has no motion of the gear centres; empty if it has."""
-    if response_series.centre_column(result.response.names, "pinion", "y") is not None:
+    if response_series.centre_column(result.response.names, GEARS[0], "y") is not None:
         return ""
     return (
         "The gears of this model only rotate: their centres are fixed and no bearing is loaded. "

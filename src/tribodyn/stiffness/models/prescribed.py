@@ -326,8 +326,8 @@ def _over_roll_angle(state: MeshState, options: dict[str, Any]) -> Array:
     pair, path, in_contact = state.pair, state.path, state.in_contact
     ends = path_of_contact(pair).roll_angles
     radius = pair.driving.base_radius
-    from_tangent_point = path if pair.driver == "pinion" else pair.line_of_action_length - path
-    needed = np.concatenate(([ends["A"], ends["E"]], from_tangent_point[in_contact] / radius))
+    angles = pair.driving_radius(path[in_contact]) / radius
+    needed = np.concatenate(([ends["A"], ends["E"]], angles))
     values = tabulated_stiffness(
         options["roll_angle"], options["pair_stiffness"], needed, name="roll_angle", unit="rad"
     )

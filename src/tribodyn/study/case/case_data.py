@@ -178,6 +178,11 @@ class CaseData(CaseTables):
         return self.operation.torque / (self.gear_ratio if of_wheel else 1.0)
 
     @property
+    def operating_point(self) -> tuple[float, float]:
+        """Speed [rad/s] and nominal torque [N*m] of the pinion."""
+        return self.pinion_speed, self.pinion_torque
+
+    @property
     def user_input(self) -> UserInput:
         """User input, before defaults."""
         return self._user_input

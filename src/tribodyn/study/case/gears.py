@@ -334,6 +334,16 @@ class Gears(Section):
     pinion: Gear = inner_table(Gear, "the smaller gear")
     wheel: Gear = inner_table(Gear, "the larger gear")
 
+    @property
+    def by_name(self) -> dict[str, Gear]:
+        """Both gears by name."""
+        return {"pinion": self.pinion, "wheel": self.wheel}
+
+    @property
+    def driven(self) -> str:
+        """Name of the driven gear."""
+        return "wheel" if self.driver == "pinion" else "pinion"
+
 
 Gears.needed = ("normal_module", "normal_pressure_angle", "driver", "pinion", "wheel")
 # Keys of a hypoid pair stand before the tables of both gears.

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple, TypeVar
 from tribodyn import units
 from tribodyn.errors import Problem, shortened
 from tribodyn.model import REQUIRED, Option
+from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.section import Choice, Section, Table, section_at
 
 
@@ -254,7 +255,7 @@ def _both_gears(spec: Option, name: str, value: Any, as_text: bool) -> tuple[flo
         remedy = f"Write one value for both gears, or {name} = [{spec.example}, {spec.example}]"
         raise FaultError(
             f"{name} = {written(value)}",
-            "A list must have two values, for pinion and wheel",
+            f"A list must have two values, for {GEARS[0]} and {GEARS[1]}",
             remedy,
         )
     return _list(spec, name, value, as_text)
@@ -371,7 +372,7 @@ def _intended_key(name: str, section: type[Section]) -> str:
     keys = section.section_keys().keys
     if term := find_term(name):
         return term.key if term.key in keys else ""
-    for gear in ("pinion", "wheel"):
+    for gear in GEARS:
         base_name = name.removesuffix(f"_{gear}").removeprefix(f"{gear}_")
         if base_name != name and base_name in keys:
             return base_name
@@ -445,12 +446,12 @@ def unknown_key(path: tuple[str, ...], value: Any) -> Problem:
 
 def _gear_key_remedy(name: str, section: type[Section] | None) -> str:
     """Return the remedy for a key that contains the name of a gear, or an empty text."""
-    for gear in ("pinion", "wheel"):
+    for gear in GEARS:
         base_name = name.removesuffix(f"_{gear}").removeprefix(f"{gear}_")
         spec = section.spec(base_name) if section and base_name != name else None
         if spec is not None and spec.pair:
             example = f"{base_name} = [{spec.example}, {spec.example}]"
-            return f"Give the values of pinion and wheel in one list: {example}"
+            return f"Give the values of both gears in one list: {example}"
         if base_name != name and f"[gears.{gear}]" in _tables_with(base_name):
             return f"It is {base_name} in [gears.{gear}]"
     return ""

@@ -64,7 +64,7 @@ def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
 def _of_gears(case: Case) -> tuple[ModelWarning, ...]:
     pair = case.gear_pair
     warnings = list(gear_warnings(case.gears, case.dynamics.backlash))
-    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+    for name, gear in pair.gears.items():
         warnings += [
             *_rim(case, name, gear),
             *_mass(case, name, gear),
@@ -200,10 +200,9 @@ def _relieved(mesh: MeshTable) -> Iterator[ModelWarning]:
     """Warn of a relief far beyond the deflection of a loaded tooth: it reduces the contact."""
     if mesh.gears is None or not mesh.gear_pair.has_profile_modification:
         return
-    gears = {"pinion": mesh.gear_pair.pinion, "wheel": mesh.gear_pair.wheel}
     amount, name, end = max(
         (getattr(gear.modification, end), name, end)
-        for name, gear in gears.items()
+        for name, gear in mesh.gear_pair.gears.items()
         for end in ("tip_relief", "root_relief")
     )
     deflection = mesh.total_normal_force / mesh.maximum_single_pair_stiffness

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import tribodyn
 from tribodyn.errors import InputError
 from tribodyn.model import Model
+from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.provenance import changed_keys
 from tribodyn.study.case.section import section_at
@@ -73,7 +74,7 @@ def _loss_papers(case: Case) -> list[str]:
     box = case.gearbox
     if box is None:
         return []
-    shafts, used = (box.pinion, box.wheel), list[str]()
+    shafts, used = [getattr(box, gear) for gear in GEARS], list[str]()
     used += ["skf"] if any(each.bearing for each in shafts) else []
     used += ["iso-14179"] if any(each.seal_diameter for each in shafts) else []
     used += ["changenet-velex"] if any(each.immersion for each in shafts) else []

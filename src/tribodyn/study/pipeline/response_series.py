@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.mesh.gears import SPATIAL_COORDINATES
+from tribodyn.nomenclature import GEARS
 from tribodyn.record import Parts
 from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.types import Array
@@ -92,7 +93,7 @@ def film_offset(result: Computed) -> float:
 
 
 def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
-    """Force of the teeth on the wheel with friction in the axes of the pinion; None in a plane."""
+    """Force of the teeth with friction in the axes of the first gear; None in a plane."""
     functions = result.mesh.functions()
     if functions.direction is None or result.mesh.direction.shape[-1] != len(SPATIAL_COORDINATES):
         return None
@@ -129,7 +130,7 @@ _IN_SPACE = {
 
 def directions_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Directions in the names of figures, each with its coordinate and its description."""
-    return _IN_SPACE if "pinion_z" in names else _IN_PLANE
+    return _IN_SPACE if f"{GEARS[0]}_z" in names else _IN_PLANE
 
 
 _STATES = {
@@ -189,9 +190,10 @@ def signals(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]
     }
     if (in_space := tooth_force(result, phase, force)) is not None:
         for axis, values in zip("xyz", in_space.T, strict=True):
-            meaning = f"force of the teeth on the wheel along the {axis} axis of the pinion"
+            first, second = GEARS
+            meaning = f"force of the teeth on the {second} along the {axis} axis of the {first}"
             series[f"mesh_force_{axis}"] = (values, "N", meaning)
-    for gear in ("pinion", "wheel"):
+    for gear in GEARS:
         for direction, (axis, direction_text) in directions_of(result.response.names).items():
             column = centre_column(result.response.names, gear, axis)
             if column is not None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.model import Registry
-from tribodyn.nomenclature import QUANTITIES
+from tribodyn.nomenclature import GEARS, QUANTITIES
 from tribodyn.study.pipeline.assembly import geometry, static_error
 from tribodyn.study.pipeline.preview import load_figures, mode_figures, operating_figures
 from tribodyn.study.pipeline.response_series import (
@@ -123,7 +123,6 @@ def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measur
     return keep
 
 
-_GEARS = ("pinion", "wheel")
 _HARMONICS = 5
 
 
@@ -336,7 +335,7 @@ def _support_signals(result: Computed, samples: FineSamples) -> Iterator[tuple[s
     names = result.response.names
     supports: dict[str, int] = {}
     if centre_column(names, "pinion", "x") is not None:
-        for gear, (direction, (letter, _)) in product(_GEARS, directions_of(names).items()):
+        for gear, (direction, (letter, _)) in product(GEARS, directions_of(names).items()):
             if (number := centre_column(names, gear, letter)) is not None:
                 supports[f"bearing_force_{direction}_{gear}"] = number
                 yield f"acceleration_{direction}_{gear}", samples.acceleration[:, number].copy()

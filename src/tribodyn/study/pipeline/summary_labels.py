@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from tribodyn.nomenclature import QUANTITIES
+from tribodyn.nomenclature import GEARS, QUANTITIES
 
 _STATISTICS = {
     "peak_to_peak": "peak to peak",
@@ -29,7 +29,7 @@ _START = re.compile(rf"^({'|'.join(_STATISTICS)})_")
 _ENDINGS = (
     (re.compile(r"_nominal_friction$"), "friction of the nominal load", "{}"),
     (re.compile(r"_harmonic_(\d+)$"), "mesh harmonic {}", "in {}"),
-    (re.compile(r"_(pinion|wheel|shaft[12])$"), "{}", "of the {}"),
+    (re.compile(rf"_({'|'.join(GEARS)}|shaft[12])$"), "{}", "of the {}"),
     (re.compile(r"_teeth$"), "teeth alone", "of the {}"),
     (re.compile(r"(?:(?<=_error)|(?<=_stiffness))_film$"), "oil film", "of the {}"),
     (re.compile(r"_(loa)$"), "along the line of action", "{}"),

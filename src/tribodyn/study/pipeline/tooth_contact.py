@@ -135,7 +135,7 @@ def meshes_of(cases: Sequence[Case]) -> list[Callable[[], MeshTable]]:
     """Mesh tables of cases with the same key from one pass; empty if none can be shared."""
     from tribodyn.mesh.operating_points import mesh_tables
 
-    first, points = cases[0], [(case.pinion_speed, case.pinion_torque) for case in cases]
+    first, points = cases[0], [case.operating_point for case in cases]
     law = mesh_law_of(first) == "force-law"
     tables = mesh_tables(first.gear_pair, contact_settings(first), points, force_law=law)
     return [partial(_repeat_warnings, *entry) for entry in tables]

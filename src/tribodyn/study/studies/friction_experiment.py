@@ -14,6 +14,7 @@ import numpy as np
 from tribodyn.aliases import with_old_names
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import InputError, collected
+from tribodyn.nomenclature import GEARS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.to_models import locate_errors, mesh_law_of
 from tribodyn.study.pipeline.run import PendingRun
@@ -40,7 +41,7 @@ LAWS = ("none", "constant", "benedict-kelly", "xu-2007", "mixed", "mixed-ehl", "
 COEFFICIENTS = (0.035, 0.05, 0.15, 0.25)
 #: Composite roughnesses [m]: those of the sources within the range of the laws, and some between.
 ROUGHNESSES = (0.1e-6, 0.325e-6, 0.4e-6, 0.53e-6, 0.7e-6, 0.8e-6, 0.991e-6)
-DRIVERS, BALANCES = ("pinion", "wheel"), ("drive", "load", "both")
+DRIVERS, BALANCES = GEARS, ("drive", "load", "both")
 #: Laws that need the thickness of the film.
 _ON_FILM = frozenset({"mixed", MIXED, "matsumoto"})
 _KEYS = ("gears.driver", "operation.torque_balance", "friction")
@@ -107,7 +108,7 @@ def friction_experiment(
     named = _laws(laws)
     base = _with_film(case, named)
     loaded = _loaded(base, progress)
-    rubbing = tuple(_list_frictions(base, loaded["pinion"], named, heights, coefficients))
+    rubbing = tuple(_list_frictions(base, loaded[GEARS[0]], named, heights, coefficients))
     frictions = {applied.name: applied for applied in rubbing}
     axes = (Axis(_KEYS[0], DRIVERS), Axis(_KEYS[1], BALANCES), Axis(_KEYS[2], tuple(frictions)))
 
@@ -173,7 +174,7 @@ def _loaded(base: Case, progress: Progress) -> dict[str, LoadedMesh]:
             return loaded_mesh(
                 case.gear_pair,
                 contact_settings(case),
-                (case.pinion_speed, case.pinion_torque),
+                case.operating_point,
                 force_law=mesh_law_of(case) == "force-law",
             )
 

@@ -53,15 +53,15 @@ def _contacts(case: Case) -> TribologicalContact:
     from tribodyn.ehl import FILM_MODELS
     from tribodyn.friction import TribologicalContact, pitch_point
 
-    pair, oil, speed = case.gear_pair, case.lubricant_properties, case.pinion_speed
+    pair, oil = case.gear_pair, case.lubricant_properties
     assert oil is not None
     path = path_of_contact(pair)
     step = 1e-9 * path.direction * pair.base_pitch
     where = [path.A, path.C, path.B + step, 0.5 * (path.B + path.D), path.D - step, path.E]
     positions = np.array(where)
     inside = np.clip(positions, min(path.A, path.E) + abs(step), max(path.A, path.E) - abs(step))
-    motion = path.kinematics(inside, speed)
-    point = pitch_point(pair, speed, case.pinion_torque)
+    motion = path.kinematics(inside, case.operating_point[0])
+    point = pitch_point(pair, *case.operating_point)
     load = point.load_per_width * equal_share(path, inside)
     modulus = effective_modulus(case.material_properties, case.material_properties)
     film = FILM_MODELS["dowson-higginson"].films(

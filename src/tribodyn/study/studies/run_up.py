@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import InputError, collected
+from tribodyn.nomenclature import GEARS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import locate_errors
@@ -144,7 +145,7 @@ def supports(system: System) -> dict[str, Any]:
     rows = {}
     for column, name in enumerate(system.names):
         row_pair = (np.asarray(system.stiffness)[column], np.asarray(system.damping)[column])
-        if np.any(row_pair[0]) and name.startswith(("pinion_", "wheel_")):
+        if np.any(row_pair[0]) and name.startswith(tuple(f"{gear}_" for gear in GEARS)):
             rows[f"bearing_force_{name}"] = np.concatenate(row_pair)
     return rows
 
@@ -153,9 +154,8 @@ def _rotation(case: Case, system: System, per_speed: float) -> Any:
     """Angles of the coordinates per angle of the shaft whose speed is given."""
     from tribodyn.dynamics import STRUCTURES
 
-    pinion = per_speed * 2.0 * np.pi / case.gears.pinion.teeth
-    wheel = pinion / case.gear_ratio
-    gears = {"pinion": pinion, "wheel": wheel}
+    angle = per_speed * 2.0 * np.pi
+    gears = {name: angle / gear.teeth for name, gear in case.gears.by_name.items()}
     turns = {f"{gear}_theta": angle for gear, angle in gears.items()}
     turns_with = STRUCTURES[case.dynamics.model].turns_with
     turns |= {name: gears[gear] for name, gear in turns_with.items()}

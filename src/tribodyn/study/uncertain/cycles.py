@@ -13,6 +13,7 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.errors import ComputationError, warn
 from tribodyn.mesh import MeshTable
+from tribodyn.nomenclature import GEARS
 from tribodyn.nonlinear.attractors import settle
 from tribodyn.nonlinear.survey import Outcomes, Points
 from tribodyn.progress import SILENT, Progress
@@ -126,7 +127,7 @@ def signals_at(
     spring = stiffness[..., None] * rows.stiffness * np.abs(law.side)
     elastic = spring * (law.deflection - law.side * gap[..., None] * rows.gap)
     total, prescribed = spring.sum(axis=-1), error * rows.error[..., 0]
-    column = centre_column(tuple(system.names), "pinion", "y")
+    column = centre_column(tuple(system.names), GEARS[0], "y")
     coordinate = 0 if column is None else column
     return {
         "mesh_force": law.contact.sum(axis=-1),

@@ -46,7 +46,7 @@ class CaseEnsemble(Record):
     dynamic_transmission_error : (n, p) array
         Compression of the mesh with its error, from the middle of the play [m].
     acceleration : (n, p) array
-        Acceleration of the pinion along the line of action [m/s^2].
+        Acceleration of the smaller gear along the line of action [m/s^2].
     seed : int
         Of the sample, and of the bands.
     title : str

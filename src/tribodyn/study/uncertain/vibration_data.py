@@ -81,7 +81,7 @@ def vibration_data(
         Columns ``trajectory``, ``time`` [s], ``phase``, ``cos_phase``, ``sin_phase``, the drawn
         inputs, ``mesh_stiffness`` [N/m], ``friction_coefficient``, ``backlash_function`` [m],
         ``transmission_error`` [m], ``dynamic_transmission_error`` [m], ``mesh_force`` [N] and the
-        ``acceleration`` of the pinion along the line of action [m/s^2].
+        ``acceleration`` of the smaller gear along the line of action [m/s^2].
 
     Raises
     ------
