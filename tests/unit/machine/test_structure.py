@@ -69,12 +69,17 @@ def reduced(full):
 
 def test_natural_frequencies_of_geared_shafts(reduced):
     at_rest = machine_modes(reduced, 0.0).frequency
-    np.testing.assert_allclose(at_rest[:11], PRINTED, rtol=3e-4)
+    np.testing.assert_allclose(at_rest[:11], PRINTED, rtol=6e-4)
     turning = machine_modes(reduced).frequency
-    np.testing.assert_allclose(turning[6:8], [1380.73, 1421.45], rtol=1e-4)
+    np.testing.assert_allclose(turning[6:8], [1380.73, 1421.45], rtol=4e-4)
     np.testing.assert_allclose(
-        np.delete(turning[:11], [6, 7]), PRINTED[:6] + PRINTED[8:], rtol=7e-4
+        np.delete(turning[:11], [6, 7]), PRINTED[:6] + PRINTED[8:], rtol=9e-4
     )
+
+
+def test_natural_frequencies_of_the_full_model(full):
+    np.testing.assert_allclose(machine_modes(full, 0.0).frequency[:11], PRINTED, rtol=2e-4)
+    np.testing.assert_allclose(machine_modes(full).frequency[6:8], [1380.73, 1421.45], rtol=5e-5)
 
 
 def test_the_other_hand_has_other_frequencies():
@@ -108,8 +113,8 @@ def test_reduction_against_the_full_model(full, reduced):
     below = int(np.count_nonzero(frequencies[0] < limit))
     difference = np.abs(frequencies[1][1:below] / frequencies[0][1:below] - 1.0)
     assert below > 15
-    assert reduced.size <= 80
-    assert difference.max() <= 1e-3
+    assert reduced.size < 80
+    assert difference.max() <= 4e-4
     assert reduced.reduction.error == pytest.approx(difference.max(), rel=1e-3)
     # gyroscopic moments and damping ratios too
     speed = 9000 * RPM
@@ -121,8 +126,8 @@ def test_reduction_against_the_full_model(full, reduced):
 
 
 def test_a_finer_tolerance_keeps_more_modes(full, reduced):
-    fine = reduce_structure(full, 5000.0, tolerance=1e-5)
-    assert fine.reduction.error <= 1e-5
+    fine = reduce_structure(full, 5000.0, tolerance=1e-6)
+    assert fine.reduction.error <= 1e-6
     assert fine.size > reduced.size
     with pytest.raises(InputError, match="reduced already"):
         reduce_structure(fine)
@@ -143,7 +148,7 @@ def test_statics_of_the_reduced_machine_are_exact(full, reduced):
 
 def test_large_machines_are_reduced():
     structure = machine_structure(geared_shafts())
-    assert structure.reduction.error <= 1e-3
+    assert structure.reduction.error <= 4e-4
     assert structure.reduction.limit == pytest.approx(6 * 27 * 50.0)
     assert repr(structure).startswith("MachineStructure(")
     assert "Reduction(276 to" in repr(structure)
