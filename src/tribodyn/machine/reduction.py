@@ -150,10 +150,7 @@ def _interface(structure: MachineStructure) -> Mask:
 
 
 def _craig_bampton(structure: MachineStructure, interface: Mask) -> tuple[Array, list[str], Array]:
-    """Basis of all static displacements of the interface and all modes with a fixed interface.
-
-    Also the names of its columns, and their squared frequencies, infinite for the interface.
-    """
+    """Basis of static displacements and fixed modes, names and squared frequencies of its columns."""
     inner, squares, shapes = _fixed_modes(structure, interface)
     edge = np.flatnonzero(interface)
     elastic = squares > _RIGID * squares.max(initial=0.0)
