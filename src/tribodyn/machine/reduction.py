@@ -150,7 +150,7 @@ def _interface(structure: MachineStructure) -> Mask:
 
 
 def _craig_bampton(structure: MachineStructure, interface: Mask) -> tuple[Array, list[str], Array]:
-    """Basis of static displacements and fixed modes, names and squared frequencies of its columns."""
+    """Basis of static displacements and fixed modes, names and squared frequencies of both."""
     inner, squares, shapes = _fixed_modes(structure, interface)
     edge = np.flatnonzero(interface)
     elastic = squares > _RIGID * squares.max(initial=0.0)
