@@ -12,7 +12,12 @@ import numpy as np
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean, require_positive, shortened
 from tribodyn.measurement.readers.detect_format import read_recording_data
-from tribodyn.measurement.readers.recording_data import MEASURED, RecordingData, rate_of
+from tribodyn.measurement.readers.recording_data import (
+    MEASURED,
+    RecordingData,
+    consistent_rate,
+    rate_of,
+)
 from tribodyn.record import Parts, Record, fact, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array
@@ -225,12 +230,8 @@ def _rate(data: RecordingData, names: list[str], user_rate: float | None, path: 
     if not rates:
         why, remedy = "It has neither a time column nor a rate", "Pass sample_rate in hertz"
         raise InputError(f"{path} has no sampling rate", Argument("sample_rate"), why, remedy)
-    first = next(iter(rates.values()))
-    if any(abs(rate - first) > 1e-5 * first for rate in rates.values()):
-        rate_list = ", ".join(f"{name} {rate:.7g} Hz" for name, rate in rates.items())
-        remedy = "Select channels of one rate with channels=[...], or omit sample_rate"
-        raise InputError("the sampling rates differ", str(path), rate_list, remedy)
-    return first
+    remedy = "Select channels of one rate with channels=[...], or omit sample_rate"
+    return consistent_rate(rates, str(path), "the sampling rates differ", remedy)
 
 
 def _from_sensor(text: str, unit: str, name: str) -> tuple[float, str]:

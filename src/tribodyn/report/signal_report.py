@@ -12,7 +12,7 @@ import numpy as np
 from tribodyn import plot
 from tribodyn.drawing import report_of
 from tribodyn.measurement.signal_analysis import MATE, SHAFT
-from tribodyn.plot.signals.analysed import seen_frequency
+from tribodyn.plot.signals.analysed import visible_frequency
 from tribodyn.plot.theme.labels import readable, significant
 from tribodyn.report.study import write_study_report
 from tribodyn.report.study_report_data import Picture, StudyReportData
@@ -212,7 +212,7 @@ def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
         top = analysis.spectrum.frequency[-1]
         marks = [(name, k * frequency) for name, k in mesh if k * frequency < top]
     shafts: list[tuple[str, float]] = []
-    reach = seen_frequency(analysis)
+    reach = visible_frequency(analysis)
     if steady and analysis.speed is not None:
         turn = analysis.speed.mean / (2.0 * np.pi)
         ratios = {SHAFT: 1.0} | {

@@ -44,11 +44,6 @@ class PrintedRow:
     series: str = ""  #: rows of one series have to run like the printed ones
     level: float = 0.0  #: relative change within a series or along a key that counts as none
 
-    @property
-    def is_word(self) -> bool:
-        """Whether a word is printed and not a number."""
-        return isinstance(self.printed, str)
-
 
 def papers() -> dict[str, Path]:
     """Cases of the sources with printed tables, and the files of these."""

@@ -35,7 +35,7 @@ from tribodyn.dynamics.orbits.coordinates import (
     balanced_position,
     orbit_coordinates,
 )
-from tribodyn.dynamics.orbits.orbit_map import Balance, take_drift_out
+from tribodyn.dynamics.orbits.orbit_map import Balance, image_of, take_drift_out
 from tribodyn.dynamics.orbits.search import APART, GONE, HORIZON, NEWTON_LIMIT
 from tribodyn.dynamics.orbits.steady_state import CLOSE, OTHER, ROUNDS, STEP_LIMIT, TOLERANCE
 from tribodyn.dynamics.time.response import Response, build_response
@@ -168,11 +168,7 @@ class SystemBatch:
         for number, record, end in motions(1.0 / self.beat, load, state):
             keep(number, record)
             state[number] = end
-        image = self.coordinates.reduce(state)
-        if self.balance is None:
-            return image
-        gained = self.coordinates.free_velocity(state) @ self.balance.direction
-        return np.concatenate((image, points[..., -1:] - gained[..., None]), axis=-1)
+        return image_of(self.coordinates, self.balance, points, state)
 
 
 class _Touch(NamedTuple):

@@ -60,6 +60,18 @@ class Balance(NamedTuple):
         return np.asarray(gain[:, None] * self.force / np.asarray(span)[:, None])
 
 
+def image_of(
+    coordinates: OrbitCoordinates, balance: Balance | None, points: Array, state: Array
+) -> Array:
+    """Image of points (..., k) whose motions end in states (..., 2 n) after the period."""
+    reduced = coordinates.reduce(state)
+    if balance is None:
+        return reduced
+    # The torque has to compensate what the free motion gained over the period.
+    gained = coordinates.free_velocity(state) @ balance.direction
+    return np.concatenate((reduced, points[..., -1:] - gained[..., None]), axis=-1)
+
+
 class OrbitMap:
     """Map of the reduced state, and of the balancing torque if there is one, over one period.
 
@@ -147,15 +159,7 @@ class OrbitMap:
                 threads=self.threads,
             )
         self.cycles += self.periods
-        return self._image(points, new).reshape(y.shape)
-
-    def _image(self, points: Array, new: Array) -> Array:
-        reduced = self.coordinates.reduce(new)
-        if self.balance is None:
-            return reduced
-        # The torque has to compensate what the free motion gained over the period.
-        gained = self.coordinates.free_velocity(new) @ self.balance.direction
-        return np.column_stack((reduced, points[:, -1] - gained))
+        return image_of(self.coordinates, self.balance, points, new).reshape(y.shape)
 
     def follow(self, y: Array) -> tuple[Array, Array]:
         """Map points (..., k) and record all states, (..., rows, 2 n)."""
@@ -174,7 +178,7 @@ class OrbitMap:
             self.compiled, period, state, self.periods, extra_force=extra, record=record, threads=1
         )
         self.cycles += self.periods
-        return self._image(points, new), record
+        return image_of(self.coordinates, self.balance, points, new), record
 
     def differences(self, y: Array, step: float) -> tuple[Array, Array, Array, Array]:
         """Image and states of a point (k,), and their derivatives by its coordinates.

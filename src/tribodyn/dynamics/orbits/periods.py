@@ -61,13 +61,13 @@ def closed_period(points: Array, size: float) -> int:
     return len(points)
 
 
-def open_period(points: Array, longest: int = 16) -> int:
+def open_period(points: Array) -> int:
     """Number of points after which a sequence repeats or converges to repeating; 0 if none."""
     largest = float(np.abs(points).max(initial=0.0))
     if not largest < _HUGE:
         return 0
     size = float(np.linalg.norm(points, axis=1).max(initial=0.0)) or 1.0
-    for period in range(1, min(longest, len(points) // 2) + 1):
+    for period in range(1, min(16, len(points) // 2) + 1):
         distance = distance_from(points, period) / size
         third = max(1, len(distance) // 3)
         first, last = float(distance[:third].max()), float(distance[-third:].max())

@@ -13,6 +13,9 @@ from tribodyn.dynamics.equations.nodes import force_laws
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
 from tribodyn.types import Array, ComplexArray
 
+#: Earlier points that an acceleration combines.
+_DEPTH = 8
+
 
 def anderson(
     function: Callable[[Array], Array],
@@ -20,7 +23,6 @@ def anderson(
     *,
     tolerance: float,
     limit: int,
-    depth: int = 8,
 ) -> tuple[Array, Array, int]:
     """Fixed point, residual, evaluations. Type II of Fang and Saad (2009), equation (24)."""
     y = start.copy()
@@ -38,7 +40,7 @@ def anderson(
             points, residuals = points[-1:], residuals[-1:]
         points.append(y)
         residuals.append(residual)
-        points, residuals = points[-depth - 1 :], residuals[-depth - 1 :]
+        points, residuals = points[-_DEPTH - 1 :], residuals[-_DEPTH - 1 :]
         y = _combine(points, residuals)
     return best[1], best[2], limit
 

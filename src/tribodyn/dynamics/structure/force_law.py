@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
 
 import numpy as np
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, require_one_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ MeshForce = Literal["stiffness", "tangent", "force-law"]
 
 def carried(contact: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact, ...]:
     """Replace the contact of a gear pair by the contacts of its force law."""
+    require_one_of("mesh_force", mesh_force, get_args(MeshForce))
     if mesh_force == "stiffness":
         return (contact,)
     if mesh_force == "tangent":
@@ -38,10 +39,7 @@ def carried(contact: Contact, mesh: Any, mesh_force: MeshForce) -> tuple[Contact
             contact, stiffness=tangent, error=sum_of(contact.error, mesh.tangent_error)
         )
         return (replace(contact, stiffness=0.0), replace(spring, damping=0.0))
-    if mesh_force == "force-law":
-        return law_contacts(contact, _needed(getattr(mesh, "force_law", None), "force law"))
-    what, why = f'mesh_force = "{mesh_force}"', '"stiffness", "tangent" or "force-law"'
-    raise InputError(what, "argument mesh_force", why, "Choose one of these")
+    return law_contacts(contact, _needed(getattr(mesh, "force_law", None), "force law"))
 
 
 def _needed(value: T | None, name: str) -> T:

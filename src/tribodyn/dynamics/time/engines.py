@@ -21,7 +21,7 @@ from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.newmark import newmark_law, newmark_method
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, require_one_of
 from tribodyn.model import Model, Registry, choice, number
 from tribodyn.types import Array
 
@@ -170,11 +170,8 @@ _BEGIN: Mapping[str, tuple[Callable[..., Marcher], tuple[str, ...]]] = {
 
 def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
     """Prepare the integration with a method or an engine of a case file; check its options."""
-    is_name = isinstance(method, str)
-    name = ENGINES[method].method if is_name and method in ENGINES else method
-    if not is_name or name not in _BEGIN:
-        why = "It is one of " + ", ".join(f'"{each}"' for each in _BEGIN)
-        raise InputError(f'method = "{method}"', "argument method", why, "Choose one of these")
+    engine = ENGINES[method].method if isinstance(method, str) and method in ENGINES else method
+    name = require_one_of("method", engine, _BEGIN)
     begin, allowed = _BEGIN[name]
     chosen = {option: value for option, value in options.items() if value is not None}
     for option in [each for each in chosen if each not in allowed]:

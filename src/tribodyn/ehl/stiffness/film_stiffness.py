@@ -108,29 +108,27 @@ def _by_inlet(solution: SolvedContact, load: float) -> float:
 
 def approach_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
     """Slope of the load over the approach of the bodies less Hertz's."""
-    slope = film_slopes(solution).distance
-    if slope >= 0.0:
-        warn(
-            "film-stiffness",
-            f"The distance that the film keeps rises with the load by {slope:.3g} m per unit of "
-            f"ln(w), so that its stiffness is negative. {_reason(solution, 'secant')}",
-        )
-    return _stiffness(solution, slope, length)
+    what = "distance that the film keeps", "stiffness", "secant"
+    return _stiffness(solution, film_slopes(solution).distance, length, *what)
 
 
 def tangent_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
     """Slope of the load over the central film, ``K = -l dw/dh_c``."""
-    slope = film_slopes(solution).central
+    what = "central film", "tangent stiffness", "approach"
+    return _stiffness(solution, film_slopes(solution).central, length, *what)
+
+
+def _stiffness(
+    solution: SolvedContact, slope: float, length: float, distance: str, name: str, other: str
+) -> float:
+    """Stiffness from the slope of a distance over ln(w) [m]; warn if it is negative."""
     if slope >= 0.0:
         warn(
             "film-stiffness",
-            f"The central film rises with the load by {slope:.3g} m per unit of ln(w), so that "
-            f"its tangent stiffness is negative. {_reason(solution, 'approach')}",
+            f"The {distance} rises with the load by {slope:.3g} m per unit of ln(w), so that its "
+            f"{name} is negative. {_reason(solution, other)}",
+            stacklevel=3,
         )
-    return _stiffness(solution, slope, length)
-
-
-def _stiffness(solution: SolvedContact, slope: float, length: float) -> float:
     require_positive("length", length, "m")
     return -0.5 * np.pi * solution.hertz_pressure * solution.half_width * length / slope
 

@@ -151,10 +151,12 @@ def from_arrays(named: Mapping[str, Any], path: Path) -> RecordingData:
     }
     channel_rates = {name: _nearest(name, rates) for name in channels}
     channel_times = {name: _nearest(name, times) for name in channels}
+    what, remedy = "has different sampling rates for one channel", "Correct one of them in the file"
+    differ = str(path), what, remedy
     return RecordingData(
         channels,
         units,
-        {name: _consistent_rate(each, path) for name, each in channel_rates.items() if each},
+        {name: consistent_rate(each, *differ) for name, each in channel_rates.items() if each},
         {name: each for name, each in channel_times.items() if each is not None},
     )
 
@@ -181,15 +183,12 @@ def _nearest(name: str, by_scope: Mapping[str, Any]) -> Any:
     return next((by_scope[scope] for scope in _enclosing_scopes(name) if scope in by_scope), None)
 
 
-def _consistent_rate(rates: Mapping[str, float], path: Path) -> float:
+def consistent_rate(rates: Mapping[str, float], where: str, what: str, remedy: str) -> float:
     """Common value of several rates; raise InputError if they differ."""
     first = next(iter(rates.values()))
     if any(abs(rate - first) > 1e-5 * first for rate in rates.values()):
         rate_list = ", ".join(f"{name} {rate:.7g} Hz" for name, rate in rates.items())
-        remedy = "Correct one of them in the file"
-        raise InputError(
-            "has different sampling rates for one channel", str(path), rate_list, remedy
-        )
+        raise InputError(what, where, rate_list, remedy)
     return first
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from tribodyn.drawing import drawing
 from tribodyn.errors import InputError
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, Trace, line
 from tribodyn.types import Array
 
@@ -169,7 +169,7 @@ def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None 
 
     def panel(name: str, label: str, values: Any) -> Panel:
         curve = line(time, displayed(name, values), label, TOTAL, unit=display_unit(name))
-        return Panel(axis_label(name, label), [curve], {"rangemode": "tozero"}, height=0.6)
+        return from_zero(axis_label(name, label), [curve], height=0.6)
 
     # The thick film of a lightly loaded contact is outside the initial view.
     thick = displayed("film_thickness", transient.central_film)

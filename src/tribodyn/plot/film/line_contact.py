@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tribodyn.drawing import drawing
 from tribodyn.errors import InputError
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, line, marked
 from tribodyn.types import Array
 
@@ -256,7 +256,7 @@ def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
         f"The film is {center} thick in the centre and {least} at its thinnest",
         scales.position_label,
         [
-            Panel(scales.pressure_label, _pressure(solution, scales), {"rangemode": "tozero"}),
+            from_zero(scales.pressure_label, _pressure(solution, scales)),
             Panel(scales.film_label, _film(solution, scales), view),
         ],
         {"xaxis": {"range": list(scales.position * np.array(window(solution)))}, **marks},
@@ -344,7 +344,7 @@ def compare_line_contacts(
         f"The thinnest film, {units.film_text(thinnest.minimum_film)}, is that of {name}",
         scales[0].position_label,
         [
-            Panel(scales[0].pressure_label, _pressures(rows), {"rangemode": "tozero"}),
+            from_zero(scales[0].pressure_label, _pressures(rows)),
             Panel(scales[0].film_label, _films(rows), height),
         ],
         {"xaxis": {"range": [ends[:, 0].min(), ends[:, 1].max()]}},

@@ -12,7 +12,7 @@ from tribodyn.plot.film.path import Path, gaps_sentence
 from tribodyn.plot.gear.path import roll_label
 from tribodyn.plot.mesh.cycle import TABLE, roll_angle_positions, sharing_under_load
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, figure, line
 from tribodyn.types import Array
 
@@ -169,17 +169,12 @@ def film_over_operation(films: FilmOverOperation) -> Any:
         f"{rounded('pinion_speed', float(films.pinion_speed[column]))} of the pinion"
     )
     panels = [
-        Panel(
-            axis_label("film_thickness"),
-            _curves(films, film, "film_thickness"),
-            {"rangemode": "tozero"},
-            height=1.4,
-        )
+        from_zero(axis_label("film_thickness"), _curves(films, film, "film_thickness"), height=1.4)
     ]
     if films.film_ratio is not None:
         ratio = np.nanmin(films.film_ratio, axis=2)
         curves = _curves(films, ratio, "film_ratio")
-        panels.append(Panel(axis_label("film_ratio"), curves, {"rangemode": "tozero"}))
+        panels.append(from_zero(axis_label("film_ratio"), curves))
     return stack(title, axis_label("pinion_speed"), panels)
 
 

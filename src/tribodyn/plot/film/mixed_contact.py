@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.film.lubrication import RATIO_TICKS, REGIME_SENTENCE
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.panels import Panel, from_zero, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, WHEEL, Trace, line
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def mixed_line_contact(contact: MixedLineContact) -> Any:
             ],
             {"range": [-2.0, 102.0]},
         ),
-        Panel(
+        from_zero(
             axis_label("film_thickness", "Thickness"),
             [
                 curve(displayed("film_thickness", contact.gap), "gap of rough flanks", TOTAL, film),
@@ -58,9 +58,8 @@ def mixed_line_contact(contact: MixedLineContact) -> Any:
                     "dash",
                 ),
             ],
-            {"rangemode": "tozero"},
         ),
-        Panel(
+        from_zero(
             axis_label("hertz_pressure", "Pressure"),
             [
                 curve(
@@ -77,7 +76,6 @@ def mixed_line_contact(contact: MixedLineContact) -> Any:
                     pressure,
                 ),
             ],
-            {"rangemode": "tozero"},
         ),
     ]
     low, high = (significant(100.0 * float(f(share))) for f in (np.min, np.max))

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.labels import axis_label, engineering, significant
-from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.panels import from_zero, stack
 from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, line, marked
 from tribodyn.units import ZERO_CELSIUS
 
@@ -43,14 +43,13 @@ def heat_balance(balance: HeatBalance) -> Any:
         f"{number} {unit}",
         axis_label("temperature", "Temperature of gears and oil"),
         [
-            Panel(
+            from_zero(
                 axis_label("power", "Power"),
                 [
                     {**loss, "mode": "lines+markers"},
                     line(ends, given_off, "dissipated heat", PINION, unit="W", dash="dash"),
                     state,
                 ],
-                {"rangemode": "tozero"},
                 1.4,
             )
         ],

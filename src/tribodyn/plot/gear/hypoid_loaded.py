@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS
-from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
 from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.types import Array
 
@@ -134,9 +134,9 @@ def hypoid_load(loaded: HypoidLoadedContact) -> Any:
     ]
     stiffness = line(phase, 1e-6 * loaded.mesh_stiffness, "mesh", TOTAL, unit="N/µm")
     panels = [
-        Panel("Share of the torque [%]", shares, {"rangemode": "tozero"}),
+        from_zero("Share of the torque [%]", shares),
         Panel("Lag about its mean [µm]", errors),
-        Panel("Stiffness [N/µm]", [stiffness], {"rangemode": "tozero"}),
+        from_zero("Stiffness [N/µm]", [stiffness]),
     ]
     title = (
         f"Transmission error of {np.ptp(lag):.3g} µm under {loaded.pinion_torque:.4g} N·m, "

@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.losses.gearbox import PARTS
 from tribodyn.plot.theme.labels import axis_label, displayed, engineering, significant
-from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
 from tribodyn.plot.theme.style import (
     FONT,
     GRID,
@@ -95,9 +95,7 @@ def _loss_parts(gearbox: GearboxLosses) -> Row:
     torque = f"{displayed('torque', gearbox.pinion_torque)[-1]:.4g} N·m"
     label = axis_label(name, "Speed of the pinion" if over_speed else "Torque on the pinion")
     text = f"Loss under {torque} [W]" if over_speed else "Loss [W]"
-    return Row(
-        label, Panel(text, traces, {"rangemode": "tozero"}, 1.2), {"range": [x.min(), x.max()]}
-    )
+    return Row(label, from_zero(text, traces, 1.2), {"range": [x.min(), x.max()]})
 
 
 def _bars(gearbox: GearboxLosses) -> Any:

@@ -12,7 +12,7 @@ from tribodyn.drawing import drawing
 from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.mesh.cycle import between
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import TOTAL, Trace, line
 from tribodyn.types import Array, Mask
 
@@ -303,10 +303,9 @@ def loaded_sharing(contact: LoadedContact) -> Any:
         f"A tooth pair carries up to {rounded('normal_force', float(peak))}",
         roll_label(pair),
         [
-            Panel(
+            from_zero(
                 axis_label("normal_force", "Force on a tooth pair"),
                 _traces(contact, life, inside),
-                {"rangemode": "tozero"},
                 1.6,
             )
         ],

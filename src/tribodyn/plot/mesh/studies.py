@@ -10,7 +10,7 @@ from tribodyn.drawing import Need, drawing
 from tribodyn.plot.gear.path import mesh_marks, pair_letters, roll_label
 from tribodyn.plot.mesh.loaded_contact import in_legend, torque_colors, torque_names, whole_cycles
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
+from tribodyn.plot.theme.panels import Panel, Row, event_lines, from_zero, stack, stack_rows
 from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
 from tribodyn.types import Array
 
@@ -97,7 +97,7 @@ def _harris_swings(study: HarrisMap) -> Row:
     inside = study.torque.min() < study.quietest_torque < study.torque.max()
     return Row(
         axis_label("torque", "Torque on the pinion"),
-        Panel(axis_label(_QUANTITY, "Variation, amplitude"), traces, {"rangemode": "tozero"}, 1.2),
+        from_zero(axis_label(_QUANTITY, "Variation, amplitude"), traces, 1.2),
         {"rangemode": "tozero"},
         [("least", quietest)] if inside else (),
     )
@@ -199,7 +199,7 @@ def _relief_swings(study: TipReliefOptimum) -> Row:
     ]
     return Row(
         axis_label("torque", "Torque on the pinion"),
-        Panel(axis_label(_QUANTITY, "Peak to peak"), traces, {"rangemode": "tozero"}, 0.8),
+        from_zero(axis_label(_QUANTITY, "Peak to peak"), traces, 0.8),
     )
 
 

@@ -22,7 +22,7 @@ from tribodyn.plot.mesh.cycle import (
     table_drawing,
 )
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
+from tribodyn.plot.theme.panels import Panel, Row, event_lines, from_zero, stack, stack_rows
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, line
 from tribodyn.types import Array
 
@@ -87,7 +87,7 @@ def mesh_stiffness(mesh: MeshTable) -> Any:
     return stack(
         f"The mesh stiffness varies between {least} and {greatest}",
         axis_label("mesh_phase", "Mesh cycles"),
-        [Panel(axis_label("mesh_stiffness"), traces, {"rangemode": "tozero"}, height=1.3)],
+        [from_zero(axis_label("mesh_stiffness"), traces, height=1.3)],
         {**event_lines(mesh_events(mesh)), "xaxis": {"range": [0, CYCLES]}},
     )
 
@@ -139,7 +139,7 @@ def static_stiffness(mesh: MeshTable) -> Any:
     return stack(
         f"The mean stiffness is {secant} as a secant and {tangent} as a tangent",
         roll_label(pair),
-        [Panel(axis_label("mesh_stiffness"), traces, {"rangemode": "tozero"}, 1.5)],
+        [from_zero(axis_label("mesh_stiffness"), traces, 1.5)],
         {**event_lines(pair_letters(pair)), "xaxis": {"range": x.tolist()}},
     )
 
@@ -226,7 +226,7 @@ def _bars(mesh: MeshTable, error: Array) -> Row:
     }
     return Row(
         "Mesh harmonic",
-        Panel(axis_label(_QUANTITY, "Amplitude"), [bars], {"rangemode": "tozero"}, 0.7),
+        from_zero(axis_label(_QUANTITY, "Amplitude"), [bars], 0.7),
         {"dtick": 1, "range": [0.4, _ORDERS + 0.6], "showgrid": False},
     )
 
@@ -338,6 +338,6 @@ def force_law(mesh: MeshTable) -> Any:
     return stack(
         f"The working load of {rounded('normal_force', load)} deflects the mesh by {low} to {high}",
         axis_label("deflection", "Approach along the line of action"),
-        [Panel(axis_label("normal_force"), [*traces, marks], {"rangemode": "tozero"}, 1.6)],
+        [from_zero(axis_label("normal_force"), [*traces, marks], 1.6)],
         {"hovermode": "closest"},
     )

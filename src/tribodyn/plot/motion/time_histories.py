@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, quantity_label, rounded
-from tribodyn.plot.theme.panels import Panel
+from tribodyn.plot.theme.panels import Panel, from_zero
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
 from tribodyn.study.pipeline import response_series
 
@@ -112,7 +112,7 @@ def mesh_force(result: Result) -> Any:
         motion.line("mesh_force", static, "static", MUTED, dash="dash"),
     ]
     low, high = (rounded("mesh_force", float(f(motion.measured(force)))) for f in (np.min, np.max))
-    panel = Panel(axis_label("mesh_force"), traces, {"rangemode": "tozero"}, height=1.3)
+    panel = from_zero(axis_label("mesh_force"), traces, height=1.3)
     return motion.figure(f"The mesh force varies between {low} and {high}", [panel])
 
 

@@ -17,7 +17,7 @@ from tribodyn.plot.theme.labels import (
     significant,
     unit_of,
 )
-from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.panels import Panel, from_zero, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line, marked
 from tribodyn.types import Array, Mask
 from tribodyn.units import convert
@@ -165,7 +165,7 @@ def bifurcation(diagram: Bifurcation) -> Any:
     rms = _curves(diagram, parameter, factor * diagram.rms, unit)
     panels = [
         Panel(f"Section [{unit}]", _section(diagram, parameter, factor, unit), height=1.6),
-        Panel(f"Rms [{unit}]", rms, {"rangemode": "tozero"}),
+        from_zero(f"Rms [{unit}]", rms),
     ]
     if np.any(np.isfinite(diagram.largest_exponent)):
         zero = {**line(parameter[[0, -1]], [0.0, 0.0], "zero", MUTED), "showlegend": False}
@@ -258,20 +258,18 @@ def continuation(branch: Branch) -> Any:
         _branch_title(branch),
         axis_label(name) if name else branch.name,
         [
-            Panel(
+            from_zero(
                 f"Alternating rms of {branch.signals[0]} [{unit}]",
                 [*_parts(branch, x, rms, unit), *_points(branch, special, unit, True)],
-                {"rangemode": "tozero"},
                 1.4,
             ),
-            Panel(
+            from_zero(
                 "Largest multiplier",
                 [
                     *_parts(branch, x, largest, ""),
                     {**line(ends, [1.0, 1.0], "limit", MUTED, dash="dot"), "hoverinfo": "skip"},
                     *_points(branch, critical, "", False),
                 ],
-                {"rangemode": "tozero"},
             ),
         ],
         # A branch that turns back has several values at the same parameter.

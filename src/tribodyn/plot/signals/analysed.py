@@ -11,7 +11,7 @@ from tribodyn.plot.signals.lines import spectrum_panel, strongest_lines
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.plot.signals.recorded import outline
 from tribodyn.plot.theme.labels import axis_label, displayed, readable, significant
-from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
 from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, line
 from tribodyn.types import Array
 
@@ -50,7 +50,7 @@ def order_panel(lines: OrderSpectrum) -> Panel:
     """Amplitudes over the orders."""
     order, size = strongest_lines(lines.orders[1:], lines.amplitudes[1:])
     curve = line(order, size, "amplitude", TOTAL, unit=readable(lines.unit), width=1.2)
-    return Panel(amplitude_label(lines.unit), [curve], {"rangemode": "tozero"}, 1.4)
+    return from_zero(amplitude_label(lines.unit), [curve], 1.4)
 
 
 @drawing(
@@ -64,7 +64,7 @@ def order_panel(lines: OrderSpectrum) -> Panel:
 def signal_analysis(analysis: SignalAnalysis) -> Any:
     """Draw signal, spectrum, envelope spectrum and orders in stacked panels."""
     hertz = axis_label("frequency")
-    reach = seen_frequency(analysis)
+    reach = visible_frequency(analysis)
     rows = [
         Row("Time [s]", _signal_panel(analysis)),
         Row(hertz, spectrum_panel(analysis.spectrum)),
@@ -117,10 +117,10 @@ def signal_history(analysis: SignalAnalysis) -> Any:
     )
 
 
-def seen_frequency(analysis: SignalAnalysis, share: float = 0.05) -> float:
+def visible_frequency(analysis: SignalAnalysis) -> float:
     """Frequency above which all lines of the envelope are small [Hz]."""
     lines = analysis.envelope_spectrum
     size = np.where(lines.frequency > 0.0, lines.amplitude, 0.0)
-    last = float(lines.frequency[np.flatnonzero(size >= share * size.max())[-1]])
+    last = float(lines.frequency[np.flatnonzero(size >= 0.05 * size.max())[-1]])
     strongest = float(lines.frequency[int(np.argmax(size))])
     return float(min(max(1.15 * last, _MULTIPLES * strongest), lines.frequency[-1]))

@@ -17,7 +17,7 @@ from tribodyn.plot.theme.labels import (
     rounded,
     significant,
 )
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
 from tribodyn.signals.spectrum import distinct_peaks
 from tribodyn.types import Array
@@ -49,11 +49,8 @@ def spectrum_panel(spectrum: SignalSpectrum, to: float | None = None) -> Panel:
     unit = readable(spectrum.value_unit)
     curve = line(frequency, size, "spectrum", TOTAL, unit=unit, width=1.2)
     if spectrum.scaling == "amplitude":
-        return Panel(
-            amplitude_label(spectrum.value_unit),
-            [curve, *_peaks(spectrum, unit)],
-            {"rangemode": "tozero"},
-            1.4,
+        return from_zero(
+            amplitude_label(spectrum.value_unit), [curve, *_peaks(spectrum, unit)], 1.4
         )
     scaling = "Mean square" if spectrum.scaling == "power" else "Spectral density"
     top = float(np.log10(size.max())) if size.max() > 0.0 else 0.0
@@ -161,7 +158,7 @@ def harmonic_spectrum(spectrum: Spectrum) -> Any:
         f"Harmonic {spectrum.order[top]:.4g} ({significant(float(spectrum.frequency[top]))} Hz) "
         f"is the strongest: {with_unit(float(spectrum.amplitude[top]), spectrum.unit)}",
         "Mesh harmonic",
-        [Panel(amplitude_label(spectrum.unit), [bars], {"rangemode": "tozero"}, 1.4)],
+        [from_zero(amplitude_label(spectrum.unit), [bars], 1.4)],
     )
 
 
@@ -202,7 +199,7 @@ def sidebands(lines: Sidebands) -> Any:
         f"{significant(100.0 * lines.amplitude_modulation)} %, phase modulation "
         f"{significant(lines.phase_modulation)} rad",
         axis_label("frequency"),
-        [Panel(amplitude_label(lines.unit), traces, {"rangemode": "tozero"}, 1.4)],
+        [from_zero(amplitude_label(lines.unit), traces, 1.4)],
         {"hovermode": "closest", "bargap": 0.0},
     )
 
@@ -230,10 +227,9 @@ def order_cut(cut: OrderCut) -> Any:
         f"{rounded('speed', float(cut.speed[top]), 4)}",
         axis_label("speed"),
         [
-            Panel(
+            from_zero(
                 amplitude_label(cut.unit),
                 [_over_speed(cut.speed, cut.amplitude, f"order {cut.order:.4g}", cut.unit)],
-                {"rangemode": "tozero"},
                 1.4,
             )
         ],
@@ -269,6 +265,6 @@ def overall_level(level: OverallLevel) -> Any:
         f"Highest level at {rounded('speed', float(level.speed[top]), 4)}: "
         f"{with_unit(float(level.rms[top]), level.unit)} rms",
         axis_label("speed"),
-        [Panel(label, curves, {"rangemode": "tozero"}, 1.4)],
+        [from_zero(label, curves, 1.4)],
         {"hovermode": "closest"},
     )

@@ -16,7 +16,7 @@ from tribodyn.plot.theme.labels import (
     rounded,
     significant,
 )
-from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.panels import Panel, from_zero, stack
 from tribodyn.plot.theme.style import GRID, INK, MUTED, PINION, TOTAL, WHEEL, line
 from tribodyn.types import Array
 
@@ -108,10 +108,9 @@ def spectrogram(result: Spectrogram) -> Any:
             ],
             height=MAP_HEIGHT,
         ),
-        Panel(
+        from_zero(
             f"Rms [{readable(result.unit)}]" if result.unit else "Rms",
             [line(result.time, result.rms(), "rms", TOTAL, unit=readable(result.unit))],
-            {"rangemode": "tozero"},
         ),
     ]
     return stack(
@@ -189,7 +188,7 @@ def order_map(result: OrderMap) -> Any:
         )
     panels = [
         Panel("Order", [surface], height=MAP_HEIGHT),
-        Panel(amplitude_label(result.unit), cuts, {"rangemode": "tozero"}),
+        from_zero(amplitude_label(result.unit), cuts),
     ]
     return stack(title, label, panels, {"hovermode": "closest"})
 

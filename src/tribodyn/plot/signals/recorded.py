@@ -12,7 +12,7 @@ from tribodyn.measurement import Comparison, OrderSpectrum, Recording, TrackedOr
 from tribodyn.plot.signals.lines import strongest_lines
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.plot.theme.labels import readable, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, Trace, line, marked
 from tribodyn.types import Array
 
@@ -85,7 +85,7 @@ def order_spectrum(spectrum: OrderSpectrum, *, marks: Iterable[tuple[str, float]
         f"Order {significant(float(spectrum.orders[top]), 4)} is the strongest: "
         f"{with_unit(float(spectrum.amplitudes[top]), spectrum.unit)}",
         "Order [cycles per revolution]",
-        [Panel(amplitude_label(spectrum.unit), [curve], {"rangemode": "tozero"}, 1.4)],
+        [from_zero(amplitude_label(spectrum.unit), [curve], 1.4)],
         event_lines(marks),
     )
 
@@ -114,8 +114,8 @@ def tracked_orders(tracked: TrackedOrders) -> Any:
         f"{significant(float(rpm[column]), 4)} rpm",
         "Time [s]",
         [
-            Panel(amplitude_label(tracked.unit), curves, {"rangemode": "tozero"}, 1.4),
-            Panel("Speed [rpm]", [speed], {"rangemode": "tozero"}, 0.8),
+            from_zero(amplitude_label(tracked.unit), curves, 1.4),
+            from_zero("Speed [rpm]", [speed], 0.8),
         ],
     )
 
@@ -145,7 +145,7 @@ def comparison(comparison: Comparison) -> Any:
         inside = (harmonic > 0.0) & (harmonic < top)
         gain = f", gain {comparison.gains[name]:.4g}{' fitted' if comparison.fitted else ''}"
         panels.append(
-            Panel(
+            from_zero(
                 f"{name} [{readable(unit)}]",
                 [
                     line(*curve, "measured", MUTED, unit=unit, width=1.2),
@@ -159,7 +159,6 @@ def comparison(comparison: Comparison) -> Any:
                         unit=unit,
                     ),
                 ],
-                {"rangemode": "tozero"},
                 1.2,
             )
         )

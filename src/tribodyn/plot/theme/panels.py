@@ -32,6 +32,11 @@ class Panel:
         return [{"showlegend": several, **trace, **place} for trace in self.traces]
 
 
+def from_zero(label: str, traces: Sequence[Trace], height: float = 1.0) -> Panel:
+    """Panel whose vertical axis begins at zero."""
+    return Panel(label, traces, {"rangemode": "tozero"}, height)
+
+
 @dataclass(frozen=True)
 class Row:
     """A panel with its own horizontal axis."""
