@@ -5,6 +5,7 @@ from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.step_limit import recommended_steps
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
+from tribodyn.dynamics.harmonic.harmonic_balance import harmonic_balance
 from tribodyn.dynamics.linear.campbell import Campbell, Resonance, campbell
 from tribodyn.dynamics.linear.forced_response import ForcedResponse, forced_response
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
@@ -78,6 +79,7 @@ __all__ = [
     "follow_load",
     "forced_response",
     "fzg12",
+    "harmonic_balance",
     "hypoid14",
     "law_contacts",
     "natural_modes",

@@ -178,6 +178,24 @@ class RowEvaluator:
         return result
 
 
+class PointEvaluator(RowEvaluator):
+    """Evaluate entries at phases of the clock, on one side of the events, (points, 1)."""
+
+    def __init__(self, phase: Array, events: tuple[float, ...], *, before: bool = False) -> None:
+        edges = np.array([*events, 1.0])
+        shift = -_MERGE if before else _MERGE
+        segment = np.searchsorted(edges, (phase + shift) % 1.0, side="right") - 1
+        self.checks = False
+        self._low = edges[segment][:, None] + _SIDE
+        self._high = edges[segment + 1][:, None] - _SIDE
+        at = np.where((phase == 0.0) & before, 1.0, phase)
+        self.nodes = np.clip(at[:, None], self._low, self._high)
+
+    def is_smooth(self, entry: Entry) -> bool:
+        """Whether tables may be evaluated together: a point lies on one side of all events."""
+        return True
+
+
 def _stencil_derivative(shift: Array) -> Array:
     """Derivative weights of the Lagrange polynomial on -2..2 at ``shift``."""
     nodes = np.arange(-2.0, 3.0)

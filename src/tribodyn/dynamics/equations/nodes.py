@@ -146,8 +146,18 @@ class Nodes(NamedTuple):
 def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     """Evaluate every entry on a grid; checks on a grid at most twice as wide are not repeated."""
     widest = float(grid.width.max())
-    rows = RowEvaluator(grid, checks=widest < 0.49 * system._checked)
-    size = system.size
+    nodes = evaluate_rows(system, RowEvaluator(grid, checks=widest < 0.49 * system._checked))
+    fractions = grid.width[:, None] * np.array([0.0, 0.5, 1.0])
+    nodes = nodes._replace(phase=grid.left[:, None] + fractions, weight=step_weights(grid))
+    refuse_falling_force(nodes.phase, nodes.stiffness, nodes.gap, nodes.direction, nodes.error)
+    if grid.width.sum() > 0.99:
+        object.__setattr__(system, "_checked", min(widest, system._checked))
+    return nodes
+
+
+def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
+    """Evaluate every entry at the nodes of an evaluator; equal weights."""
+    size, shape = system.size, rows.nodes.shape
     contacts = system.clocked_contacts
 
     def scalar(name: str, take: Callable[..., Array]) -> Array:
@@ -155,31 +165,31 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         if len(entries) == 1:
             return take(f"contacts[0].{name}", entries[0])
         still = not any(map(varies, entries))
-        table = np.empty((1 if still else grid.steps, 3, len(entries)))
+        table = np.empty((1 if still else shape[0], shape[1], len(entries)))
         together = rows.joined(entries, table) if take == rows.values else frozenset[int]()
         for j, entry in enumerate(entries):
             if j not in together:
                 table[..., j] = take(f"contacts[{j}].{name}", entry)[: len(table), :, 0]
-        return _one_row(table[0, 0], grid) if still else table
+        return _one_row(table[0, 0], shape) if still else table
 
     def vector(name: str, take: Callable[..., Array]) -> Array:
         if len(contacts) == 1 and (entry := getattr(contacts[0], name)) is not None:
             return take(f"contacts[0].{name}", entry, size)[:, :, None]
         entries = [getattr(contact, name) for contact in contacts]
         still = not any(map(varies, entries))
-        table = np.zeros((1 if still else grid.steps, 3, len(entries), size))
+        table = np.zeros((1 if still else shape[0], shape[1], len(entries), size))
         for j, entry in enumerate(entries):
             if entry is not None:
                 table[:, :, j] = take(f"contacts[{j}].{name}", entry, size)[: len(table)]
-        return _one_row(table[0, 0], grid) if still else table
+        return _one_row(table[0, 0], shape) if still else table
 
     direction = vector("direction", rows.values)
     for j in np.flatnonzero(~unrepeated(direction, 2).any(axis=(0, 1, 3))):
         raise no_direction(f"contacts[{j}].direction")
     gap = scalar("gap", rows.values)
     refuse_negative_gap(gap)
-    nodes = Nodes(
-        phase=grid.left[:, None] + grid.width[:, None] * np.array([0.0, 0.5, 1.0]),
+    return Nodes(
+        phase=rows.nodes,
         stiffness=scalar("stiffness", rows.values),
         damping=scalar("damping", rows.values),
         error=scalar("error", rows.values),
@@ -189,14 +199,10 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
         direction_slope=vector("direction", rows.derivatives),
         force_direction=combined(np.add, direction, vector("friction", rows.values)),
         force=rows.values("force", system.force, size),
-        weight=step_weights(grid),
+        weight=np.full(shape, 1.0 / rows.nodes.size),
         friction_direction=friction_directions(system, rows),
         friction_coefficients=friction_coefficients(system, rows),
     )
-    refuse_falling_force(nodes.phase, nodes.stiffness, nodes.gap, nodes.direction, nodes.error)
-    if grid.width.sum() > 0.99:
-        object.__setattr__(system, "_checked", min(widest, system._checked))
-    return nodes
 
 
 def combined(operation: Callable[[Array, Array], Array], first: Array, second: Array) -> Array:
@@ -206,9 +212,9 @@ def combined(operation: Callable[[Array, Array], Array], first: Array, second: A
     return operation(first, second)
 
 
-def _one_row(row: Array, grid: Grid) -> Array:
-    """A row that is the same at all nodes of a grid."""
-    return np.broadcast_to(row, (grid.steps, 3, *row.shape))
+def _one_row(row: Array, shape: tuple[int, ...]) -> Array:
+    """A row that is the same at all nodes."""
+    return np.broadcast_to(row, (*shape, *row.shape))
 
 
 def refuse_negative_gap(gap: Array) -> None:
@@ -239,7 +245,7 @@ def halved_nodes(system: System, grid: Grid, nodes: Nodes) -> tuple[Grid, Nodes]
 
     def joined(old: Array, new: Array) -> Array:
         if old.strides[:2] == new.strides[:2] == (0, 0):
-            return _one_row(old[0, 0], fine)
+            return _one_row(old[0, 0], (fine.steps, 3))
         rows = np.empty((count, 2, *old.shape[1:]))
         rows[:, 0, 0], rows[:, 0, 1], rows[:, 0, 2] = old[:, 0], new[:, 0], old[:, 1]
         rows[:, 1, 0], rows[:, 1, 1], rows[:, 1, 2] = old[:, 1], new[:, 2], old[:, 2]

@@ -131,6 +131,9 @@ class Response(Record):
     step_error : float
         Distance to the orbit at half the step over its size [-]: the discretisation error;
         infinite without such an orbit, NaN for a transient and an orbit that is not converged.
+    engine : str
+        Method that computed the motion: the name of a time integration engine or
+        "harmonic-balance".
     """
 
     time: Array = quantity("time", unit="s", axis=True)
@@ -153,6 +156,7 @@ class Response(Record):
     extra_force: Array = field(default_factory=lambda: np.zeros(0))
     period: int = 0
     step_error: float = fact(default=float("nan"))
+    engine: str = fact(default="runge-kutta-4")
 
     @property
     def duration(self) -> float:
@@ -183,7 +187,7 @@ class Response(Record):
 
     def __repr__(self) -> str:
         """One line."""
-        kind = "orbit" if self.floquet_multipliers.size else "transient"
+        kind = "orbit" if self.period else "transient"
         state = f", error {self.error:.1e}" if kind == "orbit" else ""
         if not np.isnan(self.step_error):
             state += f", step error {self.step_error:.1e}"
@@ -195,13 +199,20 @@ class Response(Record):
 
 
 def build_response(
-    compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array, **facts: Any
+    compiled: Compiled,
+    mesh_frequency: float,
+    states: Array,
+    extra_force: Array,
+    within: tuple[Array, Array] | None = None,
+    **facts: Any,
 ) -> Response:
     """Evaluate contact forces and accelerations along recorded states."""
+    # within: position and velocity at both ends and in the middle of all steps, each
+    # (cycles, steps, 3, n), in place of an interpolation between the states.
     nodes = compiled.nodes
     cycles = (states.shape[0] - 1) // compiled.grid.steps
     size = compiled.system.size
-    samples = _step_samples(compiled, mesh_frequency, states, extra_force)
+    samples = _step_samples(compiled, mesh_frequency, states, extra_force, within)
     fine = _without_jumps(samples, compiled, mesh_frequency, states, extra_force)
 
     return Response(
@@ -229,13 +240,17 @@ def later(response: Response, begin: float) -> Response:
 
 
 def _step_samples(
-    compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array
+    compiled: Compiled,
+    mesh_frequency: float,
+    states: Array,
+    extra_force: Array,
+    within: tuple[Array, Array] | None,
 ) -> FineSamples:
     nodes, grid = compiled.nodes, compiled.grid
     cycles = (states.shape[0] - 1) // grid.steps
     parts = [states[c * grid.steps : (c + 1) * grid.steps + 1] for c in range(cycles)]
     ends = np.stack(parts) if cycles > 1 else states[None]
-    q, v = with_middles(grid.width / mesh_frequency, ends)
+    q, v = with_middles(grid.width / mesh_frequency, ends) if within is None else within
     moved = forces(compiled.system, nodes, mesh_frequency, q, v, extra=extra_force)
     phase = np.arange(cycles)[:, None, None] + nodes.phase
     weight = np.broadcast_to(nodes.weight / cycles, phase.shape)

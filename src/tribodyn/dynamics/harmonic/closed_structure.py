@@ -1,0 +1,138 @@
+"""The linear structure with its contacts closed at their mean stiffness, by its modes.
+
+In coordinates ``x`` of unit mass the structure is a first-order system ``w' = A w + B u``,
+``y = C w`` of the elastic positions and all velocities that a spring, damper or contact feels. The
+free rotation of the drive is left out. ``u`` are the components of the generalized force along the
+directions in which the contacts and the loads push, ``y`` those of the motion along the directions
+that compress contacts. Contacts are part of ``A`` with a mean stiffness and damping, so that ``A``
+is regular; the rest of their forces is part of ``u``.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates
+from tribodyn.dynamics.orbits.orbit_map import Balance
+from tribodyn.types import Array, ComplexArray
+
+#: Condition of the matrix of modes above which equations are solved per frequency instead.
+_ILL_CONDITIONED = 1e8
+#: Frequencies whose matrices are factorized together.
+_CHUNK = 64
+
+
+class ClosedStructure:
+    """Receptances and motions of a structure under forces at its contacts."""
+
+    # push (n, s), along (n, r): orthonormal bases of forces and compressions; stiffness and damping
+    # (s, r): means of the contacts between the two, in coordinates of unit mass [1/s^2, 1/s].
+    def __init__(
+        self,
+        system: System,
+        coordinates: OrbitCoordinates,
+        push: Array,
+        along: Array,
+        stiffness: Array,
+        damping: Array,
+    ) -> None:
+        inverse = coordinates.inverse
+        self.coordinates, self.push, self.along = coordinates, push, along
+        self.contact_stiffness, self.contact_damping = stiffness, damping
+        spring = inverse @ np.asarray(system.stiffness) @ inverse.T + push @ stiffness @ along.T
+        damper = inverse @ system.rate_matrix @ inverse.T + push @ damping @ along.T
+        elastic, moving = coordinates.elastic, coordinates.moving
+        self._free_rows = coordinates.free.T @ np.hstack((spring @ elastic, damper @ moving))
+        stored = elastic.T @ spring @ elastic
+        self._root = _energy_root(stored)  # positions in the metric of the elastic energy
+        unscaled = np.linalg.inv(self._root)
+        self._places = elastic @ unscaled
+        size, count = moving.shape[1], elastic.shape[1]
+        self.matrix = np.zeros((count + size, count + size))
+        self.matrix[:count, count:] = self._root @ elastic.T @ moving
+        self.matrix[count:, :count] = -moving.T @ spring @ self._places
+        self.matrix[count:, count:] = -moving.T @ damper @ moving
+        self.input = np.vstack((np.zeros((count, push.shape[1])), moving.T @ push))
+        self.output = np.hstack((along.T @ self._places, np.zeros((along.shape[1], size))))
+        self.balance = Balance.of(system, coordinates)
+
+    @cached_property
+    def modes(self) -> tuple[ComplexArray, ComplexArray, ComplexArray] | None:
+        """Eigenvalues, right modes and left modes; None if they do not span all motions."""
+        values, right = np.linalg.eig(self.matrix)
+        if not np.linalg.cond(right) < _ILL_CONDITIONED:
+            return None
+        return values.astype(complex), right.astype(complex), np.linalg.inv(right).astype(complex)
+
+    def respond(self, omega: Array, force: Array, output: Array) -> ComplexArray:
+        """``output`` times the amplitude of the state under forces (k, s) or (k, s, m)."""
+        columns = force[..., None] if force.ndim == 2 else force
+        if self.modes is not None:
+            values, right, left = self.modes
+            modal = (left @ self.input) @ columns / (1j * omega[:, None] - values)[..., None]
+            result = (output @ right) @ modal
+        else:
+            eye, loads = np.eye(len(self.matrix)), self.input @ columns
+            parts = [
+                np.linalg.solve(1j * omega[at, None, None] * eye - self.matrix, loads[at])
+                for at in np.split(np.arange(omega.size), np.arange(_CHUNK, omega.size, _CHUNK))
+            ]
+            result = output @ np.concatenate(parts)
+        return np.asarray(result[..., 0] if force.ndim == 2 else result, dtype=complex)
+
+    def receptances(self, omega: Array) -> ComplexArray:
+        """Motions at the contacts per force there, (k, r, s) [s^2]; the first frequency is zero."""
+        unit = np.broadcast_to(np.eye(self.push.shape[1]), (omega.size, *(2 * self.push.shape[1:])))
+        matrices = self.respond(omega, unit, self.output)
+        if self.balance is not None:
+            torque, gain = self._balancing()
+            still = np.eye(len(gain)) - np.outer(torque, gain)
+            # The torque balances all forces on the drive, those of the closed contacts included.
+            mean = matrices[0] @ still
+            loop = matrices[0] @ np.outer(torque, gain @ self.contact_stiffness)
+            matrices[0] = np.linalg.solve(np.eye(len(loop)) - loop, mean)
+        return matrices
+
+    def _balancing(self) -> tuple[Array, Array]:
+        """Components of the balancing torque for a unit gain, and the gain by forces (s,)."""
+        assert self.balance is not None
+        coordinates = self.coordinates
+        torque = self.push.T @ (coordinates.inverse @ self.balance.force)
+        return torque, self.balance.direction @ coordinates.free.T @ self.push
+
+    def balanced(self, force: ComplexArray, mean: Array) -> tuple[ComplexArray, Array]:
+        """Amplitudes of forces (k, s) with the balancing torque, and this torque (n,)."""
+        if self.balance is None:
+            return force, np.zeros(len(self.push))
+        torque, gain = self._balancing()
+        size = -float(gain @ (force[0].real - self.contact_stiffness @ mean))
+        total = force.copy()
+        total[0] += size * torque
+        return total, size * self.balance.force
+
+    def motion(self, omega: Array, force: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Amplitudes (k, n) of positions and velocities under forces (k, s)."""
+        c, count = self.coordinates, self._places.shape[1]
+        state = self.respond(omega, force, np.eye(len(self.matrix)))
+        elastic, moving = state[:, :count] @ self._places.T, state[:, count:]
+        per_omega = np.divide(1.0, 1j * omega, where=omega > 0.0, out=np.zeros(omega.size, complex))
+        turned = (moving @ c.braked) * per_omega[:, None] @ (c.moving @ c.braked).T
+        positions = state[:, :count] @ np.linalg.inv(self._root).T
+        pushed = force @ (c.free.T @ self.push).T
+        pushed = pushed - np.hstack((positions, moving)) @ self._free_rows.T
+        free_rate = pushed * per_omega[:, None]
+        x = elastic + turned + free_rate * per_omega[:, None] @ c.free.T
+        rate = moving @ c.moving.T + free_rate @ c.free.T
+        return x @ c.inverse, rate @ c.inverse
+
+
+def _energy_root(stored: Array) -> Array:
+    """Square root R of a stiffness, ``R^T R``, or of its size where it is not positive."""
+    even = 0.5 * (stored + stored.T)
+    try:
+        return np.asarray(np.linalg.cholesky(even).T)
+    except np.linalg.LinAlgError:
+        return np.asarray(np.sqrt(np.linalg.norm(even, 2)) * np.eye(len(even)))

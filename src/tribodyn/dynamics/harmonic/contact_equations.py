@@ -1,0 +1,278 @@
+"""Forces of all contacts over one period of the clock, their tangent, sides and jumps.
+
+The motion at the contacts is sampled on equal steps. Where a force or its slope jumps between two
+samples, because a contact opens or closes or an entry jumps at an event, the two samples are
+corrected by the terms of Euler and Maclaurin, so that harmonics keep second order and vary
+continuously with the place of the jump.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.equations.grid import PointEvaluator, system_events, unrepeated
+from tribodyn.dynamics.equations.motion import has_gap, sides
+from tribodyn.dynamics.equations.nodes import (
+    Nodes,
+    carried_load,
+    evaluate_rows,
+    friction_force,
+    friction_tangent,
+)
+from tribodyn.dynamics.equations.system import System
+from tribodyn.types import Array, Index, Mask
+
+#: Part of a singular value below which a direction depends on others; of an entry that is no jump.
+_RANK, _JUMP = 1e-10, 1e-5
+
+
+class Rows(NamedTuple):
+    """Entries at phases of the clock; directions by their components along the two bases."""
+
+    nodes: Nodes
+    along: Array  #: compressions by the motion, (p or 1, contacts, r)
+    along_slope: Array  #: derivative by the clock
+    push: Array  #: force along the basis per contact force, (p or 1, contacts, s)
+    rub: Array  #: force along the basis per friction that follows its load, (p or 1, f, s)
+    load: Array  #: external force along the basis, (p or 1, s)
+
+    def at(self, index: Index) -> Rows:
+        """Some of the rows."""
+
+        def some(values: Array) -> Array:
+            return values if len(values) == 1 else values[index]
+
+        nodes = Nodes(*(some(part) for part in self.nodes))
+        return Rows(nodes, *(some(part) for part in self[1:]))
+
+
+class Law(NamedTuple):
+    """Result of the contact law at points of the period."""
+
+    compression: Array  #: (p, contacts) [m]
+    contact: Array  #: contact forces (p, contacts) [N]
+    side: Array  #: side of the dead zone
+    force: Array  #: components of the generalized force (p, s)
+    stiffness: Array  #: minus its derivative by the motion (p, s, r)
+    damping: Array  #: minus its derivative by the rate of the motion (p, s, r)
+    push: Array  #: generalized force per change of each contact force (p, contacts, s)
+
+
+class Breaks(NamedTuple):
+    """Jumps of the force between samples ``step`` and ``step + 1``, at a fraction of the step."""
+
+    step: Index
+    fraction: Array
+    correction: Array  #: correction of the sum of both samples (b, s)
+    tangent: Array  #: its derivative by the motion at the jump (b, s, r)
+
+
+@dataclass(frozen=True)
+class ContactEquations:
+    """The contacts of a system on equal steps of the clock."""
+
+    system: System
+    rows: Rows
+    before: Rows  #: entries just before the events at which one jumps
+    after: Rows
+    events: Array  #: these events [-]
+    along: Array  #: basis of compressions in coordinates of unit mass (n, r)
+    push: Array  #: basis of forces (n, s)
+    dead: Mask
+    damped_in_gap: Mask
+    steps: int
+
+    def law(
+        self,
+        rows: Rows,
+        frequency: float,
+        y: Array,
+        rate: Array,
+        excess: Array,
+        closed: Mask | None = None,
+    ) -> Law:
+        """Contact forces at rows, for motions and rates (p, r)."""
+        # excess (contacts,): damping on both sides of every contact; closed (contacts,): contacts
+        # that stay closed, all others open, whatever the motion.
+        nodes = rows.nodes
+        d = components(rows.along, y) - nodes.error
+        speed = components(rows.along, rate) + frequency * (
+            components(rows.along_slope, y) - nodes.error_slope
+        )
+        side = sides(d, nodes.gap, self.dead) if closed is None else np.where(closed, 1.0, 0.0 * d)
+        touching = side != 0.0
+        stiffness = np.where(touching, nodes.stiffness, 0.0)
+        damping = np.where(touching | self.damped_in_gap, nodes.damping, 0.0) + excess
+        contact = stiffness * (d - side * nodes.gap) + damping * speed
+        push = rows.push
+        force = rows.load - _pushed(push, contact)
+        if self.system.frictions:
+            rub = friction_force(self.system, nodes.friction_coefficients, contact)
+            force = force - np.einsum("...fs,...f->...s", rows.rub, rub)
+            load = carried_load(self.system, contact)
+            slope = friction_tangent(self.system, nodes.friction_coefficients, load)
+            push = np.broadcast_to(push, (*d.shape, push.shape[-1])).copy()
+            for f, friction in enumerate(self.system.frictions):
+                push[:, list(friction.contacts)] += slope[:, f, None, None] * rows.rub[:, f, None]
+        rising = outer(push, stiffness, rows.along)
+        if np.any(rows.along_slope):
+            rising = rising + frequency * outer(push, damping, rows.along_slope)
+        return Law(d, contact, side, force, rising, outer(push, damping, rows.along), push)
+
+    def breaks(
+        self,
+        law: Law,
+        frequency: float,
+        y: Array,
+        rate: Array,
+        excess: Array,
+        closed: Mask | None = None,
+    ) -> Breaks:
+        """Jumps at events and where contacts open or close."""
+        parts = [self._event_breaks(frequency, y, rate, excess, closed)]
+        for edge in (1.0, -1.0) if closed is None else ():
+            parts.append(self._crossings(law, frequency, y, rate, edge))
+        return Breaks(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+    def _event_breaks(
+        self, frequency: float, y: Array, rate: Array, excess: Array, closed: Mask | None
+    ) -> Breaks:
+        place = self.events * self.steps
+        step = np.ceil(place - 1e-6).astype(np.int64) - 1
+        fraction = place - step
+        at = [_between(values, step, fraction) for values in (y, rate)]
+        left, right = (
+            self.law(rows, frequency, *at, excess, closed) for rows in (self.before, self.after)
+        )
+        weight = 0.5 - fraction
+        correction = weight[:, None] * (right.force - left.force)
+        tangent = -weight[:, None, None] * (right.stiffness - left.stiffness)
+        return Breaks(step % self.steps, fraction, correction, tangent)
+
+    def _crossings(self, law: Law, frequency: float, y: Array, rate: Array, edge: float) -> Breaks:
+        clearance = edge * law.compression - self.rows.nodes.gap
+        inside = (clearance > 0.0) & self.dead
+        step, contact = np.nonzero(inside != np.roll(inside, -1, axis=0))
+        after = (step + 1) % self.steps
+        begin, end = clearance[step, contact], clearance[after, contact]
+        fraction = begin / (begin - end)
+        rows = self.rows.at(step)
+        each = np.arange(step.size)
+
+        def of_contact(values: Array) -> Array:
+            wide = np.broadcast_to(values, (step.size, *values.shape[1:]))
+            return np.asarray(wide[each, contact])
+
+        along = of_contact(rows.along)
+        at_y, at_rate = (_between(values, step, fraction) for values in (y, rate))
+        speed = np.einsum("br,br->b", along, at_rate) + frequency * (
+            np.einsum("br,br->b", of_contact(rows.along_slope), at_y)
+            - of_contact(rows.nodes.error_slope)
+        )
+        opening = np.where(end > begin, 1.0, -1.0)
+        damped = np.where(self.damped_in_gap[contact], 0.0, of_contact(rows.nodes.damping))
+        jump = opening * damped * speed
+        bend = opening * edge * of_contact(rows.nodes.stiffness) * (end - begin)
+        bernoulli = fraction * (fraction - 1.0) + 1.0 / 6.0
+        total = (0.5 - fraction) * jump + 0.5 * bernoulli * bend
+        slope = edge * (jump - (fraction - 0.5) * bend) / (end - begin)
+        push = -law.push[step if len(law.push) > 1 else 0 * step, contact]
+        tangent = slope[:, None, None] * push[:, :, None] * along[:, None, :]
+        return Breaks(step, fraction, total[:, None] * push, tangent)
+
+
+def contact_bases(system: System, nodes: Nodes, inverse: Array) -> tuple[Array, Array]:
+    """Orthonormal bases of compressions (n, r) and forces (n, s) in coordinates of unit mass."""
+    pushes = [nodes.force_direction, nodes.friction_direction, nodes.force[..., None, :]]
+    if system.balance is not None:
+        pushes.append(np.asarray(system.balance)[None, None, None])
+    along = _basis([nodes.direction, nodes.direction_slope], inverse)
+    return along, _basis(pushes, inverse)
+
+
+def contact_equations(
+    system: System, inverse: Array, bases: tuple[Array, Array], steps: int
+) -> ContactEquations:
+    """Sample the contacts of a system at ``steps`` equal steps of the clock."""
+    every = system_events(system)
+    nodes = evaluate_rows(system, PointEvaluator(np.arange(steps) / steps, every))
+    points = np.array(every)
+    before, after = (
+        evaluate_rows(system, PointEvaluator(points, every, before=side)) for side in (True, False)
+    )
+    jumping = _jumping(before, after)
+    into_along, into_push = (inverse.T @ basis for basis in bases)
+
+    def rows(part: Nodes) -> Rows:
+        return Rows(
+            Nodes(*(values[:, 0] for values in part)),
+            _distinct(part.direction) @ into_along,
+            _distinct(part.direction_slope) @ into_along,
+            _distinct(part.force_direction) @ into_push,
+            _distinct(part.friction_direction) @ into_push,
+            _distinct(part.force) @ into_push,
+        )
+
+    in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
+    sided = [rows(Nodes(*(values[jumping] for values in part))) for part in (before, after)]
+    parts = rows(nodes), *sided, points[jumping]
+    return ContactEquations(system, *parts, *bases, has_gap(nodes), in_gap, steps)
+
+
+def _distinct(values: Array) -> Array:
+    """Rows (p, ...) of values (p, 1, ...), or the row that they repeat."""
+    return unrepeated(values[:, 0], values.ndim - 2)
+
+
+def _jumping(before: Nodes, after: Nodes) -> Index:
+    """Numbers of the events at which an entry jumps."""
+    jumps = np.zeros(len(before.phase), dtype=bool)
+    for name, left, right in zip(Nodes._fields, before, after, strict=True):
+        if name not in ("phase", "weight", "error_slope", "direction_slope"):
+            scale = max(float(np.abs(left).max(initial=0.0)), 1e-300)
+            jump = np.abs(right - left).reshape(len(left), -1).max(axis=1, initial=0.0)
+            jumps |= jump > _JUMP * scale
+    return np.flatnonzero(jumps)
+
+
+def _basis(parts: list[Array], inverse: Array) -> Array:
+    """Orthonormal basis (n, r) of directions (..., n), each of which counts by its direction."""
+    size = parts[0].shape[-1]
+    rows = np.concatenate([unrepeated(part, 1).reshape(-1, size) for part in parts]) @ inverse.T
+    length = np.linalg.norm(rows, axis=1)
+    rows = rows[length > 0.0] / length[length > 0.0, None]
+    if not len(rows):
+        return np.zeros((size, 0))
+    _, values, basis = np.linalg.svd(np.linalg.qr(rows, mode="r"), full_matrices=False)
+    return np.ascontiguousarray(basis[values > _RANK * values[0]].T)
+
+
+def components(direction: Array, motion: Array) -> Array:
+    """Motions (p, r) along directions (p or 1, contacts, r), (p, contacts)."""
+    if len(direction) == 1:
+        return np.asarray(motion @ direction[0].T)
+    return np.asarray((direction @ motion[..., None])[..., 0])
+
+
+def _pushed(push: Array, contact: Array) -> Array:
+    """Sum over the contacts of push (p or 1, contacts, s) times force (p, contacts), (p, s)."""
+    if len(push) == 1:
+        return np.asarray(contact @ push[0])
+    return np.asarray((contact[:, None] @ push)[:, 0])
+
+
+def outer(push: Array, factor: Array, along: Array) -> Array:
+    """Sum over the contacts of push, factor and direction, (p, s, r)."""
+    if len(push) == len(along) == 1:
+        pairs = push[0][:, :, None] * along[0][:, None, :]
+        return np.asarray(np.tensordot(factor, pairs, 1))
+    return np.swapaxes(push * factor[..., None], -1, -2) @ along
+
+
+def _between(values: Array, step: Index, fraction: Array) -> Array:
+    """Samples (p, r) interpolated at fractions of steps."""
+    part = fraction[:, None]
+    return np.asarray((1.0 - part) * values[step] + part * values[(step + 1) % len(values)])

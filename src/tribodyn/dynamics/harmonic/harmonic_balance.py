@@ -1,0 +1,313 @@
+"""Periodic motion of a machine by harmonic balance at its contacts.
+
+The unknowns are the motions at the contacts over one period of the clock. The linear structure
+appears by its receptances only, so that the cost hardly depends on the number of coordinates.
+"""
+
+from __future__ import annotations
+
+import weakref
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.fft
+from numpy.typing import ArrayLike
+
+from tribodyn.checks import require_number, require_whole
+from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
+from tribodyn.dynamics.equations.grid import system_events
+from tribodyn.dynamics.equations.nodes import Nodes, lowest_of_each_law
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
+from tribodyn.dynamics.harmonic.contact_equations import (
+    ContactEquations,
+    components,
+    contact_bases,
+    contact_equations,
+    outer,
+)
+from tribodyn.dynamics.harmonic.newton import Residual, Solution, newton, refined
+from tribodyn.dynamics.harmonic.orbit_response import orbit_response
+from tribodyn.dynamics.orbits.coordinates import (
+    OrbitCoordinates,
+    orbit_coordinates,
+    refuse_disconnected,
+    static_start,
+)
+from tribodyn.dynamics.time.response import Response
+from tribodyn.dynamics.time.simulate import read_start
+from tribodyn.errors import InputError, require_positive, warn
+from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Array, Mask
+
+#: An orbit whose certified error is above this is not converged.
+TOLERANCE = 1e-8
+#: Steps per cycle of the fastest mesh with which an automatic choice starts, largest number of
+#: steps in a period that it takes, and the step error at which it stops.
+_FIRST, _MOST, _ACCURATE = 64, 2**18, 2e-7
+#: Most steps per mesh cycle of the response of an automatic choice.
+_RECORDED = 512
+#: Step error that causes a warning.
+_STEP_LIMIT = 1e-2
+#: Damping added at first where Newton's method does not converge, over the critical damping at the
+#: frequency of the fastest mesh, and the factors by which it is reduced.
+_ADDED = (0.3, 0.1, 0.03, 0.01, 0.003)
+
+
+@dataclass
+class Prepared:
+    """A system, ready for harmonic balance at any frequency."""
+
+    system: System
+    nodes: Nodes  #: entries on the grid of the events
+    coordinates: OrbitCoordinates
+    start: Array  #: static equilibrium (n,)
+    bases: tuple[Array, Array]  #: of compressions and of forces
+    samples: dict[int, ContactEquations] = field(default_factory=dict)
+    grids: dict[int, Compiled] = field(default_factory=dict)
+    structure: ClosedStructure | None = None
+    #: Contacts that are closed at rest (contacts,).
+    closed: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))
+
+    def contacts(self, steps: int) -> ContactEquations:
+        """Contacts on a number of equal steps."""
+        if steps not in self.samples:
+            parts = self.system, self.coordinates.inverse, self.bases
+            self.samples[steps] = contact_equations(*parts, steps)
+        return self.samples[steps]
+
+    def residual(self, steps: int, frequency: float) -> Residual:
+        """Residual on a number of equal steps."""
+        contacts = self.contacts(steps)
+        if self.structure is None:
+            self.structure = self._closed(contacts)
+        return Residual(self.structure, contacts, frequency)
+
+    def _closed(self, contacts: ContactEquations) -> ClosedStructure:
+        rows, nodes = contacts.rows, contacts.rows.nodes
+        still = (self.start @ self.coordinates.lower @ contacts.along)[None]
+        d = components(rows.along, np.repeat(still, contacts.steps, axis=0)) - nodes.error
+        lowest = lowest_of_each_law(self.nodes)
+        self.closed = lowest | (np.mean(d > nodes.gap, axis=0) > 0.5)
+        means = [
+            outer(rows.push, np.where(self.closed, part, 0.0), rows.along).mean(axis=0)
+            for part in (nodes.stiffness, nodes.damping)
+        ]
+        return ClosedStructure(self.system, self.coordinates, *reversed(self.bases), *means)
+
+    def grid(self, steps: int, frequency: float) -> Compiled:
+        """Grid of a response with a number of steps per cycle of the fastest mesh."""
+        if steps not in self.grids:
+            self.grids[steps] = compile_lanes(self.system, frequency, steps, any_step=True)
+        return self.grids[steps]
+
+
+def prepare(system: System, frequency: float) -> Prepared:
+    """Evaluate a system once for all frequencies."""
+    for reference, prepared in _cache:
+        if reference() is system:
+            return prepared
+    steps = max(2 * _FIRST, -(-2 * len(system_events(system)) // system.cycles))
+    compiled = compile_lanes(system, frequency, steps, any_step=True)
+    refuse_disconnected(compiled)
+    coordinates = orbit_coordinates(compiled, frequency)
+    start = static_start(compiled)[: system.size]
+    bases = contact_bases(system, compiled.nodes, coordinates.inverse)
+    prepared = Prepared(system, compiled.nodes, coordinates, start, bases)
+    prepared.grids[steps] = compiled
+    _cache[:] = [(weakref.ref(system), prepared), *_cache[:3]]
+    return prepared
+
+
+#: The last systems, so that a sweep over the frequency evaluates a system once.
+_cache: list[tuple[weakref.ref[System], Prepared]] = []
+
+
+def harmonic_balance(
+    system: System,
+    frequency: float,
+    *,
+    steps: int | None = None,
+    start: Response | tuple[ArrayLike, ArrayLike] | None = None,
+    tolerance: float = TOLERANCE,
+    progress: Progress = SILENT,
+) -> Response:
+    """Find the periodic motion of a machine with several meshes on one clock.
+
+    Parameters
+    ----------
+    system : System
+    frequency : float
+        Frequency of the clock: periods of the motion per second [Hz].
+    steps : int, optional
+        Steps per cycle of the fastest mesh. By default steps are halved until the motion changes
+        by less than 2e-7 of its size.
+    start : Response or (position, velocity), optional
+        Motion or position from which the search starts; the static equilibrium by default.
+    tolerance : float
+        Largest certified error of a converged motion.
+    progress : Progress
+        Receives the progress of the search.
+
+    Returns
+    -------
+    Response
+        Over one period of the clock, with ``error``, ``step_error`` and ``converged``. A warning
+        is issued when the motion is not converged (``steady-state``) or depends on the steps by
+        more than 1 % of its size (``step-size``). It has no Floquet multipliers.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or nothing can vibrate.
+
+    Notes
+    -----
+    Unknowns are the compressions of the contacts over one period on equal steps. The structure
+    responds by its receptances at the harmonics of the clock, contacts act in time. Newton's method
+    takes steps by generalized minimal residuals. ``error`` is the size of the last Newton step,
+    ``step_error`` the change of the motion when the steps are halved, or an estimate of it where
+    ``steps`` is chosen automatically. With dead zones the start decides which of several motions
+    is found, and it may be unstable: :func:`~tribodyn.dynamics.steady_state` and
+    :func:`~tribodyn.dynamics.simulate` tell.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import Contact
+    >>> first = Contact([1.0, 0.0], 9.0, error=lambda phase: 0.1 * np.cos(2 * np.pi * phase))
+    >>> second = Contact([1.0, -1.0], 5.0, cycles=3)
+    >>> machine = System(np.eye(2), 0.2 * np.eye(2), np.eye(2), [1.0, 0.0], [first, second])
+    >>> harmonic_balance(machine, 0.3).converged
+    True
+    """
+    require_number("frequency", frequency)
+    require_positive("frequency", frequency, "Hz")
+    require_number("tolerance", tolerance)
+    require_positive("tolerance", tolerance, "")
+    count = _FIRST if steps is None else require_whole("steps", steps, 8)
+    progress.start("Steady motion", None)
+    prepared = prepare(system, frequency)
+    if prepared.coordinates.moving.shape[1] == 0 or not system.contacts:
+        what = "no coordinate is moved by a contact"
+        remedy = "Add a contact, or use forced_response for a structure alone"
+        raise InputError(what, "System.contacts", "Harmonic balance acts at contacts", remedy)
+    samples = _fft_length(count * system.cycles)
+    residual = prepared.residual(samples, frequency)
+    solution = _solve(residual, _start(prepared, residual, start), tolerance)
+    while True:
+        finer = prepared.residual(2 * samples, frequency)
+        y = refined(solution.state.y, 2 * samples)
+        if not solution.error <= tolerance:
+            step_error = float("nan")
+            break
+        trial = finer.at(y)
+        change = finer.correction(trial, 1e-3)[0]
+        step_error = float(np.linalg.norm(change, axis=1).max()) / solution.state.size
+        if steps is not None:
+            break
+        better = newton(finer, y + change, 0.01 * tolerance)
+        if not better.error <= tolerance:
+            break
+        residual, solution, samples = finer, better, 2 * samples
+        step_error /= 3.0  # the error of second order falls by a factor of four
+        if step_error <= _ACCURATE or 4 * samples > _MOST:
+            break
+    progress.finish()
+    fine = count if steps is not None else min(samples // (2 * system.cycles), _RECORDED)
+    grid = prepared.grid(max(fine, min(prepared.grids)), frequency)
+    return _finish(grid, residual, solution, tolerance, step_error)
+
+
+def _fft_length(steps: int) -> int:
+    """An even number of samples whose transform is fast."""
+    return 2 * int(scipy.fft.next_fast_len(-(-steps // 2), real=True))
+
+
+def _start(
+    prepared: Prepared,
+    residual: Residual,
+    start: Response | tuple[ArrayLike, ArrayLike] | None,
+) -> Array:
+    """Motion at the contacts (steps, r) from which the search starts."""
+    contacts, size = residual.contacts, prepared.system.size
+    into = prepared.coordinates.lower @ contacts.along
+    if isinstance(start, Response):
+        at = np.arange(contacts.steps) / contacts.steps
+        columns = (start.position @ into).T
+        phase = start.time * start.mesh_frequency
+        return np.stack(
+            [np.interp(at, phase - phase[0], part, period=start.periods) for part in columns],
+            axis=1,
+        )
+    position = prepared.start if start is None else read_start(prepared.system, start)[:size]
+    y = np.tile(position @ into, (contacts.steps, 1))
+    if start is not None:
+        return y
+    state = residual.at(y, prepared.closed)  # linear equations: one step solves them
+    return y + residual.correction(state)[0]
+
+
+def _solve(residual: Residual, y: Array, tolerance: float) -> Solution:
+    """Newton's method; with damping that is added and removed again where it fails."""
+    solution = newton(residual, y, 0.01 * tolerance)
+    if solution.error <= tolerance:
+        return solution
+    contacts = residual.contacts
+    critical = contacts.rows.nodes.stiffness.mean(axis=0)
+    critical = critical / (np.pi * residual.frequency * contacts.system.cycles)
+    point = y
+    for part in (*_ADDED, 0.0):
+        residual.excess = part * critical
+        trial = newton(residual, point, 0.01 * tolerance)
+        if trial.error < 1e-3:
+            point = trial.state.y
+    residual.excess = 0.0 * critical
+    return trial if trial.error < solution.error else solution
+
+
+def _finish(
+    grid: Compiled, residual: Residual, solution: Solution, tolerance: float, step_error: float
+) -> Response:
+    error = max(solution.error, float(np.finfo(float).eps))
+    converged = bool(np.isfinite(error) and error <= tolerance)
+    if not converged:
+        warn("steady-state", _not_converged(residual, solution, tolerance), stacklevel=3)
+    elif step_error > _STEP_LIMIT:
+        steps = residual.contacts.steps
+        warn(
+            "step-size",
+            f"the motion changes by {100.0 * step_error:.2g} % of its size with half the steps, "
+            f"limit {100.0 * _STEP_LIMIT:g} %: {steps} steps in a period of the clock. Use more "
+            "steps per mesh cycle, or omit steps for an automatic choice",
+            stacklevel=3,
+        )
+    return orbit_response(
+        grid,
+        residual,
+        solution.state,
+        error=error,
+        step_error=step_error,
+        converged=converged,
+        period=1,
+        engine="harmonic-balance",
+    )
+
+
+def _not_converged(residual: Residual, solution: Solution, tolerance: float) -> str:
+    """Message that names the contact with the largest residual."""
+    state, contacts = solution.state, residual.contacts
+    along = np.broadcast_to(contacts.rows.along, (len(state.y), *contacts.rows.along.shape[1:]))
+    distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)
+    worst = int(np.argmax(distance))
+    open_share = float(np.mean(state.law.side[:, worst] == 0.0))
+    reason = (
+        f"it is open for {100.0 * open_share:.3g} % of the period, where several motions may exist "
+        "or none repeats after a period"
+        if open_share > 0.0
+        else "it stays closed: its parametric excitation may be unstable"
+    )
+    return (
+        f"no periodic motion was found: certified error {solution.error:.2e}, limit "
+        f"{tolerance:.0e}. Contact {worst} has the largest residual, "
+        f"{1e6 * distance[worst]:.3g} um; {reason}. Try another start or simulate over time"
+    )

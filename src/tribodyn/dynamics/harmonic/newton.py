@@ -1,0 +1,188 @@
+"""Newton's method for the motion at the contacts over one period of the clock.
+
+The residual is the motion less the response of the closed structure to the forces that this motion
+causes: forces in time, responses in frequency. The derivative is near the unit matrix because the
+structure includes the mean contact stiffness, and generalized minimal residuals solve for a step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import scipy.fft
+
+from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
+from tribodyn.dynamics.harmonic.contact_equations import Breaks, ContactEquations, Law
+from tribodyn.types import Array, ComplexArray, Mask
+
+#: Newton steps, halvings of a step, and steps over which the residual may rise.
+_LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
+#: Accuracy of a linear solution and its largest number of vectors.
+_LINEAR, _VECTORS = 1e-4, 120
+
+
+class State(NamedTuple):
+    """A motion at the contacts with its forces and residual."""
+
+    y: Array  #: (steps, r)
+    rate: Array
+    law: Law
+    breaks: Breaks
+    force: Array  #: components of the force on the closed structure (steps, s)
+    residual: Array  #: (steps, r)
+
+    @property
+    def size(self) -> float:
+        """Largest distance of the motion at the contacts from zero."""
+        return float(np.linalg.norm(self.y, axis=1).max(initial=0.0)) or 1.0
+
+
+class Solution(NamedTuple):
+    """Result of Newton's method."""
+
+    state: State
+    error: float  #: distance to the solution of the sampled equations, over the size [-]
+    newton: int  #: steps of Newton's method
+    krylov: int  #: products with the derivative
+
+
+class Residual:
+    """Residual of a motion at one frequency of the clock."""
+
+    def __init__(
+        self, structure: ClosedStructure, contacts: ContactEquations, frequency: float
+    ) -> None:
+        self.structure, self.contacts, self.frequency = structure, contacts, frequency
+        steps = contacts.steps
+        self.omega = 2.0 * np.pi * frequency * np.arange(steps // 2 + 1)
+        self.receptances = structure.receptances(self.omega)
+        self.receptances[-1] = 0.0  # the highest harmonic has no phase
+        self._differentiate = 1j * self.omega[:, None]
+        self._differentiate[-1] = 0.0
+        self.excess = np.zeros(contacts.dead.size)  #: additional damping [N*s/m]
+
+    def rate(self, y: Array) -> Array:
+        """Derivative of a motion (steps, r) by time."""
+        spectrum = self._differentiate * scipy.fft.rfft(y, axis=0)
+        return np.asarray(scipy.fft.irfft(spectrum, len(y), axis=0))
+
+    def response(self, force: Array) -> Array:
+        """Motion at the contacts under forces (steps, s)."""
+        spectrum = self.receptances @ scipy.fft.rfft(force, axis=0)[..., None]
+        return np.asarray(scipy.fft.irfft(spectrum[..., 0], len(force), axis=0))
+
+    def at(self, y: Array, closed: Mask | None = None) -> State:
+        """Evaluate a motion; ``closed`` (contacts,) fixes the contacts that are closed."""
+        motion = self.frequency, y, self.rate(y), self.excess, closed
+        rate, contacts = motion[2], self.contacts
+        law = contacts.law(contacts.rows, *motion)
+        breaks = contacts.breaks(law, *motion)
+        force = law.force + y @ self.structure.contact_stiffness.T
+        force += rate @ self.structure.contact_damping.T
+        _scatter(force, breaks, breaks.correction)
+        return State(y, rate, law, breaks, force, y - self.response(force))
+
+    def derivative(self, state: State) -> Callable[[Array], Array]:
+        """Product of the derivative of the residual with a motion."""
+        stiffness = self.structure.contact_stiffness - state.law.stiffness
+        damping = self.structure.contact_damping - state.law.damping
+        breaks = state.breaks
+        after, part = (breaks.step + 1) % len(state.y), breaks.fraction[:, None]
+
+        def product(motion: Array) -> Array:
+            force = stiffness @ motion[..., None] + damping @ self.rate(motion)[..., None]
+            force = force[..., 0]
+            if breaks.step.size:
+                moved = (1.0 - part) * motion[breaks.step] + part * motion[after]
+                _scatter(force, breaks, np.einsum("bsr,br->bs", breaks.tangent, moved))
+            return np.asarray(motion - self.response(force))
+
+        return product
+
+    def correction(self, state: State, accuracy: float = _LINEAR) -> tuple[Array, int]:
+        """Newton step of a motion, and the number of products that it took."""
+        return solve_linear(self.derivative(state), -state.residual, accuracy)
+
+
+def _scatter(force: Array, breaks: Breaks, values: Array) -> None:
+    part = breaks.fraction[:, None]
+    np.add.at(force, breaks.step, (1.0 - part) * values)
+    np.add.at(force, (breaks.step + 1) % len(force), part * values)
+
+
+def solve_linear(
+    product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = _VECTORS
+) -> tuple[Array, int]:
+    """Solution and number of products. Source: Saad and Schultz (1986), SIAM SISC 7, 856."""
+    size = float(np.linalg.norm(right))
+    if size == 0.0:
+        return np.zeros_like(right), 0
+    basis = np.empty((limit + 1, right.size))
+    basis[0] = right.reshape(-1) / size
+    upper, target, turns = np.zeros((limit, limit)), [size], np.zeros(0, dtype=complex)
+    for count in range(1, limit + 1):
+        vector = product(basis[count - 1].reshape(right.shape)).reshape(-1)
+        column = np.zeros(count)
+        for _ in range(2):  # twice is enough for orthogonality
+            along = basis[:count] @ vector
+            vector = vector - along @ basis[:count]
+            column += along
+        length = float(np.linalg.norm(vector))
+        for row, turn in enumerate(turns):  # rotations that make the matrix triangular
+            pair = column[row], column[row + 1]
+            column[row] = turn.real * pair[0] + turn.imag * pair[1]
+            column[row + 1] = turn.real * pair[1] - turn.imag * pair[0]
+        radius = float(np.hypot(column[-1], length)) or 1.0
+        turn = complex(column[-1], length) / radius
+        turns, column[-1] = np.append(turns, turn), radius
+        upper[:count, count - 1] = column
+        target[-1:] = [turn.real * target[-1], -turn.imag * target[-1]]
+        if abs(target[-1]) <= accuracy * size or length <= 1e-14 * size:
+            break
+        basis[count] = vector / length
+    weights = np.linalg.solve(upper[:count, :count], np.array(target[:count]))
+    return (weights @ basis[:count]).reshape(right.shape), count
+
+
+def newton(residual: Residual, y: Array, tolerance: float, limit: int = _LIMIT) -> Solution:
+    """Newton's method with a line search that lets the residual rise for a few steps."""
+    state, krylov, error = residual.at(y), 0, np.inf
+    norms = [float(np.linalg.norm(state.residual))]
+    best: tuple[float, State] = (np.inf, state)
+    for count in range(limit + 1):
+        step, products = residual.correction(state)
+        krylov += products
+        error = float(np.linalg.norm(step, axis=1).max(initial=0.0)) / state.size
+        if error < best[0]:
+            best = error, state
+        if error <= tolerance or count == limit or not np.isfinite(error):
+            break
+        state = _search(residual, state, step, max(norms[-_MEMORY:]))
+        norms.append(float(np.linalg.norm(state.residual)))
+    return Solution(best[1], best[0], count, krylov)
+
+
+def _search(residual: Residual, state: State, step: Array, bound: float) -> State:
+    """Part of a step after which the residual is small enough; the best if none is."""
+    trials: list[tuple[float, State]] = []
+    for halving in range(_HALVINGS + 1):
+        trial = residual.at(state.y + 0.5**halving * step)
+        norm = float(np.linalg.norm(trial.residual))
+        if norm < bound:
+            return trial
+        trials.append((norm, trial))
+    return min(trials, key=lambda pair: pair[0])[1]
+
+
+def refined(y: Array, steps: int) -> Array:
+    """A motion (steps, r) on more steps, with the same harmonics."""
+    return np.asarray(scipy.fft.irfft(scipy.fft.rfft(y, axis=0), steps, axis=0) * (steps / len(y)))
+
+
+def force_spectrum(state: State) -> ComplexArray:
+    """Amplitudes (k, s) of the forces on the closed structure, without the highest harmonic."""
+    spectrum = np.asarray(scipy.fft.rfft(state.force, axis=0, norm="forward"), dtype=complex)
+    spectrum[-1] = 0.0
+    return spectrum

@@ -1,0 +1,106 @@
+"""Parts of harmonic balance: Krylov solution, receptances, derivative of the residual, sampling."""
+
+import numpy as np
+import pytest
+
+from known_machines import CLOCK, two_mesh_system
+from known_random_machines import random_machine
+from tribodyn.dynamics import Contact, System, harmonic_balance
+from tribodyn.dynamics.equations.grid import PointEvaluator
+from tribodyn.dynamics.equations.nodes import evaluate_rows
+from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
+from tribodyn.dynamics.harmonic.harmonic_balance import prepare
+from tribodyn.dynamics.harmonic.newton import solve_linear
+from tribodyn.dynamics.harmonic.orbit_response import series
+from tribodyn.errors import quiet
+
+
+def test_krylov_solution_is_that_of_the_matrix():
+    generator = np.random.default_rng(1)
+    matrix = np.eye(30) + 0.1 * generator.normal(size=(30, 30))
+    right = generator.normal(size=(15, 2))
+    product = lambda x: (matrix @ x.reshape(-1)).reshape(15, 2)  # noqa: E731
+    solution, count = solve_linear(product, right, 1e-12)
+    assert product(solution) == pytest.approx(right, abs=1e-10)
+    assert count <= 30
+    assert solve_linear(product, 0.0 * right, 1e-3)[1] == 0
+
+
+@pytest.mark.parametrize("direct", [False, True])
+def test_receptances_are_those_of_the_matrices(direct, monkeypatch):
+    if direct:
+        monkeypatch.setattr(ClosedStructure, "modes", None)
+    machine = random_machine(3, gyroscopic=True, friction=True)
+    residual = prepare(machine, 0.1).residual(64, 0.1)
+    structure, contacts = residual.structure, residual.contacts
+    along = np.array([c.direction for c in machine.contacts])
+    push = along + np.array([c.friction for c in machine.contacts])
+    nodes = contacts.rows.nodes
+    spring = machine.stiffness + push.T @ np.diag(nodes.stiffness.mean(axis=0)) @ along
+    damper = machine.rate_matrix + push.T @ np.diag(nodes.damping.mean(axis=0)) @ along
+    omega = np.array([0.0, 0.7, 40.0])
+    exact = [
+        along @ np.linalg.solve(spring + 1j * w * damper - w**2 * machine.mass, push.T)
+        for w in omega
+    ]
+    matrices = contacts.rows.along[0] @ structure.receptances(omega) @ contacts.rows.push[0].T
+    assert matrices == pytest.approx(np.array(exact), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("gap", [None, 0.2])
+def test_derivative_of_the_residual_is_that_by_differences(gap):
+    parts = dict.fromkeys(("friction", "turning", "load_friction", "gyroscopic"), True)
+    machine = random_machine(18, gap=gap, depth=0.3, **parts)
+    frequency = 0.4 / machine.cycles
+    residual = prepare(machine, frequency).residual(64 * machine.cycles, frequency)
+    generator = np.random.default_rng(0)
+    shape = residual.contacts.steps, residual.structure.push.shape[1]
+    point = 0.5 * residual.response(0.5 + 0.2 * generator.normal(size=shape))
+    state = residual.at(point)
+    assert bool(state.breaks.step.size) == (gap is not None)
+    move = residual.response(generator.normal(size=shape))
+    step = 1e-7 / np.abs(move).max()
+    ahead, behind = residual.at(point + step * move), residual.at(point - step * move)
+    slope = (ahead.residual - behind.residual) / (2.0 * step)
+    exact = residual.derivative(state)(move)
+    # The derivative leaves out how the size of a jump changes: of the order of a step.
+    assert np.linalg.norm(slope - exact) < (1e-7 if gap is None else 2e-2) * np.linalg.norm(slope)
+
+
+def test_entries_at_an_event_are_those_of_its_sides():
+    contact = Contact([1.0], lambda x: np.where(x < 0.5, 1.0, 3.0), events=(0.5,), cycles=2)
+    system = System([[1.0]], [[0.1]], [[1.0]], [1.0], [contact])
+    events, phase = (0.0, 0.25, 0.5, 0.75), np.array([0.0, 0.25, 0.5])
+    sides = [
+        evaluate_rows(system, PointEvaluator(phase, events, before=before)).stiffness[:, 0, 0]
+        for before in (True, False)
+    ]
+    assert sides[0].tolist() == [3.0, 1.0, 3.0]
+    assert sides[1].tolist() == [1.0, 3.0, 1.0]
+
+
+def test_series_is_exact_between_the_samples():
+    amplitudes = np.zeros((9, 1), dtype=complex)
+    amplitudes[0], amplitudes[2] = 1.5, 0.5 - 0.25j
+    phase = np.array([0.0, 0.1234, 0.77])
+    exact = 1.5 + 2.0 * ((0.5 - 0.25j) * np.exp(4j * np.pi * phase)).real
+    assert series(amplitudes, 16, phase)[:, 0] == pytest.approx(exact, abs=1e-7)
+    assert series(amplitudes, 16, np.array([0.25]))[0, 0] == pytest.approx(0.5, abs=1e-14)
+
+
+def test_order_is_second_where_the_contact_opens():
+    machine = random_machine(16, gap=0.2, depth=0.8)
+    frequency = 0.4 / machine.cycles
+    with quiet():
+        errors = [
+            harmonic_balance(machine, frequency, steps=steps).step_error
+            for steps in (128, 256, 512)
+        ]
+    rates = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert rates.mean() > 1.6
+
+
+def test_a_system_is_evaluated_once():
+    machine = two_mesh_system()
+    assert prepare(machine, CLOCK) is prepare(machine, 2.0 * CLOCK)
+    assert prepare(two_mesh_system(), CLOCK) is not prepare(machine, CLOCK)
