@@ -6,6 +6,7 @@ import os
 import random
 import signal
 import tempfile
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -29,16 +30,49 @@ def pytest_configure(config: pytest.Config) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+#: Folders whose tests need no compiled kernel, or few.
+_WITHOUT_KERNELS = (
+    "style", "freeze", "unit/gear", "unit/lubricant", "unit/friction", "unit/contact", "unit/plot",
+)  # fmt: skip
+
+
+def _scope(nodeid: str) -> str:
+    """File of a test; all pages of the documentation are one scope: they share kernels."""
+    file = nodeid.split("::", 1)[0]
+    return "tests/docs" if file.startswith("tests/docs/") else file
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Order the files for parallel workers.
+
+    The pages come first: they compile most kernels. Files that need none follow, so that no other
+    worker compiles the same; then files with slow tests, so that none of them is last.
+    """
+    if not hasattr(config, "workerinput"):
+        return
+    slow = Counter(_scope(item.nodeid) for item in items if item.get_closest_marker("slow"))
+
+    def rank(item: pytest.Item) -> tuple[int, int]:
+        scope = _scope(item.nodeid)
+        if scope == "tests/docs":
+            return 0, 0
+        if scope.removeprefix("tests/").startswith(_WITHOUT_KERNELS):
+            return 1, 0
+        return 2, -slow[scope]
+
+    items.sort(key=rank)
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Keep the tests of a file together, and all pages: they share what they compile."""
+    """Give each worker one scope after the other, in the order of the items."""
     from xdist.scheduler import LoadScopeScheduling
 
     class Together(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
-            file = nodeid.split("::", 1)[0]
-            return "tests/docs" if file.startswith("tests/docs/") else file
+            return _scope(nodeid)
 
+    config.option.loadscopereorder = False
     return Together(config, log) if config.getvalue("dist") == "load" else None
 
 

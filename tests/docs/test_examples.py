@@ -1,7 +1,7 @@
 """The numbered examples run, and print figures that are known from elsewhere."""
 
-import os
 import re
+import runpy
 import subprocess
 import sys
 from collections.abc import Callable
@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 from gallery import EXAMPLES, GALLERY, masked
+
+from registries import as_before
 
 
 def figure(text: str, label: str, column: int = 0) -> float:
@@ -280,26 +282,31 @@ EXPECTED: dict[str, Callable[[str], None]] = {
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
-def test_example_prints_known_figures(path: Path, tmp_path: Path) -> None:
-    done = subprocess.run(
-        [sys.executable, path],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
-    )
-    assert done.returncode == 0, done.stderr
-    shown = (GALLERY / f"{path.stem}.txt").read_text("utf-8")
-    assert masked(done.stdout) == masked(shown), (
-        f"run: python tests/docs/gallery.py {path.name[:2]}"
-    )
-    EXPECTED[path.name](done.stdout)
-    for place in re.findall(r"^(?:figures|files) in (.*?):", done.stdout, re.M):
-        assert Path(place).parent == tmp_path.resolve()
-        shown = re.findall(r"[\w-]+\.html", done.stdout)
-        assert shown
-        assert all((Path(place) / name).is_file() for name in shown)
+def test_example_prints_known_figures(
+    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", [str(path)])
+    with as_before():
+        runpy.run_path(str(path), run_name="__main__")
+    output = capsys.readouterr().out
+    stored = (GALLERY / f"{path.stem}.txt").read_text("utf-8")
+    assert masked(output) == masked(stored), f"run: python tests/docs/gallery.py {path.name[:2]}"
+    EXPECTED[path.name](output)
+    for folder in re.findall(r"^(?:figures|files) in (.*?):", output, re.M):
+        assert Path(folder).parent == tmp_path.resolve()
+        files = re.findall(r"[\w-]+\.html", output)
+        assert files
+        assert all((Path(folder) / name).is_file() for name in files)
+
+
+def test_example_is_a_script_with_an_optional_folder(tmp_path: Path) -> None:
+    command = [sys.executable, EXAMPLES[0], "my-report"]
+    process = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert (tmp_path / "my-report" / "report.html").is_file()
 
 
 def test_every_example_is_known_and_numbered() -> None:

@@ -81,6 +81,29 @@ def test_one_interruption_ends_a_march_and_its_process(lanes):
     assert b"KeyboardInterrupt" in told
 
 
+#: The command line, which says when its first time integration begins.
+_COMMAND = """
+import sys
+from tribodyn.cli import main
+from tribodyn.dynamics._engine import blocks
+from tribodyn.dynamics.time import engines
+from tribodyn.study import first_use
+
+first_use.compile_marches()
+original = blocks.march_blocks
+started = []
+
+def march_blocks(*arguments, **options):
+    if not started:
+        started.append(True)
+        print("started", flush=True)
+    return original(*arguments, **options)
+
+blocks.march_blocks = engines.march_blocks = march_blocks
+sys.exit(main())
+"""
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize(
@@ -89,21 +112,23 @@ def test_one_interruption_ends_a_march_and_its_process(lanes):
 )  # fmt: skip
 def test_one_interruption_ends_a_command(words, tmp_path: Path):
     target = tmp_path / "out"
-    command = [sys.executable, "-m", "tribodyn.cli", words[0], "time-varying-friction", *words[1:]]
+    command = [sys.executable, "-c", _COMMAND, words[0], "time-varying-friction", *words[1:]]
     with subprocess.Popen(
         [*command, "--out", str(target)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     ) as process:
-        # Let it come into its marches, wherever that is by then.
-        time.sleep(12.0)
+        assert process.stdout is not None
+        started = process.stdout.readline()
+        time.sleep(1.0)
         running = process.poll() is None
         process.send_signal(signal.SIGINT)
         try:
-            _, told = process.communicate(timeout=60.0)
+            _, errors = process.communicate(timeout=60.0)
         finally:
             process.kill()
-    assert running, told.decode()
+    assert started == b"started\n", errors.decode()
+    assert running, errors.decode()
     assert process.returncode == 130
-    # What a diagram has of finished motions is kept; a run leaves nothing unfinished.
+    # A diagram of finished motions is stored; a run leaves nothing unfinished.
     assert not target.exists() or words[0] == "bifurcation"
 
 

@@ -1,14 +1,16 @@
-"""The first run: what a process beside it compiles is what the run needs, and loads."""
+"""The first run: its background process compiles what the run needs, and the run loads it."""
 
 from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,8 +18,8 @@ from tribodyn import load_case
 from tribodyn.study import first_use
 from tribodyn.study.processes import in_background
 
-#: Kernels of the disk cache that a process compiled, and how often each.
-_LISTEN = """
+#: Prints the kernels, with their signatures, that a script compiled and that it loaded.
+_SCRIPT = """
 import json, sys, warnings
 from numba.core import event
 from numba.core.caching import FunctionCache
@@ -34,88 +36,105 @@ class Listener(event.Listener):
 event.register("numba:compile", Listener())
 warnings.simplefilter("ignore")
 import tribodyn
-"""
-_JOBS = """
-import os
-from tribodyn.study import first_use
-case, study = tribodyn.load_case("fzg-roughness"), sys.argv[2]
-for job in first_use._missing_jobs(case, study):
-    first_use._compile((sys.argv[1], job))
-assert first_use._missing_jobs(case, study) == []
-"""
-_RUN = """
-from tribodyn.study import first_use
-first_use.allowed = sys.argv[1] == "allowed"
-tribodyn.run(tribodyn.load_case("fzg-roughness")).save(sys.argv[2])
-"""
-#: What a study compiles itself and what it loads.
-_STUDY = """
-from tribodyn.dynamics._engine.marching import march_block
-from tribodyn.stiffness.loaded.kernel import solve_loads
 from tribodyn.interrupt import alone
 from tribodyn.study import first_use
-first_use.allowed = False
 case = tribodyn.load_case("fzg-roughness")
-with alone():  # Processes beside a map may compile more than it does.
+{}
+from tribodyn.dynamics._engine.marching import march_block
+from tribodyn.stiffness.loaded.kernel import solve_loads
+loaded = [
+    f"{{kernel.py_func.__name__}} {{signature}}"
+    for kernel in (march_block, solve_loads)
+    for signature in kernel.stats.cache_hits
+]
+print(json.dumps({{"compiled": compiled, "loaded": loaded}}))
+"""
+_RUN = """
+first_use.allowed = sys.argv[1] == "allowed"
+tribodyn.run(case).save(sys.argv[2])
+"""
+_JOBS = """
+for job in first_use._JOBS[sys.argv[1]]:
+    first_use._compile((sys.argv[2], job))
+"""
+#: Processes of a map may compile more than it does.
+_STUDY = """
+first_use.allowed = False
+with alone():
     {}
-compiled = [len(compiled), sum(map(len, (k.stats.cache_hits for k in (march_block, solve_loads))))]
 """
 _STUDIES = {
+    "run": "tribodyn.run(case).save(sys.argv[1])",
     "map": 'tribodyn.sweep(case, between=("900 rpm", "1500 rpm"), points=64)',
     "bifurcation": 'tribodyn.bifurcation(case, between=("900 rpm", "1500 rpm"), points=20)',
     "run-up": 'tribodyn.run_up(case, between=("900 rpm", "1000 rpm"), duration=0.05, tables=2)',
 }
-_SAY = "print(json.dumps(compiled))"
 
 
-def _compiled(script: str, cache: Path, *words: str) -> list[str]:
-    call = [sys.executable, "-c", _LISTEN + script + _SAY, *words]
+def _kernels(script: str, cache: Path, *arguments: str) -> dict[str, Any]:
+    """Run a script with a kernel cache; return the kernels that it compiled and loaded."""
+    command = [sys.executable, "-c", _SCRIPT.format(script), *arguments]
     environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
-    done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True)
-    return list(json.loads(done.stdout.splitlines()[-1]))
+    process = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return dict(json.loads(process.stdout.splitlines()[-1]))
 
 
-@pytest.mark.slow
-def test_the_jobs_compile_what_a_run_needs_and_nothing_else(tmp_path: Path) -> None:
-    marks, cache = tmp_path / "marks", tmp_path / "cache"
-    marks.mkdir()
-    jobs = _compiled(_JOBS, cache, str(marks), "run")
-    assert sorted(jobs) == ["march_block", "march_block", "solve_loads"]
-    assert len(list(marks.iterdir())) == len(jobs)
-    assert _compiled(_RUN, cache, "alone", str(tmp_path / "report")) == []
+def _count_codes(cache: Path) -> int:
+    return len([*cache.glob("*/*.nbc")])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("study", _STUDIES)
-def test_the_jobs_of_a_study_are_among_what_it_loads(tmp_path: Path, study: str) -> None:
-    (tmp_path / "marks").mkdir()
-    cache = tmp_path / "cache"
-    jobs = _compiled(_JOBS, cache, str(tmp_path / "marks"), study)
-    own, loaded = _compiled(_STUDY.format(_STUDIES[study]), cache)
-    assert len(jobs) == len(first_use._JOBS[study])
-    assert loaded == len(jobs)
-    assert len([*cache.glob("*/*.nbc")]) == len(jobs) + own
+@pytest.fixture(scope="module")
+def run_cache(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    """Cache of a first run with a background process, and the kernels that the run compiled."""
+    cache = tmp_path_factory.mktemp("cache")
+    return cache, _kernels(_RUN, cache, "allowed", str(tmp_path_factory.mktemp("run") / "report"))
 
 
-@pytest.mark.slow
-def test_after_the_jobs_of_all_studies_none_compiles_anything(tmp_path: Path) -> None:
-    cache = tmp_path / "cache"
-    work = "from tribodyn.study import first_use; first_use.compile_marches(); first_use._loads();"
-    jobs = _compiled(work, cache)
-    assert len(jobs) == len([*cache.glob("*/*.nbc")]) == len(first_use._WORK)
-    own, _ = _compiled(_STUDY.format("; ".join(_STUDIES.values())), cache)
-    assert own == 0
+@pytest.fixture(scope="module")
+def full_cache(run_cache: tuple[Path, Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Cache with the kernels of the jobs of all studies."""
+    cache = tmp_path_factory.mktemp("full") / "cache"
+    shutil.copytree(run_cache[0], cache)
+    _kernels("first_use.compile_marches(); first_use._loads()", cache)
+    return cache
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.cpu_count() == 1, reason="one processor compiles alone")
-def test_a_first_run_compiles_only_a_part_itself(tmp_path: Path) -> None:
-    cache = tmp_path / "cache"
-    own = _compiled(_RUN, cache, "allowed", str(tmp_path / "report"))
-    assert "solve_loads" not in own
-    assert len(own) < 3
-    assert len([*cache.glob("*/*.nbc")]) == 3
-    assert _compiled(_RUN, cache, "allowed", str(tmp_path / "again")) == []
+def test_a_first_run_compiles_only_a_part_itself(
+    run_cache: tuple[Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    cache, first_run = run_cache
+    assert "solve_loads" not in first_run["compiled"]
+    assert len(first_run["compiled"]) < 3
+    assert _count_codes(cache) == 3 == len(first_use._JOBS["run"])
+    assert _kernels(_RUN, cache, "allowed", str(tmp_path / "again"))["compiled"] == []
+
+
+def test_all_jobs_of_a_study_are_missing_in_an_empty_cache(tmp_path: Path) -> None:
+    script = """
+assert {study: first_use._missing_jobs(case, study) for study in first_use._JOBS} == {
+    study: list(jobs) for study, jobs in first_use._JOBS.items()}
+"""
+    assert _kernels(script, tmp_path)["compiled"] == []
+
+
+@pytest.mark.slow
+def test_no_job_is_missing_in_a_full_cache(full_cache: Path) -> None:
+    assert _count_codes(full_cache) == len(first_use._WORK)
+    _kernels(
+        "assert not any(first_use._missing_jobs(case, s) for s in first_use._JOBS)", full_cache
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("study", _STUDIES)
+def test_a_study_loads_what_its_jobs_compile(full_cache: Path, tmp_path: Path, study: str) -> None:
+    jobs = _kernels(_JOBS, full_cache, study, str(tmp_path))
+    computed = _kernels(_STUDY.format(_STUDIES[study]), full_cache, str(tmp_path / "report"))
+    assert jobs["compiled"] == computed["compiled"] == []
+    assert len(jobs["loaded"]) == len(first_use._JOBS[study])
+    assert set(jobs["loaded"]) <= set(computed["loaded"])
 
 
 def test_where_no_folder_can_be_made_a_run_compiles_alone(monkeypatch: pytest.MonkeyPatch) -> None:
