@@ -86,8 +86,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def draws(request: pytest.FixtureRequest) -> Callable[[int], Iterator[random.Random]]:
     """Random sources: as many as asked for with --runs, else a few; each is told by a failure."""
 
-    def sources(few: int) -> Iterator[random.Random]:
-        count, seed = request.config.getoption("--runs") or few, request.config.getoption("--seed")
+    def sources(default: int) -> Iterator[random.Random]:
+        count, seed = (
+            request.config.getoption("--runs") or default,
+            request.config.getoption("--seed"),
+        )
         for number in range(count):
             print(f"draw {number} of the seed {seed}")
             yield random.Random(f"{seed} {number}")

@@ -11,8 +11,8 @@ __all__ = ["caption", "curve", "marks"]
 
 def curve(figure: Any, name: str, axis: str = "y") -> Any:
     """The one curve of a name on an axis."""
-    (found,) = (trace for trace in figure.data if (trace.name, trace.yaxis or "y") == (name, axis))
-    return found
+    (curve_,) = (trace for trace in figure.data if (trace.name, trace.yaxis or "y") == (name, axis))
+    return curve_
 
 
 def marks(figure: Any) -> dict[str, float]:

@@ -13,7 +13,7 @@ def h1043(**more):
     return hypoid_blank(10, 43, 31.7e-3, 336e-3, 47.7e-3, math.radians(46.0), 114.3e-3, **more)
 
 
-def eased(blank=None, side="drive", along=0.5e-4, across=2e-4, both=0.3e-4, scale=1.0):
+def eased(blank=None, side="drive", along=0.5e-4, across=2e-4, twist=0.3e-4, scale=1.0):
     """Flanks, of 10 x 43 by default, with coefficients [1/mm] of an ease-off about P = -2.2 mm."""
     blank = blank or h1043()
     width = 0.5 * blank.face_width_wheel
@@ -21,7 +21,7 @@ def eased(blank=None, side="drive", along=0.5e-4, across=2e-4, both=0.3e-4, scal
     ease = EaseOff(
         lengthwise_crowning=scale * 1e3 * along * width**2,
         profile_crowning=scale * 1e3 * across * depth**2,
-        bias=scale * 1e3 * both * width * depth,
+        bias=scale * 1e3 * twist * width * depth,
         center=(0.0, -2.2e-3),
     )
     return hypoid_flanks(blank, side, ease, points=9)
@@ -29,20 +29,20 @@ def eased(blank=None, side="drive", along=0.5e-4, across=2e-4, both=0.3e-4, scal
 
 def random_blanks(number, seed=0, **more):
     """Blanks of random designs: teeth, offset of both signs, spiral angle and cutter."""
-    drawn, blanks, refused = np.random.default_rng(seed), [], 0
+    random_generator, blanks, refused = np.random.default_rng(seed), [], 0
     while len(blanks) < number:
-        diameter = drawn.uniform(0.15, 0.4)
-        offset = diameter * drawn.uniform(0.05, 0.15)
+        diameter = random_generator.uniform(0.15, 0.4)
+        offset = diameter * random_generator.uniform(0.05, 0.15)
         try:
             blanks.append(
                 hypoid_blank(
-                    int(drawn.integers(8, 16)),
-                    int(drawn.integers(30, 46)),
+                    int(random_generator.integers(8, 16)),
+                    int(random_generator.integers(30, 46)),
                     offset,
                     diameter,
                     0.14 * diameter,
-                    math.radians(drawn.uniform(42.0, 50.0)),
-                    drawn.uniform(0.33, 0.4) * diameter,
+                    math.radians(random_generator.uniform(42.0, 50.0)),
+                    random_generator.uniform(0.33, 0.4) * diameter,
                     hand_pinion=("left", "right")[len(blanks) % 2],
                     **more,
                 )

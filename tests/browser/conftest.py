@@ -23,8 +23,8 @@ NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 def chromium() -> str | None:
     """Path of a Chromium on this machine."""
-    asked = os.environ.get("TRIBODYN_CHROMIUM")
-    return asked or next((path for path in map(shutil.which, NAMES) if path), None)
+    variable = os.environ.get("TRIBODYN_CHROMIUM")
+    return variable or next((path for path in map(shutil.which, NAMES) if path), None)
 
 
 @pytest.fixture(scope="session")

@@ -27,15 +27,15 @@ class Visit:
     def __init__(self, context: Any, page: Page) -> None:
         self.tab = context.new_page()
         self.tab.set_default_timeout(WAIT)
-        self.told: list[str] = []
-        self.asked: list[str] = []
-        self.tab.on("console", lambda message: self.told.append(message.text))
-        self.tab.on("pageerror", lambda error: self.told.append(str(error)))
-        self.tab.on("request", lambda request: self.asked.append(request.url))
+        self.messages: list[str] = []
+        self.requests: list[str] = []
+        self.tab.on("console", lambda message: self.messages.append(message.text))
+        self.tab.on("pageerror", lambda error: self.messages.append(str(error)))
+        self.tab.on("request", lambda request: self.requests.append(request.url))
         self.tab.goto(page.address)
-        self.drawn()
+        self.wait_for_drawing()
 
-    def drawn(self) -> None:
+    def wait_for_drawing(self) -> None:
         self.tab.wait_for_selector("#bench .main-svg")
         self.tab.wait_for_selector("#case-form .field:visible")
 
@@ -43,9 +43,9 @@ class Visit:
         self.tab.fill(f"#case-{key.replace('.', '-')}", text)
 
     def wait(self, selector: str, text: str = "") -> Any:
-        found = self.tab.locator(selector, has_text=text).first
-        found.wait_for(state="visible")
-        return found
+        element = self.tab.locator(selector, has_text=text).first
+        element.wait_for(state="visible")
+        return element
 
     def run(self, number: int) -> None:
         self.tab.click("#run")
@@ -125,10 +125,10 @@ def test_a_wrong_value_is_told_beside_its_field(visit: Visit) -> None:
     tab = visit.tab
     tab.click("#tab-pair")
     visit.fill("operation.speed", "15 Hz")
-    told = visit.wait("#case-operation-speed-fault", "rotational speed").inner_text()
+    message = visit.wait("#case-operation-speed-fault", "rotational speed").inner_text()
     with pytest.raises(tribodyn.errors.InputError) as refused:
         tribodyn.load_case("fzg-roughness").replace({"operation.speed": "15 Hz"}, by="form")
-    assert refused.value.problems[0].what in told
+    assert refused.value.problems[0].what in message
     assert tab.get_attribute("#case-operation-speed", "aria-invalid") == "true"
     tab.click("#run")
     visit.wait("#notice", "Correct the marked fields")
@@ -153,7 +153,7 @@ def test_a_wrong_value_dims_the_figures_and_marks_its_closed_box(visit: Visit) -
     badge.wait_for(state="hidden")
     visit.fill("operation.torque", "120")
     tab.wait_for_selector("#case-operation-torque[aria-invalid=false]")
-    visit.drawn()
+    visit.wait_for_drawing()
     assert tab.locator("#bench .outdated").count() == 0
 
 
@@ -205,7 +205,7 @@ def test_a_long_run_outlives_a_reload_and_is_stopped(visit: Visit) -> None:
     tab.click("#stop")
     visit.wait("#bench", "It was stopped")
     tab.click("text=Remove Run 3")
-    visit.drawn()
+    visit.wait_for_drawing()
     assert tab.locator("[role=tab]", has_text="Run 3").count() == 0
 
 
@@ -226,7 +226,7 @@ def test_a_script_in_a_title_stays_text(visit: Visit) -> None:
     tab = visit.tab
     tab.click("#tab-files")
     tab.click("[data-of='case:fzg-roughness']")
-    visit.drawn()
+    visit.wait_for_drawing()
     tab.evaluate("document.querySelector('summary').click()")
     visit.fill("title", text)
     visit.wait("#title", "<script>")
@@ -268,12 +268,12 @@ def test_the_keyboard_is_enough(context: Any, served: Page) -> None:
     visit = Visit(context, served)
     tab = visit.tab
 
-    def to(reached: str) -> None:
+    def to(target: str) -> None:
         for _ in range(80):
             tab.keyboard.press("Tab")
-            if tab.evaluate(f"document.activeElement.matches({reached!r})"):
+            if tab.evaluate(f"document.activeElement.matches({target!r})"):
                 return
-        raise AssertionError(f"Tab does not reach {reached}")
+        raise AssertionError(f"Tab does not reach {target}")
 
     to("#case-gears-pinion-teeth")
     tab.keyboard.press("Control+A")
@@ -302,6 +302,6 @@ def test_nothing_hangs_over_the_side(visit: Visit, width: int) -> None:
 
 
 def test_the_console_is_silent_and_nothing_is_asked_of_others(visit: Visit, served: Page) -> None:
-    assert visit.told == []
-    own = (f"http://127.0.0.1:{served.port}/", "data:", "blob:")
-    assert [url for url in visit.asked if not url.startswith(own)] == []
+    assert visit.messages == []
+    allowed = (f"http://127.0.0.1:{served.port}/", "data:", "blob:")
+    assert [url for url in visit.requests if not url.startswith(allowed)] == []

@@ -23,7 +23,7 @@ class Visit:
     """An open page and what the browser had to say about it."""
 
     page: Any
-    told: list[str] = field(default_factory=list)
+    messages: list[str] = field(default_factory=list)
     requested: list[str] = field(default_factory=list)
 
 
@@ -38,21 +38,21 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module", params=[1280, 800, 420])
 def visit(request: pytest.FixtureRequest, browser: Any, report: Path) -> Iterator[Visit]:
     page = browser.new_page(viewport={"width": request.param, "height": 900})
-    seen = Visit(page)
-    page.on("console", lambda message: seen.told.append(f"{message.type}: {message.text}"))
-    page.on("pageerror", lambda error: seen.told.append(f"error: {error}"))
-    page.on("request", lambda asked: seen.requested.append(asked.url))
+    opened = Visit(page)
+    page.on("console", lambda message: opened.messages.append(f"{message.type}: {message.text}"))
+    page.on("pageerror", lambda error: opened.messages.append(f"error: {error}"))
+    page.on("request", lambda sent: opened.requested.append(sent.url))
     page.goto(report.as_uri())
     page.wait_for_function(
         "Object.keys(figures).every(name =>"
         " document.querySelector('#figure-' + name + ' .main-svg'))"
     )
-    yield seen
+    yield opened
     page.close()
 
 
 def test_console_is_silent(visit: Visit) -> None:
-    assert visit.told == []
+    assert visit.messages == []
 
 
 def test_nothing_is_requested_from_outside(visit: Visit) -> None:
@@ -63,17 +63,17 @@ def test_nothing_is_requested_from_outside(visit: Visit) -> None:
 
 
 def test_every_figure_is_drawn(visit: Visit) -> None:
-    drawn = visit.page.locator(".figure")
+    figures = visit.page.locator(".figure")
     assert (
-        drawn.count() == len(SECTIONS) - 2
+        figures.count() == len(SECTIONS) - 2
     )  # a film formula knows no pressure, the flanks are perfect
-    for number in range(drawn.count()):
-        figure = drawn.nth(number)
+    for number in range(figures.count()):
+        figure = figures.nth(number)
         assert figure.locator(".main-svg").count() > 0
         assert figure.locator(".trace, .bars").count() > 0
-    answers = visit.page.locator(".answer").all_inner_texts()
-    assert len(answers) == drawn.count()
-    assert all(answer.strip() for answer in answers)
+    answer_texts = visit.page.locator(".answer").all_inner_texts()
+    assert len(answer_texts) == figures.count()
+    assert all(answer.strip() for answer in answer_texts)
 
 
 def test_no_text_is_broken(visit: Visit) -> None:
@@ -171,7 +171,7 @@ def test_names_of_lines_cover_no_bar_no_button_and_no_other_name(visit: Visit) -
 def test_legends_stand_below_on_a_narrow_screen(visit: Visit) -> None:
     if visit.page.viewport_size["width"] >= 720:
         return
-    beside = visit.page.evaluate(
+    legends_aside = visit.page.evaluate(
         """[...document.querySelectorAll('.figure')].filter(figure => {
              const plots = [...figure.querySelectorAll('.nsewdrag')]
                .map(part => part.getBoundingClientRect());
@@ -179,7 +179,7 @@ def test_legends_stand_below_on_a_narrow_screen(visit: Visit) -> None:
                plots.some(plot => legend.getBoundingClientRect().top < plot.bottom));
            }).map(figure => figure.id)"""
     )
-    assert beside == []
+    assert legends_aside == []
 
 
 def test_meanings_can_be_read(visit: Visit) -> None:
@@ -197,4 +197,4 @@ def test_spectra_switch_to_a_logarithmic_scale(visit: Visit) -> None:
     visit.page.wait_for_function(f"{kind} === 'log'")
     figure.locator(".updatemenu-button", has_text="linear").click()
     visit.page.wait_for_function(f"{kind} === 'linear'")
-    assert visit.told == []
+    assert visit.messages == []

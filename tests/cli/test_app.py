@@ -22,8 +22,8 @@ from tribodyn.cli import call
 
 
 def test_it_serves_until_it_is_interrupted(tmp_path: Path) -> None:
-    words = ["-m", "tribodyn", "app", "--no-browser", "--port", "0", "--folder", str(tmp_path)]
-    served = subprocess.Popen([sys.executable, *words], stderr=subprocess.PIPE, text=True)
+    arguments = ["-m", "tribodyn", "app", "--no-browser", "--port", "0", "--folder", str(tmp_path)]
+    served = subprocess.Popen([sys.executable, *arguments], stderr=subprocess.PIPE, text=True)
     address = served.stderr.readline()
     port, token = re.findall(r"127\.0\.0\.1:(\d+)/\?token=(\S+)", address)[0]
     connection = HTTPConnection("127.0.0.1", int(port))
@@ -34,10 +34,10 @@ def test_it_serves_until_it_is_interrupted(tmp_path: Path) -> None:
         assert answer.status == status
     connection.close()
     served.send_signal(signal.SIGINT)
-    rest = served.communicate(timeout=60)[1]
+    errors = served.communicate(timeout=60)[1]
     assert served.returncode == 0
-    assert "The page has ended." in rest
-    assert token not in rest
+    assert "The page has ended." in errors
+    assert token not in errors
 
 
 @pytest.fixture
@@ -51,13 +51,13 @@ def test_without_a_browser_the_address_is_told(
 ) -> None:
     monkeypatch.setattr(webbrowser, "open", lambda address: False)
     assert call(["app", "--port", "0", "--folder", str(tmp_path)]) == 0
-    told = capsys.readouterr().err
-    assert "http://127.0.0.1:" in told
-    assert "open the address in one yourself" in told
+    error = capsys.readouterr().err
+    assert "http://127.0.0.1:" in error
+    assert "open the address in one yourself" in error
 
 
-def refused(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
-    assert call(["app", "--no-browser", "--port", "0", *words]) == 2
+def refused(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    assert call(["app", "--no-browser", "--port", "0", *arguments]) == 2
     return capsys.readouterr().err
 
 
@@ -66,31 +66,31 @@ def test_a_port_that_is_taken(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         other.bind(("127.0.0.1", 0))
         other.listen()
         port = str(other.getsockname()[1])
-        words = ["app", "--no-browser", "--port", port, "--folder", str(tmp_path)]
-        assert call(words) == 2
+        arguments = ["app", "--no-browser", "--port", port, "--folder", str(tmp_path)]
+        assert call(arguments) == 2
     assert "--port" in capsys.readouterr().err
 
 
 def test_wrong_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    here = ["--folder", str(tmp_path)]
+    folder_option = ["--folder", str(tmp_path)]
     bad, away = tmp_path / "bad.toml", tmp_path.parent / "away.toml"
     bad.write_text('title = "x"\n[gears]\nteeth = 3\n')
     away.write_text("title = 1\n")
     assert "there is no folder" in refused(["--folder", str(tmp_path / "no")], capsys)
-    assert "no built-in case" in refused(["no-such-case", *here], capsys)
-    assert "bad.toml:3" in refused([str(bad), *here], capsys)
-    assert "--folder" in refused([str(away), *here], capsys)
-    assert "cannot serve at" in refused(["--host", "203.0.113.1", *here], capsys)
-    assert call(["app", "--port", "70000", *here]) == 2
+    assert "no built-in case" in refused(["no-such-case", *folder_option], capsys)
+    assert "bad.toml:3" in refused([str(bad), *folder_option], capsys)
+    assert "--folder" in refused([str(away), *folder_option], capsys)
+    assert "cannot serve at" in refused(["--host", "203.0.113.1", *folder_option], capsys)
+    assert call(["app", "--port", "70000", *folder_option]) == 2
 
 
 def test_without_dash_the_extra_is_named(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    known = util.find_spec
+    find_spec = util.find_spec
 
     def lacking(name: str, *more: Any) -> Any:
-        return None if name == "dash" else known(name, *more)
+        return None if name == "dash" else find_spec(name, *more)
 
     monkeypatch.setattr(util, "find_spec", lacking)
     assert 'pip install "tribodyn[app]"' in refused([], capsys)

@@ -60,8 +60,8 @@ def test_the_package_itself_is_the_command_line() -> None:
 def test_the_shell_completes_commands(in_new_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", str(in_new_folder))  # its start file is written to
     script = in_new_folder / "completion"
-    words = ["--install-completion", "--shell", "bash", "--output", str(script)]
-    assert call(words) == 0
+    arguments = ["--install-completion", "--shell", "bash", "--output", str(script)]
+    assert call(arguments) == 0
     text = script.read_text(encoding="utf-8")
     assert "bifurcation" in text
     assert "--install-completion" in text
@@ -73,8 +73,8 @@ def test_every_extra_is_used() -> None:
     extras = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"][
         "optional-dependencies"
     ]
-    known = {"app", "cluster", "cuda", "docs", "images", "io", "learn", "test", "dev"}
-    assert set(extras) == known
+    known_extras = {"app", "cluster", "cuda", "docs", "images", "io", "learn", "test", "dev"}
+    assert set(extras) == known_extras
     page = (root / "docs" / "install.md").read_text("utf-8")
     assert set(re.findall(r"^\| `(\w+)` \|", page, re.M)) == set(extras)
 
@@ -100,14 +100,14 @@ def test_json_is_exactly_one_value_on_stdout(
     command: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     code = call(command)
-    told = capsys.readouterr()
-    value = json.loads(told.out)
+    captured = capsys.readouterr()
+    value = json.loads(captured.out)
     assert code in (0, 2)
     assert ("error" in value) == (code == 2)
     if code == 2:
         assert value["error"]["exit_code"] == 2
         assert value["error"]["problems"][0]["what"]
-        assert told.err.startswith("error: ")
+        assert captured.err.startswith("error: ")
 
 
 def test_check_gives_the_geometry_in_si(capsys: pytest.CaptureFixture[str]) -> None:
@@ -125,10 +125,10 @@ def test_check_tells_values_with_units_warnings_and_assumptions(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert call(["check", "fzg-roughness"]) == 0
-    told = capsys.readouterr()
-    assert re.search(r"center_distance +91\.5 mm +distance", told.out)
-    assert "warning [thin-tip]" in told.err
-    assert "values are assumed" in told.err
+    captured = capsys.readouterr()
+    assert re.search(r"center_distance +91\.5 mm +distance", captured.out)
+    assert "warning [thin-tip]" in captured.err
+    assert "values are assumed" in captured.err
 
 
 def test_set_changes_a_value_and_names_itself_in_faults(
@@ -139,10 +139,10 @@ def test_set_changes_a_value_and_names_itself_in_faults(
     assert wheel["roll_angle_A"] != pytest.approx(0.324239, abs=1e-3)
     faulty = ["check", "fzg-roughness", "--set", "operation.speed=900", "--set", "gears.x=1"]
     assert call(faulty) == 2
-    told = capsys.readouterr().err
-    assert "--set operation.speed: speed = 900" in told
-    assert "--set gears.x: x = 1: unknown key" in told
-    assert "2 faults found" in told
+    error = capsys.readouterr().err
+    assert "--set operation.speed: speed = 900" in error
+    assert "--set gears.x: x = 1: unknown key" in error
+    assert "2 faults found" in error
 
 
 @pytest.mark.parametrize(
@@ -181,7 +181,7 @@ def test_new_writes_a_case_that_checks(
 
 
 @pytest.mark.parametrize(
-    ("words", "says"),
+    ("arguments", "says"),
     [
         (["chekc"], 'Did you mean "check"?'),
         (["run"], "tribodyn run fzg-roughness"),
@@ -194,9 +194,9 @@ def test_new_writes_a_case_that_checks(
     ],
 )
 def test_wrong_words_name_the_right_ones(
-    words: list[str], says: str, capsys: pytest.CaptureFixture[str]
+    arguments: list[str], says: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert call(words) == 2
+    assert call(arguments) == 2
     assert says in capsys.readouterr().err
 
 
@@ -205,9 +205,9 @@ def test_a_missing_file_names_its_neighbours(
 ) -> None:
     (in_new_folder / "gears.toml").write_text("title = 'x'")
     assert call(["check", "gaers.toml"]) == 2
-    told = capsys.readouterr().err
-    assert 'Did you mean "gears.toml"?' in told
-    assert "fzg-roughness" in told
+    error = capsys.readouterr().err
+    assert 'Did you mean "gears.toml"?' in error
+    assert "fzg-roughness" in error
 
 
 def test_a_file_that_is_no_text(in_new_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -217,12 +217,12 @@ def test_a_file_that_is_no_text(in_new_folder: Path, capsys: pytest.CaptureFixtu
 
 
 def test_explain_knows_quantities_keys_and_figures(capsys: pytest.CaptureFixture[str]) -> None:
-    for word, says in (
+    for term, says in (
         ("epsilon_alpha", "transverse_contact_ratio"),
         ("gears.center_distance", "0.1 mm to 10000 mm"),
         ("contact_loss_share", "part of the mesh cycle"),
     ):
-        assert call(["explain", word]) == 0
+        assert call(["explain", term]) == 0
         assert says in capsys.readouterr().out
 
 
@@ -235,10 +235,10 @@ def test_an_unexpected_failure_shows_no_traceback(
 
     monkeypatch.setattr("tribodyn.cases.catalogue.cases", fail)
     assert call(["cases"]) == 1
-    told = capsys.readouterr().err
-    assert "Traceback" not in told
-    assert type(failure).__name__ in told
-    assert "TRIBODYN_TRACEBACK" in told
+    error = capsys.readouterr().err
+    assert "Traceback" not in error
+    assert type(failure).__name__ in error
+    assert "TRIBODYN_TRACEBACK" in error
     monkeypatch.setenv("TRIBODYN_TRACEBACK", "1")
     assert call(["cases"]) == 1
     assert "Traceback" in capsys.readouterr().err
@@ -269,8 +269,8 @@ def test_interruption_has_its_own_exit_code(
     ],
 )
 def test_another_choice_leaves_the_options_of_the_old_one_behind(settings: list[str]) -> None:
-    words = [word for setting in settings for word in ("--set", setting)]
-    assert call(["check", "fzg-roughness", *words]) == 0
+    arguments = [argument for setting in settings for argument in ("--set", setting)]
+    assert call(["check", "fzg-roughness", *arguments]) == 0
 
 
 def test_an_option_set_together_with_a_choice_is_never_dropped(
@@ -283,8 +283,8 @@ def test_an_option_set_together_with_a_choice_is_never_dropped(
 
 def test_going_back_to_another_choice_and_again_keeps_nothing_of_the_first() -> None:
     case = tribodyn.load_case("fzg-roughness")
-    there = case.replace({"friction.law": "none"})
-    back = there.replace({"friction.law": "benedict-kelly"})
+    changed = case.replace({"friction.law": "none"})
+    back = changed.replace({"friction.law": "benedict-kelly"})
     assert back.friction.variant is None
     assert "friction.variant" not in back.assumed
 

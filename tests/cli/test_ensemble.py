@@ -18,10 +18,10 @@ CASE = "time-varying-friction"
 def test_figures_lie_between_those_of_the_ends(tmp_path: Path, capsys) -> None:
     place = tmp_path / "spread"
     torque = td.load_case(CASE).operation.torque
-    words = ["--size", "6", "--set", f"operation.torque={torque} N*m +- 2 %", "--json"]
-    assert call(["ensemble", CASE, *words, "--out", str(place)]) == 0
-    told = json.loads(capsys.readouterr().out)
-    facts = told.get("figures", told)["line_load"]
+    arguments = ["--size", "6", "--set", f"operation.torque={torque} N*m +- 2 %", "--json"]
+    assert call(["ensemble", CASE, *arguments, "--out", str(place)]) == 0
+    output = json.loads(capsys.readouterr().out)
+    facts = output.get("figures", output)["line_load"]
     # The line load is in proportion to the torque, which ends at three deviations of 2 %.
     middle = td.run(CASE).summary()["line_load"]
     assert facts["middle"] == pytest.approx(middle, rel=1e-12)
@@ -32,7 +32,7 @@ def test_figures_lie_between_those_of_the_ends(tmp_path: Path, capsys) -> None:
 
 def test_a_case_without_spread_is_told_how_to_give_one(tmp_path: Path, capsys) -> None:
     assert call(["ensemble", CASE, "--out", str(tmp_path / "none")]) == 2
-    told = capsys.readouterr().err
-    assert "no value of the case is spread" in told
-    assert "operation.torque=90 N*m +- 2 %" in told
+    error = capsys.readouterr().err
+    assert "no value of the case is spread" in error
+    assert "operation.torque=90 N*m +- 2 %" in error
     assert not (tmp_path / "none").exists()

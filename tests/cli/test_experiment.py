@@ -24,12 +24,12 @@ _FEW = ("--laws", "xu-2007", "--roughness", "0.4,0.8 um")
 def test_claims_and_figures_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     place = tmp_path / "f"
     assert call(["experiment", "friction", "--out", str(place), "--json", *_FEW]) == 0
-    found: dict[str, Any] = json.loads(capsys.readouterr().out)
-    assert found["complete"]
-    assert len(found["rows"]) == 2 * 3 * 3
-    assert {row["friction"] for row in found["rows"]} == {"none", "xu-2007 0.4 um",
-                                                          "xu-2007 0.8 um"}  # fmt: skip
-    (claim,) = (c for c in found["claims"] if c["source_of"] == "time-varying-friction")
+    output: dict[str, Any] = json.loads(capsys.readouterr().out)
+    assert output["complete"]
+    assert len(output["rows"]) == 2 * 3 * 3
+    assert {row["friction"] for row in output["rows"]} == {"none", "xu-2007 0.4 um",
+                                                           "xu-2007 0.8 um"}  # fmt: skip
+    (claim,) = (c for c in output["claims"] if c["source_of"] == "time-varying-friction")
     assert claim["verdict"] == "fails"
     assert claim["computed"].endswith("it falls where pinion drives")
     assert {file.name for file in place.iterdir()} == {
@@ -48,7 +48,7 @@ def test_claims_and_figures_as_json(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("arguments", "message"),
     [
         (["experiment"], "tribodyn experiment friction"),
         (["experiment", "wear"], 'there is no experiment "wear"'),
@@ -61,13 +61,13 @@ def test_claims_and_figures_as_json(tmp_path: Path, capsys: pytest.CaptureFixtur
     ],
 )
 def test_wrong_words_are_refused_with_the_remedy(
-    words: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    arguments: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     monkeypatch.chdir(tmp_path)
-    assert call(words) == 2
+    assert call(arguments) == 2
     error = capsys.readouterr().err
-    assert told in error
+    assert message in error
     assert "Traceback" not in error
     assert not list(tmp_path.iterdir())
 
@@ -90,13 +90,13 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(tmp_path: Path) 
     assert process.returncode == 130, err
     assert "Traceback" not in err
     assert "not computed" in out
-    kept = members.read_text().count("\n") - 1
+    stored_count = members.read_text().count("\n") - 1
     first = (tmp_path / "part" / "sweep.csv").read_text().splitlines()
     rows = first[1:]
-    assert 10 <= len(rows) <= kept
+    assert 10 <= len(rows) <= stored_count
     done = subprocess.run([*command, "--force"], cwd=tmp_path, text=True, capture_output=True,
                           check=True, timeout=600)  # fmt: skip
-    assert f"{kept} finished parts" in done.stderr
+    assert f"{stored_count} finished parts" in done.stderr
     last = (tmp_path / "part" / "sweep.csv").read_text().splitlines()
     again = last[1:]
     before, later = (

@@ -28,22 +28,24 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def figures(capsys: pytest.CaptureFixture[str], case: str, *sets: str, out: str = "out") -> Any:
-    words = [word for setting in sets for word in ("--set", setting)]
-    assert call(["run", case, *_FAST, *words, "--json", "--out", out]) == 0
+    options = [argument for setting in sets for argument in ("--set", setting)]
+    assert call(["run", case, *_FAST, *options, "--json", "--out", out]) == 0
     return json.loads(capsys.readouterr().out)
 
 
 @pytest.mark.slow
 def test_run_adds_the_figures_of_the_film(capsys: pytest.CaptureFixture[str]) -> None:
-    found = figures(capsys, "fzg-film")
-    assert all(type(found[name]) is float for name in NAMED)
-    assert set(found) <= set(SUMMARY)
+    output = figures(capsys, "fzg-film")
+    assert all(type(output[name]) is float for name in NAMED)
+    assert set(output) <= set(SUMMARY)
     # microns and 1e10 N/m, the order that a solution by hand of this pair at 150 N*m has
-    assert 0.7e-6 < found["minimum_film_over_path"] < found["central_film_pitch_point"] < 1.6e-6
-    assert 5e9 < found["oil_film_stiffness_pitch_point"] < 4e10
+    assert 0.7e-6 < output["minimum_film_over_path"] < output["central_film_pitch_point"] < 1.6e-6
+    assert 5e9 < output["oil_film_stiffness_pitch_point"] < 4e10
     roughness = td.load_case("fzg-film").composite_roughness
     assert roughness == pytest.approx(0.58e-6, rel=0.01)
-    assert found["minimum_film_ratio"] == pytest.approx(found["minimum_film_over_path"] / roughness)
+    assert output["minimum_film_ratio"] == pytest.approx(
+        output["minimum_film_over_path"] / roughness
+    )
 
 
 @pytest.mark.slow
@@ -68,8 +70,8 @@ def test_the_film_of_the_roughness_study_is_looked_at_only(
 
 
 def test_a_formula_gives_what_it_has(capsys: pytest.CaptureFixture[str]) -> None:
-    found = figures(capsys, "fzg-film", "film.model=moes")
-    assert {*NAMED} - set(found) == {"minimum_film_over_path"}
+    output = figures(capsys, "fzg-film", "film.model=moes")
+    assert {*NAMED} - set(output) == {"minimum_film_over_path"}
     ideal = figures(
         capsys, "fzg-film", "film.model=pan-hamrock", "gears.pinion.roughness_rms=0 um",
         "gears.wheel.roughness_rms=0 um", out="ideal",
@@ -93,10 +95,10 @@ def test_another_model_leaves_the_options_of_the_old_one_behind() -> None:
 def test_a_foreign_option_is_refused_on_the_command_line(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    words = ["check", "fzg-film", "--set", "film.model=moes", "--set", "film.nodes=513"]
-    assert call(words) == 2
-    told = capsys.readouterr().err
-    assert "--set film.nodes: nodes = 513 does not belong to" in told
+    arguments = ["check", "fzg-film", "--set", "film.model=moes", "--set", "film.nodes=513"]
+    assert call(arguments) == 2
+    error = capsys.readouterr().err
+    assert "--set film.nodes: nodes = 513 does not belong to" in error
     assert call(["check", "fzg-film", "--set", "film.nodes=500"]) == 2
     assert "nodes = 257 or nodes = 513" in capsys.readouterr().err
 

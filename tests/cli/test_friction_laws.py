@@ -91,10 +91,10 @@ def test_citations_of_every_law(law):
 
 def test_explain_friction_compares_all_laws(capsys):
     assert call(["explain", "friction"]) == 0
-    told = capsys.readouterr().out
-    table = told[told.index("FZG type A") :]
+    output = capsys.readouterr().out
+    table = output[output.index("FZG type A") :]
     for law in LAWS:
-        assert f"\n{law}: " in f"\n{told}"
+        assert f"\n{law}: " in f"\n{output}"
         assert f"  {law} " in table
     assert 'option "coefficient" is missing' in table
     row = next(line.split() for line in table.splitlines() if line.split()[:1] == ["xu-2007"])

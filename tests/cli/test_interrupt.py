@@ -19,8 +19,8 @@ class _Interrupted:
 
 
 def _drop_an_interruption_and_wait(pipe: int) -> None:
-    thing = _Interrupted()
-    del thing
+    interrupted = _Interrupted()
+    del interrupted
     os.read(pipe, 1)
 
 
@@ -44,17 +44,17 @@ def test_a_dropped_interruption_comes_again() -> None:
 
 
 def test_other_dropped_exceptions_go_their_usual_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    seen = []
-    monkeypatch.setattr(sys, "unraisablehook", lambda dropped: seen.append(dropped.exc_type))
+    exceptions = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda dropped: exceptions.append(dropped.exc_type))
 
     class Failing:
         def __del__(self) -> None:
             raise OSError
 
     with interruptible():
-        thing = Failing()
-        del thing
-    assert seen == [OSError]
+        failing = Failing()
+        del failing
+    assert exceptions == [OSError]
 
 
 #: Interrupts a command and, so many lines later, whatever Python does then; 0 is a shower.

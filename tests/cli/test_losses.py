@@ -17,15 +17,15 @@ pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 _SOON = ("--set", "friction.law=schlenk")
 
 
-def _told(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
-    assert call([*words, "--json"]) == 0
+def _json_output(capsys: pytest.CaptureFixture[str], *arguments: str) -> Any:
+    assert call([*arguments, "--json"]) == 0
     return json.loads(capsys.readouterr().out)
 
 
 def test_losses_are_told_over_torque_and_speed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = (
+    arguments = (
         "losses",
         "fzg-roughness",
         "--torque",
@@ -38,44 +38,46 @@ def test_losses_are_told_over_torque_and_speed(
         str(tmp_path / "l"),
         *_SOON,
     )
-    found = _told(capsys, *words)
-    assert found["pinion_torque"] == [50.0, 100.0, 150.0]
-    assert found["pinion_speed"] == pytest.approx([400 * np.pi / 30, 1400 * np.pi / 30])
-    assert found["seal"][0] == pytest.approx([9.69 * 400 / 1400, 9.69], rel=1e-3)
-    parts = [np.array(found[name]) for name in ("gear", "seal", "windage")]
-    assert np.array(found["total"]) == pytest.approx(sum(parts))
-    assert np.all(np.array(found["efficiency"]) < found["gear_efficiency"])
+    output = _json_output(capsys, *arguments)
+    assert output["pinion_torque"] == [50.0, 100.0, 150.0]
+    assert output["pinion_speed"] == pytest.approx([400 * np.pi / 30, 1400 * np.pi / 30])
+    assert output["seal"][0] == pytest.approx([9.69 * 400 / 1400, 9.69], rel=1e-3)
+    parts = [np.array(output[name]) for name in ("gear", "seal", "windage")]
+    assert np.array(output["total"]) == pytest.approx(sum(parts))
+    assert np.all(np.array(output["efficiency"]) < output["gear_efficiency"])
     assert {file.name for file in (tmp_path / "l").iterdir()} == {
         "case.toml",
         "study.nc",
         "report.html",
     }
-    assert call([*words, "--force"]) == 0
-    shown = capsys.readouterr().out
-    assert "Included losses: teeth, shaft seals, windage." in shown
-    assert "400 rpm" in shown
-    assert "100 N*m" in shown
+    assert call([*arguments, "--force"]) == 0
+    text = capsys.readouterr().out
+    assert "Included losses: teeth, shaft seals, windage." in text
+    assert "400 rpm" in text
+    assert "100 N*m" in text
 
 
 def test_teeth_alone_are_told_as_such_and_a_rig_has_its_power_flow(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ("losses", "fzg-roughness", "--torque", "90 N*m", "--speed", "900 rpm", *_SOON)
-    assert call([*words, "--out", str(tmp_path / "a")]) == 0
+    arguments = ("losses", "fzg-roughness", "--torque", "90 N*m", "--speed", "900 rpm", *_SOON)
+    assert call([*arguments, "--out", str(tmp_path / "a")]) == 0
     assert "add [losses] to the case for bearings, seals and oil" in capsys.readouterr().out
     bearings = ("--set", "losses.pinion.bearing=NJ 406", "--set", "losses.wheel.bearing=NJ 406")
-    found = _told(capsys, *words, *bearings, "--rig", "QJ 308", "--out", str(tmp_path / "b"))
-    rig = found["rig"]
+    output = _json_output(
+        capsys, *arguments, *bearings, "--rig", "QJ 308", "--out", str(tmp_path / "b")
+    )
+    rig = output["rig"]
     assert rig["motor_power"] == pytest.approx(
         sum(rig["test"].values()) + sum(rig["slave"].values())
     )
-    assert rig["test"]["gear"] == rig["slave"]["gear"] == found["gear"][0][0]
+    assert rig["test"]["gear"] == rig["slave"]["gear"] == output["gear"][0][0]
     assert rig["test"]["bearing_rolling"] != rig["slave"]["bearing_rolling"]
     assert "circulate in the loop" in (tmp_path / "b" / "report.html").read_text()
 
 
 @pytest.mark.parametrize(
-    ("words", "says"),
+    ("arguments", "says"),
     [
         (["--torque", "50 N*m", "--speed", "1400"], '--speed: speed = 1400.*"400..3500 rpm:8"'),
         (["--torque", "50..20 N*m:3"], "--torque: operation.torque goes from 50"),
@@ -86,11 +88,11 @@ def test_teeth_alone_are_told_as_such_and_a_rig_has_its_power_flow(
     ],
 )
 def test_wrong_words_of_losses(
-    words: list[str], says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    arguments: list[str], says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     import re
 
-    assert call(["losses", "fzg-roughness", "--out", str(tmp_path / "no"), *words]) == 2
+    assert call(["losses", "fzg-roughness", "--out", str(tmp_path / "no"), *arguments]) == 2
     assert re.search(says, capsys.readouterr().err)
     assert not (tmp_path / "no").exists()
 
@@ -116,7 +118,7 @@ def test_friction_of_a_file_is_told_written_and_drawn(
         for d in (-0.02, 0.0, 0.02)
     ]
     place = tmp_path / "f"
-    words = (
+    arguments = (
         "friction-from-loss",
         _file(tmp_path, *rows),
         "--case",
@@ -124,39 +126,41 @@ def test_friction_of_a_file_is_told_written_and_drawn(
         "--out",
         str(place),
     )
-    found = _told(capsys, *words)
-    assert found["friction_coefficient"] == pytest.approx([0.05] * 4, rel=1e-6)
-    assert found["torque"] == pytest.approx([50.0, 300.0, 50.0, 300.0])
-    assert found["standard_uncertainty"] == pytest.approx(
-        [0.02 * np.sqrt(2.0 / 3.0) / (t * factor) for t in found["torque"]], rel=1e-9
+    output = _json_output(capsys, *arguments)
+    assert output["friction_coefficient"] == pytest.approx([0.05] * 4, rel=1e-6)
+    assert output["torque"] == pytest.approx([50.0, 300.0, 50.0, 300.0])
+    assert output["standard_uncertainty"] == pytest.approx(
+        [0.02 * np.sqrt(2.0 / 3.0) / (t * factor) for t in output["torque"]], rel=1e-9
     )
-    assert found["verdict"] == ["sound"] * 4
+    assert output["verdict"] == ["sound"] * 4
     names = {"friction.csv", "study.nc", "report.html"}
     assert {file.name for file in place.iterdir()} == names
     table = (place / "friction.csv").read_text().splitlines()
     assert table[0].startswith("speed [rpm],torque [N*m],mu,")
     assert len(table) == 5
     assert "Friction from losses" in (place / "report.html").read_text()
-    assert call([*words, "--set", "gear_sets=2", "--force"]) == 0
+    assert call([*arguments, "--set", "gear_sets=2", "--force"]) == 0
     assert "0.025" in capsys.readouterr().out
-    assert call([*words]) == 2
+    assert call([*arguments]) == 2
     assert "--force" in capsys.readouterr().err
 
 
 def test_the_printed_table_is_known_by_name(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    found = _told(capsys, "friction-from-loss", "fzg-wheel-driven", "--out", str(tmp_path / "f"))
-    assert found["friction_coefficient"] == pytest.approx([0.0271, 0.0692, 0.119, 0.1505, 0.0554])
-    assert found["degrees_of_freedom"] == [None] * 5
-    assert "Prediction of Vibration" in found["source"]
+    output = _json_output(
+        capsys, "friction-from-loss", "fzg-wheel-driven", "--out", str(tmp_path / "f")
+    )
+    assert output["friction_coefficient"] == pytest.approx([0.0271, 0.0692, 0.119, 0.1505, 0.0554])
+    assert output["degrees_of_freedom"] == [None] * 5
+    assert "Prediction of Vibration" in output["source"]
 
 
 _KNOWN = ("--set", "gear_loss_factor=0.3", "--set", "torque_loss_uncertainty=0.05 N*m")
 
 
 @pytest.mark.parametrize(
-    ("rows", "words", "says"),
+    ("rows", "arguments", "says"),
     [
         (["400, 5, 2", "400, 50, 1"], _KNOWN, r"losses.csv:4: torque_loss = 1 N\*m is below the 2"),
         (
@@ -182,7 +186,7 @@ _KNOWN = ("--set", "gear_loss_factor=0.3", "--set", "torque_loss_uncertainty=0.0
 )
 def test_wrong_measurements_are_explained_with_their_line(
     rows: list[str],
-    words: tuple[str, ...],
+    arguments: tuple[str, ...],
     says: str,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
@@ -190,7 +194,7 @@ def test_wrong_measurements_are_explained_with_their_line(
     import re
 
     out = ("--out", str(tmp_path / "no"))
-    assert call(["friction-from-loss", _file(tmp_path, *rows), *words, *out]) == 2
+    assert call(["friction-from-loss", _file(tmp_path, *rows), *arguments, *out]) == 2
     assert re.search(says, capsys.readouterr().err)
     assert not (tmp_path / "no").exists()
 
@@ -201,9 +205,9 @@ def test_negative_friction_is_kept_with_its_verdict(
     head = "speed [rpm]; torque [N*m]; torque_loss [N*m]; other_loss [N*mm]"
     file = _file(tmp_path, "400; 5; 1; 0", "400; 50; 1.2; 500", "400; 150; 4; 500", head=head)
     assert call(["friction-from-loss", file, *_KNOWN, "--out", str(tmp_path / "f")]) == 0
-    told = capsys.readouterr()
-    assert "-0.02" in told.out
-    assert "negative: what was taken off" in told.out
-    assert "friction-from-loss" in told.err
-    assert "losses.csv:4" in told.err
+    captured = capsys.readouterr()
+    assert "-0.02" in captured.out
+    assert "negative: what was taken off" in captured.out
+    assert "friction-from-loss" in captured.err
+    assert "losses.csv:4" in captured.err
     assert "negative" in (tmp_path / "f" / "friction.csv").read_text()

@@ -18,7 +18,7 @@ _KEYS = ["table", "row", "printed", "computed", "deviation", "expected", "verdic
 
 
 @pytest.fixture(scope="module")
-def shown(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Any], Path]:
+def comparison(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Any], Path]:
     import contextlib
     import io
 
@@ -28,8 +28,8 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Any], Path]:
     return json.loads(text.getvalue()), folder
 
 
-def test_rows_have_the_promised_keys_and_a_page(shown: tuple[list[Any], Path]) -> None:
-    rows, folder = shown
+def test_rows_have_the_promised_keys_and_a_page(comparison: tuple[list[Any], Path]) -> None:
+    rows, folder = comparison
     assert all(set(_KEYS) <= set(row) for row in rows)
     assert len(rows) == len(printed.printed_rows("fzg-12dof"))
     assert {row["verdict"] for row in rows} == set(printed.VERDICTS)
@@ -38,23 +38,23 @@ def test_rows_have_the_promised_keys_and_a_page(shown: tuple[list[Any], Path]) -
     assert (folder / "rows.csv").read_text("utf-8").count("fzg-12dof") == len(rows)
 
 
-def test_computed_figures_are_those_of_a_run(shown: tuple[list[Any], Path]) -> None:
+def test_computed_figures_are_those_of_a_run(comparison: tuple[list[Any], Path]) -> None:
     from tribodyn.cases import load_case, run
 
-    row = next(row for row in shown[0] if row["row"] == "fifth harmonic, constant")
+    row = next(row for row in comparison[0] if row["row"] == "fifth harmonic, constant")
     with pytest.warns(ModelWarning):
         figures = run(load_case("fzg-12dof-light")).summary()
     assert row["computed"] == 1e6 * figures["dynamic_transmission_error_harmonic_5"]
     assert row["deviation"] == pytest.approx(row["computed"] / 14.82 - 1.0)
 
 
-def test_every_verdict_of_the_rig_is_the_expected_one(shown: tuple[list[Any], Path]) -> None:
-    assert [row for row in shown[0] if row["verdict"] != row["expected"]] == []
+def test_every_verdict_of_the_rig_is_the_expected_one(comparison: tuple[list[Any], Path]) -> None:
+    assert [row for row in comparison[0] if row["verdict"] != row["expected"]] == []
 
 
-@pytest.mark.parametrize("words", [[], ["fzg-12dof", "--all"], ["fzg-12-dof"]])
-def test_what_is_no_paper_is_told(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert call(["paper", *words]) == 2
+@pytest.mark.parametrize("arguments", [[], ["fzg-12dof", "--all"], ["fzg-12-dof"]])
+def test_what_is_no_paper_is_told(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["paper", *arguments]) == 2
     assert "There are tables for fzg-12dof" in capsys.readouterr().err
 
 
@@ -63,9 +63,12 @@ def test_a_verdict_follows_the_computed_figure(monkeypatch: pytest.MonkeyPatch) 
            "expected": "value", "reason": "-", "paper": "fzg-12dof"}  # fmt: skip
 
     def verdict(value: Any, **more: Any) -> str:
-        made = printed.PrintedRow(**{**row, "row": "R", "case": "fzg-12dof", "printed": value},
-                                  **more)  # fmt: skip
-        monkeypatch.setattr("tribodyn.cases.papers.comparison.printed_rows", lambda _: (made,))
+        printed_row = printed.PrintedRow(
+            **{**row, "row": "R", "case": "fzg-12dof", "printed": value}, **more
+        )
+        monkeypatch.setattr(
+            "tribodyn.cases.papers.comparison.printed_rows", lambda _: (printed_row,)
+        )
         return str(compare_with_paper("fzg-12dof").rows[0]["verdict"])
 
     torque = {"along": {"operation.torque": ["90 N*m", "172 N*m"]}}
@@ -94,13 +97,13 @@ def test_an_interrupted_comparison_goes_on_from_there(tmp_path: Path) -> None:
             self.total = None
 
     with Checkpoints(tmp_path / "there") as members:
-        begun = compare_with_paper(
+        started = compare_with_paper(
             "fzg-12dof", partial=True, progress=Stopping(2), checkpoints=members
         )
-    assert 0 < len(begun.points) < begun.computation_count
-    assert begun.surprises == ()
-    assert 0 < len(begun.rows) < len(printed.printed_rows("fzg-12dof"))
+    assert 0 < len(started.points) < started.computation_count
+    assert started.surprises == ()
+    assert 0 < len(started.rows) < len(printed.printed_rows("fzg-12dof"))
     with Checkpoints(tmp_path / "there") as members:
-        whole = compare_with_paper("fzg-12dof", checkpoints=members)
-        assert len(members) == len(begun.points)
-    assert whole.complete
+        complete = compare_with_paper("fzg-12dof", checkpoints=members)
+        assert len(members) == len(started.points)
+    assert complete.complete

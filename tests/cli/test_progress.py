@@ -53,9 +53,9 @@ def test_the_bar_draws_them() -> None:
     with bar as progress:
         progress.start("Motions", 60)
         progress.advance(31)
-        drawn = Console(width=120, color_system=None)
-        with drawn.capture() as caught:
-            drawn.print(bar._screen.get_renderable())
+        console = Console(width=120, color_system=None)
+        with console.capture() as caught:
+            console.print(bar._screen.get_renderable())
         progress.finish()
     assert "Motions" in caught.get()
     assert "31 of 60" in caught.get()
@@ -64,13 +64,13 @@ def test_the_bar_draws_them() -> None:
 def test_a_compilation_is_announced_once_and_never_when_it_is_kept(tmp_path: Path) -> None:
     script = tmp_path / "kernel.py"
     script.write_text(_KERNEL)
-    told = [
+    outputs = [
         subprocess.run(
             [sys.executable, str(script)], capture_output=True, text=True, check=True
         ).stdout.strip()
         for _ in range(2)
     ]
-    assert told == ["['compiling the doubling, once on this machine, about no time']", "[]"]
+    assert outputs == ["['compiling the doubling, once on this machine, about no time']", "[]"]
 
 
 @pytest.mark.parametrize(("transient", "times"), [(40, 0), (40_000, 1)])
@@ -78,8 +78,8 @@ def test_a_diagram_of_many_steps_says_beforehand_how_long_it_takes(
     transient: int, times: int
 ) -> None:
     mass = System([[1.0]], [[0.5]], [[1.0]], [0.0], [])
-    with announcing_to((told := []).append):
+    with announcing_to((messages := []).append):
         bifurcation(mass, [0.1, 0.2], steps=512, transient=transient, cycles=8, keep=8, signal="q0")
-    estimates = [text for text in told if "2 motions with up to 512 steps" in text]
+    estimates = [text for text in messages if "2 motions with up to 512 steps" in text]
     assert len(estimates) == times
     assert all("min at most" in text for text in estimates)

@@ -30,10 +30,10 @@ def test_run_writes_a_result_named_after_the_case(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call(["run", "fzg-roughness", *_FAST]) == 0
-    told = capsys.readouterr()
-    assert "peak_mesh_force" in told.out
-    assert "fzg-roughness/report.html" in told.err
-    assert "warning [thin-tip]" in told.err
+    captured = capsys.readouterr()
+    assert "peak_mesh_force" in captured.out
+    assert "fzg-roughness/report.html" in captured.err
+    assert "warning [thin-tip]" in captured.err
     assert os.listdir(folder) == ["fzg-roughness"]
     assert set(os.listdir(folder / "fzg-roughness")) == set(RESULT_FILES)
 
@@ -44,22 +44,22 @@ def test_a_quiet_run_tells_warnings_and_the_report_and_opens_it(
     opened: list[str] = []
     monkeypatch.setattr("webbrowser.open", opened.append)
     assert call(["run", "fzg-roughness", *_FAST, "--quiet", "--open"]) == 0
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert "warning [thin-tip]" in told.err
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "warning [thin-tip]" in captured.err
     assert opened == [(folder / "fzg-roughness" / "report.html").as_uri()]
 
 
 def test_json_is_the_summary_that_is_saved(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["run", "fzg-roughness", *_FAST, "--json", "--out", "rough"]
-    assert call([*words, "--set", "gears.composite_roughness=0.991 um"]) == 0
-    told = capsys.readouterr()
-    figures = json.loads(told.out)
+    arguments = ["run", "fzg-roughness", *_FAST, "--json", "--out", "rough"]
+    assert call([*arguments, "--set", "gears.composite_roughness=0.991 um"]) == 0
+    captured = capsys.readouterr()
+    figures = json.loads(captured.out)
     assert figures == json.loads((folder / "rough" / "summary.json").read_text())
     assert figures["mesh_frequency"] == pytest.approx(240.0)
-    assert "warning [friction-roughness]" in told.err
+    assert "warning [friction-roughness]" in captured.err
 
 
 def test_an_existing_result_is_replaced_only_by_force(
@@ -82,9 +82,9 @@ def test_the_saved_case_runs_again_to_the_same_figures(
 ) -> None:
     assert call(["run", "fzg-roughness", *_FAST]) == 0
     assert call(["run", "fzg-roughness/case.toml", "--out", "again"]) == 0
-    one, two = (json.loads((folder / d / "summary.json").read_text())
-                for d in ("fzg-roughness", "again"))  # fmt: skip
-    assert one == two
+    first, two = (json.loads((folder / d / "summary.json").read_text())
+                  for d in ("fzg-roughness", "again"))  # fmt: skip
+    assert first == two
     capsys.readouterr()
 
 
@@ -127,8 +127,8 @@ def test_two_runs_do_not_write_one_directory(
     def compute(*_: object) -> None:
         """Start another command while this one computes."""
         others = [["run", "fzg-roughness", "--force"], ["sweep", "fzg-roughness", _SWEEP]]
-        for words in others:
-            command = [*_TRIBODYN, *words, "--out", "r"]
+        for arguments in others:
+            command = [*_TRIBODYN, *arguments, "--out", "r"]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             codes.append(done.returncode)
             assert "r: this directory is in use. Another run" in done.stderr
@@ -154,10 +154,10 @@ def test_cite_reads_a_result(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "code"), [(["cases"], 0), (["check", "no-such-case"], 2), (["frobnicate"], 2)]
+    ("arguments", "code"), [(["cases"], 0), (["check", "no-such-case"], 2), (["frobnicate"], 2)]
 )
-def test_exit_codes_of_the_process(words: list[str], code: int) -> None:
-    done = subprocess.run([*_TRIBODYN, *words], capture_output=True, text=True, check=False)
+def test_exit_codes_of_the_process(arguments: list[str], code: int) -> None:
+    done = subprocess.run([*_TRIBODYN, *arguments], capture_output=True, text=True, check=False)
     assert done.returncode == code
     assert "Traceback" not in done.stderr
     assert bool(done.stdout) == (code == 0)
@@ -177,9 +177,9 @@ def test_ctrl_c_leaves_nothing(folder: Path, moment: str) -> None:
     hook.mkdir()
     (hook / "sitecustomize.py").write_text(_SLOW_REPORT if moment == "writing" else _AT_WORK)
     march = ["--set", "solver.method=transient", "--set", "solver.cycles=20000"]
-    words = [*_TRIBODYN, "run", "fzg-roughness", *(march if moment == "computing" else _FAST)]
+    arguments = [*_TRIBODYN, "run", "fzg-roughness", *(march if moment == "computing" else _FAST)]
     process = subprocess.Popen(
-        words, cwd=folder, text=True, stderr=subprocess.PIPE, stdout=subprocess.PIPE,
+        arguments, cwd=folder, text=True, stderr=subprocess.PIPE, stdout=subprocess.PIPE,
         start_new_session=True, env={**os.environ, "PYTHONPATH": str(hook)},
     )  # fmt: skip
     _wait_until(folder, hook, moment)

@@ -26,8 +26,8 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def run_json(capsys: pytest.CaptureFixture[str], *words: Any) -> Any:
-    assert call(["signal", *map(str, words), "--json"]) == 0
+def run_json(capsys: pytest.CaptureFixture[str], *arguments: Any) -> Any:
+    assert call(["signal", *map(str, arguments), "--json"]) == 0
     return json.loads(capsys.readouterr().out)
 
 
@@ -49,9 +49,9 @@ def test_channels_are_listed_with_units_rate_and_duration(
 def test_figures_are_in_si_and_the_report_stands_alone(
     file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = (file, "--channel", "acc", "--tacho", "pulses", "--teeth", "16/24", "--out",
-             tmp_path / "r")  # fmt: skip
-    facts = run_json(capsys, *words)
+    arguments = (file, "--channel", "acc", "--tacho", "pulses", "--teeth", "16/24", "--out",
+                 tmp_path / "r")  # fmt: skip
+    facts = run_json(capsys, *arguments)
     assert facts["unit"] == "m/s^2"
     assert facts["mesh_harmonic_1_amplitude"] == pytest.approx(2.0, rel=0.01)
     assert facts["speed"] == pytest.approx(SPEED, rel=1e-4)
@@ -63,9 +63,9 @@ def test_figures_are_in_si_and_the_report_stands_alone(
     assert "acc of rig.csv" in page
     assert "Mean revolution of the mate, 24 teeth" in page
     assert 'src="http' not in page
-    assert call(["signal", *map(str, words)]) == 2
+    assert call(["signal", *map(str, arguments)]) == 2
     assert "exists" in capsys.readouterr().err
-    assert call(["signal", *map(str, words), "--force"]) == 0
+    assert call(["signal", *map(str, arguments), "--force"]) == 0
     text = capsys.readouterr()
     assert "Mesh harmonic 1" in text.out
     assert "report.html" in text.err
@@ -96,7 +96,7 @@ def test_a_part_a_band_and_a_sensitivity_are_read(
     file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     facts = run_json(capsys, file, "--channel", "pulses", "--between", "1..3 s", "--band",
-                 "3..60 Hz", "--sensitivity", "500 mV/N")  # fmt: skip
+                     "3..60 Hz", "--sensitivity", "500 mV/N")  # fmt: skip
     assert facts["duration"] == pytest.approx(2.0)
     assert facts["unit"] == "N"
     assert facts["envelope_mean"] == pytest.approx(2.0, rel=0.02)
@@ -117,7 +117,7 @@ def test_a_file_without_a_rate_takes_one(
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
+    ("arguments", "message"),
     [
         (("--channel", "ac"), '--channel: there is no channel "ac"'),
         (("--channel", "ac"), 'Did you mean "acc"'),
@@ -139,9 +139,9 @@ def test_a_file_without_a_rate_takes_one(
     ],
 )
 def test_wrong_input_names_the_option_and_the_remedy(
-    file: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, ...], message: str
+    file: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], message: str
 ) -> None:
-    assert call(["signal", str(file), *words]) == 2
+    assert call(["signal", str(file), *arguments]) == 2
     text = capsys.readouterr()
     assert message in text.err
     assert "fault of tribodyn" not in text.err

@@ -17,35 +17,35 @@ from tribodyn.errors import warn
 _NO_OUTPUT = "import sys; sys.stdout = sys.stderr = None; from tribodyn.cli import main; main({!r})"
 
 
-def _run(folder: Path, *words: str, encoding: str) -> subprocess.CompletedProcess[bytes]:
+def _run(folder: Path, *arguments: str, encoding: str) -> subprocess.CompletedProcess[bytes]:
     environment = os.environ | {"PYTHONIOENCODING": encoding}
-    call = [sys.executable, "-m", "tribodyn", *words]
+    call = [sys.executable, "-m", "tribodyn", *arguments]
     return subprocess.run(call, env=environment, capture_output=True, check=False, cwd=folder)
 
 
-@pytest.mark.parametrize(("encoding", "shown"), [("ascii", b"R?der"), ("cp1252", b"R\xe4der")])
+@pytest.mark.parametrize(("encoding", "output"), [("ascii", b"R?der"), ("cp1252", b"R\xe4der")])
 def test_letters_that_a_console_lacks_are_replaced(
-    tmp_path: Path, encoding: str, shown: bytes
+    tmp_path: Path, encoding: str, output: bytes
 ) -> None:
     done = _run(tmp_path, "new", "Räder.toml", encoding=encoding)
     assert done.returncode == 0, done.stderr
-    assert shown in done.stdout
+    assert output in done.stdout
     assert (tmp_path / "Räder.toml").is_file()
 
 
 def test_json_is_whole_on_every_console(tmp_path: Path) -> None:
-    told = [
+    outputs = [
         _run(tmp_path, "check", "Räder.toml", "--json", encoding=encoding).stdout
         for encoding in ("utf-8", "ascii")
     ]
-    plain, ascii_ = (json.loads(text) for text in told)
+    plain, ascii_ = (json.loads(text) for text in outputs)
     assert plain == ascii_
     assert "Räder.toml" in json.dumps(plain, ensure_ascii=False)
 
 
-@pytest.mark.parametrize(("words", "code"), [(["cases"], 0), (["run", "no-such-case"], 2)])
-def test_without_any_output_the_exit_code_remains(words: list[str], code: int) -> None:
-    done = subprocess.run([sys.executable, "-c", _NO_OUTPUT.format(words)], check=False)
+@pytest.mark.parametrize(("arguments", "code"), [(["cases"], 0), (["run", "no-such-case"], 2)])
+def test_without_any_output_the_exit_code_remains(arguments: list[str], code: int) -> None:
+    done = subprocess.run([sys.executable, "-c", _NO_OUTPUT.format(arguments)], check=False)
     assert done.returncode == code
 
 
@@ -67,7 +67,7 @@ def test_model_warnings_have_no_line_of_the_program(
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 @pytest.mark.parametrize(
-    ("words", "full", "code"),
+    ("arguments", "full", "code"),
     [
         (["cases"], "stdout", 1),
         (["cases", "--json"], "stdout", 1),
@@ -76,8 +76,8 @@ def test_model_warnings_have_no_line_of_the_program(
         (["check", "no-such-case", "--json"], "stderr", 2),
     ],
 )
-def test_a_full_disk_ends_in_one_message(words: list[str], full: str, code: int) -> None:
-    command = [sys.executable, "-m", "tribodyn", *words]
+def test_a_full_disk_ends_in_one_message(arguments: list[str], full: str, code: int) -> None:
+    command = [sys.executable, "-m", "tribodyn", *arguments]
     streams = dict.fromkeys(("stdout", "stderr"), subprocess.PIPE)
     with open("/dev/full", "w") as device:
         done = subprocess.run(command, text=True, check=False, **{**streams, full: device})

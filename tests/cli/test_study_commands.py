@@ -17,8 +17,8 @@ pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 _SOON = ("--set", "stiffness.model=analytic")
 
 
-def _told(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
-    assert call([*words, "--json"]) == 0
+def _json_output(capsys: pytest.CaptureFixture[str], *arguments: str) -> Any:
+    assert call([*arguments, "--json"]) == 0
     return json.loads(capsys.readouterr().out)
 
 
@@ -26,14 +26,16 @@ def test_modes_are_those_of_the_structure(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     place = tmp_path / "modes"
-    found = _told(capsys, "modes", "fzg-roughness", "1000..5000 rpm", "--out", str(place), *_SOON)
+    output = _json_output(
+        capsys, "modes", "fzg-roughness", "1000..5000 rpm", "--out", str(place), *_SOON
+    )
     case = td.load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
     modes = td.natural_modes(case)
-    frequency = [row["frequency"] for row in found["modes"]]
+    frequency = [row["frequency"] for row in output["modes"]]
     assert frequency == pytest.approx(modes.frequency[modes.rigid :])
     teeth = case.gears.pinion.teeth
-    for row in found["modes"]:
-        speeds = [2.0 * np.pi * row["frequency"] / (order * teeth) for order in found["orders"]]
+    for row in output["modes"]:
+        speeds = [2.0 * np.pi * row["frequency"] / (order * teeth) for order in output["orders"]]
         assert row["speeds"] == pytest.approx(speeds)
     assert {file.name for file in place.iterdir()} == {"case.toml", "study.nc", "report.html"}
     text = (place / "report.html").read_text()
@@ -42,10 +44,20 @@ def test_modes_are_those_of_the_structure(
 
 
 def test_harris_is_told_over_the_torque(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("harris", "fzg-roughness", "60 N*m", "120 N*m", "--out", str(tmp_path / "h"), *_SOON)
-    found = _told(capsys, *words)
-    assert found["torque"] == [60.0, 120.0]
-    assert found["peak_to_peak_transmission_error"][0] < found["peak_to_peak_transmission_error"][1]
+    arguments = (
+        "harris",
+        "fzg-roughness",
+        "60 N*m",
+        "120 N*m",
+        "--out",
+        str(tmp_path / "h"),
+        *_SOON,
+    )
+    output = _json_output(capsys, *arguments)
+    assert output["torque"] == [60.0, 120.0]
+    assert (
+        output["peak_to_peak_transmission_error"][0] < output["peak_to_peak_transmission_error"][1]
+    )
 
 
 @pytest.mark.slow
@@ -53,31 +65,41 @@ def test_the_better_case_of_a_relief_is_better(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     place = tmp_path / "relief"
-    found = _told(capsys, "relief", "fzg-roughness", "60 N*m", "120 N*m", "--gears", "wheel",
-                  "--out", str(place), *_SOON)  # fmt: skip
+    output = _json_output(
+        capsys,
+        "relief",
+        "fzg-roughness",
+        "60 N*m",
+        "120 N*m",
+        "--gears",
+        "wheel",
+        "--out",
+        str(place),
+        *_SOON,
+    )
     best = td.load_case(place / "best.toml")
-    assert best.gears.wheel.modification.tip_relief == pytest.approx(found["amount"], rel=1e-6)
+    assert best.gears.wheel.modification.tip_relief == pytest.approx(output["amount"], rel=1e-6)
     assert best.gears.pinion.modification is None
-    swing = td.harris_map(best, found["torque"], phases=512).peak_to_peak_transmission_error
-    np.testing.assert_allclose(swing, found["peak_to_peak_after"], rtol=1e-6)
-    assert max(swing) < max(found["peak_to_peak_before"])
+    swing = td.harris_map(best, output["torque"], phases=512).peak_to_peak_transmission_error
+    np.testing.assert_allclose(swing, output["peak_to_peak_after"], rtol=1e-6)
+    assert max(swing) < max(output["peak_to_peak_before"])
     assert call(["relief", "fzg-roughness", "--out", str(place), *_SOON]) == 2
     assert "--force" in capsys.readouterr().err
 
 
 @pytest.mark.slow
 def test_a_run_up_tells_its_levels(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    found = _told(capsys, "run-up", "fzg-roughness", "2900..3000 rpm", "--duration", "0.05",
-                  "--out", str(tmp_path / "up"), *_SOON)  # fmt: skip
-    assert len(found["speed"]) == len(found["rms_mesh_force"]) > 1
-    assert min(found["rms_mesh_force"]) > 0.0
+    output = _json_output(capsys, "run-up", "fzg-roughness", "2900..3000 rpm", "--duration", "0.05",
+                          "--out", str(tmp_path / "up"), *_SOON)  # fmt: skip
+    assert len(output["speed"]) == len(output["rms_mesh_force"]) > 1
+    assert min(output["rms_mesh_force"]) > 0.0
 
 
 _QUIET = (*_SOON, "--set", "friction.law=none", "--set", "film.model=none")
 
 
 @pytest.mark.parametrize(
-    ("command", "words", "key"),
+    ("command", "arguments", "key"),
     [
         ("lyapunov", ["--cycles", "10", "--transient", "20"], "largest"),
         ("basins", ["--points", "2", "--transmission-error", "-5..30 um"], "attractors"),
@@ -88,10 +110,12 @@ _QUIET = (*_SOON, "--set", "friction.law=none", "--set", "film.model=none")
     ],
 )  # fmt: skip
 def test_nonlinear_motions_and_tolerances_of_a_case(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str, words: list[str], key: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str, arguments: list[str], key: str
 ) -> None:
     place = tmp_path / command
-    answer = _told(capsys, command, "fzg-roughness", *words, "--out", str(place), *_QUIET)
+    answer = _json_output(
+        capsys, command, "fzg-roughness", *arguments, "--out", str(place), *_QUIET
+    )
     assert key in answer
     assert {file.name for file in place.iterdir()} == {"case.toml", "study.nc", "report.html"}
     if command == "lyapunov":
@@ -108,7 +132,7 @@ def test_nonlinear_motions_and_tolerances_of_a_case(
 
 
 @pytest.mark.parametrize(
-    ("words", "says"),
+    ("arguments", "says"),
     [
         (["continuation", "fzg-roughness", "operation.speed=1..2 rpm:9"], "chooses its points"),
         (["continuation", "fzg-roughness", "fast"], "KEY=LOW..HIGH"),
@@ -128,11 +152,11 @@ def test_nonlinear_motions_and_tolerances_of_a_case(
     ],
 )
 def test_wrong_words_are_told(
-    words: list[str], says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    arguments: list[str], says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     monkeypatch.chdir(tmp_path)
-    assert call(words) == 2
+    assert call(arguments) == 2
     assert says in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
@@ -144,16 +168,16 @@ def test_two_results_are_compared(tmp_path: Path, capsys: pytest.CaptureFixture[
     results = [td.run(each) for each in (case, case.replace({"operation.torque": "120 N*m"}))]
     for result, place in zip(results, places, strict=True):
         result.save(place)
-    found = _told(capsys, "compare", *places)
-    assert found["values"] == {"operation.torque": [90.0, 120.0]}
-    assert found["figures"]["line_load"][1] / found["figures"]["line_load"][0] == pytest.approx(
+    output = _json_output(capsys, "compare", *places)
+    assert output["values"] == {"operation.torque": [90.0, 120.0]}
+    assert output["figures"]["line_load"][1] / output["figures"]["line_load"][0] == pytest.approx(
         120.0 / 90.0
     )
-    assert "center_distance" not in found["figures"]
+    assert "center_distance" not in output["figures"]
     assert call(["compare", *places]) == 0
-    shown = capsys.readouterr().out
-    assert "+33.3 %" in shown
-    assert "Operating point" in shown
+    text = capsys.readouterr().out
+    assert "+33.3 %" in text
+    assert "Operating point" in text
     assert call(["compare", places[0], places[0]]) == 0
     assert "equal" in capsys.readouterr().out
 
@@ -173,24 +197,24 @@ def test_a_result_beside_a_recording(tmp_path: Path, capsys: pytest.CaptureFixtu
     volts = wave / 9.80665 * 0.1
     file = tmp_path / "rig.csv"
     np.savetxt(file, np.c_[time, volts], "%.9g", ",", header="time [s],acc [V]", comments="")
-    words = ("compare", str(tmp_path / "result"), str(file), "--channel",
-             "acc=acceleration_loa_pinion, 100 mV/g")  # fmt: skip
-    found = _told(capsys, *words, "--gain", "0.5", "--out", str(tmp_path / "report"))
-    assert found["gains"] == {"acc": 0.5}
-    for row in found["rows"]:
+    arguments = ("compare", str(tmp_path / "result"), str(file), "--channel",
+                 "acc=acceleration_loa_pinion, 100 mV/g")  # fmt: skip
+    output = _json_output(capsys, *arguments, "--gain", "0.5", "--out", str(tmp_path / "report"))
+    assert output["gains"] == {"acc": 0.5}
+    for row in output["rows"]:
         if row["measure"] != "rms":
             assert row["error"] == pytest.approx(0.0, abs=2e-3), row
     assert "Computed and measured" in (tmp_path / "report" / "report.html").read_text()
-    fitted = _told(capsys, *words, "--gain", "fit")
+    fitted = _json_output(capsys, *arguments, "--gain", "fit")
     assert fitted["fitted"]
     assert fitted["gains"]["acc"] == pytest.approx(0.5, rel=1e-3)
-    for wrong, told in (
+    for wrong, message in (
         (("--channel", "acc"), "names no pair"),
         (("--channel", "acc=force"), "It has acceleration_loa_pinion"),
         (("--gain", "much"), "--gain"),
     ):
-        assert call([*words, *wrong]) == 2
-        assert told in capsys.readouterr().err
+        assert call([*arguments, *wrong]) == 2
+        assert message in capsys.readouterr().err
 
 
 def test_a_result_beside_a_recording_off_speed(
@@ -210,11 +234,11 @@ def test_a_result_beside_a_recording_off_speed(
     file = tmp_path / "rig.csv"
     table = np.c_[time, wave, pulses]
     np.savetxt(file, table, "%.9g", ",", header="time [s],acc [g],tacho [V]", comments="")
-    words = ("compare", str(tmp_path / "result"), str(file), "--harmonics", "3",
-             "--channel", "acc=acceleration_loa_pinion")  # fmt: skip
+    arguments = ("compare", str(tmp_path / "result"), str(file), "--harmonics", "3",
+                 "--channel", "acc=acceleration_loa_pinion")  # fmt: skip
     tacho = ("--tacho", "tacho", "--pulses", "30", "--gear", "wheel")
     for options, how in (((), "phase demodulation"), (tacho, "tachometer")):
-        comparison = _told(capsys, *words, *options)
+        comparison = _json_output(capsys, *arguments, *options)
         uncertainty = comparison["speed_uncertainty"]
         assert abs(comparison["speed_ratio"] - 0.97) < 4.0 * uncertainty < 4e-4
         assert comparison["speed_range"] == pytest.approx([0.9603, 0.9797], abs=1e-3)
@@ -222,15 +246,15 @@ def test_a_result_beside_a_recording_off_speed(
         assert comparison["harmonic_shares"]["acc"] == pytest.approx(0.99, abs=0.01)
         amplitudes = [row["measured"] for row in comparison["rows"][2:]]
         assert amplitudes == pytest.approx(size, rel=0.05)
-    assert call([*words, *tacho]) == 0
+    assert call([*arguments, *tacho]) == 0
     assert "computed one: 0.9" in capsys.readouterr().out
     for wrong in (("--tacho", "tacho"), ("--pulses", "30")):
-        assert call([*words, *wrong]) == 2
+        assert call([*arguments, *wrong]) == 2
         assert "Write --tacho CHANNEL --pulses N" in capsys.readouterr().err
     np.savetxt(file, np.c_[time, np.random.default_rng(1).standard_normal(time.size)], "%.9g", ",",
                header="time [s],acc [g]", comments="")  # fmt: skip
-    nothing = _told(capsys, *words)
+    nothing = _json_output(capsys, *arguments)
     assert nothing["speed_ratio"] is None
     assert nothing["rows"][2]["measured"] is None
-    assert call([*words, "--gain", "fit"]) == 2
+    assert call([*arguments, "--gain", "fit"]) == 2
     assert "no gain can be fitted for channel acc" in capsys.readouterr().err

@@ -43,16 +43,16 @@ def test_a_study_is_computed_and_told(
 
     monkeypatch.setattr(Path, "write_bytes", interrupted)
     assert call(["study", "s.toml"]) == 130
-    told = capsys.readouterr()
-    assert "2 of 4 members are done (50 %)" in told.out
-    assert "the same command continues from there" in told.err
+    captured = capsys.readouterr()
+    assert "2 of 4 members are done (50 %)" in captured.out
+    assert "the same command continues from there" in captured.err
     monkeypatch.setattr(study_command, "_BETWEEN", 0.0)
     assert call(["study", "s.toml"]) == 0
-    told = capsys.readouterr()
-    assert "4 of 4 members are done (100 %)\n  2 of them failed:\n         2  " in told.out
-    assert "the centre distance must be at least 240" in told.out
-    assert "4 of 4 members" in told.err
-    assert "Store: s-study" in told.err
+    captured = capsys.readouterr()
+    assert "4 of 4 members are done (100 %)\n  2 of them failed:\n         2  " in captured.out
+    assert "the centre distance must be at least 240" in captured.out
+    assert "4 of 4 members" in captured.err
+    assert "Store: s-study" in captured.err
     assert call(["study", "s-study", "--status", "--json"]) == 0
     state = json.loads(capsys.readouterr().out)
     assert state["complete"]

@@ -20,26 +20,26 @@ _WORDS = ("surrogate", "train", "time-varying-friction", "force_scale=0.8 .. 1.6
 def test_a_model_is_trained_and_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "model.nc"
     assert call([*_WORDS, "--out", str(path), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["features"] == ["force_scale", "friction_scale"]
-    error = found["errors"]["rms_mesh_force"]
+    output = json.loads(capsys.readouterr().out)
+    assert output["features"] == ["force_scale", "friction_scale"]
+    error = output["errors"]["rms_mesh_force"]
     assert error["rows"] == 26
     assert error["determination"] > 0.999
     assert error["unit"] == "N"
 
-    asked = ["surrogate", "predict", str(path), "force_scale=1", "friction_scale=1"]
-    assert call([*asked, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)["rms_mesh_force"]
-    assert told["low"] < told["value"] < told["high"]
+    arguments = ["surrogate", "predict", str(path), "force_scale=1", "friction_scale=1"]
+    assert call([*arguments, "--json"]) == 0
+    predicted = json.loads(capsys.readouterr().out)["rms_mesh_force"]
+    assert predicted["low"] < predicted["value"] < predicted["high"]
     case = td.load_case("time-varying-friction").replace(
         {"stiffness.model": "rectangular", "stiffness.pair_stiffness": 2e8}
     )
     computed = td.run(case).summary()["rms_mesh_force"]
-    assert told["value"] == pytest.approx(computed, abs=4.0 * error["band"])
+    assert predicted["value"] == pytest.approx(computed, abs=4.0 * error["band"])
 
-    assert call(asked) == 0
+    assert call(arguments) == 0
     assert "rms_mesh_force" in capsys.readouterr().out
-    assert call([*asked[:3], "force_scale=1", "friction=1"]) == 2
+    assert call([*arguments[:3], "force_scale=1", "friction=1"]) == 2
     message = capsys.readouterr().err
     assert "friction is no input of this model" in message
     assert "friction_scale is missing" in message
@@ -51,14 +51,14 @@ def test_a_band_that_too_few_points_leave_open_is_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "model.nc"
-    words = [*_WORDS, "--out", str(path)]
-    words[words.index("128")] = "16"
-    assert call(words) == 0
-    told = capsys.readouterr().out
-    assert "A band of 95% takes 19 of them" in told
-    assert "open" in told
-    assert "inf" not in told
+    arguments = [*_WORDS, "--out", str(path)]
+    arguments[arguments.index("128")] = "16"
+    assert call(arguments) == 0
+    text = capsys.readouterr().out
+    assert "A band of 95% takes 19 of them" in text
+    assert "open" in text
+    assert "inf" not in text
     assert call(["surrogate", "predict", str(path), "force_scale=1", "friction_scale=1"]) == 0
-    told = capsys.readouterr().out
-    assert "open" in told
-    assert "inf" not in told
+    text = capsys.readouterr().out
+    assert "open" in text
+    assert "inf" not in text

@@ -32,7 +32,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("word", "values"),
+    ("text", "values"),
     [
         ("a.b=400..3500 rpm:60", ("400 rpm", "3500 rpm", 60)),
         ("a.b=400 rpm .. 58 Hz : 3", ("400 rpm", "58 Hz", 3)),
@@ -44,12 +44,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("a.b=none,xu-2007", ["none", "xu-2007"]),
     ],
 )
-def test_grammar(word: str, values: object) -> None:
-    assert read_ranges([word]) == {"a.b": values}
+def test_grammar(text: str, values: object) -> None:
+    assert read_ranges([text]) == {"a.b": values}
 
 
 @pytest.mark.parametrize(
-    ("word", "why"),
+    ("text", "why"),
     [
         ("operation.speed", "not KEY=VALUES"),
         ("a.b=4..5 rpm", "number of points"),
@@ -58,57 +58,57 @@ def test_grammar(word: str, values: object) -> None:
         ("a.b=1,,2", "between two commas"),
     ],
 )
-def test_what_cannot_be_read_is_told_with_the_grammar(word: str, why: str) -> None:
-    with pytest.raises(InputError, match=why) as told:
-        read_ranges([word])
-    assert "operation.speed=400..3500 rpm:60" in str(told.value)
+def test_what_cannot_be_read_is_told_with_the_grammar(text: str, why: str) -> None:
+    with pytest.raises(InputError, match=why) as caught:
+        read_ranges([text])
+    assert "operation.speed=400..3500 rpm:60" in str(caught.value)
 
 
 def test_sweep_writes_a_table_and_a_report(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["sweep", "fzg-roughness", _SPEEDS, "operation.torque=50,90 N*m", *_FAST]
-    assert call(words) == 0
-    told = capsys.readouterr()
-    lines = told.out.splitlines()
+    arguments = ["sweep", "fzg-roughness", _SPEEDS, "operation.torque=50,90 N*m", *_FAST]
+    assert call(arguments) == 0
+    captured = capsys.readouterr()
+    lines = captured.out.splitlines()
     assert "peak_mesh_force" in lines[1]
     assert [line.split()[:4] for line in lines[2:]] == [
         ["1000", "rpm", "50", "N*m"], ["1000", "rpm", "90", "N*m"],
         ["1500", "rpm", "50", "N*m"], ["1500", "rpm", "90", "N*m"],
     ]  # fmt: skip
-    assert "fzg-roughness-sweep/report.html" in told.err
+    assert "fzg-roughness-sweep/report.html" in captured.err
     place = folder / "fzg-roughness-sweep"
     assert set(os.listdir(place)) == set(SWEEP_FILES)
     page = (place / "report.html").read_text(encoding="utf-8")
     assert "Mesh force, rms" in page
-    assert call(words) == 2
+    assert call(arguments) == 2
     assert "--force" in capsys.readouterr().err
-    assert call([*words, "--force"]) == 0
+    assert call([*arguments, "--force"]) == 0
 
 
 def test_json_holds_every_row_in_si(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["sweep", "fzg-roughness", "friction.law=none,constant", *_FAST, "--json"]
-    assert call(words) == 0
-    told = capsys.readouterr()
-    found = json.loads(told.out)
-    assert found["complete"] is True
-    first, second = found["rows"]
+    arguments = ["sweep", "fzg-roughness", "friction.law=none,constant", *_FAST, "--json"]
+    assert call(arguments) == 0
+    captured = capsys.readouterr()
+    output = json.loads(captured.out)
+    assert output["complete"] is True
+    first, second = output["rows"]
     assert first["failed"] == ""
     assert first["static_mesh_force"] == pytest.approx(2660.444, rel=1e-6)
     assert second["rms_mesh_force"] is None
     assert "coefficient is missing" in second["failed"]
-    assert "1 of 2 values failed" in told.err
+    assert "1 of 2 values failed" in captured.err
 
 
 def test_a_sweep_in_which_all_fails_exits_with_one(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["sweep", "fzg-roughness", "solver.steps_per_mesh_cycle=64,65", "--set"]
-    assert call([*words, "dynamics.bearing_stiffness=1e12 N/m"]) == 1
+    arguments = ["sweep", "fzg-roughness", "solver.steps_per_mesh_cycle=64,65", "--set"]
+    assert call([*arguments, "dynamics.bearing_stiffness=1e12 N/m"]) == 1
     assert "2 of 2 values failed" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("command", ["sweep", "bifurcation"])
 @pytest.mark.parametrize(
-    ("words", "says"),
+    ("arguments", "says"),
     [
         (["operation.sped=400..3500 rpm:4"], 'Did you mean "speed"?'),
         (["operation.speed=400..3500:4"], "Write the unit behind the last number"),
@@ -126,12 +126,12 @@ def test_a_sweep_in_which_all_fails_exits_with_one(capsys: pytest.CaptureFixture
     ],
 )
 def test_bad_input(
-    command: str, words: list[str], says: str, folder: Path, capsys: pytest.CaptureFixture[str]
+    command: str, arguments: list[str], says: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert call([command, "fzg-roughness", *words]) == 2
-    told = capsys.readouterr()
-    assert says in told.err
-    assert told.out == ""
+    assert call([command, "fzg-roughness", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert says in captured.err
+    assert captured.out == ""
     assert os.listdir(folder) == []
 
 
@@ -148,9 +148,9 @@ def test_a_strange_directory_is_not_replaced(
 def test_bifurcation_tells_what_it_found(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     options = ["--sweep", "both", "--transient", "60", "--cycles", "8", *_FAST]
     assert call(["bifurcation", "fzg-roughness", _SPEEDS, *options]) == 0
-    told = capsys.readouterr()
-    assert "4 motions: 4 physical" in told.out
-    assert "down: period 1 from 1000 rpm to 1500 rpm" in told.out
+    captured = capsys.readouterr()
+    assert "4 motions: 4 physical" in captured.out
+    assert "down: period 1 from 1000 rpm to 1500 rpm" in captured.out
     place = folder / "fzg-roughness-bifurcation"
     assert set(os.listdir(place)) == set(BIFURCATION_FILES)
     with xarray.open_dataset(place / "bifurcation.nc", engine="h5netcdf") as data:
@@ -166,16 +166,16 @@ def test_bifurcation_tells_where_the_step_makes_the_motion(
     over = "stiffness.mean_stiffness=1.3e7..1.7e7 N/mm:3"
     options = ["--steps", "200", "--transient", "40", "--cycles", "8", "--json"]
     assert call(["bifurcation", "fzg-stiffness", over, *options]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["step_limited_onset"] == pytest.approx(1.7e10)
-    assert 2.7 < found["omega_max_dt_at_onset"] < 2.95
-    assert found["verdicts"]["step-limited"] == 1
-    assert found["complete"] is True
+    output = json.loads(capsys.readouterr().out)
+    assert output["step_limited_onset"] == pytest.approx(1.7e10)
+    assert 2.7 < output["omega_max_dt_at_onset"] < 2.95
+    assert output["verdicts"]["step-limited"] == 1
+    assert output["complete"] is True
 
 
 def test_a_diagram_goes_over_one_range(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["bifurcation", "fzg-roughness", _SPEEDS, "operation.torque=1..2 N*m:3"]
-    assert call(words) == 2
+    arguments = ["bifurcation", "fzg-roughness", _SPEEDS, "operation.torque=1..2 N*m:3"]
+    assert call(arguments) == 2
     assert "2 keys vary" in capsys.readouterr().err
     assert call(["bifurcation", "fzg-roughness", "operation.torque=1,2 N*m"]) == 2
     assert "a range LOW..HIGH" in capsys.readouterr().err

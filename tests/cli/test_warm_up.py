@@ -12,12 +12,12 @@ _ENGINE = "dynamics._engine.marching.march_block"
 
 
 def test_what_one_process_compiled_the_next_one_loads() -> None:
-    found = []
+    reports = []
     for _ in range(2):
         with _children([""], 1) as results:
-            found += list(results)
-    assert _ENGINE in {*found[0]["compiled"], *found[0]["loaded"]}
-    assert found[1] == {"compiled": {}, "loaded": [_ENGINE]}
+            reports += list(results)
+    assert _ENGINE in {*reports[0]["compiled"], *reports[0]["loaded"]}
+    assert reports[1] == {"compiled": {}, "loaded": [_ENGINE]}
 
 
 def test_a_case_that_fails_is_told() -> None:

@@ -34,19 +34,19 @@ def page(_: str = "") -> str:
 
 def _where(row: dict[str, Any]) -> str:
     kinds = (("table", "tables"), ("figure", "figures"), ("test", "tests"))
-    told = [f"{kind} `{name}`" for kind, key in kinds for name in row.get(key, [])]
-    return "; ".join([*told, *([row["reason"]] if "reason" in row else [])])
+    names = [f"{kind} `{name}`" for kind, key in kinds for name in row.get(key, [])]
+    return "; ".join([*names, *([row["reason"]] if "reason" in row else [])])
 
 
 @cache
 def _tests() -> frozenset[str]:
     """Every test file by its bare name, and every test in it as ``file::name``."""
-    found = set()
+    tests = set()
     for path in (ROOT / "tests").rglob("test_*.py"):
         nodes = ast.walk(ast.parse(path.read_text("utf-8")))
         names = {n.name for n in nodes if isinstance(n, ast.FunctionDef)}
-        found |= {path.name, *(f"{path.name}::{name}" for name in names)}
-    return frozenset(found)
+        tests |= {path.name, *(f"{path.name}::{name}" for name in names)}
+    return frozenset(tests)
 
 
 def missing(row: dict[str, Any]) -> Iterator[str]:

@@ -150,8 +150,8 @@ def on_page(name: str, text: str) -> str:
     >>> on_page("a", "<!-- a -->\\n| 1 |\\n\\nwords")
     '| 1 |'
     """
-    found = re.search(rf"<!-- {name} -->\n((?:\|.*\n)*)", text + "\n")
-    return found.group(1).rstrip("\n") if found else ""
+    match = re.search(rf"<!-- {name} -->\n((?:\|.*\n)*)", text + "\n")
+    return match.group(1).rstrip("\n") if match else ""
 
 
 def numbers(table: str) -> list[tuple[float, float]]:
@@ -160,9 +160,9 @@ def numbers(table: str) -> list[tuple[float, float]]:
     >>> numbers("| 1.25 | 3 |")
     [(1.25, 0.01)]
     """
-    found = re.findall(r"-?\d+\.(\d+)", table)
+    digits = re.findall(r"-?\d+\.(\d+)", table)
     values = re.findall(r"-?\d+\.\d+", table)
-    return [(float(v), 10.0 ** -len(d)) for v, d in zip(values, found, strict=True)]
+    return [(float(v), 10.0 ** -len(d)) for v, d in zip(values, digits, strict=True)]
 
 
 def written(text: str) -> str:

@@ -81,20 +81,20 @@ def masked(text: str) -> str:
 
 def record(example: Path, shoot: Callable[[Path, Path], None]) -> None:
     """Run one example and keep its text and a picture."""
-    number, held = example.name[:2], io.StringIO()
+    number, output = example.name[:2], io.StringIO()
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        with contextlib.redirect_stdout(held):
+        with contextlib.redirect_stdout(output):
             argv, sys.argv = sys.argv, [str(example)]
             names = runpy.run_path(str(example), run_name="__main__")
             sys.argv = argv
-        text = held.getvalue()
+        text = output.getvalue()
         places = {**names, "printed": text}
         page = Path("picture.html")
         if number in DRAWN:
             DRAWN[number](places).write_html(page)
         else:
-            found = re.findall(r"([\w-]+)\.html", text)
-            page = Path("figures") / f"{CHOSEN.get(number, found[0])}.html"
+            pages_written = re.findall(r"([\w-]+)\.html", text)
+            page = Path("figures") / f"{CHOSEN.get(number, pages_written[0])}.html"
         shoot(page.resolve(), GALLERY / f"{example.stem}.png")
         text = text.replace(os.path.realpath(folder), "here")
     (GALLERY / f"{example.stem}.txt").write_text(text, "utf-8")

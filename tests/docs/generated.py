@@ -36,7 +36,9 @@ def _bibliography(text: str) -> str:
         for model in models.values():
             for key in model.papers:
                 users.setdefault(key, []).append(f"`{table}` `{model.name}`")
-    lines = [f"- {told}{_used(users.get(key, []))}" for key, told in bibliography().items()]
+    lines = [
+        f"- {reference}{_used(users.get(key, []))}" for key, reference in bibliography().items()
+    ]
     return _HEAD + "\n".join(lines) + "\n"
 
 

@@ -24,8 +24,8 @@ def blocks(text: str, language: str) -> list[str]:
 def anchors(text: str) -> set[str]:
     """Anchors that the headings of a page make."""
     headings = re.findall(r"^#+ +(.*)$", text, re.MULTILINE)
-    kept = (re.sub(r"[^\w\- ]", "", heading.lower()) for heading in headings)
-    return {heading.strip().replace(" ", "-") for heading in kept}
+    cleaned = (re.sub(r"[^\w\- ]", "", heading.lower()) for heading in headings)
+    return {heading.strip().replace(" ", "-") for heading in cleaned}
 
 
 def broken_links(page: Path, text: str) -> list[str]:

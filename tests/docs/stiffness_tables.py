@@ -53,9 +53,9 @@ def single_pair(name: str, model: str, reference: str) -> float:
     force, width = torque / pair.pinion.base_radius, pair.common_face_width
     options = {"reference": reference} if "reference" in MODELS[model].options else {}
     parts = compliance_of(pair, Material(), places, force, MODELS[model], options)
-    own = np.diagonal(parts.structure, axis1=1, axis2=2)
+    self_part = np.diagonal(parts.structure, axis1=1, axis2=2)
     local = parts.local - parts.logarithm * np.log(force / width)
-    return float(np.mean((width / (own + local))[places.on_path]))
+    return float(np.mean((width / (self_part + local))[places.on_path]))
 
 
 def row(cells: Iterable[str]) -> str:
@@ -71,13 +71,13 @@ def comparison() -> list[str]:
     ]
     for name in PAIRS:
         for model, reference in MODELS_COMPARED:
-            found = mesh(name, model, reference)
-            swing = 1e6 * float(found.peak_to_peak_transmission_error)
+            computed = mesh(name, model, reference)
+            swing = 1e6 * float(computed.peak_to_peak_transmission_error)
             lines.append(
                 row([
                     name, f"`{model}`, {reference}",
                     f"{single_pair(name, model, reference) / 1e8:.3f}",
-                    f"{found.mesh_stiffness_secant.mean() / 1e8:.3f}", f"{swing:.2f}",
+                    f"{computed.mesh_stiffness_secant.mean() / 1e8:.3f}", f"{swing:.2f}",
                 ])
             )  # fmt: skip
     return lines
@@ -88,9 +88,9 @@ TABLES: dict[str, Callable[[], list[str]]] = {"comparison": comparison}
 
 def on_page(name: str, text: str) -> str:
     """The table between its two marks."""
-    found = re.search(rf"<!-- {name} -->\n(.*?)\n<!-- /{name} -->", text, re.DOTALL)
-    assert found is not None, f"docs/stiffness.md has no table {name}"
-    return found.group(1)
+    match = re.search(rf"<!-- {name} -->\n(.*?)\n<!-- /{name} -->", text, re.DOTALL)
+    assert match is not None, f"docs/stiffness.md has no table {name}"
+    return match.group(1)
 
 
 def main() -> None:

@@ -28,8 +28,8 @@ _DOCS = Path(__file__).parents[2] / "docs"
 
 @pytest.mark.parametrize("page", GENERATED)
 def test_pages_show_what_the_program_writes(page: str) -> None:
-    shown = (ROOT / page).read_text(encoding="utf-8")
-    assert shown == written(page), "run: python tests/docs/generated.py"
+    text = (ROOT / page).read_text(encoding="utf-8")
+    assert text == written(page), "run: python tests/docs/generated.py"
 
 
 def test_all_keys_are_on_the_page_as_they_are_checked() -> None:

@@ -30,8 +30,8 @@ def examples(name: str) -> list[doctest.DocTest]:
 def _is_home(example: str, name: str) -> bool:
     """Whether what is documented was written in this module, and is not only found there."""
     short = example.removeprefix(f"{name}.").partition(".")[0]
-    thing = getattr(importlib.import_module(name), short, None)
-    return getattr(getattr(thing, "__wrapped__", thing), "__module__", name) == name
+    home = getattr(importlib.import_module(name), short, None)
+    return getattr(getattr(home, "__wrapped__", home), "__module__", name) == name
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")

@@ -139,13 +139,13 @@ def tip_relief(text: str) -> None:
 
 def comprehensive_stiffness(text: str) -> None:
     for kind, softer in (("tangent", 0.012), ("secant", 0.12)):
-        films, teeth, both = (figure(text, f"{kind}  1400 rpm", k) for k in range(3))
-        assert both < teeth < films
-        assert both == pytest.approx(teeth, rel=softer)
+        films, teeth, combined = (figure(text, f"{kind}  1400 rpm", k) for k in range(3))
+        assert combined < teeth < films
+        assert combined == pytest.approx(teeth, rel=softer)
         slow, fast = (figure(text, f"{kind}  {n} rpm", 2) for n in (" 400", "3000"))
-        assert slow > both > fast
+        assert slow > combined > fast
         light, heavy = (figure(text, f"{kind}   {torque} N*m", 2) for torque in (" 50", "300"))
-        assert light < both < heavy
+        assert light < combined < heavy
     # two independent schemes give 2.51e10 N/m at the pitch point at 150 N*m and 1400 rpm
     assert figure(text, "tangent   150 N*m  films") == pytest.approx(2.51e4, rel=0.03)
     assert "comprehensive-secant-speed.html" in text

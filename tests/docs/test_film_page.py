@@ -71,7 +71,7 @@ def test_film_falls_with_torque_and_rises_with_speed() -> None:
     over_speed = [source_figure(150, rpm, False) for rpm in SPEEDS]
     for contacts, sign in ((over_torque, -1.0), (over_speed, 1.0)):
         for name in ("central_film", "minimum_film"):
-            films = [sign * getattr(one, name) for one in contacts]
+            films = [sign * getattr(contact, name) for contact in contacts]
             assert films == sorted(films)
 
 
@@ -85,7 +85,7 @@ def test_the_domain_of_the_source_makes_the_film_rise_with_torque() -> None:
 
 def test_constriction_weakens_with_torque() -> None:
     contacts = [source_figure(torque, 1400, False) for torque in TORQUES]
-    depths = [one.minimum_film / one.central_film for one in contacts]
+    depths = [contact.minimum_film / contact.central_film for contact in contacts]
     assert depths == sorted(depths)
 
 
@@ -111,9 +111,9 @@ def test_light_load_is_not_close_to_hertz() -> None:
 def test_film_stiffness_on_the_page() -> None:
     printed = {"1.95e10": (50, 1400), "2.50e10": (150, 1400), "5.12e10": (300, 1400),
                "3.45e10": (150, 800), "1.68e10": (150, 3000)}  # fmt: skip
-    for words, (torque, rpm) in printed.items():
-        assert words in TEXT
+    for label, (torque, rpm) in printed.items():
+        assert label in TEXT
         stiffness = source_figure(torque, rpm, False).film_stiffness(20e-3)
-        assert stiffness == pytest.approx(float(words), rel=0.005)
+        assert stiffness == pytest.approx(float(label), rel=0.005)
     secant = source_figure(150, 1400, False).film_stiffness(20e-3, "secant")
     assert secant == pytest.approx(2.77e9, rel=0.005)

@@ -81,10 +81,10 @@ def test_links_lead_somewhere(path: Path) -> None:
 
 
 def test_broken_links_are_noticed(tmp_path: Path) -> None:
-    here = tmp_path / "page.md"
-    assert broken_links(here, "[x](nowhere.md)")
-    assert broken_links(here, "# Title\n[x](#other)")
-    assert not broken_links(here, "# My title!\n[x](#my-title) [y](https:" + "//doi.org)")
+    page_file = tmp_path / "page.md"
+    assert broken_links(page_file, "[x](nowhere.md)")
+    assert broken_links(page_file, "# Title\n[x](#other)")
+    assert not broken_links(page_file, "# My title!\n[x](#my-title) [y](https:" + "//doi.org)")
     assert anchors("## Two `commands`, here\n") == {"two-commands-here"}
 
 
@@ -100,8 +100,8 @@ def test_glossary_is_the_table_of_quantities() -> None:
 
 
 def commands() -> list[str]:
-    shown = "\n".join(blocks(README, "text"))
-    return sorted(set(re.findall(r"^tribodyn ([a-z]+)", shown, re.MULTILINE)))
+    text = "\n".join(blocks(README, "text"))
+    return sorted(set(re.findall(r"^tribodyn ([a-z]+)", text, re.MULTILINE)))
 
 
 @pytest.mark.parametrize("command", commands())

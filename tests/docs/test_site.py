@@ -48,9 +48,9 @@ def test_names_of_the_package_that_the_pages_mention_are_there() -> None:
 
 
 def test_texts_are_compared_without_numbers_and_places() -> None:
-    here = masked("rms  3.2e-05 N\nfiles in here/report: a.html\n")
-    assert here == masked("rms 4 N\nfiles in elsewhere/report: a.html")
-    assert here != masked("rms 4 m\nfiles in elsewhere/report: a.html")
+    text = masked("rms  3.2e-05 N\nfiles in here/report: a.html\n")
+    assert text == masked("rms 4 N\nfiles in elsewhere/report: a.html")
+    assert text != masked("rms 4 m\nfiles in elsewhere/report: a.html")
 
 
 def test_llms_file_lists_recipes_pages_and_examples_that_exist() -> None:

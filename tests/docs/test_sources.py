@@ -40,21 +40,21 @@ def _texts() -> list[Path]:
     return [*source.rglob("*.py"), *pages, source / "lubricant" / "library.toml"]
 
 
-def _missing(text: str, known: list[str]) -> list[str]:
-    found = []
+def _missing(text: str, sources: list[str]) -> list[str]:
+    missing = []
     for names, year in _CITED.findall(re.sub(r"\s+", " ", text)):
         for name in re.split(r", | and ", names):
             author = _SPELT.get(name, name)
             if author in _NO_AUTHORS:
                 continue
             if not any(
-                author in entry.partition("(")[0] and f"({year})" in entry for entry in known
+                author in entry.partition("(")[0] and f"({year})" in entry for entry in sources
             ):
-                found.append(f"{names} ({year})")
+                missing.append(f"{names} ({year})")
     for body, number, _ in _STANDARD.findall(text):
-        if not any(re.search(rf"\b{body} {number}\b", entry) for entry in known):
-            found.append(f"{body} {number}")
-    return found
+        if not any(re.search(rf"\b{body} {number}\b", entry) for entry in sources):
+            missing.append(f"{body} {number}")
+    return missing
 
 
 @pytest.mark.parametrize("path", _texts(), ids=lambda path: path.name)
@@ -63,13 +63,13 @@ def test_cited_sources_are_in_the_bibliography(path: Path) -> None:
 
 
 def test_a_missing_source_is_noticed() -> None:
-    known = list(bibliography().values())
-    assert _missing("after Nobody and Else (1999) and ISO 99999", known) == [
+    sources = list(bibliography().values())
+    assert _missing("after Nobody and Else (1999) and ISO 99999", sources) == [
         "Nobody and Else (1999)",
         "Nobody and Else (1999)",
         "ISO 99999",
     ]
-    assert _missing("after Dowson (1968), ISO 21771", known) == []
+    assert _missing("after Dowson (1968), ISO 21771", sources) == []
 
 
 def test_no_source_is_hidden() -> None:

@@ -23,11 +23,11 @@ def stated(heading: str) -> dict[str, tuple[float, float]]:
     ("heading", "group"), [(g[0], g[2]) for g in GROUPS], ids=[g[0] for g in GROUPS]
 )
 def test_figures_are_within_their_tolerances_and_as_on_the_page(heading, group) -> None:
-    rows, known = rows_of(group), stated(heading)
-    assert list(known) == [row.what for row in rows]
+    rows, stated_figures = rows_of(group), stated(heading)
+    assert list(stated_figures) == [row.what for row in rows]
     for row in rows:
         assert abs(row.deviation) <= row.tolerance, line(row)
-        reference, computed = known[row.what]
+        reference, computed = stated_figures[row.what]
         assert reference == pytest.approx(row.reference, rel=1e-6)
         assert computed == pytest.approx(row.computed, rel=max(0.1 * row.tolerance, 1e-6)), row.what
 

@@ -49,14 +49,14 @@ class Row(NamedTuple):
 
 def geometry() -> Iterator[Row]:
     pair = pair_of()
-    for what, known, value, digit in (
+    for what, expected, value, digit in (
         ("tip diameter of the pinion [mm]", 88.593, 1e3 * pair.pinion.tip_diameter, 5e-4),
         ("tip diameter of the wheel [mm]", 112.228, 1e3 * pair.wheel.tip_diameter, 6e-4),
         ("operating pressure angle [rad]", 0.391631, pair.operating_pressure_angle, 5e-7),
         ("transverse contact ratio", 1.326952, pair.transverse_contact_ratio, 5e-7),
         ("gear loss factor, zone by zone", 0.303076, losses.gear_loss_factor(pair), 3e-6),
     ):
-        yield Row(what, known, value, digit / known)
+        yield Row(what, expected, value, digit / expected)
 
 
 def gearbox() -> Iterator[Row]:
@@ -64,8 +64,10 @@ def gearbox() -> Iterator[Row]:
     for stage, angle, shift in zip(
         model.stages, (22.8062, 21.7751), (0.46283, 0.30148), strict=True
     ):
-        found = math.degrees(stage.operating_pressure_angle)
-        yield Row(f"operating pressure angle, stage {stage.id} [deg]", angle, found, 5e-5 / angle)
+        angle_degrees = math.degrees(stage.operating_pressure_angle)
+        yield Row(
+            f"operating pressure angle, stage {stage.id} [deg]", angle, angle_degrees, 5e-5 / angle
+        )
         yield Row(f"sum of profile shifts, stage {stage.id}", shift, stage.shift_sum, 5e-6 / shift)
 
 
@@ -73,29 +75,29 @@ def tooth_contact() -> Iterator[Row]:
     pair = pair_of()
     path = contact.path_of_contact(pair)
     modulus = contact.effective_modulus(STEEL, STEEL)
-    for point, known in zip(("A", "B", "the middle", "E"), friction_table.TABLE, strict=True):
-        roll, share, sliding, entrainment, ratio, radius, pressure, xu, benedict = known
+    for point, expected in zip(("A", "B", "the middle", "E"), friction_table.TABLE, strict=True):
+        roll, share, sliding, entrainment, ratio, radius, pressure, xu, benedict = expected
         motion = path.kinematics(roll * pair.pinion.base_radius, 30.0 * math.pi)
         load = share * 90.0 / pair.pinion.base_radius / 20e-3
         hertz = contact.hertz_line(load, motion.equivalent_radius, modulus)
-        one = np.ones(1)
+        ones = np.ones(1)
         state = friction.TribologicalContact(
-            load * one, hertz.maximum_pressure * one, sliding * one, entrainment * one,
-            ratio * one, 1e-3 * radius * one, friction_table.VISCOSITY, 0.53e-6,
+            load * ones, hertz.maximum_pressure * ones, sliding * ones, entrainment * ones,
+            ratio * ones, 1e-3 * radius * ones, friction_table.VISCOSITY, 0.53e-6,
         )  # fmt: skip
         yield Row(f"sliding speed at {point} [m/s]", sliding, float(motion.sliding_speed), 1e-5)
-        found = 1e-9 * float(hertz.maximum_pressure)
-        yield Row(f"Hertz pressure at {point} [GPa]", pressure, found, 2e-6)
+        computed = 1e-9 * float(hertz.maximum_pressure)
+        yield Row(f"Hertz pressure at {point} [GPa]", pressure, computed, 2e-6)
         for name, value in (("xu-2007", xu), ("benedict-kelly", benedict)):
-            found = float(friction.LAWS[name](state)[0])
-            yield Row(f"friction coefficient at {point}, {name}", value, found, 3e-5)
+            computed = float(friction.LAWS[name](state)[0])
+            yield Row(f"friction coefficient at {point}, {name}", value, computed, 3e-5)
 
 
 def film() -> Iterator[Row]:
     for name, (M, L, compressible, central, minimum, _) in film_cases.MOES.items():
         solved = ehl.solve_line_contact_moes(M, L, compressible=compressible, nodes=8193)
-        found = solved.central_film_extrapolated
-        yield Row(f"central film of {name} [b^2/R]", central, found, 3e-5)
+        film_thickness = solved.central_film_extrapolated
+        yield Row(f"central film of {name} [b^2/R]", central, film_thickness, 3e-5)
         yield Row(f"least film of {name} [b^2/R]", minimum, solved.minimum_film, 4e-4)
     oil = Lubricant(0.082, 880.0, 2.19e-8)
     for torque, (load, _, _, central, minimum) in film_cases.FZG.items():
@@ -109,28 +111,28 @@ def film() -> Iterator[Row]:
 def teeth() -> Iterator[Row]:
     pair = pair_of(pinion_bore_diameter=30e-3, wheel_bore_diameter=30e-3)
     torques = np.array(gear_compliance.TORQUES)
-    for roll, known in gear_compliance.DEFLECTIONS.items():
+    for roll, expected in gear_compliance.DEFLECTIONS.items():
         path = roll * pair.pinion.base_radius
         force = torques / pair.pinion.base_radius
         by_energy = force / stiffness.single_pair_stiffness(pair, Material(), path, force)
-        for torque, value, found in zip(torques, known, 1e6 * by_energy, strict=True):
+        for torque, value, computed in zip(torques, expected, 1e6 * by_energy, strict=True):
             what = f"deflection at {roll} rad, {torque:g} N*m, energy method [um]"
-            yield Row(what, value, float(found), 0.06)
+            yield Row(what, value, float(computed), 0.06)
         phase = (path - contact.path_of_contact(pair).A) / pair.base_pitch
         solved = stiffness.loaded_contact(pair, torques, provider="fe2d", phases=np.array([phase]))
         for torque, value, error in zip(
-            torques, known, solved.transmission_error[:, 0], strict=True
+            torques, expected, solved.transmission_error[:, 0], strict=True
         ):
             what = f"deflection at {roll} rad, {torque:g} N*m, fe2d [um]"
             yield Row(what, value, 1e6 * float(error), 0.01)
 
 
 def orbits() -> Iterator[Row]:
-    for coefficient, known in gear_pair_orbits.ORBITS.items():
+    for coefficient, expected in gear_pair_orbits.ORBITS.items():
         motion = dynamics.steady_state(reference_system(coefficient), MESH_FREQUENCY, steps=4096)
         fine = motion.fine
         deflection, force = fine.deflection[:, 0], fine.contact_force[:, 0]
-        found = (
+        computed = (
             1e6 * fine.mean(deflection),
             1e6 * analysis.peak_to_peak(deflection),
             fine.mean(force),
@@ -140,16 +142,16 @@ def orbits() -> Iterator[Row]:
         )
         names = ("mean deflection [um]", "span of the deflection [um]", "mean force [N]",
                  "rms force [N]", "peak force [N]", "rms acceleration [m/s^2]")  # fmt: skip
-        for name, value, here in zip(names, known, found, strict=True):
-            yield Row(f"{name}, friction {coefficient}", value, float(here), 2e-6)
+        for name, value, computed_value in zip(names, expected, computed, strict=True):
+            yield Row(f"{name}, friction {coefficient}", value, float(computed_value), 2e-6)
     frequency = backlash_orbits.SPEED / (2.0 * math.pi)
     for start, value, name in (
         (([1.5], [0.0]), backlash_orbits.LOW, "quiet"),
         (([2.2], [0.3]), backlash_orbits.HIGH, "loud"),
     ):
         motion = dynamics.steady_state(hysteresis_system(), frequency, start=start, steps=512)
-        here = float(analysis.alternating_rms(motion.fine, motion.fine.position[:, 0]))
-        yield Row(f"rms of the {name} motion behind a backlash", value, here, 3e-6)
+        computed_value = float(analysis.alternating_rms(motion.fine, motion.fine.position[:, 0]))
+        yield Row(f"rms of the {name} motion behind a backlash", value, computed_value, 3e-6)
 
 
 #: Heading, what the reference is, and the rows.
@@ -220,9 +222,9 @@ def page() -> str:
     for heading, origin, group in GROUPS:
         rows = rows_of(group)
         worst = max(rows, key=lambda row: abs(row.deviation))
-        told = f"{100.0 * abs(worst.deviation):.2g} % | {worst.what}"
+        summary = f"{100.0 * abs(worst.deviation):.2g} % | {worst.what}"
         anchor = heading.lower().replace(" ", "-").replace(",", "")
-        head += f"| [{heading}](#{anchor}) | {len(rows)} | {told} |\n"
+        head += f"| [{heading}](#{anchor}) | {len(rows)} | {summary} |\n"
         body += f"\n## {heading}\n\nReference: {origin}.\n\n"
         body += "| figure | reference | tribodyn | deviation [%] | tolerance [%] |\n"
         body += "|---|---|---|---|---|\n"

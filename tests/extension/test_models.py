@@ -89,28 +89,28 @@ def test_the_command_line_knows_the_law(
 ) -> None:
     load("friction_law")
     case_of(FRICTION, tmp_path)
-    for words, told in (
+    for arguments, parts in (
         (["explain", "falling"], ("falls exponentially", "unpublished", "friction.law")),
         (["explain", "slope"], ("friction.slope", "0 s/m to 10 s/m")),
         (["check", str(tmp_path / "my.toml")], ("transverse_contact_ratio",)),
         (["new", str(tmp_path / "n.toml"), "--from", str(tmp_path / "my.toml")], ("n.toml",)),
     ):
-        assert call(words) == 0
-        shown = capsys.readouterr().out
-        for part in told:
-            assert part in shown
+        assert call(arguments) == 0
+        output = capsys.readouterr().out
+        for part in parts:
+            assert part in output
 
 
 def test_stiffness_model_with_options(load: Load, tmp_path: Path) -> None:
     load("stiffness_model")
-    given = 'model = "parabola"\nfall = 0.4\n'
-    case = case_of(CASE.replace(STIFFNESS, given), tmp_path)
+    keys = 'model = "parabola"\nfall = 0.4\n'
+    case = case_of(CASE.replace(STIFFNESS, keys), tmp_path)
     mesh = td.run(case).mesh
     stiffness = mesh.tooth_stiffness[mesh.in_contact]
     assert stiffness.max() == pytest.approx(4e8, rel=1e-3)
     assert stiffness.min() == pytest.approx(0.6 * 4e8, rel=1e-9)
     with pytest.raises(InputError, match=r"my.toml:\d+: stiffness.fall: fall = 2"):
-        case_of(CASE.replace(STIFFNESS, given.replace("0.4", "2.0")), tmp_path)
+        case_of(CASE.replace(STIFFNESS, keys.replace("0.4", "2.0")), tmp_path)
 
 
 def test_film_formula_with_options(load: Load, tmp_path: Path) -> None:
@@ -119,19 +119,19 @@ def test_film_formula_with_options(load: Load, tmp_path: Path) -> None:
     text += '[lubricant]\nname = "80W"\n'
     case = case_of(text, tmp_path)
     film = td.run(case).mesh
-    whole = td.run(case.replace({"film.factor": 4.9, "film.stiffness": "none"})).mesh
+    full_mesh = td.run(case.replace({"film.factor": 4.9, "film.stiffness": "none"})).mesh
     assert film.central_film is not None
-    assert whole.central_film is not None
-    here = film.in_contact & whole.in_contact
-    ratio = film.central_film[here] * film.load_per_width[here]
-    full = whole.central_film[here] * whole.load_per_width[here]
+    assert full_mesh.central_film is not None
+    touching = film.in_contact & full_mesh.in_contact
+    ratio = film.central_film[touching] * film.load_per_width[touching]
+    full = full_mesh.central_film[touching] * full_mesh.load_per_width[touching]
     np.testing.assert_allclose(full, 2.0 * ratio, rtol=1e-6)
 
 
 def test_structure_with_options(load: Load, tmp_path: Path) -> None:
     load("structure")
-    given = 'model = "held-wheel"\nholding_stiffness = "1e5 N*m/rad"'
-    case = case_of(CASE.replace(DYNAMICS, given), tmp_path)
+    keys = 'model = "held-wheel"\nholding_stiffness = "1e5 N*m/rad"'
+    case = case_of(CASE.replace(DYNAMICS, keys), tmp_path)
     result = td.run(case)
     assert np.asarray(result.system.stiffness)[1, 1] == 1e5
     assert result.summary()["mean_mesh_force"] > 0.0

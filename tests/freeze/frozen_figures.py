@@ -45,14 +45,14 @@ def case_figures() -> dict[str, dict[str, Any]]:
 
 def differences(case: str, frozen: Mapping[str, float], current: Mapping[str, float]) -> list[str]:
     """Say which frozen figures of a case are gone or differ."""
-    found = []
+    changes = []
     for name, old in frozen.items():
         if name not in current:
-            found.append(f"{case}: {name} is gone")
+            changes.append(f"{case}: {name} is gone")
         elif not _same(case, name, old, current[name]):
             change = abs(current[name] / old - 1.0) if old else abs(current[name])
-            found.append(f"{case}: {name} was {old!r}, is {current[name]!r} ({change:.1e})")
-    return found
+            changes.append(f"{case}: {name} was {old!r}, is {current[name]!r} ({change:.1e})")
+    return changes
 
 
 def _same(case: str, name: str, old: float, new: float) -> bool:

@@ -53,30 +53,30 @@ def page_names(page: str, expected: Mapping[str, Any]) -> dict[str, Any]:
     return {name: described(getattr(module, name)) for name in names if hasattr(module, name)}
 
 
-def described(thing: Any) -> dict[str, Any]:
+def described(entry: Any) -> dict[str, Any]:
     """How a public thing is used: parameters, members, keys or its value."""
-    if hasattr(thing, "draw") and not inspect.isclass(thing):
+    if hasattr(entry, "draw") and not inspect.isclass(entry):
         # a figure is called with what it draws, whatever its function calls that
-        return {"options": {"parameters": parameters(thing.draw)[1:]}}
-    if inspect.isclass(thing):
-        return {"constructor": parameters(thing), "members": members(thing)}
-    if callable(thing) and not _is_alias(thing):
-        return {"parameters": parameters(thing)}
-    if isinstance(thing, Mapping) or hasattr(thing, "names"):
-        return {"keys": sorted(thing)}
-    if isinstance(thing, int | float | str | tuple):
-        return {"value": list(thing) if isinstance(thing, tuple) else thing}
+        return {"options": {"parameters": parameters(entry.draw)[1:]}}
+    if inspect.isclass(entry):
+        return {"constructor": parameters(entry), "members": members(entry)}
+    if callable(entry) and not _is_alias(entry):
+        return {"parameters": parameters(entry)}
+    if isinstance(entry, Mapping) or hasattr(entry, "names"):
+        return {"keys": sorted(entry)}
+    if isinstance(entry, int | float | str | tuple):
+        return {"value": list(entry) if isinstance(entry, tuple) else entry}
     return {}
 
 
-def _is_alias(thing: Any) -> bool:
-    return hasattr(thing, "__origin__")
+def _is_alias(entry: Any) -> bool:
+    return hasattr(entry, "__origin__")
 
 
-def parameters(thing: Any) -> list[str]:
+def parameters(function: Any) -> list[str]:
     """Parameters in order, each as ``kind name = default``; of none where there is no signature."""
     try:
-        signature = inspect.signature(getattr(thing, "py_func", thing))
+        signature = inspect.signature(getattr(function, "py_func", function))
     except (TypeError, ValueError):
         return []
     return [_written(parameter) for parameter in signature.parameters.values()]
@@ -98,14 +98,14 @@ def _plain(value: Any) -> str:
 
 def members(owner: type) -> dict[str, list[str] | None]:
     """Public methods with their parameters, properties and fields with None."""
-    found: dict[str, list[str] | None] = {}
+    attributes: dict[str, list[str] | None] = {}
     for home in reversed(owner.__mro__):
         if home.__module__.partition(".")[0] != "tribodyn":
             continue
         for name in (*vars(home).get("__annotations__", {}), *vars(home)):
             if not name.startswith(("_", "model_config", "model_post_init")) or name in _SPECIAL:
-                found[name] = _member(owner, name)
-    return dict(sorted(found.items()))
+                attributes[name] = _member(owner, name)
+    return dict(sorted(attributes.items()))
 
 
 def _member(owner: type, name: str) -> list[str] | None:
@@ -137,16 +137,16 @@ def case_keys() -> dict[str, dict[str, Any]]:
 def commands() -> dict[str, list[str]]:
     """Commands with their arguments and options, as their help shows them."""
     names = _heads(_help(), r"[a-z]+")
-    words = {"": [], **{name: [name] for name in names}}
-    return {n: _heads(_help(*w), r"[A-Z]+|--[a-z-]+(?: [A-Z.]+)?") for n, w in words.items()}
+    arguments = {"": [], **{name: [name] for name in names}}
+    return {n: _heads(_help(*w), r"[A-Z]+|--[a-z-]+(?: [A-Z.]+)?") for n, w in arguments.items()}
 
 
-def _help(*words: str) -> str:
+def _help(*arguments: str) -> str:
     from tribodyn.cli import call
 
     text = io.StringIO()
     with contextlib.redirect_stdout(text), _wide_terminal():
-        assert call([*words, "--help"]) == 0
+        assert call([*arguments, "--help"]) == 0
     return text.getvalue()
 
 
@@ -208,10 +208,10 @@ def losses(frozen: Any, current: Any, place: str = "") -> list[str]:
     if place.endswith(("/constructor", "/parameters")) or "/members/" in place:
         return _parameter_losses(frozen, current, place)
     if isinstance(frozen, dict) and isinstance(current, dict):
-        gone = [f"{place}/{key}: gone" for key in frozen if key not in current]
-        kept = [key for key in frozen if key in current]
-        return gone + [
-            x for key in kept for x in losses(frozen[key], current[key], f"{place}/{key}")
+        lost = [f"{place}/{key}: gone" for key in frozen if key not in current]
+        common = [key for key in frozen if key in current]
+        return lost + [
+            x for key in common for x in losses(frozen[key], current[key], f"{place}/{key}")
         ]
     if place.endswith(("/keys", "/choices", "warning codes")) or "commands/" in place:
         return [f"{place}: {item!r} is gone" for item in frozen if item not in current]
@@ -224,16 +224,16 @@ def _parameter_losses(frozen: list[str] | None, current: list[str] | None, place
         # a field may become a property or the other way round, but no method
         return [] if frozen == current else [f"{place}: {frozen} became {current}"]
     takes_any = any(text.startswith("variadic keyword") for text in current)
-    gone = [
+    lost = [
         f"{place}: {text!r} is gone"
         for text in frozen
         if text not in current and not (takes_any and text.startswith("keyword-only"))
     ]
     added = [text for text in current if text not in frozen]
-    gone += [
+    lost += [
         f"{place}: {t!r} is new and required" for t in added if "=" not in t and "var" not in t
     ]
     old, new = ([text for text in texts if "positional" in text] for texts in (frozen, current))
-    if not gone and new[: len(old)] != old:
-        gone.append(f"{place}: the order changed from {frozen} to {current}")
-    return gone
+    if not lost and new[: len(old)] != old:
+        lost.append(f"{place}: the order changed from {frozen} to {current}")
+    return lost

@@ -17,8 +17,8 @@ def current() -> dict[str, dict[str, Any]]:
 @pytest.mark.parametrize("case", list(read("figures")))
 def test_figures_of_built_in_cases(case: str, current: dict[str, dict[str, Any]]) -> None:
     frozen = read("figures")[case]
-    found = differences(case, frozen["summary"], current[case]["summary"])
-    assert not found, "\n".join(found)
+    changes = differences(case, frozen["summary"], current[case]["summary"])
+    assert not changes, "\n".join(changes)
     assert set(frozen["warnings"]) <= set(current[case]["warnings"])
 
 

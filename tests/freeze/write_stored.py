@@ -53,13 +53,13 @@ def write_cases(folder: Path) -> None:
 
 def write_results(folder: Path) -> None:
     """Run the commands; what is large and read by nothing more is left out."""
-    for name, (command, words, settings) in COMMANDS.items():
-        given = {setting.partition("=")[0]: setting for setting in (*COARSE, *settings)}
-        options = [word for setting in given.values() for word in ("--set", setting)]
+    for name, (command, arguments, settings) in COMMANDS.items():
+        changed_keys = {setting.partition("=")[0]: setting for setting in (*COARSE, *settings)}
+        options = [argument for setting in changed_keys.values() for argument in ("--set", setting)]
         place = folder / name
         with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
             warnings.simplefilter("ignore", td.ModelWarning)
-            assert call([command, "fzg-roughness", *words, *options, "--out", str(place)]) == 0
+            assert call([command, "fzg-roughness", *arguments, *options, "--out", str(place)]) == 0
         for report in place.glob("*.html"):
             report.unlink()
     (folder / "transient" / "mesh.nc").unlink()

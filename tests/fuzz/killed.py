@@ -31,8 +31,8 @@ main()
 """
 
 
-def started(folder: Path, words: list[str], at: int = 0) -> subprocess.Popen[str]:
+def started(folder: Path, arguments: list[str], at: int = 0) -> subprocess.Popen[str]:
     """Begin a command; ``at`` is the call at which it is killed, if it comes that far."""
     code = [sys.executable, "-c", _AIMED, str(at)]
-    return subprocess.Popen([*code, *words], cwd=folder, text=True, stdout=subprocess.PIPE,
+    return subprocess.Popen([*code, *arguments], cwd=folder, text=True, stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE)  # fmt: skip

@@ -79,26 +79,30 @@ Call = tuple[Callable[..., Any], dict[str, Any]]
 
 def public() -> dict[str, Any]:
     """Functions, classes and figures of the pages by name, each once."""
-    things: dict[int, tuple[str, Any]] = {}
+    public_objects: dict[int, tuple[str, Any]] = {}
     for page in (page for page in PAGES if page not in NO_PAGES):
         module = importlib.import_module(page)
         for name in sorted(module.__all__):
-            thing = getattr(module, name)
-            known = f"{page.removeprefix('tribodyn.')}.{name}"
-            if callable(thing) and known not in NO_CALLS and not is_error(thing):
-                things[id(thing)] = known, thing
-    return dict(things.values())
+            public_object = getattr(module, name)
+            full_name = f"{page.removeprefix('tribodyn.')}.{name}"
+            if (
+                callable(public_object)
+                and full_name not in NO_CALLS
+                and not is_error(public_object)
+            ):
+                public_objects[id(public_object)] = full_name, public_object
+    return dict(public_objects.values())
 
 
-def is_error(thing: Any) -> bool:
+def is_error(public_object: Any) -> bool:
     """Whether a public name is an exception."""
-    return isinstance(thing, type) and issubclass(thing, Exception)
+    return isinstance(public_object, type) and issubclass(public_object, Exception)
 
 
-def parameters(thing: Any) -> list[inspect.Parameter]:
+def parameters(function: Any) -> list[inspect.Parameter]:
     """Parameters of a callable that take one value each."""
-    every = inspect.signature(thing).parameters.values()
-    return [one for one in every if not one.kind.name.startswith("VAR")]
+    every = inspect.signature(function).parameters.values()
+    return [parameter for parameter in every if not parameter.kind.name.startswith("VAR")]
 
 
 def quick(name: str) -> bool:
@@ -110,26 +114,36 @@ def quick(name: str) -> bool:
 @functools.cache
 def working_calls(every: bool = True) -> dict[str, Call]:
     """Public callables, each with named arguments of a call that works; all, or the quick ones."""
-    things = {name: thing for name, thing in public().items() if every or quick(name)}
+    public_objects = {
+        name: public_object for name, public_object in public().items() if every or quick(name)
+    }
     calls: dict[str, Call] = {}
     objects: dict[type, list[Any]] = {}
     _collect([dict(registry.all()) for registry in REGISTRIES], objects)
     with tempfile.TemporaryDirectory() as folder, _inside(folder), warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
-        for name, thing in things.items():
-            arguments, left = _examples(name, thing)
+        for name, public_object in public_objects.items():
+            arguments, left = _examples(name, public_object)
             _collect(left, objects)
             if arguments is not None:
-                calls[name] = thing, arguments
-    for name, thing in things.items():
-        arguments = _drawn(thing, objects) if isinstance(thing, Drawing) else _made(thing, objects)
+                calls[name] = public_object, arguments
+    for name, public_object in public_objects.items():
+        arguments = (
+            _figure_arguments(public_object, objects)
+            if isinstance(public_object, Drawing)
+            else _object_arguments(public_object, objects)
+        )
         if name not in calls and arguments is not None:
-            calls[name] = thing, arguments
-    kinds = {thing for thing in things.values() if isinstance(thing, type)}
-    _RESULTS[:] = [found[0] for kind, found in objects.items() if kind in kinds]
+            calls[name] = public_object, arguments
+    kinds = {
+        public_object
+        for public_object in public_objects.values()
+        if isinstance(public_object, type)
+    }
+    _RESULTS[:] = [instances[0] for kind, instances in objects.items() if kind in kinds]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
-        return calls | _others(things, objects, calls) if every else calls
+        return calls | _others(public_objects, objects, calls) if every else calls
 
 
 _RESULTS: list[Any] = []
@@ -148,10 +162,10 @@ def methods(kind: type) -> list[str]:
 
 
 def _others(
-    things: Mapping[str, Any], objects: Mapping[type, list[Any]], calls: Mapping[str, Call]
+    public_objects: Mapping[str, Any], objects: Mapping[type, list[Any]], calls: Mapping[str, Call]
 ) -> dict[str, Call]:
     """Calls whose arguments are files, or what no example leaves behind."""
-    of = {kind.__name__: found for kind, found in objects.items()}
+    of = {kind.__name__: instances for kind, instances in objects.items()}
     case, result, film = of["Case"][0], of["Result"][0], of["LineContactSolution"][0]
     functions = result.mesh.functions()
     build, pair = calls["mesh.build"]
@@ -162,29 +176,37 @@ def _others(
     (folder / "loss.csv").write_text(_LOSSES, "utf-8")
     motion = path_of_contact(of["SpurPair"][0]).kinematics(np.array([0.0]), 100.0)
     rexs = folder / "gears.rexs"
-    things["exchange.write_rexs"](case, rexs)
-    gearbox = things["exchange.read_rexs"](rexs)
+    public_objects["exchange.write_rexs"](case, rexs)
+    gearbox = public_objects["exchange.read_rexs"](rexs)
     time = np.arange(4000) / 1000.0
     wave = np.sin(300.0 * time)
     spread = {"operation.speed": "500 rpm +- 1 %"}
     study = {"case": case, "path": "study.html", "told": ["one line"], "head": ["a", "b"],
              "rows": [["1", "2"]]}  # fmt: skip
-    given: dict[str, dict[str, Any]] = {
+    arguments_by_name: dict[str, dict[str, Any]] = {
         "analysis.Peak": {"frequency": 1.0, "amplitude": 2.0, "phase": 0.5},
         "cases.load_result": {"directory": folder / "result"},
         "cli.call": {"arguments": ["cases"]},
         "contact.Kinematics": _fields(motion),
-        "exchange.GearboxModel": _taken(things["exchange.GearboxModel"], gearbox),
-        "exchange.Load": _taken(things["exchange.Load"], gearbox.loads[0]),
-        "exchange.Stage": _taken(things["exchange.Stage"], gearbox.stages[0]),
-        "exchange.StageGear": _taken(things["exchange.StageGear"], gearbox.stages[0].gear_1),
+        "exchange.GearboxModel": _constructor_arguments(
+            public_objects["exchange.GearboxModel"], gearbox
+        ),
+        "exchange.Load": _constructor_arguments(public_objects["exchange.Load"], gearbox.loads[0]),
+        "exchange.Stage": _constructor_arguments(
+            public_objects["exchange.Stage"], gearbox.stages[0]
+        ),
+        "exchange.StageGear": _constructor_arguments(
+            public_objects["exchange.StageGear"], gearbox.stages[0].gear_1
+        ),
         "exchange.case_from_rexs": {"model": gearbox, "stage": gearbox.stages[0].id},
         "exchange.read_rexs": {"path": rexs},
         "exchange.write_rexs": {"case": case, "path": "gears.rexs", "force": True},
         "ehl.asperity_integral": {"separation_ratio": [0.0, 1.0]},
         "ehl.film_load_share": {"film_ratio": [0.5, 2.0]},
-        "gear.MeshGeometry": _taken(things["gear.MeshGeometry"], of["SpurPair"][0]),
-        "gear.SpurPair": _taken(things["gear.SpurPair"], of["SpurPair"][0]),
+        "gear.MeshGeometry": _constructor_arguments(
+            public_objects["gear.MeshGeometry"], of["SpurPair"][0]
+        ),
+        "gear.SpurPair": _constructor_arguments(public_objects["gear.SpurPair"], of["SpurPair"][0]),
         "losses.read_power_loss_table": {"path": folder / "loss.csv", "gear_loss_factor": 0.19},
         "measurement.order_map": {
             "signal": wave,
@@ -192,10 +214,10 @@ def _others(
             "max_order": 4.0,
             "sample_rate": 1000.0,
         },
-        "mesh.MeshColumns": _taken(things["mesh.MeshColumns"], result.mesh),
+        "mesh.MeshColumns": _constructor_arguments(public_objects["mesh.MeshColumns"], result.mesh),
         "mesh.MeshFunctions": _fields(functions),
         "mesh.PhaseFunction": _fields(functions.stiffness),
-        "plot.bands": {"result": things["study.ensemble"](case, spread, 3, seed=1)},
+        "plot.bands": {"result": public_objects["study.ensemble"](case, spread, 3, seed=1)},
         "plot.coupling": {"result": run(case.replace({"solver.coupling": "static"}))},
         "plot.compare_line_contacts": {"solutions": [film], "labels": ["one"]},
         "plot.film_along_path": {"contacts": [film, film], "path": [0.0, 1e-3]},
@@ -211,12 +233,16 @@ def _others(
         "study.Case": tomllib.loads(text),
         "study.read_case": {"text": text, "name": "my.toml"},
     }
-    return {name: (things[name], arguments) for name, arguments in given.items() if name in things}
+    return {
+        name: (public_objects[name], arguments)
+        for name, arguments in arguments_by_name.items()
+        if name in public_objects
+    }
 
 
-def _taken(thing: Any, source: Any) -> dict[str, Any]:
+def _constructor_arguments(constructor: Any, source: Any) -> dict[str, Any]:
     """Arguments of a constructor, of the attributes of an object that has them."""
-    names = [one.name for one in parameters(thing)]
+    names = [parameter.name for parameter in parameters(constructor)]
     return {name: getattr(source, name) for name in names if hasattr(source, name)}
 
 
@@ -231,17 +257,17 @@ def _inside(folder: str) -> Iterator[None]:
         os.chdir(before)
 
 
-def _examples(name: str, thing: Any) -> tuple[dict[str, Any] | None, dict[str, Any]]:
+def _examples(name: str, public_object: Any) -> tuple[dict[str, Any] | None, dict[str, Any]]:
     """Arguments of the first call in the examples of a docstring, and the names left by them."""
-    function = getattr(thing, "__wrapped__", thing)
+    function = getattr(public_object, "__wrapped__", public_object)
     module = sys.modules.get(getattr(function, "__module__", ""))
     names = dict(vars(module)) if module else {}
     before, arguments = set(names), None
-    for example in doctest.DocTestParser().get_examples(inspect.getdoc(thing) or ""):
+    for example in doctest.DocTestParser().get_examples(inspect.getdoc(public_object) or ""):
         with contextlib.suppress(Exception):
             for call in ast.walk(ast.parse(example.source)):
                 if arguments is None and isinstance(call, ast.Call) and _calls(call, name):
-                    arguments = _bound(thing, call, names)
+                    arguments = _bound(public_object, call, names)
         with contextlib.suppress(Exception):
             exec(example.source, names)
     return arguments, {key: value for key, value in names.items() if key not in before}
@@ -251,18 +277,18 @@ def _calls(call: ast.Call, name: str) -> bool:
     return ast.unparse(call.func).rpartition(".")[2] == name.rpartition(".")[2]
 
 
-def _bound(thing: Any, call: ast.Call, names: dict[str, Any]) -> dict[str, Any] | None:
+def _bound(function: Any, call: ast.Call, names: dict[str, Any]) -> dict[str, Any] | None:
     """Arguments of a call as it is written, by name; None if the call does not work."""
     text = ast.unparse(ast.Call(ast.Name("_given"), call.args, call.keywords))
-    given = inspect.signature(thing).bind
-    bound = eval(text, names | {"_given": given})
+    bind = inspect.signature(function).bind
+    bound = eval(text, names | {"_given": bind})
     try:
-        result = thing(*bound.args, **bound.kwargs)
+        result = function(*bound.args, **bound.kwargs)
     except TribodynError:
         return None
     names["_result"] = result
-    several = [one.name for one in inspect.signature(thing).parameters.values()
-               if one.kind.name.startswith("VAR")]  # fmt: skip
+    several = [parameter.name for parameter in inspect.signature(function).parameters.values()
+               if parameter.kind.name.startswith("VAR")]  # fmt: skip
     return {key: value for key, value in bound.arguments.items() if key not in several}
 
 
@@ -285,15 +311,15 @@ def _collect(values: Any, objects: dict[type, list[Any]], depth: int = 4) -> Non
 
 def _fields(value: Any) -> dict[str, Any]:
     """What an object was made of."""
-    return _taken(type(value), value)
+    return _constructor_arguments(type(value), value)
 
 
-def _made(thing: Any, objects: Mapping[type, list[Any]]) -> dict[str, Any] | None:
+def _object_arguments(kind: Any, objects: Mapping[type, list[Any]]) -> dict[str, Any] | None:
     """Arguments of the constructor of a class of which there is an object."""
-    return _fields(objects[thing][0]) if thing in objects else None
+    return _fields(objects[kind][0]) if kind in objects else None
 
 
-def _drawn(drawing: Drawing, objects: Mapping[type, list[Any]]) -> dict[str, Any] | None:
+def _figure_arguments(drawing: Drawing, objects: Mapping[type, list[Any]]) -> dict[str, Any] | None:
     """Result that a figure draws."""
     for values in objects.values():
         for value in values:

@@ -50,12 +50,12 @@ NONSENSE = {
 }
 
 
-def fault(thing: Any, sound: dict[str, Any], wrong: dict[str, Any]) -> str:
+def fault(function: Any, sound: dict[str, Any], wrong: dict[str, Any]) -> str:
     """Say what is wrong with how a call ends; empty if it is told well or the result is finite."""
-    kinds = {each.name: each.annotation for each in parameters(thing)}
+    kinds = {each.name: each.annotation for each in parameters(function)}
     try:
         with quietly(), at_most(PATIENCE):
-            result = call(thing, sound | wrong)
+            result = call(function, sound | wrong)
     except TribodynError as error:
         lacks = [problem for problem in error.problems if not problem.remedy or not problem.why]
         return f"no cause or no remedy: {lacks[0]}" if lacks else ""
@@ -70,13 +70,17 @@ def fault(thing: Any, sound: dict[str, Any], wrong: dict[str, Any]) -> str:
         if kinds[key] in NONSENSE and NONSENSE[kinds[key]](value):
             return f"{key} is a {kinds[key]} and took {value!r:.30}"
     # A function may say that NaN stands for what is not there, as that of the lubrication regime.
-    documented = "NaN" in (thing.__doc__ or "")
+    documented = "NaN" in (function.__doc__ or "")
     return "" if documented or is_finite(result) else "a result that is not finite"
 
 
 def call(function: Any, arguments: dict[str, Any]) -> Any:
     """Call a function that may take some of its arguments by position only."""
-    first = [one.name for one in parameters(function) if one.kind is one.POSITIONAL_ONLY]
+    first = [
+        parameter.name
+        for parameter in parameters(function)
+        if parameter.kind is parameter.POSITIONAL_ONLY
+    ]
     positional = [arguments[key] for key in first if key in arguments]
     return function(*positional, **{k: v for k, v in arguments.items() if k not in first})
 
@@ -121,35 +125,35 @@ def test_arguments_of_wrong_kinds(calls, draws, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     every = [(name, each.name) for name, (f, _) in calls.items() for each in parameters(f)]
     failed = []
-    for drawn in draws(200):
-        name, first = drawn.choice(every)
-        wrong = {first: drawn.choice(WRONG)}
-        if drawn.random() < 0.2:
-            second = drawn.choice([key for owner, key in every if owner == name])
-            wrong[second] = drawn.choice(WRONG)
+    for random in draws(200):
+        name, first = random.choice(every)
+        wrong = {first: random.choice(WRONG)}
+        if random.random() < 0.2:
+            second = random.choice([key for owner, key in every if owner == name])
+            wrong[second] = random.choice(WRONG)
         with as_before():
-            told = fault(*calls[name], wrong)
-        if told:
-            given = ", ".join(f"{key}={value!r:.30}" for key, value in wrong.items())
-            failed.append(f"{name}({given}): {told}"[:300])
+            message = fault(*calls[name], wrong)
+        if message:
+            arguments = ", ".join(f"{key}={value!r:.30}" for key, value in wrong.items())
+            failed.append(f"{name}({arguments}): {message}"[:300])
     assert not failed, "\n".join(failed)
 
 
 def test_methods_of_results_with_arguments_of_wrong_kinds(calls, draws, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    every = [(one, name) for one in results() for name in methods(type(one))]
+    every = [(instance, name) for instance in results() for name in methods(type(instance))]
     failed = []
-    for drawn in draws(60):
-        one, name = drawn.choice(every)
-        method = getattr(one, name)
+    for random in draws(60):
+        instance, name = random.choice(every)
+        method = getattr(instance, name)
         wanted = [each for each in parameters(method) if each.default is each.empty]
-        rest = [each for each in parameters(method) if each not in wanted]
-        wanted += drawn.sample(rest, min(len(rest), drawn.choice((0, 1, 2))))
-        wrong = {each.name: drawn.choice(WRONG) for each in wanted}
-        told = fault(method, {}, wrong)
-        if told:
-            given = ", ".join(f"{key}={value!r:.30}" for key, value in wrong.items())
-            failed.append(f"{type(one).__name__}.{name}({given}): {told}"[:300])
+        optional = [each for each in parameters(method) if each not in wanted]
+        wanted += random.sample(optional, min(len(optional), random.choice((0, 1, 2))))
+        wrong = {each.name: random.choice(WRONG) for each in wanted}
+        message = fault(method, {}, wrong)
+        if message:
+            arguments = ", ".join(f"{key}={value!r:.30}" for key, value in wrong.items())
+            failed.append(f"{type(instance).__name__}.{name}({arguments}): {message}"[:300])
     assert not failed, "\n".join(failed)
 
 
@@ -182,9 +186,9 @@ def test_what_a_function_stumbles_over_is_told_with_its_cause():
     names: dict[str, Any] = {}
     exec('def broken(size: float):\n    return size + "x"', names)
     broken = names["broken"]
-    with pytest.raises(ComputationError, match="TypeError: unsupported operand") as told:
+    with pytest.raises(ComputationError, match="TypeError: unsupported operand") as caught:
         checked(broken)(1.0)
-    assert isinstance(told.value.__cause__, TypeError)
+    assert isinstance(caught.value.__cause__, TypeError)
     with pytest.raises(InputError, match="missing a required argument: 'size'"):
         checked(broken)()
 
@@ -210,9 +214,9 @@ def test_what_a_given_function_raises_is_told_with_its_place():
     def end(_):
         raise EndedError
 
-    with pytest.raises(InputError, match="passed raised ZeroDivisionError") as told:
+    with pytest.raises(InputError, match="passed raised ZeroDivisionError") as caught:
         checked(calls)(lambda value: value / 0.0)
-    assert "test_arguments.py:" in str(told.value)
+    assert "test_arguments.py:" in str(caught.value)
     with pytest.raises(EndedError):  # what the user raises on purpose is left
         checked(calls)(end)
     with pytest.raises(InputError, match="a function of 1 value"):
@@ -220,8 +224,8 @@ def test_what_a_given_function_raises_is_told_with_its_place():
 
 
 def test_what_is_given_by_position_and_by_name_goes_where_it_belongs():
-    def several(first: int, *rest: float, last: str = "") -> tuple[object, ...]:
-        return first, rest, last
+    def several(first: int, *others: float, last: str = "") -> tuple[object, ...]:
+        return first, others, last
 
     assert checked(several)(1.0, 2, 3.0, last="x") == (1, (2, 3.0), "x")
     with pytest.raises(InputError) as refused:

@@ -111,7 +111,7 @@ def _as_a_whole(text: str, rng: random.Random) -> str:
     elif kind == 2:
         tables.insert(rng.randrange(len(tables)), tables[place])
     elif kind == 3:
-        tables[place] = re.sub(r"\d", lambda found: chr(0x660 + int(found[0])), tables[place])
+        tables[place] = re.sub(r"\d", lambda match: chr(0x660 + int(match[0])), tables[place])
     elif kind == 4:
         odd = rng.choice(("nan", "inf", "-inf", "1e400", "1e-400", "-0.0", "0"))
         tables[place] = re.sub(r"\d+(\.\d+)?", odd, tables[place], count=rng.choice((0, 1)))
@@ -127,10 +127,10 @@ def _is_sound(error: TribodynError) -> None:
         assert problem.what
         for part in (problem.what, str(problem.where), problem.why, problem.remedy):
             assert not any(unicodedata.category(each) in ("Cc", "Cs") for each in part)
-            assert all(len(word) <= 420 for word in part.split()), part[:300]
+            assert all(len(term) <= 420 for term in part.split()), part[:300]
 
 
-def _told(work: Callable[[], Any]) -> Any:
+def _result_or_none(work: Callable[[], Any]) -> Any:
     """What some work returns, or None after a sound message; 5 s of the processor at most."""
     try:
         with quiet(), at_most(5.0):
@@ -145,11 +145,11 @@ def test_mutated_case_files(draws: Draws, tmp_path: Path) -> None:
     refused = 0
     for rng in draws(150):
         path.write_bytes(_mutated(rng))
-        case = _told(lambda: load_case(path))
+        case = _result_or_none(lambda: load_case(path))
         if case is None:
             refused += 1
             continue
-        _told(lambda case=case: (geometry(case), list(case_cautions(case))))
+        _result_or_none(lambda case=case: (geometry(case), list(case_cautions(case))))
         again = tmp_path / "again.toml"
         again.write_text(case.to_toml(), encoding="utf-8")
         assert load_case(again) == case
@@ -157,8 +157,8 @@ def test_mutated_case_files(draws: Draws, tmp_path: Path) -> None:
 
 
 def test_mutated_cases_of_python(draws: Draws) -> None:
-    whole = load_case("fzg-roughness")
-    keys = [key for key, _ in whole.values()]
+    full_case = load_case("fzg-roughness")
+    keys = [key for key, _ in full_case.values()]
     deep: Any = []
     for _ in range(2000):
         deep = [deep]
@@ -170,13 +170,13 @@ def test_mutated_cases_of_python(draws: Draws) -> None:
             rng.choice([*keys, "a", "a.b", "\0", "", ".", "x." * 2000]): rng.choice(strange)
             for _ in range(rng.choice((1, 3)))
         }
-        case = _told(lambda changes=changes: whole.replace(changes))
+        case = _result_or_none(lambda changes=changes: full_case.replace(changes))
         assert case is None or isinstance(case, Case)
-        _told(lambda changes=changes: Case(**{**whole.user_input.data, **changes}))
+        _result_or_none(lambda changes=changes: Case(**{**full_case.user_input.data, **changes}))
 
 
 @pytest.mark.parametrize(
     "name", ["", "x" * 5000, "a\0b", "\ud800", "/dev/zero", "/", ".", "no/such/case"]
 )
 def test_names_that_are_no_case(name: str) -> None:
-    assert _told(lambda: load_case(name)) is None
+    assert _result_or_none(lambda: load_case(name)) is None

@@ -59,10 +59,16 @@ def _options() -> dict[str, Option]:
     options = dict(options_of(Case, ""))
     for section, registry in _MODELS.items():
         for model in registry:
-            options |= {f"{section}.{key}": one for key, one in registry[model].options.items()}
+            options |= {
+                f"{section}.{key}": option for key, option in registry[model].options.items()
+            }
     strange = ("gears.kind", "gears.table")
-    known = {key: one for key, one in options.items() if isinstance(one, Option)}
-    return {key: one for key, one in known.items() if one.in_case and key not in strange}
+    known_options = {key: option for key, option in options.items() if isinstance(option, Option)}
+    return {
+        key: option
+        for key, option in known_options.items()
+        if option.in_case and key not in strange
+    }
 
 
 def _value(rng: random.Random, option: Option, value: Any) -> Any:
@@ -83,7 +89,7 @@ def _value(rng: random.Random, option: Option, value: Any) -> Any:
     return value
 
 
-def _drawn(rng: random.Random) -> tuple[str, dict[str, Any]]:
+def _draw_changes(rng: random.Random) -> tuple[str, dict[str, Any]]:
     """A case and what changes in it."""
     name = rng.choice(sorted(CASES))
     values, changes = dict(load_case(name).values()), dict(CASES[name])
@@ -114,7 +120,7 @@ def _refusal(work: Callable[[], object]) -> str:
 def test_check_refuses_what_run_refuses(draws: Draws) -> None:
     differ, accepted = [], 0
     for rng in draws(8):
-        name, changes = _drawn(rng)
+        name, changes = _draw_changes(rng)
         try:
             case = load_case(name).replace(changes)
         except InputError:

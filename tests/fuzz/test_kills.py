@@ -57,13 +57,13 @@ def _is_whole(place: Path, last: str) -> bool:
 @pytest.mark.slow
 @pytest.mark.parametrize("command", sorted(_COMMANDS))
 def test_kills_at_any_moment(draws: Draws, tmp_path: Path, command: str) -> None:
-    words, last = _COMMANDS[command]
+    arguments, last = _COMMANDS[command]
     place = tmp_path / "r"
-    words = [*words, "--out", "r"]
+    arguments = [*arguments, "--out", "r"]
     for number, rng in enumerate(draws(2)):
-        there = _is_whole(place, last)
-        assert there == (number > 0)
-        forced = [*words, "--force"] if there else words
+        complete = _is_whole(place, last)
+        assert complete == (number > 0)
+        forced = [*arguments, "--force"] if complete else arguments
         for _ in range(rng.choice((1, 2))):
             if rng.random() < 0.7:
                 process = started(tmp_path, forced, rng.randrange(1, 90))
@@ -73,11 +73,11 @@ def test_kills_at_any_moment(draws: Draws, tmp_path: Path, command: str) -> None
                 Timer(rng.uniform(0.5, 6.0), process.kill).start()
                 process.communicate(timeout=120)
             assert process.returncode in (0, -signal.SIGKILL)
-            assert _is_whole(place, last) or not there
-            there = _is_whole(place, last)
-            forced = [*words, "--force"] if there else words
+            assert _is_whole(place, last) or not complete
+            complete = _is_whole(place, last)
+            forced = [*arguments, "--force"] if complete else arguments
         process = started(tmp_path, forced)
-        told = process.communicate(timeout=120)
-        assert process.returncode == 0, told
+        output = process.communicate(timeout=120)
+        assert process.returncode == 0, output
         assert _is_whole(place, last)
         assert os.listdir(tmp_path) == ["r"]

@@ -21,18 +21,18 @@ MODELS = Path(__file__).parents[1] / "references" / "rexs"
 
 def swap(content: bytes, rng: random.Random) -> bytes:
     """Put one piece of the file, a number perhaps, in the place of another."""
-    words = content.replace(b">", b">\n").replace(b"<", b"\n<").split(b"\n")
+    parts = content.replace(b">", b">\n").replace(b"<", b"\n<").split(b"\n")
     for _ in range(rng.choice((1, 2, 10))):
         odd = rng.choice((b"-1", b"nan", b"1e999", b"", b"0", b"99999999999999999999", b"true"))
-        words[rng.randrange(len(words))] = rng.choice((odd, rng.choice(words)))
-    return b"".join(words)
+        parts[rng.randrange(len(parts))] = rng.choice((odd, rng.choice(parts)))
+    return b"".join(parts)
 
 
 def zipped(content: bytes) -> bytes:
-    held = io.BytesIO()
-    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("model.rexs", content)
-    return held.getvalue()
+    return buffer.getvalue()
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")

@@ -45,14 +45,14 @@ def test_damaged_results(
             damaged.write_bytes(rng.choice((flip, cut))(damaged.read_bytes(), rng))
         try:
             with quiet(), at_most(5.0):
-                found = td.load_result(place)
+                loaded = td.load_result(place)
         except TribodynError:
             refused += 1
             continue
-        assert found.summary() == result.summary()
-        assert found.case == result.case
+        assert loaded.summary() == result.summary()
+        assert loaded.case == result.case
         for name in ("position", "velocity", "contact_force"):
             np.testing.assert_array_equal(
-                getattr(found.response, name), getattr(result.response, name)
+                getattr(loaded.response, name), getattr(result.response, name)
             )
     assert refused

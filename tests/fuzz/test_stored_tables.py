@@ -94,17 +94,17 @@ def _read(loader: Callable[[Path], object], path: Path) -> object | None:
         with quiet(), at_most(5.0):
             return loader(path)
     except InputError as error:
-        told = str(error)
-    assert len(told) < 5000
-    assert str(path) in told
+        message = str(error)
+    assert len(message) < 5000
+    assert str(path) in message
     return None
 
 
-def _same(one: object, other: object) -> bool:
+def _same(first: object, other: object) -> bool:
     return all(
-        str(getattr(one, name)) == str(getattr(other, name))
-        if not isinstance(getattr(one, name), np.ndarray)
-        else getattr(one, name).tobytes() == getattr(other, name).tobytes()
+        str(getattr(first, name)) == str(getattr(other, name))
+        if not isinstance(getattr(first, name), np.ndarray)
+        else getattr(first, name).tobytes() == getattr(other, name).tobytes()
         for name in (field.name for field in fields(MeshTable))
     )
 
@@ -116,8 +116,8 @@ def test_damaged_bytes_of_a_mesh_table(
     content, path = stored.read_bytes(), tmp_path / "mesh.nc"
     for rng in draws(40):
         path.write_bytes(rng.choice((flip, flip, cut))(content, rng))
-        found = _read(MeshTable.load, path)
-        assert found is None or _same(found, table)
+        loaded = _read(MeshTable.load, path)
+        assert loaded is None or _same(loaded, table)
         _read(read_table_file, path)
 
 
@@ -129,12 +129,12 @@ def test_damaged_variables_of_a_mesh_table(
     for rng in draws(30):
         path.write_bytes(content)
         _rewrite(path, rng)
-        found = _read(MeshTable.load, path)
-        refused += found is None
-        if found is not None:
+        loaded = _read(MeshTable.load, path)
+        refused += loaded is None
+        if loaded is not None:
             for name in ("stiffness", "path", "load_share", "sliding_speed"):
-                assert np.isfinite(getattr(found, name)).all()
-                assert getattr(found, name).shape == getattr(table, name).shape
+                assert np.isfinite(getattr(loaded, name)).all()
+                assert getattr(loaded, name).shape == getattr(table, name).shape
         _read(read_table_file, path)
     assert refused
 
@@ -159,5 +159,5 @@ def test_damaged_tables_as_text(draws: Draws, table: MeshTable, tmp_path: Path) 
             if rng.random() < 0.3
             else "\n".join(damaged).encode()
         )
-        found = _read(read_table_file, path)
-        assert found is None or np.isfinite(found.columns["stiffness"]).all()
+        loaded = _read(read_table_file, path)
+        assert loaded is None or np.isfinite(loaded.columns["stiffness"]).all()

@@ -38,7 +38,7 @@ def chunks(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """Data of a study that nobody disturbed."""
     folder = tmp_path_factory.mktemp("whole")
     (folder / "s.toml").write_text(STUDY)
@@ -46,24 +46,24 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return chunks(folder / "s")
 
 
-def _finished(folder: Path, words: list[str]) -> dict[str, bytes]:
+def _finished(folder: Path, arguments: list[str]) -> dict[str, bytes]:
     """Go on to the end: nothing but the chunks and their manifest is there, which are returned."""
-    process = started(folder, words)
-    told = process.communicate(timeout=120)
-    assert process.returncode == 0, told
+    process = started(folder, arguments)
+    output = process.communicate(timeout=120)
+    assert process.returncode == 0, output
     state = study_state(folder / "r")
     assert (state.done, state.failed) == (24, 12)
     assert int(np.isfinite(open_study(folder / "r")["rms_mesh_force"]).sum()) == 12
-    found = chunks(folder / "r")
+    stored = chunks(folder / "r")
     names = {path.name for path in (folder / "r").rglob("*") if path.is_file()}
-    assert names == {"members.jsonl", *(Path(name).name for name in found)}
-    return found
+    assert names == {"members.jsonl", *(Path(name).name for name in stored)}
+    return stored
 
 
-def _disturbed(rng: random.Random, folder: Path, words: list[str]) -> None:
+def _disturbed(rng: random.Random, folder: Path, arguments: list[str]) -> None:
     """Begin or go on, and be killed at a call of the system or after a while."""
     aimed = rng.random() < 0.7
-    process = started(folder, words, rng.randrange(1, 240) if aimed else 0)
+    process = started(folder, arguments, rng.randrange(1, 240) if aimed else 0)
     if not aimed:
         Timer(rng.uniform(0.5, 4.0), process.kill).start()
     process.communicate(timeout=120)
@@ -72,21 +72,21 @@ def _disturbed(rng: random.Random, folder: Path, words: list[str]) -> None:
 
 @pytest.mark.slow
 def test_a_study_killed_at_any_moment(
-    draws: Draws, tmp_path: Path, whole: dict[str, bytes]
+    draws: Draws, tmp_path: Path, undisturbed: dict[str, bytes]
 ) -> None:
-    words = ["study", "s.toml", "--out", "r"]
+    arguments = ["study", "s.toml", "--out", "r"]
     for number, rng in enumerate(draws(1)):
         folder = tmp_path / str(number)
         folder.mkdir()
         (folder / "s.toml").write_text(STUDY)
         for _ in range(rng.choice((1, 2))):
-            _disturbed(rng, folder, words)
-        assert _finished(folder, words) == whole
+            _disturbed(rng, folder, arguments)
+        assert _finished(folder, arguments) == undisturbed
 
 
 @pytest.mark.slow
 def test_workers_of_a_cluster_killed_at_any_moment(
-    draws: Draws, tmp_path: Path, whole: dict[str, bytes]
+    draws: Draws, tmp_path: Path, undisturbed: dict[str, bytes]
 ) -> None:
     distributed = pytest.importorskip("distributed")
     for number, rng in enumerate(draws(1)):
@@ -100,14 +100,14 @@ def test_workers_of_a_cluster_killed_at_any_moment(
             ) as cluster,
             distributed.Client(cluster) as client,
         ):
-            words = ["study", "s.toml", "--out", "r", "--scheduler", cluster.scheduler_address]
+            arguments = ["study", "s.toml", "--out", "r", "--scheduler", cluster.scheduler_address]
             if rng.random() < 0.5:
-                _disturbed(rng, folder, words)
+                _disturbed(rng, folder, arguments)
             workers = client.run(os.getpid)
             victim = rng.choice(list(workers.values()))
             timer = Timer(rng.uniform(0.0, 4.0), os.kill, (victim, signal.SIGKILL))
             timer.start()
             try:
-                assert _finished(folder, words) == whole
+                assert _finished(folder, arguments) == undisturbed
             finally:
                 timer.join()

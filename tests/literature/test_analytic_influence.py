@@ -91,10 +91,10 @@ class Mesh:
         places = np.stack([path, path + self.pair.base_pitch])
         mates = self.pair.line_of_action_length - places
         cross = self.pinion.between(*places, 1) + self.wheel.between(*mates, -1)
-        own = self.pinion.at(places) + self.wheel.at(mates)
+        self_part = self.pinion.at(places) + self.wheel.at(mates)
         shares = np.full(places.shape, 0.5 * load)
         for _ in range(60):
-            first, second = own + self.local(places, shares)
+            first, second = self_part + self.local(places, shares)
             part = (second - cross) / (first + second - 2.0 * cross)
             shares = load * np.stack([part, 1.0 - part])
         return WIDTH * load / (first * shares[0] + cross * shares[1])
@@ -109,7 +109,7 @@ def mesh() -> Mesh:
 @pytest.mark.regression
 def test_compliances_at_the_pitch_point(mesh, record_property):
     pair, point = mesh.pair, float(mesh.contact.C)
-    found = np.array(
+    computed = np.array(
         [
             mesh.pinion.at(point),
             mesh.pinion.between(point, point + pair.base_pitch, 1),
@@ -117,8 +117,8 @@ def test_compliances_at_the_pitch_point(mesh, record_property):
         ]
     )
     expected = np.array([1.4159e-11, 8.320e-12, 8.000e-11])
-    record_property("deviation_percent", (100.0 * (found / expected - 1.0)).tolist())
-    assert found == pytest.approx(expected, rel=0.045)
+    record_property("deviation_percent", (100.0 * (computed / expected - 1.0)).tolist())
+    assert computed == pytest.approx(expected, rel=0.045)
 
 
 @pytest.mark.regression
@@ -126,8 +126,8 @@ def test_a_single_pair_within_six_percent_and_less_on_the_mean(mesh):
     path = np.linspace(mesh.contact.A, mesh.contact.E, 401)
     along = mesh.single(path, 100e3)
     at_pitch_point = mesh.single(np.array([mesh.contact.C]), 100e3)[0]
-    found = np.array([along[0], at_pitch_point, along.max(), along[-1]])
-    deviation = found / np.array(list(SINGLE.values())) - 1.0
+    stiffnesses = np.array([along[0], at_pitch_point, along.max(), along[-1]])
+    deviation = stiffnesses / np.array(list(SINGLE.values())) - 1.0
     assert np.all(np.abs(deviation) < 0.055)
     assert -0.02 < np.median(deviation) < 0.02
 
@@ -138,10 +138,10 @@ def test_a_single_pair_within_six_percent_and_less_on_the_mean(mesh):
     [(90.0, 2.327e8, 2.419e8, 11.78, 5.19), (300.0, 2.435e8, 2.555e8, 37.45, 16.20)],
 )
 def test_loaded_contact_within_three_percent(mesh, torque, secant, tangent, deflection, swing):
-    found = loaded_contact(mesh.pair, torque, provider="analytic")
-    assert found.mesh_stiffness_secant.mean() == pytest.approx(secant, rel=0.02)
-    assert found.mesh_stiffness_tangent.mean() == pytest.approx(tangent, rel=0.02)
-    error = found.transmission_error * 1e6
+    contact = loaded_contact(mesh.pair, torque, provider="analytic")
+    assert contact.mesh_stiffness_secant.mean() == pytest.approx(secant, rel=0.02)
+    assert contact.mesh_stiffness_tangent.mean() == pytest.approx(tangent, rel=0.02)
+    error = contact.transmission_error * 1e6
     assert error.mean() == pytest.approx(deflection, rel=0.02)
     assert np.ptp(error) == pytest.approx(swing, rel=0.06)
 
@@ -150,24 +150,26 @@ def test_loaded_contact_within_three_percent(mesh, torque, secant, tangent, defl
 def test_sum_of_single_pairs_over_the_coupled_stiffness(mesh):
     middle = np.array([0.5 * (mesh.contact.A + mesh.contact.B)])
     load = 90.0 / mesh.pair.pinion.base_radius / WIDTH
-    both = mesh.double(middle, load)
+    compliance = mesh.double(middle, load)
     alone = mesh.single(middle, 0.5 * load) + mesh.single(middle + mesh.pair.base_pitch, 0.5 * load)
-    assert float(alone[0] / both[0]) == pytest.approx(1.210, abs=0.02)
+    assert float(alone[0] / compliance[0]) == pytest.approx(1.210, abs=0.02)
 
 
 @pytest.mark.parametrize("name", TRIANGLES, ids=str)
 def test_other_gears_against_triangles(name, record_property):
-    radii, own, cross = (np.array(values) for values in TRIANGLES[name])
+    radii, self_expected, cross = (np.array(values) for values in TRIANGLES[name])
     rho = radii * 1e-3
     influence = analytic_influence(named_gear(name), Material())
-    found = influence.at(rho) * 1e11
-    record_property("self_percent", (100.0 * (found / own - 1.0)).tolist())
+    compliance = influence.at(rho) * 1e11
+    record_property("self_percent", (100.0 * (compliance / self_expected - 1.0)).tolist())
     # Low on the flank the stub of a tooth is no beam.
-    assert found == pytest.approx(own, rel=0.09)
-    assert found[1:] == pytest.approx(own[1:], rel=0.04)
-    seen = influence.between(rho, rho[::-1], 1) * 1e12
-    record_property("cross_percent_of_self", (10.0 * (seen - cross) / own.mean()).tolist())
-    assert seen == pytest.approx(cross, abs=0.022 * 10.0 * own.mean())
+    assert compliance == pytest.approx(self_expected, rel=0.09)
+    assert compliance[1:] == pytest.approx(self_expected[1:], rel=0.04)
+    cross_compliance = influence.between(rho, rho[::-1], 1) * 1e12
+    record_property(
+        "cross_percent_of_self", (10.0 * (cross_compliance - cross) / self_expected.mean()).tolist()
+    )
+    assert cross_compliance == pytest.approx(cross, abs=0.022 * 10.0 * self_expected.mean())
 
 
 @pytest.mark.regression
@@ -178,10 +180,10 @@ def test_a_half_plane_is_far_too_stiff():
     )
     for pair in (pair_of(), changed):
         gears = pair.pinion, pair.wheel
-        found = [
+        meshes = [
             Mesh(pair, *(make(gear, Material()) for gear in gears))
             for make in (weber_influence, analytic_influence)
         ]
-        path = np.linspace(found[0].contact.A, found[0].contact.E, 101)
-        stiff, close = (mesh.single(path, 100e3) for mesh in found)
+        path = np.linspace(meshes[0].contact.A, meshes[0].contact.E, 101)
+        stiff, close = (mesh.single(path, 100e3) for mesh in meshes)
         assert 0.25 < np.mean(stiff / close - 1.0) < 1.03

@@ -63,13 +63,13 @@ def test_moes_is_sixteen_percent_high_unless_divided_by_the_density_ratio(torque
 
 def test_moes_is_made_for_an_incompressible_oil():
     load, entrainment = operation(150, 1400)
-    found = solve_line_contact(
+    solution = solve_line_contact(
         load, RADIUS, entrainment, OIL, MODULUS, nodes=4097, compressible=False
     )
     alpha = OIL.pressure_viscosity_coefficient
     film = moes_central(load, RADIUS, entrainment, OIL.dynamic_viscosity, alpha, MODULUS)
-    assert film == pytest.approx(found.central_film, rel=0.05)
-    assert solved(150, 1400).central_film < found.central_film
+    assert film == pytest.approx(solution.central_film, rel=0.05)
+    assert solved(150, 1400).central_film < solution.central_film
 
 
 @pytest.mark.parametrize(("torque", "speed"), POINTS)
@@ -89,6 +89,6 @@ def test_exponent_of_the_speed_is_that_of_the_formulas():
     speeds = np.array([400.0, 800.0, 1400.0, 3000.0])
     films = [solved(150, int(speed)) for speed in speeds]
     for name in ("central_film", "minimum_film"):
-        values = [getattr(found, name) for found in films]
+        values = [getattr(film, name) for film in films]
         exponent = np.polyfit(np.log(speeds), np.log(values), 1)[0]
         assert exponent == pytest.approx(0.69, abs=0.03)

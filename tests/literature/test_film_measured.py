@@ -42,9 +42,12 @@ def test_power_of_the_speed():
     contact_radius = (1.5 * LOAD * RADIUS / MODULUS) ** (1 / 3)
     hertz = 1.5 * LOAD / (math.pi * contact_radius**2)
     line_load = 2.0 * math.pi * RADIUS * hertz**2 / MODULUS  # the same Hertz pressure
-    found = [solve_line_contact(line_load, RADIUS, one, OIL, MODULUS, nodes=2049) for one in speed]
-    assert found[0].hertz_pressure == pytest.approx(hertz, rel=1e-9)
-    solved = exponent(speed, [one.central_film for one in found])
+    solutions = [
+        solve_line_contact(line_load, RADIUS, solution, OIL, MODULUS, nodes=2049)
+        for solution in speed
+    ]
+    assert solutions[0].hertz_pressure == pytest.approx(hertz, rel=1e-9)
+    solved = exponent(speed, [solution.central_film for solution in solutions])
     measured = exponent(speed, film)
     assert measured == pytest.approx(0.667, abs=0.01)
     assert measured < solved < 8 / 11  # Grubin's power of a line contact

@@ -33,30 +33,30 @@ def moes(name, nodes, method="newton", **tolerances):
 @pytest.mark.parametrize("name", MOES)
 def test_cases_of_moes_on_1025_nodes(name, method):
     *_, central, minimum, outlet = MOES[name]
-    found = moes(name, 1025, method)
+    solution = moes(name, 1025, method)
     tolerance = 1e-3 if name == "M5 L5" else 4e-3
-    assert found.central_film == pytest.approx(central, rel=tolerance)
-    assert found.minimum_film == pytest.approx(minimum, rel=tolerance)
-    assert found.outlet == pytest.approx(outlet, abs=3e-3)
+    assert solution.central_film == pytest.approx(central, rel=tolerance)
+    assert solution.minimum_film == pytest.approx(minimum, rel=tolerance)
+    assert solution.outlet == pytest.approx(outlet, abs=3e-3)
 
 
 @pytest.mark.parametrize("method", ENGINES)
 @pytest.mark.parametrize("name", MOES)
 def test_extrapolated_central_film(name, method):
     central = MOES[name][3]
-    found = moes(name, 1025, method)
-    assert found.central_film_extrapolated == pytest.approx(central, rel=5e-4)
-    error = abs(found.central_film - central)
-    assert error <= found.central_film_error + 2e-5 * central <= 2.0 * error + 5e-5 * central
+    solution = moes(name, 1025, method)
+    assert solution.central_film_extrapolated == pytest.approx(central, rel=5e-4)
+    error = abs(solution.central_film - central)
+    assert error <= solution.central_film_error + 2e-5 * central <= 2.0 * error + 5e-5 * central
 
 
 @pytest.mark.parametrize("name", MOES)
 def test_fine_grid_reaches_the_printed_digits(name):
     *_, central, minimum, outlet = MOES[name]
-    found = moes(name, 8193)
-    assert found.central_film_extrapolated == pytest.approx(central, rel=3e-5)
-    assert found.minimum_film == pytest.approx(minimum, rel=4e-4)
-    assert found.outlet == pytest.approx(outlet, abs=5e-4)
+    solution = moes(name, 8193)
+    assert solution.central_film_extrapolated == pytest.approx(central, rel=3e-5)
+    assert solution.minimum_film == pytest.approx(minimum, rel=4e-4)
+    assert solution.outlet == pytest.approx(outlet, abs=5e-4)
 
 
 @pytest.mark.regression
@@ -66,8 +66,8 @@ def test_fine_grid_reaches_the_printed_digits(name):
 @pytest.mark.parametrize("method", ENGINES)
 def test_uniform_grids_of_second_order(nodes, central, method):
     # the values differ by the discretisation alone, which the engines share
-    found = moes("M20 L10", nodes, method, tolerance=1e-7, flux_tolerance=1e-6)
-    assert found.central_film == pytest.approx(central, abs=1e-6)
+    solution = moes("M20 L10", nodes, method, tolerance=1e-7, flux_tolerance=1e-6)
+    assert solution.central_film == pytest.approx(central, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", MOES)
@@ -82,11 +82,11 @@ def test_observed_order(name):
 @pytest.mark.parametrize("torque", FZG)
 def test_fzg_pair(torque, method):
     load, hertz, half_width, central, minimum = FZG[torque]
-    found = solve_line_contact(load, RADIUS, SPEED, OIL, MODULUS, method=method)
-    assert found.hertz_pressure == pytest.approx(hertz * 1e9, rel=2e-4)
-    assert found.half_width == pytest.approx(half_width * 1e-6, rel=2e-5)
-    assert found.central_film == pytest.approx(central * 1e-6, rel=5e-3)
-    assert found.minimum_film == pytest.approx(minimum * 1e-6, rel=1e-2)
+    solution = solve_line_contact(load, RADIUS, SPEED, OIL, MODULUS, method=method)
+    assert solution.hertz_pressure == pytest.approx(hertz * 1e9, rel=2e-4)
+    assert solution.half_width == pytest.approx(half_width * 1e-6, rel=2e-5)
+    assert solution.central_film == pytest.approx(central * 1e-6, rel=5e-3)
+    assert solution.minimum_film == pytest.approx(minimum * 1e-6, rel=1e-2)
 
 
 def test_speed_is_half_the_sum_of_the_surface_speeds():
@@ -113,33 +113,33 @@ def test_domain_of_the_source_starves_its_contacts(torque, loss):
 def test_fzg_pair_with_an_inlet_of_a_hundred_half_widths(torque):
     """The flooded inlet condition against oil that is really there, by another scheme."""
     load, *_, central, minimum = FZG[torque]
-    found = solve_line_contact(load, RADIUS, SPEED, OIL, MODULUS, nodes=8193)
+    solution = solve_line_contact(load, RADIUS, SPEED, OIL, MODULUS, nodes=8193)
     groups = line_contact_groups(load, RADIUS, SPEED, 0.082, 2.19e-8, MODULUS)
     M, L = float(groups.moes_load), float(groups.moes_material)
     start = solve_line_contact_moes(
         M, L, pressure_viscosity_coefficient=2.19e-8, pressure_viscosity_index=OIL.roelands_index,
         domain="auto", inlet="flooded", nodes=16385,
     )  # fmt: skip
-    known = known_film(
+    reference = known_film(
         M, L, wetted(start), inlet=-100.0, alpha=2.19e-8, z=OIL.roelands_index, nodes=800
     )
-    unit = 1e6 * found.half_width**2 / RADIUS
-    assert known.central * unit == pytest.approx(central, rel=4e-4)
-    assert known.minimum * unit == pytest.approx(minimum, rel=1e-3)
-    assert found.central_film * 1e6 == pytest.approx(known.central * unit, rel=1e-3)
-    assert found.minimum_film * 1e6 == pytest.approx(known.minimum * unit, rel=1e-3)
+    unit = 1e6 * solution.half_width**2 / RADIUS
+    assert reference.central * unit == pytest.approx(central, rel=4e-4)
+    assert reference.minimum * unit == pytest.approx(minimum, rel=1e-3)
+    assert solution.central_film * 1e6 == pytest.approx(reference.central * unit, rel=1e-3)
+    assert solution.minimum_film * 1e6 == pytest.approx(reference.minimum * unit, rel=1e-3)
 
 
 @pytest.mark.regression
 def test_height_of_the_spike_needs_a_fine_grid():
     """Truth 0.944 of the Hertz pressure; a uniform grid of 257 to 2049 nodes finds 0.63 to 0.81."""
-    known = known_film(20.0, 10.0, wetted(moes("M20 L10", 8193)), inlet=-4.5, nodes=700)
-    position, height = known.spike
+    reference = known_film(20.0, 10.0, wetted(moes("M20 L10", 8193)), inlet=-4.5, nodes=700)
+    position, height = reference.spike
     assert height == pytest.approx(0.944, abs=5e-3)
-    found = [moes("M20 L10", nodes) for nodes in (257, 513, 1025, 2049, 4097, 8193)]
-    heights = [one.spike_pressure for one in found]
+    solutions = [moes("M20 L10", nodes) for nodes in (257, 513, 1025, 2049, 4097, 8193)]
+    heights = [solution.spike_pressure for solution in solutions]
     assert heights[0] == pytest.approx(0.63, abs=0.01)
     assert heights[3] == pytest.approx(0.81, abs=0.01)
     assert heights == sorted(heights)
     assert heights[-1] < height
-    assert found[-1].spike_position == pytest.approx(position, abs=3e-3)
+    assert solutions[-1].spike_position == pytest.approx(position, abs=3e-3)

@@ -50,12 +50,12 @@ def si(load, rolling, radius, viscosity, ra):
 @pytest.mark.parametrize("state", STATES)
 @pytest.mark.parametrize("oil", [1.0, 0.8])
 def test_means_of_the_mesh(state, oil):
-    given = si(*state)
-    assert schlenk(*given, oil) == pytest.approx(printed.schlenk(*state, oil), rel=1e-12)
-    assert iso_6336_22(*given, oil) == pytest.approx(printed.iso_6336_22(*state, oil), rel=1e-12)
-    found = niemann(*given, 73.2e-3, oil)
-    assert found == pytest.approx(printed.niemann(*state, 73.2, oil), rel=1e-12)
-    older = niemann(*given, 73.2e-3, oil, form="iso-tc60")
+    state_si = si(*state)
+    assert schlenk(*state_si, oil) == pytest.approx(printed.schlenk(*state, oil), rel=1e-12)
+    assert iso_6336_22(*state_si, oil) == pytest.approx(printed.iso_6336_22(*state, oil), rel=1e-12)
+    coefficient = niemann(*state_si, 73.2e-3, oil)
+    assert coefficient == pytest.approx(printed.niemann(*state, 73.2, oil), rel=1e-12)
+    older = niemann(*state_si, 73.2e-3, oil, form="iso-tc60")
     assert older == pytest.approx(printed.iso_tc60(*state), rel=1e-12)
 
 
@@ -66,20 +66,20 @@ def test_schlenk_of_fzg_a():
 
 
 def test_second_part_of_iso_14179_holds_load_and_speed():
-    given = si(*STATES[1])
-    assert iso_14179_2(*given, 14.0) == pytest.approx(schlenk(*given), rel=1e-12)
+    state_si = si(*STATES[1])
+    assert iso_14179_2(*state_si, 14.0) == pytest.approx(schlenk(*state_si), rel=1e-12)
     light = si(50.0, 2.0, 8.0, 82.0, 0.5)
-    held = printed.schlenk(150.0, 2.0, 8.0, 82.0, 0.5)
-    assert iso_14179_2(*light, 3.0) == pytest.approx(held, rel=1e-12)
+    coefficient = printed.schlenk(150.0, 2.0, 8.0, 82.0, 0.5)
+    assert iso_14179_2(*light, 3.0) == pytest.approx(coefficient, rel=1e-12)
     fast = si(300.0, 60.0, 8.0, 82.0, 0.5)
-    held = printed.schlenk(300.0, 40.0, 8.0, 82.0, 0.5)
-    assert iso_14179_2(*fast, 75.0) == pytest.approx(held, rel=1e-12)
+    coefficient = printed.schlenk(300.0, 40.0, 8.0, 82.0, 0.5)
+    assert iso_14179_2(*fast, 75.0) == pytest.approx(coefficient, rel=1e-12)
 
 
 @pytest.mark.parametrize(("speed", "intensity", "kinematic"), [(3.45, 2.8, 93.2), (20.0, 9.0, 15)])
 def test_first_part_of_iso_14179(speed, intensity, kinematic):
-    found = iso_14179_1(speed, intensity * 1e6, kinematic * 1e-6)
-    assert found == pytest.approx(printed.iso_14179_1(speed, intensity, kinematic), rel=1e-12)
+    coefficient = iso_14179_1(speed, intensity * 1e6, kinematic * 1e-6)
+    assert coefficient == pytest.approx(printed.iso_14179_1(speed, intensity, kinematic), rel=1e-12)
 
 
 @pytest.mark.parametrize("disc", DISCS)
@@ -89,20 +89,20 @@ def test_discs(disc):
     speeds = (sliding, 0.5 * rolling)
     with quiet("friction-range"):
         # Drozdov starts at 3 m/s, and Misharin's coefficient ends at 0.08.
-        found = (
+        coefficients = (
             misharin(*speeds, kinematic * 1e-6, pressure * 1e9),
             drozdov(*speeds, kinematic * 1e-6, pressure * 1e9),
         )
     wanted = min(printed.misharin(sliding, rolling, kinematic), 0.08)
-    assert found[0] == pytest.approx(wanted, rel=1e-12)
+    assert coefficients[0] == pytest.approx(wanted, rel=1e-12)
     wanted = printed.drozdov(sliding, rolling, kinematic, pressure * 1e9 / KGF)
-    assert found[1] == pytest.approx(wanted, rel=1e-12)
+    assert coefficients[1] == pytest.approx(wanted, rel=1e-12)
     inch = 0.0254
     wanted = printed.odonoghue_cameron(
         sliding / inch, rolling / inch, viscosity, rough / inch, radius / (1e3 * inch)
     )
-    found = odonoghue_cameron(*speeds, viscosity * 1e-3, rough * 1e-6, radius * 1e-3)
-    assert found == pytest.approx(wanted, rel=1e-12)
+    coefficients = odonoghue_cameron(*speeds, viscosity * 1e-3, rough * 1e-6, radius * 1e-3)
+    assert coefficients == pytest.approx(wanted, rel=1e-12)
 
 
 def test_misharin_is_held_where_sliding_stops_and_says_so():
@@ -147,23 +147,25 @@ def test_mixed_friction_and_its_limits():
 
 def test_exponential_has_no_friction_without_sliding_and_no_units_left():
     assert exponential(0.0, 1e9, 0.8e-6) == 0.0
-    one = exponential(0.5, 0.7e9, 1.6e-6, 0.05, 0.3, 0.6)
+    coefficient = exponential(0.5, 0.7e9, 1.6e-6, 0.05, 0.3, 0.6)
     wanted = 0.05 * math.exp(0.15) * (2.0 / math.sqrt(0.7)) ** 0.6 * math.tanh(25.0)
-    assert one == pytest.approx(wanted, rel=1e-12)
+    assert coefficient == pytest.approx(wanted, rel=1e-12)
     # The references are units: any others with the coefficient that belongs to them give the same.
     other = exponential(
         0.5, 0.7e9, 1.6e-6, 0.05 * 4.0**0.3, 0.3, 0.6,
         reference_roughness=1.6e-6, reference_pressure=1e9,
     )  # fmt: skip
-    assert other == pytest.approx(one, rel=1e-12)
+    assert other == pytest.approx(coefficient, rel=1e-12)
 
 
 def test_exponent_of_the_roughness_fits_the_printed_table():
     # Coefficients at 0.8, 1.6 and 3.2 um at four positions beside the pitch point.
     table = [(0.052, 0.112), (0.048, 0.104), (0.041, 0.091), (0.045, 0.099)]
     exponents = [math.log(rough / smooth) / math.log(4.0) for smooth, rough in table]
-    found = math.log(exponential(0.5, 1e9, 3.2e-6) / exponential(0.5, 1e9, 0.8e-6)) / math.log(4.0)
-    assert found == pytest.approx(np.mean(exponents), abs=5e-4)
+    exponent = math.log(exponential(0.5, 1e9, 3.2e-6) / exponential(0.5, 1e9, 0.8e-6)) / math.log(
+        4.0
+    )
+    assert exponent == pytest.approx(np.mean(exponents), abs=5e-4)
     smooth = np.mean([smooth for smooth, _ in table])
     assert exponential(0.5, 1e9, 0.8e-6) == pytest.approx(smooth, rel=1e-12)
 
@@ -174,8 +176,8 @@ RPM = math.pi / 30.0
 def test_measured_points_are_met_and_joined_in_logarithms():
     torques, speeds = [50, 150, 300, 150, 150], [1400, 1400, 1400, 400, 1800]
     printed_points = [0.0271, 0.0692, 0.119, 0.1505, 0.0554]
-    found = measured(torques, np.array(speeds) * RPM)
-    assert found == pytest.approx(printed_points, rel=1e-12)
+    coefficients = measured(torques, np.array(speeds) * RPM)
+    assert coefficients == pytest.approx(printed_points, rel=1e-12)
     between = measured(math.sqrt(50.0 * 150.0), 1400 * RPM)
     assert between == pytest.approx(math.sqrt(0.0271 * 0.0692), rel=1e-12)
     power = measured([100.0, 200.0], RPM * np.array([500.0, 700.0]), *grid_of_a_power_law())
@@ -261,8 +263,8 @@ def test_laws_hand_the_pitch_point_and_the_roughness_to_their_formulas():
     ra = 0.53e-6 / math.sqrt(2.0) * math.sqrt(2.0 / math.pi)
     oil = {"lubricant_factor": 0.8}
     assert LAWS["schlenk"](c, **oil) == pytest.approx([schlenk(*state, ra, 0.8)] * 2)
-    given = LAWS["schlenk"](c, roughness_ra=0.4e-6)
-    assert given == pytest.approx([schlenk(*state, 0.4e-6)] * 2)
+    coefficient = LAWS["schlenk"](c, roughness_ra=0.4e-6)
+    assert coefficient == pytest.approx([schlenk(*state, 0.4e-6)] * 2)
     assert LAWS["iso-6336-22"](c, load_factor=1.5, **oil) == pytest.approx(
         [iso_6336_22(1.5 * state[0], *state[1:], ra, 0.8)] * 2
     )
@@ -279,12 +281,12 @@ def test_mixed_laws_take_film_and_roughness_from_the_contact():
     c = contact()
     film = LAWS["xu-2007"](c)
     assert LAWS["mixed-ehl"](c) == pytest.approx(mixed_ehl(c.film_thickness / 0.53e-6, film))
-    given = LAWS["mixed-ehl"](c, ehl_friction_coefficient=0.04, boundary_friction_coefficient=0.1)
-    assert given == pytest.approx(mixed_ehl(c.film_thickness / 0.53e-6, 0.04, 0.1))
+    mixed = LAWS["mixed-ehl"](c, ehl_friction_coefficient=0.04, boundary_friction_coefficient=0.1)
+    assert mixed == pytest.approx(mixed_ehl(c.film_thickness / 0.53e-6, 0.04, 0.1))
     smooth = LAWS["mixed-ehl"](contact(composite_roughness=0.0))
     assert smooth == pytest.approx(LAWS["xu-2007"](contact(composite_roughness=0.0)), rel=1e-12)
-    found = LAWS["matsumoto"](c, film_friction_coefficient=0.03, maximum_heights=4e-6)
-    assert found == pytest.approx(matsumoto(c.film_thickness, 4e-6, 0.03))
+    coefficient = LAWS["matsumoto"](c, film_friction_coefficient=0.03, maximum_heights=4e-6)
+    assert coefficient == pytest.approx(matsumoto(c.film_thickness, 4e-6, 0.03))
 
 
 def test_disc_laws_read_the_contact():
@@ -293,9 +295,9 @@ def test_disc_laws_read_the_contact():
     nu = 0.082 / 880.0
     assert LAWS["drozdov"](c) == pytest.approx(drozdov(*speeds, nu, c.hertz_pressure))
     with pytest.warns(ModelWarning, match="misharin"):
-        found = LAWS["misharin"](c)
+        coefficient = LAWS["misharin"](c)
     with pytest.warns(ModelWarning, match="misharin"):
-        assert found == pytest.approx(misharin(*speeds, nu, c.hertz_pressure))
+        assert coefficient == pytest.approx(misharin(*speeds, nu, c.hertz_pressure))
     wanted = odonoghue_cameron(*speeds, 0.082, 0.53e-6, c.equivalent_radius)
     assert LAWS["odonoghue-cameron"](c) == pytest.approx(wanted)
     wanted = exponential(c.slide_to_roll_ratio, c.hertz_pressure, 0.53e-6)

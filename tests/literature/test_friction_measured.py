@@ -53,7 +53,7 @@ def line_of_a_ball(load, modulus):
 def traction_contacts():
     load, pressure, half_width = line_of_a_ball(1648.0, STEEL)
     speed, ratio = 0.025, TRACTION[:, 0]
-    one = np.ones(ratio.size)
+    ones = np.ones(ratio.size)
     film = float(dowson_toyoda_central(load, RADIUS, speed, 0.07, 22e-9, STEEL))
     x = np.linspace(-1.0, 1.0, 801)
     state = FilmState(
@@ -61,9 +61,18 @@ def traction_contacts():
         index=np.zeros(ratio.size, dtype=int),
     )  # fmt: skip
     return TribologicalContact(
-        load * one, pressure * one, ratio * speed, speed * one, ratio, RADIUS * one, 0.07, 20e-9,
-        state, 860.0, film * one,
-    )  # fmt: skip
+        load * ones,
+        pressure * ones,
+        ratio * speed,
+        speed * ones,
+        ratio,
+        RADIUS * ones,
+        0.07,
+        20e-9,
+        state,
+        860.0,
+        film * ones,
+    )
 
 
 def deviation(coefficient):
@@ -81,10 +90,10 @@ def deviation(coefficient):
 )
 def test_traction_beside_the_formulas(law, first, low, high):
     with quiet("friction-range"):  # 3.6 GPa and 25 mm/s lie far outside of the regression.
-        found = deviation(LAWS[law](traction_contacts()))
-    assert found[0] == pytest.approx(first, abs=0.06)
-    assert found[2:].min() == pytest.approx(low, abs=0.02)
-    assert found[2:].max() == pytest.approx(high, abs=0.02)
+        error = deviation(LAWS[law](traction_contacts()))
+    assert error[0] == pytest.approx(first, abs=0.06)
+    assert error[2:].min() == pytest.approx(low, abs=0.02)
+    assert error[2:].max() == pytest.approx(high, abs=0.02)
 
 
 def test_traction_beside_the_sheared_film():
@@ -97,10 +106,10 @@ def test_traction_beside_the_sheared_film():
     levels = [ehl(contact, eyring_stress=stress)[3] for stress in stresses]
     fitted = float(np.interp(TRACTION[3, 1], levels, stresses))
     assert fitted == pytest.approx(8.3e6, rel=0.03)  # oils lie between 2 and 10 MPa
-    found = ehl(contact, eyring_stress=fitted)
+    friction = ehl(contact, eyring_stress=fitted)
     measured_rise = TRACTION[-1, 1] / TRACTION[3, 1]
-    assert found[-1] / found[3] == pytest.approx(measured_rise, abs=0.02)
-    assert np.all(np.abs(found[3:] - TRACTION[3:, 1]) < TRACTION[3:, 2])
+    assert friction[-1] / friction[3] == pytest.approx(measured_rise, abs=0.02)
+    assert np.all(np.abs(friction[3:] - TRACTION[3:, 1]) < TRACTION[3:, 2])
 
 
 @pytest.mark.parametrize(
@@ -115,10 +124,10 @@ def test_traction_beside_the_sheared_film():
     ],
 )
 def test_traction_beside_films_that_thin_and_yield(numbers, first, low, high):
-    found = deviation(ehl(traction_contacts(), **numbers))
-    assert found[0] == pytest.approx(first, abs=0.05)
-    assert found[2:].min() == pytest.approx(low, abs=0.01)
-    assert found[2:].max() == pytest.approx(high, abs=0.02)
+    error = deviation(ehl(traction_contacts(), **numbers))
+    assert error[0] == pytest.approx(first, abs=0.05)
+    assert error[2:].min() == pytest.approx(low, abs=0.01)
+    assert error[2:].max() == pytest.approx(high, abs=0.02)
 
 
 def test_slope_of_the_limit_fitted_at_one_point():
@@ -129,8 +138,8 @@ def test_slope_of_the_limit_fitted_at_one_point():
     ]
     fitted = float(np.interp(TRACTION[3, 1], levels, slopes))
     assert fitted == pytest.approx(0.0685, abs=5e-4)  # oils lie between 0.02 and 0.12
-    found = ehl(contact, shear_model="bair-winer", limiting_stress_slope=fitted)
-    assert np.all(np.abs(found[3:] - TRACTION[3:, 1]) < TRACTION[3:, 2])
+    friction = ehl(contact, shear_model="bair-winer", limiting_stress_slope=fitted)
+    assert np.all(np.abs(friction[3:] - TRACTION[3:, 1]) < TRACTION[3:, 2])
 
 
 def test_boundary_friction_beside_its_range():

@@ -152,10 +152,10 @@ def test_industrial_gearbox_in_the_transverse_section(stage: tuple[float, ...]) 
     assert 0.5 * teeth * transverse_module * 1e3 == pytest.approx(reference, abs=5e-5)
     # The rack displacement is one and the same length; in units of the transverse module it
     # shrinks by the cosine.
-    found = zero_backlash_center_distance(
+    computed = zero_backlash_center_distance(
         int(teeth), transverse_module, transverse_angle, shift * cosine
     )
-    assert found * 1e3 == pytest.approx(distance, abs=1e-4)
+    assert computed * 1e3 == pytest.approx(distance, abs=1e-4)
     operating = operating_pressure_angle(
         int(teeth), transverse_module, transverse_angle, distance * 1e-3
     )

@@ -65,8 +65,8 @@ def phase_at(roll: float) -> float:
 
 def deflections(provider: str, roll: float, **options: object) -> np.ndarray:
     phase = np.array([phase_at(roll)])
-    found = loaded_contact(reference_pair(), TORQUES, provider=provider, phases=phase, **options)
-    return 1e6 * found.transmission_error[:, 0]
+    contact = loaded_contact(reference_pair(), TORQUES, provider=provider, phases=phase, **options)
+    return 1e6 * contact.transmission_error[:, 0]
 
 
 def means(provider: str, **options: object) -> dict[str, np.ndarray]:
@@ -106,8 +106,8 @@ def single_pair(provider: str) -> dict[str, float]:
         material=Material(), extended_contact=False,
     )  # fmt: skip
     parts = problem.compliance
-    own = np.diagonal(parts.structure, axis1=1, axis2=2)
-    stiffness = 20e-3 / (own + parts.local - parts.logarithm * math.log(1e5)) * 1e-8
+    self_part = np.diagonal(parts.structure, axis1=1, axis2=2)
+    stiffness = 20e-3 / (self_part + parts.local - parts.logarithm * math.log(1e5)) * 1e-8
     on_path = problem.places.on_path
     order = np.argsort(problem.places.path[on_path])
     path, along = problem.places.path[on_path][order], stiffness[on_path][order]
@@ -115,8 +115,8 @@ def single_pair(provider: str) -> dict[str, float]:
     return {**ends, "maximum": float(along.max())}
 
 
-def deviation(found: object, expected: object) -> np.ndarray:
-    percent = 100.0 * (np.asarray(found) / np.asarray(expected) - 1.0)
+def deviation(computed: object, expected: object) -> np.ndarray:
+    percent = 100.0 * (np.asarray(computed) / np.asarray(expected) - 1.0)
     print("deviation [%]:", np.round(percent, 2))
     return percent
 
@@ -130,8 +130,8 @@ def test_single_pair(provider, tolerance, place):
 @pytest.mark.parametrize(("provider", "tolerance"), [("fe2d", 0.5), ("analytic", 6.0)])
 @pytest.mark.parametrize("roll", DEFLECTIONS)
 def test_deflection(provider, tolerance, roll):
-    found = deflections(provider, roll)
-    assert np.all(np.abs(deviation(found, DEFLECTIONS[roll])) < tolerance)
+    relieved = deflections(provider, roll)
+    assert np.all(np.abs(deviation(relieved, DEFLECTIONS[roll])) < tolerance)
 
 
 @pytest.mark.parametrize(("provider", "tolerance"), [("fe2d", 0.5), ("analytic", 6.0)])
@@ -151,20 +151,20 @@ def test_means(provider, tolerance, name):
 
 @pytest.mark.parametrize("name", ERRORS)
 def test_peak_to_peak_and_harmonics(name):
-    found = errors("fe2d")[name]
-    deviation(found, ERRORS[name])
-    np.testing.assert_allclose(found, ERRORS[name], rtol=0.01, atol=ROUNDING)
+    error = errors("fe2d")[name]
+    deviation(error, ERRORS[name])
+    np.testing.assert_allclose(error, ERRORS[name], rtol=0.01, atol=ROUNDING)
 
 
 def test_tip_relief():
     pair = reference_pair()
-    both = with_tip_relief(pair, 10e-6, default_relief_length(pair))
-    found = [
+    relieved = with_tip_relief(pair, 10e-6, default_relief_length(pair))
+    peaks = [
         1e6 * float(loaded_contact(gears, 150.0, phases=256).peak_to_peak_transmission_error)
-        for gears in (pair, both)
+        for gears in (pair, relieved)
     ]
-    assert np.all(np.abs(deviation(found, (8.18, 4.37))) < 5.0)
-    assert deviation(found[1] / found[0], 4.37 / 8.18) == pytest.approx(0.0, abs=1.0)
+    assert np.all(np.abs(deviation(peaks, (8.18, 4.37))) < 5.0)
+    assert deviation(peaks[1] / peaks[0], 4.37 / 8.18) == pytest.approx(0.0, abs=1.0)
 
 
 def sum_over_coupled() -> float:
@@ -173,13 +173,13 @@ def sum_over_coupled() -> float:
     problem = contact_problem(
         reference_pair(), provider="fe2d", phase=middle, total_force=2660.4444, material=Material(),
     )  # fmt: skip
-    found = problem.at_loads(np.array([2660.4444]))
-    load = found.load[0, 0, 0]
+    solution = problem.at_loads(np.array([2660.4444]))
+    load = solution.load[0, 0, 0]
     carries = load > 0.0
     parts = problem.compliance
-    own = np.diagonal(parts.structure[0])[carries] + parts.local[0][carries]
-    alone = 20e-3 / (own - parts.logarithm * np.log(load[carries]))
-    return float(alone.sum() / (2660.4444 / found.approach[0, 0]))
+    self_part = np.diagonal(parts.structure[0])[carries] + parts.local[0][carries]
+    alone = 20e-3 / (self_part - parts.logarithm * np.log(load[carries]))
+    return float(alone.sum() / (2660.4444 / solution.approach[0, 0]))
 
 
 def test_sum_of_single_pairs_over_coupled():
@@ -205,9 +205,9 @@ def plain_sum(monkeypatch):
 @pytest.mark.parametrize(("provider", "tolerance"), [("fe2d", 0.5), ("analytic", 6.0)])
 def test_plain_sum_of_pairs_is_found_out(provider, tolerance):
     two = deviation(deflections(provider, 0.32424), DEFLECTIONS[0.32424])
-    one = deviation(deflections(provider, 0.5206), DEFLECTIONS[0.5206])
+    error = deviation(deflections(provider, 0.5206), DEFLECTIONS[0.5206])
     assert np.all(two < -tolerance)
-    assert np.all(np.abs(one) < tolerance)  # where one pair carries, nothing is summed
+    assert np.all(np.abs(error) < tolerance)  # where one pair carries, nothing is summed
     stiffness = deviation(means(provider)[next(iter(MEANS))], MEANS[next(iter(MEANS))])
     assert np.all(stiffness > 3.0)
     peak = deviation(errors(provider)[next(iter(ERRORS))], ERRORS[next(iter(ERRORS))])
@@ -217,10 +217,10 @@ def test_plain_sum_of_pairs_is_found_out(provider, tolerance):
 @pytest.mark.parametrize(("provider", "tolerance"), [("fe2d", 1.0), ("analytic", 6.0)])
 def test_missing_wind_up_is_found_out(provider, tolerance):
     for roll, expected in DEFLECTIONS.items():
-        found = deviation(deflections(provider, roll, reference="rim"), expected)
-        assert np.all(found < -tolerance)
-    for name, found in means(provider, reference="rim").items():
-        assert np.all(np.abs(deviation(found, MEANS[name])) > 3.0), name
+        error = deviation(deflections(provider, roll, reference="rim"), expected)
+        assert np.all(error < -tolerance)
+    for name, error in means(provider, reference="rim").items():
+        assert np.all(np.abs(deviation(error, MEANS[name])) > 3.0), name
 
 
 def test_a_pair_thinned_for_backlash_is_another_pair():

@@ -45,14 +45,16 @@ def figures(pair: SpurPair, reference: str = "bore") -> dict[str, float]:
 
 @pytest.mark.parametrize("place", FINITE_ELEMENTS)
 def test_each_figure_within_six_percent(pair, place, record_property):
-    found = figures(pair)[place]
-    record_property("deviation_percent", 100.0 * (found / FINITE_ELEMENTS[place] - 1.0))
-    assert found == pytest.approx(FINITE_ELEMENTS[place], rel=0.06)
+    stiffness = figures(pair)[place]
+    record_property("deviation_percent", 100.0 * (stiffness / FINITE_ELEMENTS[place] - 1.0))
+    assert stiffness == pytest.approx(FINITE_ELEMENTS[place], rel=0.06)
 
 
 def test_mean_deviation_is_that_of_the_method(pair):
-    found = figures(pair)
-    deviation = np.mean([found[name] / value - 1.0 for name, value in FINITE_ELEMENTS.items()])
+    stiffnesses = figures(pair)
+    deviation = np.mean(
+        [stiffnesses[name] / value - 1.0 for name, value in FINITE_ELEMENTS.items()]
+    )
     assert -0.063 < deviation < -0.006
 
 
@@ -67,10 +69,10 @@ def test_deflection_over_load_within_six_percent(pair, roll):
     radius = pair.pinion.base_radius
     force = np.array([90.0, 150.0, 300.0]) / radius
     stiffness = single_pair_stiffness(pair, Material(), roll * radius, force)
-    found = force / stiffness * 1e6
-    assert found == pytest.approx(DEFLECTIONS[roll], rel=0.06)
+    deflection = force / stiffness * 1e6
+    assert deflection == pytest.approx(DEFLECTIONS[roll], rel=0.06)
     # The bend of the curve comes from the local term alone and is closer than its height.
-    bend = found / found[0] / (force / force[0])
+    bend = deflection / deflection[0] / (force / force[0])
     expected = np.array(DEFLECTIONS[roll]) / DEFLECTIONS[roll][0] / (force / force[0])
     assert bend == pytest.approx(expected, rel=0.005)
 

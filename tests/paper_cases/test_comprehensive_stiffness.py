@@ -128,8 +128,8 @@ def test_greatest_stiffness_with_tangent_films_rises_again_at_the_highest_speed(
 @pytest.mark.parametrize(("kind", "factor"), [("tangent", 40.0), ("secant", 1.5), ("seed", 800.0)])
 def test_film_is_stiffer_than_the_teeth_everywhere(kind, factor):
     """Refuted with every kind, at every torque and place of the path."""
-    found = study("torque", kind)
-    assert np.min(found.film_stiffness / found.tooth_stiffness) > factor
+    stiffness = study("torque", kind)
+    assert np.min(stiffness.film_stiffness / stiffness.tooth_stiffness) > factor
 
 
 def test_stiffness_of_the_bifurcation_diagram_is_far_from_any_of_these():
@@ -151,10 +151,10 @@ def test_printed_sum_doubles_with_the_nodes_and_the_secant_does_not():
 @pytest.mark.parametrize("kind", ["tangent", "secant"])
 def test_series_on_totals_hardly_differs_from_series_of_each_pair(kind):
     """The source puts totals in series; pairs carry alike, so that little is lost by it."""
-    found = study("torque", kind)
-    apart = found.series_of_totals / found.comprehensive_mesh_stiffness - 1.0
-    assert np.all(apart > -1e-6)
-    assert apart.max() < 0.02
+    stiffness = study("torque", kind)
+    deviation = stiffness.series_of_totals / stiffness.comprehensive_mesh_stiffness - 1.0
+    assert np.all(deviation > -1e-6)
+    assert deviation.max() < 0.02
 
 
 # Whatever the teeth are modelled by, the trends are the same; Moes' film, whose slope is known.

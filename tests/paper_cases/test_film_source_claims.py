@@ -39,11 +39,11 @@ OVER_SPEED = [(150, speed) for speed in SPEEDS]
 
 def peak(point, **options):
     """Last maximum of the pressure before the outlet: position in b, height in p_h and in Pa."""
-    found = solved(*point, **options)
-    rising = np.diff(found.pressure) > 0.0
+    solution = solved(*point, **options)
+    rising = np.diff(solution.pressure) > 0.0
     i = 1 + int(np.flatnonzero(rising[:-1] & ~rising[1:])[-1])
-    height = float(found.pressure[i])
-    return found.position[i] / found.half_width, height / found.hertz_pressure, height
+    height = float(solution.pressure[i])
+    return solution.position[i] / solution.half_width, height / solution.hertz_pressure, height
 
 
 def maxima(point, **options):
@@ -102,8 +102,11 @@ def test_spike_is_lower_and_nearer_to_the_outlet_at_300_than_at_150():
 def test_the_grid_does_not_decide_about_the_spike(nodes):
     def spike(torque):
         load, entrainment = torque / (50.7434e-3 * 20e-3), 1400 * math.pi / 30.0 * 20.9552e-3
-        found = solve_line_contact(load, 8e-3, entrainment, OIL, 2.2e11, nodes=nodes)
-        return found.spike_position / found.half_width, found.spike_pressure / found.hertz_pressure
+        solution = solve_line_contact(load, 8e-3, entrainment, OIL, 2.2e11, nodes=nodes)
+        return (
+            solution.spike_position / solution.half_width,
+            solution.spike_pressure / solution.hertz_pressure,
+        )
 
     before, after = spike(150), spike(300)
     assert after[0] > before[0] + 0.1

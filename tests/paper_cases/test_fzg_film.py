@@ -55,12 +55,12 @@ def test_printed_data_are_given_not_assumed(case: Any, key: str) -> None:
 
 def test_everything_else_that_matters_is_assumed_with_a_reason(case: Any) -> None:
     origins = provenance(case)
-    given = {key for key, origin in origins.items() if origin == "given"}
+    given_keys = {key for key, origin in origins.items() if origin == "given"}
     choices = {
         "title", "origin", "gears.kind", "gears.driver", "stiffness.model", "friction.law",
         "dynamics.model", "solver.method",
     }  # fmt: skip
-    assert given - set(_GIVEN) == choices
+    assert given_keys - set(_GIVEN) == choices
     assert all(len(origin) > 20 for origin in origins.values() if origin.startswith("assumed"))
 
 
@@ -89,7 +89,7 @@ def test_the_film_falls_with_torque_and_rises_with_speed(case: Any) -> None:
 @pytest.mark.slow
 def test_the_film_is_far_stiffer_than_the_teeth_and_changes_the_series_little(case: Any) -> None:
     mesh = mesh_of(case)
-    here = mesh.in_contact
-    ratio = mesh.film_stiffness[here] / mesh.tooth_stiffness[here]
+    touching = mesh.in_contact
+    ratio = mesh.film_stiffness[touching] / mesh.tooth_stiffness[touching]
     assert 50.0 < ratio.min() < ratio.max() < 150.0
-    assert 0.98 < (mesh.stiffness[here] / mesh.tooth_stiffness[here]).min() < 0.995
+    assert 0.98 < (mesh.stiffness[touching] / mesh.tooth_stiffness[touching]).min() < 0.995

@@ -51,11 +51,11 @@ def test_mean_force_without_friction_is_torque_over_base_radius(name):
     assert figures["mean_friction_power"] == 0.0
 
 
-@pytest.mark.parametrize(("balance", "held"), [("drive", "shaft1"), ("load", "shaft2")])
-def test_torques_of_the_shafts(balance, held):
+@pytest.mark.parametrize(("balance", "balanced"), [("drive", "shaft1"), ("load", "shaft2")])
+def test_torques_of_the_shafts(balance, balanced):
     figures = computed("fzg-12dof", {"operation.torque_balance": balance}).summary()
     nominal = {"shaft1": 258.0, "shaft2": 172.0}
-    assert figures[f"mean_torque_{held}"] == pytest.approx(nominal[held], rel=1e-9)
+    assert figures[f"mean_torque_{balanced}"] == pytest.approx(nominal[balanced], rel=1e-9)
     # what is lost is lost between the shafts: the loss factor of the pair times friction
     ratio = figures["mean_torque_shaft1"] / figures["mean_torque_shaft2"]
     lost = 1.0 - 1.5 / ratio
@@ -68,12 +68,14 @@ def test_rig_of_the_case_is_the_benchmark(results):
     result = results["fzg-12dof"]
     assert natural_modes(result.system).frequency[1] == pytest.approx(492.0, abs=1e-3)
     assert result.summary()["mesh_frequency"] == pytest.approx(800.0 / 3.0, rel=1e-12)
-    own = result.response
-    steps = own.time.size
-    benchmark = steady_state(fzg12(friction_coefficient=0.035), own.mesh_frequency, steps=steps)
+    response = result.response
+    steps = response.time.size
+    benchmark = steady_state(
+        fzg12(friction_coefficient=0.035), response.mesh_frequency, steps=steps
+    )
     # a third of the cycle to four digits, and the path of contact of the same tips
     for column in ("pinion_v", "pinion_w", "pinion_theta", "shaft1_theta"):
-        swing = [np.ptp(r.fine.position[:, r.index(column)]) for r in (own, benchmark)]
+        swing = [np.ptp(r.fine.position[:, r.index(column)]) for r in (response, benchmark)]
         assert swing[0] == pytest.approx(swing[1], rel=5e-3)
 
 

@@ -57,9 +57,9 @@ def test_settled_states_keep_the_certified_distance():
     orbit = np.concatenate((exact.position[0], exact.velocity[0]))
     for tolerance in (1e-3, 1e-6):
         settle(motions, [0, 1, 2], 400, tolerance=tolerance)
-        apart = np.abs(motions.coordinates.reduce(motions.state - orbit)).max()
+        deviation = np.abs(motions.coordinates.reduce(motions.state - orbit)).max()
         size = np.abs(motions.coordinates.reduce(orbit)).max()
-        assert 0.0 < apart < 2.0 * tolerance * size
+        assert 0.0 < deviation < 2.0 * tolerance * size
         assert motions.period.tolist() == [1, 1, 1]
         expected = np.abs(exact.floquet_multipliers).max()
         assert motions.rate[0] == pytest.approx(expected, rel=0.1)
@@ -69,8 +69,8 @@ def test_a_sweep_in_stretches_is_the_sweep_one_by_one():
     turns = np.linspace(0.82, 0.92, 21)
     options = {"sweep": "both", "steps": 128, "transient": 200, "verdict": False}
     side_by_side = bifurcation(hysteresis_system(), turns / TURN, **options)
-    own = [hysteresis_system() for _ in turns]
-    one_by_one = bifurcation(own, turns / TURN, **options)
+    systems = [hysteresis_system() for _ in turns]
+    one_by_one = bifurcation(systems, turns / TURN, **options)
     assert side_by_side.rms == pytest.approx(one_by_one.rms, rel=1e-6)
     assert np.abs(np.diff(side_by_side.rms, axis=0)).max() > 0.3
 
@@ -82,8 +82,8 @@ def test_a_balanced_sweep_finds_the_torque_of_every_value():
         balance=[0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
     )  # fmt: skip
     beats = [1600.0, 2000.0, 3000.0]
-    found = bifurcation(system, beats, steps=256, verdict=False)
-    for rms, beat in zip(found.rms[0], beats, strict=True):
+    diagram = bifurcation(system, beats, steps=256, verdict=False)
+    for rms, beat in zip(diagram.rms[0], beats, strict=True):
         orbit = steady_state(system, beat, steps=256)
         d = orbit.fine.deflection[:, 0]
         spread = orbit.fine.mean(d**2) - orbit.fine.mean(d) ** 2
@@ -103,13 +103,13 @@ def test_longer_periods_end_the_transient_early():
 def test_an_interruption_keeps_what_is_finished(kind):
     turns = np.linspace(0.6, 0.95, 600)
     options = {"sweep": kind, "steps": 1024, "transient": 400, "verdict": True}
-    found = bifurcation(
+    diagram = bifurcation(
         hysteresis_system(), turns / TURN, keep_partial=True, progress=Interrupting(1), **options
     )
-    assert not found.complete
-    assert found.verdicts() == {}
-    assert np.array_equal(np.isfinite(found.rms), found.finished)
-    assert "interrupted" in repr(found)
+    assert not diagram.complete
+    assert diagram.verdicts() == {}
+    assert np.array_equal(np.isfinite(diagram.rms), diagram.finished)
+    assert "interrupted" in repr(diagram)
     with pytest.raises(KeyboardInterrupt):
         bifurcation(hysteresis_system(), turns / TURN, progress=Interrupting(1), **options)
 
@@ -163,17 +163,19 @@ def test_two_wells_share_a_symmetric_plane_evenly():
     system = System([[1.0]], [[0.2]], [[-0.5]], [0.0], [pair])
     wells = basins(system, 0.2, between=((-2.0, 2.0), (-1.0, 1.0)), points=(20, 20), steps=64)
     assert [each.share for each in wells.attractors] == [0.5, 0.5]
-    rest = sorted(float(each.position[0, 0]) for each in wells.attractors)
+    positions = sorted(float(each.position[0, 0]) for each in wells.attractors)
     # 4 (x - 1) = 0.5 x
-    assert rest == pytest.approx([-8.0 / 7.0, 8.0 / 7.0], rel=1e-4)
+    assert positions == pytest.approx([-8.0 / 7.0, 8.0 / 7.0], rel=1e-4)
     assert np.array_equal(wells.attractor, 1 - wells.attractor[::-1, ::-1])
 
 
 def test_a_map_is_what_single_motions_are():
     system = reference_system(0.1, gap=20e-6)
     beats, forces = [2000.0, 3000.0], [0.6, 1.2]
-    found = parameter_map(system, over=(("mesh_frequency", beats), ("force_scale", forces)))
-    assert found.verdicts() == {"physical": 4}
+    parameter_map_ = parameter_map(
+        system, over=(("mesh_frequency", beats), ("force_scale", forces))
+    )
+    assert parameter_map_.verdicts() == {"physical": 4}
     for i, beat in enumerate(beats):
         for j, factor in enumerate(forces):
             scaled = System(
@@ -181,11 +183,11 @@ def test_a_map_is_what_single_motions_are():
                 factor * np.asarray(system.force), system.contacts, names=system.names,
             )  # fmt: skip
             orbit = steady_state(scaled, beat, steps=512)
-            assert found.period[i, j] == 1
+            assert parameter_map_.period[i, j] == 1
             d = orbit.fine.deflection[:, 0]
             spread = orbit.fine.mean(d**2) - orbit.fine.mean(d) ** 2
-            assert found.rms[i, j] == pytest.approx(math.sqrt(spread), rel=2e-3)
-    assert np.all(found.step_number <= 0.5)
+            assert parameter_map_.rms[i, j] == pytest.approx(math.sqrt(spread), rel=2e-3)
+    assert np.all(parameter_map_.step_number <= 0.5)
 
 
 def test_a_map_of_a_function_and_its_rows():
@@ -194,25 +196,25 @@ def test_a_map_of_a_function_and_its_rows():
         return System([[1.0]], [[c]], [[0.0]], [0.5], [pair])
 
     over = (("damping", [0.1, 0.3]), ("mesh_frequency", np.array([0.7, 0.8, 0.9]) / TURN))
-    found = parameter_map(system, over=over, units=("N*s/m", "Hz"))
+    parameter_map_ = parameter_map(system, over=over, units=("N*s/m", "Hz"))
     orbit = steady_state(system(0.3), 0.8 / TURN)
     d = orbit.fine.deflection[:, 0]
     spread = orbit.fine.mean(d**2) - orbit.fine.mean(d) ** 2
-    assert found.rms[1, 1] == pytest.approx(math.sqrt(spread), rel=1e-4)
-    assert found.rms[1, 1] < found.rms[0, 1]
-    assert found.to_xarray()["damping"].attrs["units"] == "N*s/m"
+    assert parameter_map_.rms[1, 1] == pytest.approx(math.sqrt(spread), rel=1e-4)
+    assert parameter_map_.rms[1, 1] < parameter_map_.rms[0, 1]
+    assert parameter_map_.to_xarray()["damping"].attrs["units"] == "N*s/m"
 
 
 @pytest.mark.parametrize(
-    ("over", "words"),
+    ("over", "message"),
     [
         ((("mesh_frequency", [1.0]), ("mesh_frequency", [1.0])), "Two different ones"),
         ((("mesh_frequency", [1.0]), ("nose", [1.0])), "nose"),
         ((("mesh_frequency", [-1.0]), ("force_scale", [1.0])), "mesh_frequency"),
     ],
 )
-def test_bad_axes_of_a_map_are_refused(over, words):
-    with pytest.raises(InputError, match=words):
+def test_bad_axes_of_a_map_are_refused(over, message):
+    with pytest.raises(InputError, match=message):
         parameter_map(hysteresis_system(), over=over)
 
 
@@ -223,15 +225,15 @@ def test_a_map_needs_a_mesh_frequency():
 
 
 @pytest.mark.parametrize(
-    ("options", "words"),
+    ("options", "message"),
     [
         ({"between": ((0.0, 1.0),)}, "two ranges"),
         ({"between": ((0.0, 1.0), (0.0, 1.0)), "coordinates": ("q0", "nose")}, "nose"),
         ({"between": ((0.0, 1.0), (0.0, 1.0)), "points": (1, 5)}, "points"),
     ],
 )
-def test_bad_planes_are_refused(options, words):
-    with pytest.raises(InputError, match=words):
+def test_bad_planes_are_refused(options, message):
+    with pytest.raises(InputError, match=message):
         basins(hysteresis_system(), 0.14, **options)
 
 

@@ -107,12 +107,12 @@ def test_with_shorter_steps_the_stiff_mesh_repeats_every_cycle(stiffer):
 def test_period_doubling_is_seen():
     pair = Contact([1.0], lambda p: 1.0 + 0.3 * np.cos(TURN * p), damping=0.05, gap=1.0)
     system = System([[1.0]], [[0.05]], [[0.0]], [0.3], [pair])
-    found = bifurcation(
+    diagram = bifurcation(
         system, np.array([1.2, 2.0]) / TURN, start=([1.3], [0.1]), steps=128, transient=300
     )
-    assert found.period.tolist() == [[1, 2]]
-    assert found.verdicts() == {"physical": 2}
-    section = found.section[0, 1]
+    assert diagram.period.tolist() == [[1, 2]]
+    assert diagram.verdicts() == {"physical": 2}
+    section = diagram.section[0, 1]
     assert section[2:] == pytest.approx(section[:-2], abs=1e-4)
     assert abs(section[1] - section[0]) > 0.1
 
@@ -120,23 +120,23 @@ def test_period_doubling_is_seen():
 def test_a_lost_motion_leaves_the_others_alone():
     pair = Contact([1.0], lambda p: 1.0 + 0.5 * np.cos(TURN * p))
     system = System([[1.0]], [[0.01]], [[0.0]], [0.5], [pair])
-    found = bifurcation(
+    diagram = bifurcation(
         system, np.array([0.7, 2.0]) / TURN, sweep="independent", steps=64, transient=3000
     )
-    assert np.isfinite(found.rms[0]).tolist() == [True, False]
-    assert found.verdict[0].tolist() == ["physical", "undecided"]
+    assert np.isfinite(diagram.rms[0]).tolist() == [True, False]
+    assert diagram.verdict[0].tolist() == ["physical", "undecided"]
 
 
 @pytest.mark.filterwarnings(r"ignore:\[step-size\]")  # coarse on purpose
 def test_a_coordinate_can_be_looked_at():
     system, options = reference_system(), {"steps": 256, "transient": 20, "cycles": 8, "keep": 8}
-    found = bifurcation(system, [240.0], signal="pinion_y", **options)
+    diagram = bifurcation(system, [240.0], signal="pinion_y", **options)
     orbit = steady_state(system, 240.0, steps=256)
-    assert found.signal == "pinion_y"
-    assert found.section[0, 0, -1] == pytest.approx(orbit.position[0, 1], rel=1e-6)
+    assert diagram.signal == "pinion_y"
+    assert diagram.section[0, 0, -1] == pytest.approx(orbit.position[0, 1], rel=1e-6)
     spread = orbit.fine.mean(orbit.fine.position[:, 1] ** 2)
     spread -= orbit.fine.mean(orbit.fine.position[:, 1]) ** 2
-    assert found.rms[0, 0] == pytest.approx(np.sqrt(spread), rel=1e-6)
+    assert diagram.rms[0, 0] == pytest.approx(np.sqrt(spread), rel=1e-6)
 
 
 @pytest.mark.filterwarnings(r"ignore:\[step-size\]")  # coarse on purpose
@@ -166,7 +166,7 @@ def test_verdict(facts, expected):
 
 
 @pytest.mark.parametrize(
-    ("options", "words"),
+    ("options", "message"),
     [
         ({"sweep": "sideways"}, "sideways"),
         ({"signal": 3}, "signal = 3"),
@@ -176,8 +176,8 @@ def test_verdict(facts, expected):
         ({"steps": [64, 64, 64]}, "mesh frequencies"),
     ],
 )
-def test_bad_input_is_refused(options, words):
-    with pytest.raises(InputError, match=words):
+def test_bad_input_is_refused(options, message):
+    with pytest.raises(InputError, match=message):
         bifurcation(hysteresis_system(), [0.1, 0.2], **options)
 
 

@@ -35,10 +35,10 @@ def one_cycle(rate, state):
         return [y[1], 0.5 - 0.1 * y[1] - (1.0 + 0.2 * np.cos(rate * time)) * force]
 
     period = TURN / rate
-    found = solve_ivp(
+    solution = solve_ivp(
         slope, (0.0, period), state, method="DOP853", rtol=1e-11, atol=1e-12, max_step=period / 64
     )
-    return found.y[:, -1]
+    return solution.y[:, -1]
 
 
 def multipliers_of(rate, state):
@@ -137,8 +137,8 @@ def test_meissner_multipliers():
 
     period = TURN / rate
     exact = np.linalg.eigvals(part(low, (1 - duty) * period) @ part(high, duty * period))
-    found = np.sort_complex(motion.floquet_multipliers)
-    np.testing.assert_allclose(found, np.sort_complex(exact), atol=1e-10)
+    multipliers = np.sort_complex(motion.floquet_multipliers)
+    np.testing.assert_allclose(multipliers, np.sort_complex(exact), atol=1e-10)
 
 
 def hill(rate, swing, damping, terms=8):
@@ -152,10 +152,10 @@ def hill(rate, swing, damping, terms=8):
 def test_period_doubling_at_the_edges_of_the_mathieu_tongue():
     swing, damping = 0.2, 0.04
     branch = continuation(oscillator(swing, damping), between=(1.7 / TURN, 2.3 / TURN))
-    found = [TURN * point.parameter for point in branch.special("period-doubling")]
+    speeds = [TURN * point.parameter for point in branch.special("period-doubling")]
     exact = [brentq(hill, a, a + 0.15, args=(swing, damping)) for a in (1.85, 2.0)]
-    assert found == pytest.approx(exact, rel=1e-8)
-    inside = (branch.parameter > found[0] / TURN) & (branch.parameter < found[1] / TURN)
+    assert speeds == pytest.approx(exact, rel=1e-8)
+    inside = (branch.parameter > speeds[0] / TURN) & (branch.parameter < speeds[1] / TURN)
     np.testing.assert_array_equal(branch.stable, ~inside)
 
 
@@ -211,18 +211,18 @@ def test_branch_of_the_gear_pair_is_the_steady_state_at_every_speed():
 
 
 def test_free_rotation_and_balancing_torque_have_no_multiplier():
-    held = reference_system(0.1)
-    free = replace(held, balance=[0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
-    one, other = (steady_state(system, 2000.0) for system in (held, free))
-    assert one.floquet_multipliers.size == 10
-    assert one.stable
+    loaded = reference_system(0.1)
+    free = replace(loaded, balance=[0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+    first, other = (steady_state(system, 2000.0) for system in (loaded, free))
+    assert first.floquet_multipliers.size == 10
+    assert first.stable
     assert other.stable
     # The system is linear: no torque changes what becomes of a disturbance.
     np.testing.assert_allclose(
-        np.sort(np.abs(other.floquet_multipliers)), np.sort(np.abs(one.floquet_multipliers)),
+        np.sort(np.abs(other.floquet_multipliers)), np.sort(np.abs(first.floquet_multipliers)),
         atol=1e-9,
     )  # fmt: skip
-    assert steady_state(held, 2000.0, periods=2).period == 1
+    assert steady_state(loaded, 2000.0, periods=2).period == 1
 
 
 def test_where_and_why_a_branch_stops():
@@ -238,7 +238,7 @@ def test_where_and_why_a_branch_stops():
 
 
 @pytest.mark.parametrize(
-    ("options", "words"),
+    ("options", "message"),
     [
         ({"between": (0.1, 0.1)}, "between"),
         ({"between": (0.1, 0.2), "periods": 0}, "periods"),
@@ -246,8 +246,8 @@ def test_where_and_why_a_branch_stops():
         ({"between": (0.1, 0.2), "signals": ["speed"]}, "speed"),
     ],
 )
-def test_bad_arguments_are_named(options, words):
-    with pytest.raises(InputError, match=words):
+def test_bad_arguments_are_named(options, message):
+    with pytest.raises(InputError, match=message):
         continuation(oscillator(0.1, 0.1), **options)
 
 

@@ -21,27 +21,27 @@ _ENGINES = ("newton", "multigrid")
 
 
 def random_contacts(count: int) -> list[dict[str, Any]]:
-    generator, found = np.random.default_rng(20), []
-    while len(found) < count:
+    generator, contacts = np.random.default_rng(20), []
+    while len(contacts) < count:
         load = math.exp(generator.uniform(0.0, math.log(300.0)))
         viscosity, alpha = generator.uniform(0.0, 25.0), generator.uniform(1.2e-8, 3e-8)
         if viscosity * math.sqrt(load / (2.0 * math.pi)) / alpha <= 2e9:
             index = generator.uniform(0.45, 0.75)
-            found.append(
+            contacts.append(
                 {"M": load, "L": viscosity, "pressure_viscosity_coefficient": alpha,
                  "pressure_viscosity_index": index, "domain": "auto", "inlet": "flooded"}
             )  # fmt: skip
-    return found
+    return contacts
 
 
 def test_random_contacts_agree_by_default() -> None:
     for contact in random_contacts(60):
-        one, other = (
+        first, other = (
             solve_line_contact_moes(**contact, nodes=513, method=engine) for engine in _ENGINES
         )
-        assert (one.method, other.method) == _ENGINES
-        assert one.attempts == other.attempts == ()
-        assert other.central_film == pytest.approx(one.central_film, rel=3e-4)
+        assert (first.method, other.method) == _ENGINES
+        assert first.attempts == other.attempts == ()
+        assert other.central_film == pytest.approx(first.central_film, rel=3e-4)
 
 
 @pytest.mark.parametrize("name", _NAMED)
@@ -49,16 +49,16 @@ def test_random_contacts_agree_by_default() -> None:
 def test_named_contacts_agree_when_tight(name: str, nodes: int) -> None:
     M, L, domain = _NAMED[name]
     limits = {"newton": 1e-9, "multigrid": 1e-6}
-    one, other = (
+    first, other = (
         solve_line_contact_moes(
             M, L, domain=domain, nodes=nodes, method=engine, tolerance=1e-9,
             flux_tolerance=limits[engine],
         )
         for engine in _ENGINES
     )  # fmt: skip
-    assert other.central_film == pytest.approx(one.central_film, rel=1e-6)
-    assert other.minimum_film == pytest.approx(one.minimum_film, rel=1e-6)
-    for solution, load in ((one, 1e-8), (other, 1e-6)):
+    assert other.central_film == pytest.approx(first.central_film, rel=1e-6)
+    assert other.minimum_film == pytest.approx(first.minimum_film, rel=1e-6)
+    for solution, load in ((first, 1e-8), (other, 1e-6)):
         assert solution.flux_error <= limits[solution.method]
         assert solution.load_error <= load
         assert solution.pressure.min() >= 0.0

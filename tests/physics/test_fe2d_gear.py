@@ -93,16 +93,16 @@ def test_secant_stiffness_of_a_single_pair(pair, influences, record_property):
     path = np.append(np.linspace(contact.A, contact.E, 301), contact.C)
     compliance = influences[0].at(path) + influences[1].at(pair.line_of_action_length - path)
     stiffness = 0.02 / (compliance + local_compliance(pair, path, 100e3))
-    found = {
+    computed = {
         "A": stiffness[0],
         "C": stiffness[-1],
         "maximum": stiffness.max(),
         "E": stiffness[-2],
     }
     for place, expected in {"A": 1.449e8, "C": 1.709e8, "maximum": 2.039e8, "E": 1.590e8}.items():
-        record_property(place, float(found[place]))
+        record_property(place, float(computed[place]))
         tolerance = 0.005 if place in "AE" else 0.001
-        assert found[place] == pytest.approx(expected, rel=tolerance), place
+        assert computed[place] == pytest.approx(expected, rel=tolerance), place
 
 
 def lengthwise(gear: SpurGear, rho: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -125,8 +125,8 @@ def patch_split(gear: SpurGear, size: MeshSize, rho: np.ndarray, half_width: flo
 def test_brute_force_with_a_hertzian_patch_agrees(pair, influences, half_width):
     rho = np.array([AT_C, 20e-3])
     fine = MeshSize(flank=0.01, largest=0.12, growth=1.25)
-    found = patch_split(pair.pinion, fine, rho, half_width) / STEEL.youngs_modulus
-    assert found == pytest.approx(influences[0].at(rho), rel=7e-4)
+    split = patch_split(pair.pinion, fine, rho, half_width) / STEEL.youngs_modulus
+    assert split == pytest.approx(influences[0].at(rho), rel=7e-4)
 
 
 def point_split(
@@ -156,10 +156,10 @@ def test_split_does_not_depend_on_the_width_of_the_load(pair, rho):
     gear = pair.pinion
     mesh = tooth_mesh(gear, 0.5 * gear.bore_diameter)
     ring = Ring(mesh, plane_stress(1.0, 0.3))
-    found = [point_split(gear, mesh, ring, rho, width) for width in (0.01, 0.02, 0.04)]
-    assert found == pytest.approx([found[0]] * 3, rel=1e-4)
+    splits = [point_split(gear, mesh, ring, rho, width) for width in (0.01, 0.02, 0.04)]
+    assert splits == pytest.approx([splits[0]] * 3, rel=1e-4)
     exact = float(fe2d_influence(gear, STEEL, cache=False).at(rho)) * STEEL.youngs_modulus
-    assert found[0] == pytest.approx(exact, rel=1e-4)
+    assert splits[0] == pytest.approx(exact, rel=1e-4)
 
 
 def test_flamant_meets_hertz_far_from_the_load():
@@ -170,31 +170,31 @@ def test_flamant_meets_hertz_far_from_the_load():
     nearer = half_plane_displacement(np.array([0.0, -1.5]), down, np.array(3.0), 0.3)
     assert nearer == pytest.approx([0.0, -2.0 / math.pi * math.log(2.0)], abs=1e-15)
     # on the edge all material moves towards the load by (1 - nu) / (2 E)
-    beside = half_plane_displacement(np.array([0.7, 0.0]), down, np.array(3.0), 0.3)
-    assert beside[0] == pytest.approx(-0.5 * 0.7)
+    displacement = half_plane_displacement(np.array([0.7, 0.0]), down, np.array(3.0), 0.3)
+    assert displacement[0] == pytest.approx(-0.5 * 0.7)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", GEARS)
 def test_refined_mesh_changes_little(name, record_property):
     gear = GEARS[name]()
-    found = unit_compliances(gear, 0.3, 2)
+    coarse = unit_compliances(gear, 0.3, 2)
     fine = unit_compliances(gear, 0.3, 2, MeshSize().refined(1.6))
-    own = np.abs(found.self_compliance / fine.self_compliance - 1.0).max()
+    error = np.abs(coarse.self_compliance / fine.self_compliance - 1.0).max()
     scale = np.abs(fine.cross_compliance).max(axis=(1, 2), keepdims=True)
-    cross = np.abs((found.cross_compliance - fine.cross_compliance) / scale).max()
-    record_property("self_change", float(own))
+    cross = np.abs((coarse.cross_compliance - fine.cross_compliance) / scale).max()
+    record_property("self_change", float(error))
     record_property("cross_change", float(cross))
-    assert own < 1e-3
+    assert error < 1e-3
     assert cross < 1e-3
 
 
 def test_error_falls_as_the_mesh_is_refined(record_property):
     gear = GEARS["type C wheel"]()
     base = MeshSize(flank=0.1, largest=0.18, growth=1.7, body_growth=0.6, body_ratio=0.4)
-    found = [unit_compliances(gear, 0.3, 1, base.refined(f)) for f in (1.0, 2.0, 4.0)]
+    compliances = [unit_compliances(gear, 0.3, 1, base.refined(f)) for f in (1.0, 2.0, 4.0)]
     for part in ("self_compliance", "cross_compliance"):
-        tables = [getattr(one, part) for one in found]
+        tables = [getattr(gear_compliance, part) for gear_compliance in compliances]
         steps = [np.abs(b - a).max() / np.abs(b).max() for a, b in itertools.pairwise(tables)]
         record_property(part, [float(step) for step in steps])
         assert steps[0] < 2e-3, part
@@ -203,10 +203,10 @@ def test_error_falls_as_the_mesh_is_refined(record_property):
 
 def test_reciprocal_theorem_between_different_places(influences):
     # the tables hold both directions only by symmetry of the ring: see the neighbour the other way
-    for one in influences:
-        rho = one.curvature_radius
-        onward = one.between(rho[5], rho[15], 1)
-        back = one.between(rho[15], rho[5], -1)
+    for influence in influences:
+        rho = influence.curvature_radius
+        onward = influence.between(rho[5], rho[15], 1)
+        back = influence.between(rho[15], rho[5], -1)
         assert float(onward) == pytest.approx(float(back), rel=1e-12)
     gear = GEARS["type C pinion"]()
     mesh = tooth_mesh(gear, 0.5 * gear.bore_diameter)
@@ -248,8 +248,8 @@ def test_compliance_falls_with_the_modulus(pair, influences):
 
 def test_compliance_does_not_depend_on_the_size_of_the_gear():
     small, large = (gear_of(20, m, 0.2, 6.0 * m) for m in (1e-3, 1e-2))
-    found = [unit_compliances(gear, 0.3, 1) for gear in (small, large)]
-    assert found[0].self_compliance == pytest.approx(found[1].self_compliance, rel=1e-9)
+    compliances = [unit_compliances(gear, 0.3, 1) for gear in (small, large)]
+    assert compliances[0].self_compliance == pytest.approx(compliances[1].self_compliance, rel=1e-9)
 
 
 def test_rim_is_the_bore_without_the_wind_up(pair, influences):
@@ -264,18 +264,21 @@ def test_rim_is_the_bore_without_the_wind_up(pair, influences):
 def test_smaller_bore_winds_up_by_the_closed_form():
     # All teeth loaded alike: the body turns as a ring in torsion, and the rest stays.
     gear = gear_of(11, 3e-3, 0.3, 10e-3)
-    found = [summed(unit_compliances(gear, 0.3, 5, None, held)) for held in (4e-3, 2e-3)]
+    wind_up = [summed(unit_compliances(gear, 0.3, 5, None, radius)) for radius in (4e-3, 2e-3)]
     turns = [
-        wind_up_compliance(gear.base_radius, gear.root_radius, held, 1.0, Material(1.0, 0.3))
-        for held in (4e-3, 2e-3)
+        wind_up_compliance(gear.base_radius, gear.root_radius, radius, 1.0, Material(1.0, 0.3))
+        for radius in (4e-3, 2e-3)
     ]
-    assert found[1] - found[0] == pytest.approx(11.0 * (turns[1] - turns[0]), rel=2e-3)
+    assert wind_up[1] - wind_up[0] == pytest.approx(11.0 * (turns[1] - turns[0]), rel=2e-3)
 
 
-def summed(one: UnitCompliances) -> float:
+def summed(compliances: UnitCompliances) -> float:
     """Displacement of a tooth when all teeth carry a load in the middle of the flank."""
-    middle = one.curvature_radius.size // 2
-    return one.self_compliance[middle] + 2.0 * one.cross_compliance[:, middle, middle].sum()
+    middle = compliances.curvature_radius.size // 2
+    return (
+        compliances.self_compliance[middle]
+        + 2.0 * compliances.cross_compliance[:, middle, middle].sum()
+    )
 
 
 def test_solid_gear_with_its_rim_as_reference():
@@ -293,9 +296,11 @@ def test_held_circle_of_a_solid_gear_enters_by_the_shift_of_the_body_alone():
     gear = gear_of(40, 3e-3, 0.0, 0.0)
     rim = []
     for share in (7.0, 14.0, 28.0):
-        held = gear.root_radius / share
-        turn = wind_up_compliance(gear.base_radius, gear.root_radius, held, 1.0, Material(1.0, 0.3))
-        rim.append(unit_compliances(gear, 0.3, 1, None, held).self_compliance[12] - turn)
+        fixed_radius = gear.root_radius / share
+        turn = wind_up_compliance(
+            gear.base_radius, gear.root_radius, fixed_radius, 1.0, Material(1.0, 0.3)
+        )
+        rim.append(unit_compliances(gear, 0.3, 1, None, fixed_radius).self_compliance[12] - turn)
     shift = 1.3 * 2.7 / (4.0 * math.pi) * math.log(2.0)
     assert np.diff(rim) == pytest.approx([shift, shift], rel=0.1)
 
@@ -317,11 +322,11 @@ def test_missing_wind_up_would_show(pair, influences):
 
 def test_tip_is_a_smooth_continuation(pair, influences):
     # with the length from the corner the compliance rises at a rate that hardly changes
-    for gear, one in zip((pair.pinion, pair.wheel), influences, strict=True):
-        tip = one.curvature_radius[-1]
+    for gear, influence in zip((pair.pinion, pair.wheel), influences, strict=True):
+        tip = influence.curvature_radius[-1]
         away = np.array([0.0, 0.03, 0.06, 0.09, 0.12])
-        own = one.at(lengthwise(gear, np.full(away.size, tip), -away))
-        rise = -np.diff(own) / own[:-1]
+        self_compliance = influence.at(lengthwise(gear, np.full(away.size, tip), -away))
+        rise = -np.diff(self_compliance) / self_compliance[:-1]
         assert np.all((rise > 0.015) & (rise < 0.06))
         assert np.all(np.abs(np.diff(rise)) < 0.006)
 
@@ -340,5 +345,5 @@ def test_nodes_suffice_for_the_interpolation(pair, influences):
     )
     assert influences[1].at(middles) == pytest.approx(exact, rel=3e-4)
     cross = ring.weighted_displacements(solution, loads.forces, [-1])[0] / STEEL.youngs_modulus
-    found = influences[1].between(middles[:, None], middles[None, :], 1)
-    assert found == pytest.approx(cross, rel=1e-4)
+    cross_compliance = influences[1].between(middles[:, None], middles[None, :], 1)
+    assert cross_compliance == pytest.approx(cross, rel=1e-4)

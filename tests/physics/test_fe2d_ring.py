@@ -133,15 +133,15 @@ def chained(mesh: SectorMesh, copies: int, closed: bool) -> tuple[csc_array, np.
         number[k, left] = number[(k + 1) % copies, right]
     rows, columns = number[:, matrix.row], number[:, matrix.col]
     data = np.tile(matrix.data, copies)
-    whole = coo_array((data, (rows.ravel(), columns.ravel())), shape=(number.size,) * 2)
-    return whole.tocsc(), number
+    stiffness_matrix = coo_array((data, (rows.ravel(), columns.ravel())), shape=(number.size,) * 2)
+    return stiffness_matrix.tocsc(), number
 
 
 def solved_in_full(mesh: SectorMesh, copies: int, closed: bool, forces: np.ndarray) -> np.ndarray:
     """Displacements of all copies under forces on the copy in the middle, shape (copies, ...)."""
     matrix, number = chained(mesh, copies, closed)
-    held = number[:, (2 * mesh.fixed[:, None] + np.arange(2)).ravel()]
-    free = np.setdiff1d(np.unique(number), held)
+    fixed_dofs = number[:, (2 * mesh.fixed[:, None] + np.arange(2)).ravel()]
+    free = np.setdiff1d(np.unique(number), fixed_dofs)
     load = np.zeros((number.size, forces.shape[1]))
     load[number[copies // 2]] = forces
     moved = np.zeros_like(load)
@@ -174,8 +174,8 @@ def test_neighbouring_sectors_move_together_at_their_cut(solved):
     left = ring.displacement(solution, 0).reshape(-1, 2, 3)[mesh.left_cut]
     right = ring.displacement(solution, 1).reshape(-1, 2, 3)[mesh.right_cut]
     anticlockwise = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-    there = mesh.nodes[mesh.right_cut] @ anticlockwise.T
-    assert there == pytest.approx(mesh.nodes[mesh.left_cut], abs=1e-12)
+    mate_nodes = mesh.nodes[mesh.right_cut] @ anticlockwise.T
+    assert mate_nodes == pytest.approx(mesh.nodes[mesh.left_cut], abs=1e-12)
     assert np.einsum("xy,nyk->nxk", anticlockwise, right) == pytest.approx(left, abs=1e-10)
 
 
@@ -217,9 +217,9 @@ def test_a_segment_of_three_teeth_is_no_gear(solved):
     # The mutation that the whole ring guards against.
     mesh, ring, forces, solution = solved
     segment = solved_in_full(mesh, 3, False, forces)
-    own = np.diagonal(segment[1].T @ forces) / np.diagonal(
+    self_compliance = np.diagonal(segment[1].T @ forces) / np.diagonal(
         ring.weighted_displacements(solution, forces, [0])[0]
     )
     cross = (segment[2].T @ forces) / ring.weighted_displacements(solution, forces, [1])[0]
-    assert np.all(own > 1.05)
+    assert np.all(self_compliance > 1.05)
     assert np.all(cross > 1.5)

@@ -105,8 +105,8 @@ def test_a_finer_solution_is_answered_on_a_grid_of_513_nodes(
     frequencies = corner(fine) * np.array([0.0, 0.1, 0.3])
     compliance = film_compliance(fine, frequencies)
     assert 1.0 / compliance[0].real == pytest.approx(fine.film_stiffness(), rel=1e-9)
-    apart = np.abs(compliance - film_compliance(solution, frequencies))
-    assert np.all(apart < 0.02 * np.abs(compliance[0]))
+    difference = np.abs(compliance - film_compliance(solution, frequencies))
+    assert np.all(difference < 0.02 * np.abs(compliance[0]))
 
 
 @pytest.mark.parametrize("ratio", [0.1, 0.3])
@@ -118,7 +118,7 @@ def test_linearized_film_is_that_of_the_transient(ratio: float) -> None:
         flux_tolerance=1e-9,
     )  # fmt: skip
     steps, periods = 96, 4
-    answers = []
+    responses = []
     for f in (0.02 * corner(solution), ratio * corner(solution)):
         time = np.arange(periods * steps + 1) / (steps * f)
         load = LOAD * (1.0 + 1e-3 * np.sin(2.0 * np.pi * f * time))
@@ -136,8 +136,8 @@ def test_linearized_film_is_that_of_the_transient(ratio: float) -> None:
         )
         # the scale of the transient is that of the greatest load, half a thousandth wider
         assert -film / force == pytest.approx(central, rel=0.01)
-        answers.append((approach / force, rigid))
-    (slow, slow_rigid), (fast, fast_rigid) = answers
+        responses.append((approach / force, rigid))
+    (slow, slow_rigid), (fast, fast_rigid) = responses
     assert fast - slow == pytest.approx(fast_rigid - slow_rigid, rel=0.01)
 
 

@@ -44,11 +44,11 @@ def test_isoviscous_film_tends_to_that_of_rigid_bodies(reach):
     for M in (0.1, 0.05):
         unit = math.sqrt(2.0 * 4.895 * math.pi / 16.0) / M
         rigid = rigid_film(M, -reach * unit)
-        found = solve_line_contact_moes(
+        solution = solve_line_contact_moes(
             M, 0.0, compressible=False, domain=(-reach * unit, unit), inlet="zero", nodes=4097
         )
-        deviation.append(found.minimum_film / rigid.minimum - 1.0)
-        assert found.outlet == pytest.approx(rigid.outlet, rel=0.02)
+        deviation.append(solution.minimum_film / rigid.minimum - 1.0)
+        assert solution.outlet == pytest.approx(rigid.outlet, rel=0.02)
     assert abs(deviation[1]) < 1e-3
     # what the bodies yield falls with the square of M
     assert deviation[1] == pytest.approx(deviation[0] / 4.0, abs=1e-4)
@@ -62,11 +62,11 @@ def test_piezoviscous_film_tends_to_that_of_rigid_bodies():
         rigid = rigid_film(M, -8.0 * unit, piezoviscosity=L * math.sqrt(M / (2.0 * math.pi)))
         plain = rigid_film(M, -8.0 * unit)
         assert rigid.minimum > 1.3 * plain.minimum
-        found = solve_line_contact_moes(
+        solution = solve_line_contact_moes(
             M, L, compressible=False, domain=(-8.0 * unit, unit), inlet="zero", nodes=4097,
             viscosity_law="barus",
         )  # fmt: skip
-        deviation.append(found.minimum_film / rigid.minimum - 1.0)
+        deviation.append(solution.minimum_film / rigid.minimum - 1.0)
     assert abs(deviation[1]) < 1e-2
     assert (4.0 * deviation[1] - deviation[0]) / 3.0 == pytest.approx(0.0, abs=1e-3)
 
@@ -76,11 +76,11 @@ def test_piezoviscous_film_tends_to_that_of_rigid_bodies():
 
 @pytest.mark.parametrize(("M", "L"), CASES)
 def test_film_is_the_elastic_gap_under_its_pressure(M, L):
-    found = solved(M, L)
+    solution = solved(M, L)
     at = np.linspace(-4.0, 1.45, 60)
-    gap = 0.5 * at**2 + deflection(found.position, at) @ found.pressure
-    offset = np.interp(at, found.position, found.film) - gap
-    assert np.ptp(offset) < 2e-3 * found.central_film
+    gap = 0.5 * at**2 + deflection(solution.position, at) @ solution.pressure
+    offset = np.interp(at, solution.position, solution.film) - gap
+    assert np.ptp(offset) < 2e-3 * solution.central_film
 
 
 @pytest.mark.parametrize(("M", "L"), CASES)
@@ -89,9 +89,9 @@ def test_pressure_follows_from_the_film_by_the_first_integral(M, L):
     from scipy.integrate import solve_ivp
     from scipy.interpolate import CubicSpline
 
-    found = solved(M, L, compressible=False)
-    X, H = found.position, CubicSpline(found.position, found.film)
-    outlet = float(H(found.outlet))
+    solution = solved(M, L, compressible=False)
+    X, H = solution.position, CubicSpline(solution.position, solution.film)
+    outlet = float(H(solution.outlet))
     alpha_p = L * math.sqrt(M / (2.0 * math.pi))
     index, reference = 0.68, 1.0 / 5.1e-9 / (alpha_p / 2.2e-8)
 
@@ -104,7 +104,7 @@ def test_pressure_follows_from_the_film_by_the_first_integral(M, L):
     marched = solve_ivp(
         slope, (X[0], place[-1]), [0.0], t_eval=place, rtol=1e-8, atol=1e-12, max_step=0.02
     )
-    exact = np.interp(place, X, found.pressure)
+    exact = np.interp(place, X, solution.pressure)
     np.testing.assert_allclose(marched.y[0], exact, rtol=5e-3)
 
 
@@ -112,13 +112,13 @@ def test_pressure_follows_from_the_film_by_the_first_integral(M, L):
 def test_flux_by_spline_derivatives_is_one_constant(M, L):
     from scipy.interpolate import CubicSpline
 
-    found = solved(M, L, compressible=False)
-    slope = CubicSpline(found.position, found.pressure).derivative()(found.position)
-    flux = found.film - found.film**3 / found.viscosity / lam(M) * slope
-    wet = (found.position > -4.0) & (found.position < 0.98 * found.outlet)
+    solution = solved(M, L, compressible=False)
+    slope = CubicSpline(solution.position, solution.pressure).derivative()(solution.position)
+    flux = solution.film - solution.film**3 / solution.viscosity / lam(M) * slope
+    wet = (solution.position > -4.0) & (solution.position < 0.98 * solution.outlet)
     # the spike is the one place where a spline does not follow
-    smooth = wet & (np.abs(found.position - wetted(found).spike[0]) > 0.02)
-    at_outlet = np.interp(found.outlet, found.position, found.film)
+    smooth = wet & (np.abs(solution.position - wetted(solution).spike[0]) > 0.02)
+    at_outlet = np.interp(solution.outlet, solution.position, solution.film)
     np.testing.assert_allclose(flux[smooth], at_outlet, rtol=2e-3)
 
 
@@ -126,15 +126,15 @@ def test_flux_by_spline_derivatives_is_one_constant(M, L):
 def test_load_by_another_quadrature(M, L):
     from scipy.integrate import simpson
 
-    found = solved(M, L)
-    assert simpson(found.pressure, x=found.position) == pytest.approx(math.pi / 2.0, rel=2e-4)
+    solution = solved(M, L)
+    assert simpson(solution.pressure, x=solution.position) == pytest.approx(math.pi / 2.0, rel=2e-4)
 
 
 @pytest.mark.parametrize(("M", "L"), CASES)
 def test_rolling_traction_balances_the_moment_of_the_pressure(M, L):
     """``int h dp/dx dx = -int p x/R dx``: the elastic gap does no work on its own pressure."""
-    found = solved(M, L)
-    X, P, H = found.position, found.pressure, found.film
+    solution = solved(M, L)
+    X, P, H = solution.position, solution.pressure, solution.film
     traction = np.sum(0.5 * (H[1:] + H[:-1]) * np.diff(P))
     moment = -np.trapezoid(P * X, X)
     assert moment > 0.0  # the pressure leads: rolling is resisted
@@ -148,17 +148,17 @@ def test_rolling_traction_balances_the_moment_of_the_pressure(M, L):
 def test_what_a_flooded_inlet_adds_is_the_wedge_before_the_first_node(M, L):
     from scipy.integrate import quad
 
-    found = solve_line_contact_moes(M, L, domain=(-5.0, 1.8), inlet="flooded", nodes=2049)
+    solution = solve_line_contact_moes(M, L, domain=(-5.0, 1.8), inlet="flooded", nodes=2049)
 
     def slope(x):
         dry = 0.5 * (x * math.sqrt(x * x - 1.0) - math.log(x + math.sqrt(x * x - 1.0)))
-        return lam(M) * dry / (dry + found.central_film) ** 3
+        return lam(M) * dry / (dry + solution.central_film) ** 3
 
     pressure, _ = quad(slope, 5.0, math.inf)
     load, _ = quad(lambda x: slope(x) * (x - 5.0), 5.0, math.inf)
-    assert found.pressure[0] == pytest.approx(pressure, rel=0.03)
-    width = found.position[1] - found.position[0]
-    carried = width * (found.pressure.sum() - 0.5 * found.pressure[0])
+    assert solution.pressure[0] == pytest.approx(pressure, rel=0.03)
+    width = solution.position[1] - solution.position[0]
+    carried = width * (solution.pressure.sum() - 0.5 * solution.pressure[0])
     assert math.pi / 2.0 - carried == pytest.approx(load, rel=0.03)
 
 
@@ -167,8 +167,8 @@ def test_flooded_film_does_not_depend_on_where_the_grid_begins(M, L):
     films = []
     for start in (-6.0, -20.0):
         nodes = 2049 if start == -6.0 else 8193
-        found = solve_line_contact_moes(M, L, domain=(start, 1.8), inlet="flooded", nodes=nodes)
-        films.append(found.central_film_extrapolated)
+        solution = solve_line_contact_moes(M, L, domain=(start, 1.8), inlet="flooded", nodes=nodes)
+        films.append(solution.central_film_extrapolated)
     starved = solve_line_contact_moes(M, L, domain=(-20.0, 1.8), inlet="zero", nodes=8193)
     assert films[0] == pytest.approx(films[1], rel=1e-3)
     assert starved.central_film_extrapolated < films[1]
@@ -181,11 +181,11 @@ def test_flooded_film_does_not_depend_on_where_the_grid_begins(M, L):
 def test_pressure_tends_to_that_of_the_dry_contact():
     worst, outlet = [], []
     for M in (20.0, 200.0, 800.0):
-        found = solved(M, 5.0, domain=(-2.5, 1.5))
-        inside = np.abs(found.position) < 0.7
-        dry = np.sqrt(1.0 - found.position[inside] ** 2)
-        worst.append(np.abs(found.pressure[inside] - dry).max())
-        outlet.append(found.outlet)
+        solution = solved(M, 5.0, domain=(-2.5, 1.5))
+        inside = np.abs(solution.position) < 0.7
+        dry = np.sqrt(1.0 - solution.position[inside] ** 2)
+        worst.append(np.abs(solution.pressure[inside] - dry).max())
+        outlet.append(solution.outlet)
     assert worst[0] > worst[1] > worst[2]
     assert worst[2] < 0.01
     assert outlet[0] > outlet[1] > outlet[2] > 1.0
@@ -193,10 +193,10 @@ def test_pressure_tends_to_that_of_the_dry_contact():
 
 
 def test_film_outside_a_loaded_contact_is_the_dry_gap():
-    found = solved(800.0, 5.0, domain=(-2.5, 1.5))
+    solution = solved(800.0, 5.0, domain=(-2.5, 1.5))
     x = np.array([1.2, 1.3, 1.45])
     dry = 0.5 * (x * np.sqrt(x**2 - 1.0) - np.log(x + np.sqrt(x**2 - 1.0)))
-    gap = np.interp(x, found.position, found.film) - found.central_film
+    gap = np.interp(x, solution.position, solution.film) - solution.central_film
     np.testing.assert_allclose(gap, dry, rtol=0.05)
 
 
@@ -205,12 +205,12 @@ def test_film_outside_a_loaded_contact_is_the_dry_gap():
 
 @pytest.mark.parametrize(("M", "L"), [(20.0, 10.0), (5.0, 5.0)])
 def test_known_film_agrees(M, L):
-    found = solved(M, L)
-    known = known_film(M, L, wetted(found), inlet=-4.5)
-    assert found.central_film == pytest.approx(known.central, rel=3e-4)
-    assert found.minimum_film == pytest.approx(known.minimum, rel=5e-4)
-    assert found.outlet == pytest.approx(known.X[-1], abs=1e-3)
-    spike, _ = known.spike
-    inside = known.X - spike < -0.05
-    pressure = np.interp(known.X, found.position, found.pressure)
-    np.testing.assert_allclose(pressure[inside], known.P[inside], atol=1e-3)
+    solution = solved(M, L)
+    reference = known_film(M, L, wetted(solution), inlet=-4.5)
+    assert solution.central_film == pytest.approx(reference.central, rel=3e-4)
+    assert solution.minimum_film == pytest.approx(reference.minimum, rel=5e-4)
+    assert solution.outlet == pytest.approx(reference.X[-1], abs=1e-3)
+    spike, _ = reference.spike
+    inside = reference.X - spike < -0.05
+    pressure = np.interp(reference.X, solution.position, solution.pressure)
+    np.testing.assert_allclose(pressure[inside], reference.P[inside], atol=1e-3)

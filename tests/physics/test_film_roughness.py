@@ -41,14 +41,14 @@ def smooth() -> TransientLineContact:
 @pytest.fixture(scope="module")
 def waves() -> dict[float, TransientLineContact]:
     """Pure rolling over a waviness of 10 nm, a while after the first wave has left."""
-    answers = {}
+    fields = {}
     for wavelength in (0.5, 1.0):
         step = wavelength / 40.0 * HALF_WIDTH / SPEED
         time = np.arange(int(5.0 * 40 / wavelength) + 1) * step
-        answers[wavelength] = solve(
+        fields[wavelength] = solve(
             time, roughness=(waviness(wavelength, 1e-8), None), surface_speeds=(SPEED, SPEED)
         )
-    return answers
+    return fields
 
 
 def wave_at(

@@ -38,10 +38,10 @@ def test_tangent_equals_two_solutions(load: float, speed: float) -> None:
 def test_tangent_of_the_dimensionless_contact() -> None:
     """The same grid at both loads: the tangent is the derivative of the discrete equations."""
     half = solve_line_contact_moes(5.0, 5.0, nodes=513).film_stiffness(0.5)
-    one = solve_line_contact_moes(5.0, 5.0, nodes=513).film_stiffness()
+    stiffness = solve_line_contact_moes(5.0, 5.0, nodes=513).film_stiffness()
     fine = solve_line_contact_moes(5.0, 5.0, nodes=2049).film_stiffness()
-    assert half == pytest.approx(0.5 * one, rel=1e-12)
-    assert one == pytest.approx(fine, rel=2e-3)
+    assert half == pytest.approx(0.5 * stiffness, rel=1e-12)
+    assert stiffness == pytest.approx(fine, rel=2e-3)
 
 
 def test_rigid_isoviscous_film_falls_as_one_over_the_load() -> None:
@@ -121,10 +121,10 @@ def test_distance_of_a_rigid_and_of_a_hertzian_contact() -> None:
 def test_printed_sum_is_a_length_that_doubles_with_the_grid() -> None:
     coarse, fine = contact(147802.0, 513), contact(147802.0, 1025)
     with pytest.warns(ModelWarning, match="seed-film-stiffness"):
-        one = coarse.film_stiffness(LENGTH, "seed")
+        printed_sum = coarse.film_stiffness(LENGTH, "seed")
     with pytest.warns(ModelWarning, match="doubles when the 1025 nodes"):
         other = fine.film_stiffness(LENGTH, "seed")
-    assert other / one == pytest.approx(2.0, rel=0.02)
+    assert other / printed_sum == pytest.approx(2.0, rel=0.02)
     secants = [item.film_stiffness(LENGTH, "secant") for item in (coarse, fine)]
     assert secants[1] / secants[0] == pytest.approx(1.0, rel=2e-3)
 

@@ -174,15 +174,15 @@ def test_rolling_part_does_not_depend_on_where_a_flooded_inlet_is_cut():
     gap = centre + far**2 / (2.0 * RADIUS)
     slope = 12.0 * eta * speed * (gap - centre) / gap**3
     pressure = np.concatenate(([0.0], np.cumsum(np.diff(far) * 0.5 * (slope[1:] + slope[:-1]))))
-    whole = 0.5 * np.sum(0.5 * (gap[1:] + gap[:-1]) * np.diff(pressure))
+    integral = 0.5 * np.sum(0.5 * (gap[1:] + gap[:-1]) * np.diff(pressure))
     oil = Lubricant(eta, 880.0, 0.0)
     for first in (-2e-3, -4e-3):
-        kept = far > first
-        film = FilmState(far[kept], pressure[kept], gap[kept], oil, MODULUS)
+        beyond = far > first
+        film = FilmState(far[beyond], pressure[beyond], gap[beyond], oil, MODULUS)
         rolling = film_traction(film, 0.0).rolling[0]
         cut = film.pressure[0, 0] * film.film_thickness[0, 0] * 1.5
-        assert rolling == pytest.approx(whole, rel=2e-3)
-        assert cut > 5e-3 * whole
+        assert rolling == pytest.approx(integral, rel=2e-3)
+        assert cut > 5e-3 * integral
 
 
 def test_grid_converges(contact):
@@ -199,9 +199,9 @@ def test_contacts_share_films_by_index(contact):
     second = FilmState(
         contact.position, 0.8 * contact.pressure, 1.1 * contact.film_thickness, OIL, MODULUS
     )
-    both = FilmState(
+    combined = FilmState(
         *(
-            np.vstack([getattr(one, name) for one in (contact, second)])
+            np.vstack([getattr(film_state, name) for film_state in (contact, second)])
             for name in ("position", "pressure", "film_thickness")
         ),
         OIL,
@@ -209,17 +209,21 @@ def test_contacts_share_films_by_index(contact):
         index=np.array([1, 0, 1]),
     )
     speeds = np.array([0.5, 0.5, -2.0])
-    traction = film_traction(both, speeds)
+    traction = film_traction(combined, speeds)
     single = [
         film_traction(film, v) for film, v in zip((second, contact, second), speeds, strict=True)
     ]
-    assert traction.sliding == pytest.approx([one.sliding[0] for one in single], rel=1e-13)
-    assert traction.rolling == pytest.approx([one.rolling[0] for one in single], rel=1e-13)
+    assert traction.sliding == pytest.approx(
+        [film_state.sliding[0] for film_state in single], rel=1e-13
+    )
+    assert traction.rolling == pytest.approx(
+        [film_state.rolling[0] for film_state in single], rel=1e-13
+    )
 
 
 def test_warm_film_is_the_cold_one_of_a_thinner_oil():
     # Barus: everything falls by exp(-beta dT)
-    known = {"temperature_viscosity_coefficient": 0.05, "thermal_conductivity": 0.13}
+    properties = {"temperature_viscosity_coefficient": 0.05, "thermal_conductivity": 0.13}
     x = np.linspace(-1e-4, 1e-4, 101)
     pressure = 0.4e9 * np.sqrt(1.0 - (x / 1.01e-4) ** 2)
     film, thin = (
@@ -227,7 +231,7 @@ def test_warm_film_is_the_cold_one_of_a_thinner_oil():
             x,
             pressure,
             np.full(101, 1e-6),
-            Lubricant(viscosity, 880.0, 2.19e-8, temperature=313.15, **known),
+            Lubricant(viscosity, 880.0, 2.19e-8, temperature=313.15, **properties),
             MODULUS,
             viscosity_law="barus",
         )

@@ -66,10 +66,12 @@ def test_slow_cycle_follows_the_steady_curve() -> None:
         for period in (2.4e-3, 0.24, 2.4)
     )
     inside = slice(15, -15)
-    apart = np.abs(fast.central_film / slowest.central_film - 1.0)[inside].max()
-    near = np.abs(slow.central_film / slowest.central_film - 1.0)[inside].max()
-    assert apart > 0.01  # squeeze matters in a real cycle
-    assert near == pytest.approx(apart / 100.0, rel=0.5)  # and fades as one over the period
+    fast_deviation = np.abs(fast.central_film / slowest.central_film - 1.0)[inside].max()
+    slow_deviation = np.abs(slow.central_film / slowest.central_film - 1.0)[inside].max()
+    assert fast_deviation > 0.01  # squeeze matters in a real cycle
+    assert slow_deviation == pytest.approx(
+        fast_deviation / 100.0, rel=0.5
+    )  # and fades as one over the period
     for i in (20, 50, 80):
         steady = solve_line_contact(
             slowest.load_per_width[i], slowest.equivalent_radius[i], slowest.entrainment_speed[i],
@@ -146,9 +148,9 @@ def test_viscosity_and_time_scale_together() -> None:
     time = np.linspace(0.0, 10.0 * TRANSIT, 51)
     load = LOAD * (1.0 - 0.4 * np.sin(np.pi * time / time[-1]) ** 2)
     law = {"viscosity_law": "barus"}
-    one = solve(time, load, SPEED, **law)
+    motion = solve(time, load, SPEED, **law)
     other = solve(2.0 * time, load, 0.5 * SPEED, oil=Lubricant(0.164, 880.0, 2.19e-8), **law)
-    assert other.central_film == pytest.approx(one.central_film, rel=1e-7)
+    assert other.central_film == pytest.approx(motion.central_film, rel=1e-7)
 
 
 def test_the_imposed_approach_gives_the_load_back() -> None:
@@ -166,10 +168,10 @@ def test_the_reference_length_shifts_the_approach_with_the_load() -> None:
     """``4 w ln(d_2/d_1)/(pi E')``: what a half space yields between two depths."""
     time = np.linspace(0.0, 10.0 * TRANSIT, 11)
     load = LOAD * (1.0 + 0.2 * np.sin(time / TRANSIT))
-    near, far = (solve(time, load, reference_length=d, domain=(-9.0, 2.5)) for d in (5e-3, 10e-3))
+    short, far = (solve(time, load, reference_length=d, domain=(-9.0, 2.5)) for d in (5e-3, 10e-3))
     shift = 4.0 * load * np.log(2.0) / (np.pi * MODULUS)
-    assert far.approach - near.approach == pytest.approx(shift, rel=2e-3)
-    assert far.central_film == pytest.approx(near.central_film, rel=1e-12)
+    assert far.approach - short.approach == pytest.approx(shift, rel=2e-3)
+    assert far.central_film == pytest.approx(short.central_film, rel=1e-12)
 
 
 def test_a_sudden_unloading_tears_the_film_and_heals() -> None:

@@ -82,8 +82,8 @@ def near_resonance(chance: random.Random) -> dict[str, Any]:
     }
     with quiet():
         modes = td.natural_modes(read_case(PAIR).replace(changes))
-    own = modes.frequency[int(np.argmax(modes.contact_share))]
-    speed = own * chance.uniform(0.4, 1.2) / changes["gears.pinion.teeth"] * 60.0
+    natural_frequency = modes.frequency[int(np.argmax(modes.contact_share))]
+    speed = natural_frequency * chance.uniform(0.4, 1.2) / changes["gears.pinion.teeth"] * 60.0
     return {**changes, "operation.speed": f"{speed:.6g} rpm"}
 
 
@@ -96,21 +96,21 @@ def relief(chance: random.Random) -> dict[str, Any]:
 
 @pytest.mark.slow
 def test_random_pairs_near_resonance_end(draws: Draws) -> None:
-    told: list[str] = []
+    errors: list[str] = []
     for chance in draws(6):
         changes = near_resonance(chance)
         if chance.random() < 0.5:
             changes |= relief(chance)
         print(changes)
         try:
-            found = solved(changes)
+            summary = solved(changes)
         except ComputationError as error:
-            told.append(str(error))
+            errors.append(str(error))
             continue
-        assert np.isfinite(found["rms_mesh_force"])
-        assert found["steady_state_error"] < 1e-6
+        assert np.isfinite(summary["rms_mesh_force"])
+        assert summary["steady_state_error"] < 1e-6
     # A motion that never repeats has no orbit, and that is what it says.
-    assert all("period" in words or "orbit" in words for words in told), told
+    assert all("period" in text or "orbit" in text for text in errors), errors
 
 
 OILS = ("ISO VG 46", "ISO VG 100", "ISO VG 220", "ISO VG 460")
@@ -141,9 +141,9 @@ def deviations(result: td.Result, chance: random.Random) -> dict[str, float]:
     }
     places = chance.sample(list(np.argwhere(mesh.in_contact & np.isfinite(mesh.central_film))), 12)
     for name, (column, extreme) in columns.items():
-        known = np.where(mesh.in_contact, column, np.nan)
-        place = np.unravel_index(extreme(known), known.shape)
-        assert summary[name] == known[place]
+        values = np.where(mesh.in_contact, column, np.nan)
+        place = np.unravel_index(extreme(values), values.shape)
+        assert summary[name] == values[place]
         places.append(np.array(place))
     index = tuple(np.array(places).T)
     contacts = (mesh.load_per_width, mesh.equivalent_radius, mesh.entrainment_speed)
@@ -161,16 +161,18 @@ def deviations(result: td.Result, chance: random.Random) -> dict[str, float]:
 
 @pytest.mark.slow
 def test_films_of_random_pairs_near_resonance_are_those_of_their_contacts(draws: Draws) -> None:
-    told: list[str] = []
+    messages: list[str] = []
     for chance in draws(1):
         changes = {**near_resonance(chance), **relief(chance), **film(chance)}
         print(changes)
         try:
             result = computed(changes)
         except ComputationError as error:
-            told.append(str(error))
+            messages.append(str(error))
             continue
-        found = deviations(result, chance)
-        print(found)
-        assert max(found.values()) < 0.02
-    assert all(any(word in words for word in ("period", "orbit", "film")) for words in told), told
+        errors = deviations(result, chance)
+        print(errors)
+        assert max(errors.values()) < 0.02
+    assert all(any(term in text for term in ("period", "orbit", "film")) for text in messages), (
+        messages
+    )

@@ -124,8 +124,8 @@ def two_bodies(speeds, effusivities, steps=600, layers=160):
         before, state = state, inverse @ source
         for body, factor in enumerate(carry):
             first = 1 + body * (layers - 1)
-            own = factor * cell[0] * (state[0] - before[0]) / dx
-            entered[body] += dx * (own + factor * link[0] * (state[0] - state[first]))
+            heat_into_body = factor * cell[0] * (state[0] - before[0]) / dx
+            entered[body] += dx * (heat_into_body + factor * link[0] * (state[0] - state[first]))
         surface.append(state[0])
     stored = float(heat_capacity @ state)
     return np.array(surface), entered, stored
@@ -178,9 +178,9 @@ def test_bad_values_are_refused(arguments, named):
 
 
 def test_oil_is_warmer_than_its_surfaces_by_the_mean_of_a_parabola():
-    one = np.ones(1)
+    ones = np.ones(1)
     thin, thick = (
-        film_thermal_resistance(HALF_WIDTH * one, h * one, 3.0 * one, 2.0 * one, 0.13)
+        film_thermal_resistance(HALF_WIDTH * ones, h * ones, 3.0 * ones, 2.0 * ones, 0.13)
         for h in (1e-12, 1e-6)
     )
     z = (np.arange(20000) + 0.5) / 20000 * 1e-6
@@ -196,9 +196,9 @@ def test_heat_made_is_heat_led_away():
     resistance = np.geomspace(1e-6, 1e3, 10)
 
     def heat(rise):
-        made = 2e4 * np.exp(-0.08 * rise) + 100.0 / (1.0 + rise)
+        heat_rate = 2e4 * np.exp(-0.08 * rise) + 100.0 / (1.0 + rise)
         slope = -0.08 * 2e4 * np.exp(-0.08 * rise) - 100.0 / (1.0 + rise) ** 2
-        return made, slope
+        return heat_rate, slope
 
     rise = film_temperature_rise(heat, resistance)
     assert rise == pytest.approx(resistance * heat(rise)[0], rel=1e-7)

@@ -77,11 +77,11 @@ def _smooth_place(time, frequency):
         force = _STIFF * max(deflection, 0.0) ** _POWER + _DAMPER * speed
         return [speed, _PUSH * (1.0 + 0.3 * np.cos(2 * np.pi * frequency * now)) - force]
 
-    found = solve_ivp(
+    solution = solve_ivp(
         rate, (0.0, time[-1]), [0.12, 0.0], "DOP853", t_eval=time, rtol=1e-12, atol=1e-14
     )
-    assert found.y[0].min() > 0.0
-    return found.y[0]
+    assert solution.y[0].min() > 0.0
+    return solution.y[0]
 
 
 def test_ramps_converge_to_the_smooth_law_with_the_square_of_their_width():
@@ -143,8 +143,8 @@ def test_friction_power_and_torques_hold_on_a_force_law():
     one_sided = fine.phase.reshape(-1, 3) + np.array([1e-9, 0.0, -1e-9])
     vector = system.contacts[0].friction(one_sided.reshape(-1) % 1.0)
     speed = 2 * np.pi * 240.0 / 16
-    whole = np.array([0.0, 0.0, speed, 0.0, 0.0, speed / 1.5])
-    power = -force * (vector * (fine.velocity + whole)).sum(axis=1)
+    rigid_rotation = np.array([0.0, 0.0, speed, 0.0, 0.0, speed / 1.5])
+    power = -force * (vector * (fine.velocity + rigid_rotation)).sum(axis=1)
     # Mean torque on the pinion: the load along the line of action and friction on its lever.
     torque = fine.mean(force * (BASE_RADIUS[0] + vector[:, 2]))
     assert torque == pytest.approx(90.0, rel=1e-9)

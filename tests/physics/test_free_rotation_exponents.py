@@ -51,24 +51,24 @@ def eigenvalues(system):
 
 def test_largest_exponent_of_a_free_pair_is_that_of_its_vibration():
     damping = 0.3
-    found = lyapunov_exponents(pair(damping, ripple=0.1), FREQUENCY, **SHORT)
+    result = lyapunov_exponents(pair(damping, ripple=0.1), FREQUENCY, **SHORT)
     rate = -0.5 * damping / SERIES
-    assert found.largest == pytest.approx(rate, rel=1e-9)
-    assert found.vibrating == pytest.approx([rate, rate], rel=1e-9)
-    assert found.exponents == pytest.approx([0.0, 0.0, rate, rate], rel=1e-9)
-    assert found.free_rotation.tolist() == [True, True, False, False]
-    assert found.rotating == ("pinion_theta", "wheel_theta")
-    shown = f"{rate:.4g} 1/s"
-    assert f"largest {rate:.5g} +-" in repr(found)
+    assert result.largest == pytest.approx(rate, rel=1e-9)
+    assert result.vibrating == pytest.approx([rate, rate], rel=1e-9)
+    assert result.exponents == pytest.approx([0.0, 0.0, rate, rate], rel=1e-9)
+    assert result.free_rotation.tolist() == [True, True, False, False]
+    assert result.rotating == ("pinion_theta", "wheel_theta")
+    rate_text = f"{rate:.4g} 1/s"
+    assert f"largest {rate:.5g} +-" in repr(result)
     assert "free rotation of pinion_theta, wheel_theta left out: 2 exponents, 0, 0 1/s" in repr(
-        found
+        result
     )
-    figure = found.plot()
-    assert shown in figure.layout.title.text
+    figure = result.plot()
+    assert rate_text in figure.layout.title.text
     assert "free rotation, left out" in [trace.name for trace in figure.data]
-    table = found.to_xarray()
-    assert table.attrs["largest"] == found.largest
-    assert table.free_rotation.values.tolist() == found.free_rotation.tolist()
+    table = result.to_xarray()
+    assert table.attrs["largest"] == result.largest
+    assert table.free_rotation.values.tolist() == result.free_rotation.tolist()
     assert table.attrs["rotating"] == "pinion_theta, wheel_theta"
 
 
@@ -76,25 +76,25 @@ def test_largest_exponent_of_a_free_pair_is_that_of_its_vibration():
 def test_free_rotation_that_is_braked_in_proportion_to_the_mass(rate):
     """The braked rotation is left out whether it dies away slower or faster than the vibration."""
     brake, damping = rate * np.diag(INERTIA), 0.3
-    found = lyapunov_exponents(pair(damping, brake, ripple=0.1), FREQUENCY, **SHORT)
+    result = lyapunov_exponents(pair(damping, brake, ripple=0.1), FREQUENCY, **SHORT)
     vibration = -0.5 * (damping / SERIES + rate)
-    assert found.free == 1
-    assert found.exponents[found.free_rotation] == pytest.approx([0.0, -rate], rel=1e-8)
-    assert found.largest == pytest.approx(vibration, rel=1e-8)
-    assert found.vibrating_growth.shape[1] == 2
-    assert f"2 exponents, 0, {-rate:.4g} 1/s" in repr(found)
+    assert result.free == 1
+    assert result.exponents[result.free_rotation] == pytest.approx([0.0, -rate], rel=1e-8)
+    assert result.largest == pytest.approx(vibration, rel=1e-8)
+    assert result.vibrating_growth.shape[1] == 2
+    assert f"2 exponents, 0, {-rate:.4g} 1/s" in repr(result)
 
 
 def test_free_rotation_that_one_damper_to_the_ground_brakes():
     """A damper of the wheel alone also damps the vibration: eigenvectors say which is which."""
     system = pair(0.3, [[0.0, 0.0], [0.0, 0.1]])
-    found = lyapunov_exponents(system, FREQUENCY, **SHORT)
+    result = lyapunov_exponents(system, FREQUENCY, **SHORT)
     values, _ = eigenvalues(system)
     real = np.abs(values.imag) < 1e-9
-    assert np.sort(found.exponents[found.free_rotation]) == pytest.approx(
+    assert np.sort(result.exponents[result.free_rotation]) == pytest.approx(
         np.sort(values.real[real]), abs=1e-9
     )
-    assert found.vibrating == pytest.approx(values.real[~real], rel=1e-8)
+    assert result.vibrating == pytest.approx(values.real[~real], rel=1e-8)
 
 
 def test_two_free_rotations_of_a_machine():
@@ -109,32 +109,32 @@ def test_two_free_rotations_of_a_machine():
     force = [1.0, 0.0, -1.5, 1.0, -2.0]
     names = ["motor_theta", "pinion_theta", "wheel_theta", "small_theta", "large_theta"]
     system = System(inertia, 0.02 * shaft, shaft, force, meshes, names=names)
-    found = lyapunov_exponents(system, FREQUENCY, **SHORT)
+    result = lyapunov_exponents(system, FREQUENCY, **SHORT)
     values = np.sort(eigenvalues(system)[0].real)[::-1]
-    assert found.free == 4
-    assert int(found.free_rotation.sum()) == 4
-    assert found.rotating == tuple(names)
+    assert result.free == 4
+    assert int(result.free_rotation.sum()) == 4
+    assert result.rotating == tuple(names)
     # The double zeros of a defective matrix come to the square root of rounding.
-    assert found.vibrating == pytest.approx(values[np.abs(values) > 1e-6], rel=1e-6)
-    assert found.largest < -0.01
+    assert result.vibrating == pytest.approx(values[np.abs(values) > 1e-6], rel=1e-6)
+    assert result.largest < -0.01
 
 
 def test_nothing_is_left_out_where_nothing_turns_freely():
-    found = lyapunov_exponents(hysteresis_system(), 0.14, cycles=40, transient=200, steps=128)
-    assert not found.free_rotation.any()
-    assert found.rotating == ()
-    assert found.left_out == ""
-    assert found.largest == found.exponents[0]
-    assert "free rotation" not in repr(found)
-    assert "free rotation, left out" not in [trace.name for trace in found.plot().data]
+    result = lyapunov_exponents(hysteresis_system(), 0.14, cycles=40, transient=200, steps=128)
+    assert not result.free_rotation.any()
+    assert result.rotating == ()
+    assert result.left_out == ""
+    assert result.largest == result.exponents[0]
+    assert "free rotation" not in repr(result)
+    assert "free rotation, left out" not in [trace.name for trace in result.plot().data]
 
 
 def test_exponent_of_zero_without_a_free_rotation_stays():
     """An undamped vibration has exponents of zero, as a motion at a bifurcation has."""
     spring = System([[2.0]], [[0.0]], [[18.0]], [0.0], names=["x"])
-    found = lyapunov_exponents(spring, 1.3, start=([1.0], [0.0]), **SHORT)
-    assert found.exponents == pytest.approx([0.0, 0.0], abs=1e-9)
-    assert found.largest == found.exponents[0]
+    result = lyapunov_exponents(spring, 1.3, start=([1.0], [0.0]), **SHORT)
+    assert result.exponents == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert result.largest == result.exponents[0]
     free = lyapunov_exponents(pair(0.0), FREQUENCY, start=([0.5, 0.0], [0.0, 0.0]), **SHORT)
     assert int(free.free_rotation.sum()) == 2
     assert free.vibrating == pytest.approx([0.0, 0.0], abs=1e-9)
@@ -157,10 +157,10 @@ def test_chaos_of_a_free_pair_is_that_of_the_mass_in_series():
     """The largest exponent stays that of an independent computation, 0.0962 +- 0.0004 1/s."""
     system, frequency = chaotic_pair()
     start = ([0.65, -0.65], [0.05, -0.05])
-    found = lyapunov_exponents(
+    result = lyapunov_exponents(
         system, frequency, start=start, cycles=800, transient=200, steps=96, verdict=False
     )
-    assert found.chaotic
-    assert abs(found.largest - 0.096214) < 3.5 * np.hypot(0.00036, found.largest_error)
-    assert found.free_rotation.tolist() == [False, True, True, False]
-    assert 1.6 < found.kaplan_yorke_dimension < 1.8
+    assert result.chaotic
+    assert abs(result.largest - 0.096214) < 3.5 * np.hypot(0.00036, result.largest_error)
+    assert result.free_rotation.tolist() == [False, True, True, False]
+    assert 1.6 < result.kaplan_yorke_dimension < 1.8

@@ -84,8 +84,8 @@ def plain(name, c, i):
     if name == "drozdov":
         return printed.drozdov(abs(sliding), 2.0 * speed, kinematic, pressure * 1e9 / 98066.5)
     if name == "misharin":
-        found = printed.misharin(abs(sliding), 2.0 * speed, kinematic)
-        return min(max(found, 0.02), 0.08)
+        coefficient = printed.misharin(abs(sliding), 2.0 * speed, kinematic)
+        return min(max(coefficient, 0.02), 0.08)
     point = c.pitch
     state = (
         point.load_per_width * 1e-3, point.sum_velocity, point.equivalent_radius * 1e3, viscosity,
@@ -102,8 +102,8 @@ def plain(name, c, i):
 def test_laws_at_other_places_of_other_gears_with_other_oils(name, state):
     c = contacts(*state)
     with quiet("friction-range", "friction-roughness"):
-        found = LAWS[name](c)
-    assert found == pytest.approx([plain(name, c, i) for i in range(9)], rel=1e-12)
+        coefficient = LAWS[name](c)
+    assert coefficient == pytest.approx([plain(name, c, i) for i in range(9)], rel=1e-12)
 
 
 #: A slip, and what it does to the arguments of the plain formula of Xu.

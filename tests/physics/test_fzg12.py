@@ -46,14 +46,14 @@ def exact_harmonics(system):
     for stiffness, begin, end in ((1.92e8, 0.0, 1 / 3), (1.2e8, 1 / 3, 1.0)):
         matrix, constant = rates(system, stiffness, np.zeros(size))
         span = (end - begin) * PERIOD
-        whole = np.zeros((2 * size + 1, 2 * size + 1))
-        whole[:-1, :-1], whole[:-1, -1] = matrix, constant
-        pieces.append((matrix, constant, begin * PERIOD, end * PERIOD, expm(whole * span)))
-    both = pieces[1][-1] @ pieces[0][-1]
+        system_matrix = np.zeros((2 * size + 1, 2 * size + 1))
+        system_matrix[:-1, :-1], system_matrix[:-1, -1] = matrix, constant
+        pieces.append((matrix, constant, begin * PERIOD, end * PERIOD, expm(system_matrix * span)))
+    monodromy = pieces[1][-1] @ pieces[0][-1]
     # units of displacement like those of velocity; the rotation of the whole drive is free
     scale = np.concatenate((np.full(size, 1e-4), np.ones(size)))
-    step = (np.eye(2 * size) - both[:-1, :-1]) * scale / scale[:, None]
-    state = scale * np.linalg.lstsq(step, both[:-1, -1] / scale, rcond=1e-12)[0]
+    step = (np.eye(2 * size) - monodromy[:-1, :-1]) * scale / scale[:, None]
+    state = scale * np.linalg.lstsq(step, monodromy[:-1, -1] / scale, rcond=1e-12)[0]
     along = np.asarray(system.contacts[0].direction)
     sums = np.zeros(HARMONICS, dtype=complex)
     for matrix, constant, begin, end, map_ in pieces:
@@ -105,8 +105,8 @@ def test_static_loads_of_the_benchmark(orbit):
 
 def test_harmonics_against_the_exact_solution_by_exponentials(orbit):
     exact = exact_harmonics(fzg12())
-    found = compression_harmonics(orbit)
-    np.testing.assert_allclose(found, exact, rtol=1e-5, atol=1e-6 * np.abs(exact[0]))
+    harmonics = compression_harmonics(orbit)
+    np.testing.assert_allclose(harmonics, exact, rtol=1e-5, atol=1e-6 * np.abs(exact[0]))
     # the third harmonic is the dip of a rectangle with a duty of one third
     assert np.abs(exact[2]) < 0.2 * np.abs(exact[3])
 
@@ -124,7 +124,7 @@ def test_harmonics_are_converged_against_doubled_steps(orbit):
 
 def test_harmonics_with_friction_against_an_adaptive_integrator():
     system = fzg12(friction_coefficient=0.035, torque_balance="both")
-    found = steady_state(fzg12(friction_coefficient=0.035), FZG12_MESH_FREQUENCY, steps=1024)
+    orbit_ = steady_state(fzg12(friction_coefficient=0.035), FZG12_MESH_FREQUENCY, steps=1024)
     (contact,) = system.contacts
     size, edges = system.size, [*contact.events, 1.0]
     along = np.asarray(contact.direction)
@@ -174,10 +174,10 @@ def test_harmonics_with_friction_against_an_adaptive_integrator():
         for k in range(HARMONICS):
             turns = np.exp(-2j * np.pi * (k + 1) * times / PERIOD)
             sums[k] += 2.0 / PERIOD * np.sum(weight * signal * turns)
-    torque = found.extra_force @ np.abs(np.asarray(fzg12().balance))
+    torque = orbit_.extra_force @ np.abs(np.asarray(fzg12().balance))
     assert np.abs(solved[-1]) == pytest.approx(np.abs(torque), rel=1e-4)
     np.testing.assert_allclose(
-        compression_harmonics(found), sums, rtol=2e-4, atol=1e-5 * np.abs(sums[0])
+        compression_harmonics(orbit_), sums, rtol=2e-4, atol=1e-5 * np.abs(sums[0])
     )
 
 
@@ -204,14 +204,14 @@ def test_friction_of_the_rectangular_mesh(driver):
 def test_friction_is_that_of_the_reference_pair():
     mesh = RectangularMesh(1.2e8, 1.92e8, friction_coefficient=0.1)
     phase = np.array([0.0, 0.1, 0.22, 0.24, 0.32, 0.34, 0.6, 0.99])
-    known = friction_vector(phase, 0.1)
-    np.testing.assert_allclose(mesh.friction_sum(phase), known[:, 0], atol=1e-12)
-    np.testing.assert_allclose(mesh.friction_moment_pinion(phase), known[:, 2], atol=2e-8)
-    np.testing.assert_allclose(-mesh.friction_moment_wheel(phase), known[:, 5], atol=2e-8)
+    expected = friction_vector(phase, 0.1)
+    np.testing.assert_allclose(mesh.friction_sum(phase), expected[:, 0], atol=1e-12)
+    np.testing.assert_allclose(mesh.friction_moment_pinion(phase), expected[:, 2], atol=2e-8)
+    np.testing.assert_allclose(-mesh.friction_moment_wheel(phase), expected[:, 5], atol=2e-8)
     # driven by the wheel, a pair runs along the same path the other way
     back = RectangularMesh(1.2e8, 1.92e8, friction_coefficient=0.1, driver="wheel")
-    there = back.friction_moment_pinion((4.0 / 3.0 - phase) % 1.0)
-    np.testing.assert_allclose(there[1:], mesh.friction_moment_pinion(phase)[1:], atol=1e-12)
+    moment = back.friction_moment_pinion((4.0 / 3.0 - phase) % 1.0)
+    np.testing.assert_allclose(moment[1:], mesh.friction_moment_pinion(phase)[1:], atol=1e-12)
 
 
 def test_wheel_that_drives_turns_the_effect_of_friction_over():

@@ -21,7 +21,7 @@ class Mesh:
         self.shift = DOUBLE if turn < 0 else 0.0
         self.event_phases = tuple(sorted((jump + self.shift) % 1.0 for jump in jumps))
 
-    def _own(self, phase):
+    def _self_matrix(self, phase):
         return (self.turn * (np.asarray(phase) - self.shift)) % 1.0
 
     def stiffness(self, phase):
@@ -59,8 +59,8 @@ def _friction_power(system, motion):
     fine = motion.fine
     phase = fine.phase.reshape(-1, 3) + np.array([1e-9, 0.0, -1e-9])
     vector = system.contacts[0].friction((phase % 1.0).reshape(-1))
-    whole = np.array([0.0, 0.0, SPEED, 0.0, 0.0, SPEED / RATIO])
-    return -fine.contact_force[:, 0] * (vector * (fine.velocity + whole)).sum(axis=1)
+    rigid_rotation = np.array([0.0, 0.0, SPEED, 0.0, 0.0, SPEED / RATIO])
+    return -fine.contact_force[:, 0] * (vector * (fine.velocity + rigid_rotation)).sum(axis=1)
 
 
 @pytest.mark.parametrize("driver", ["pinion", "wheel"])
@@ -93,18 +93,20 @@ def test_power_in_equals_power_out_and_losses(driver, balance):
         0.0, abs=1e-7 * shafts
     )
     assert -friction == pytest.approx(shafts, rel=0.05)
-    held, given = (0, 90.0) if (driver == "pinion") == (balance == "drive") else (1, 135.0)
-    assert abs(torque[held]) == pytest.approx(given, rel=1e-12)
+    balanced, given_torque = (
+        (0, 90.0) if (driver == "pinion") == (balance == "drive") else (1, 135.0)
+    )
+    assert abs(torque[balanced]) == pytest.approx(given_torque, rel=1e-12)
 
 
 def test_balanced_torque_leaves_no_mean_acceleration():
     system = _spur(0.1)
     motion = steady_state(system, FREQUENCY, steps=2048)
-    whole = motion.fine.mean(motion.fine.acceleration)[[2, 5]]
+    mean_acceleration = motion.fine.mean(motion.fine.acceleration)[[2, 5]]
     swing = np.abs(motion.fine.acceleration[:, [2, 5]]).max(axis=0)
-    assert np.all(np.abs(whole) < 1e-9 * swing)
-    held = steady_state(_spur(0.1, torque_balance="both"), FREQUENCY, steps=2048)
-    assert np.abs(held.fine.mean(held.fine.acceleration)[2]) > 1.0
+    assert np.all(np.abs(mean_acceleration) < 1e-9 * swing)
+    orbit = steady_state(_spur(0.1, torque_balance="both"), FREQUENCY, steps=2048)
+    assert np.abs(orbit.fine.mean(orbit.fine.acceleration)[2]) > 1.0
 
 
 def test_torque_ratio_without_friction_is_the_ratio_of_base_radii():
@@ -151,10 +153,10 @@ def test_torsional_pair_is_the_spur_pair_on_stiff_supports():
         mesh, moment_of_inertia=(407e-6, 1168e-6), base_radius=BASE_RADIUS,
         torque=(90.0, 135.0), mesh_damping=900.0,
     )  # fmt: skip
-    one = steady_state(stiff, FREQUENCY, steps=8192)
+    orbit = steady_state(stiff, FREQUENCY, steps=8192)
     other = steady_state(twist, FREQUENCY, steps=8192)
     scale = np.ptp(other.deflection)
-    np.testing.assert_allclose(one.deflection, other.deflection, atol=5e-3 * scale)
+    np.testing.assert_allclose(orbit.deflection, other.deflection, atol=5e-3 * scale)
 
 
 def test_friction_levers_add_up():

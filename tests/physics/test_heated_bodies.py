@@ -31,12 +31,14 @@ def case(**more):
 
 def test_coefficient_and_mass_are_those_of_the_gear():
     polymer = {f"gears.wheel.{name}": value for name, value in POLYMER.items()}
-    given = case(**polymer)
-    steel, wheel = given.thermal_contact_coefficients
+    heated_case = case(**polymer)
+    steel, wheel = heated_case.thermal_contact_coefficients
     assert steel == STEEL
     assert wheel == pytest.approx(np.sqrt(0.25 * 1140.0 * 1700.0), rel=1e-12)
     solid = {"gears.wheel.mass": None, "gears.wheel.moment_of_inertia": None}
-    masses = [derived_values(each.replace(solid))["gears.wheel.mass"] for each in (given, case())]
+    masses = [
+        derived_values(each.replace(solid))["gears.wheel.mass"] for each in (heated_case, case())
+    ]
     assert masses[0] / masses[1] == pytest.approx(1140.0 / 7800.0, rel=1e-12)
 
 
@@ -47,20 +49,22 @@ def test_half_of_a_thermal_property_is_refused(name):
 
 
 def test_which_body_is_the_faster_one_matters():
-    given = case()
-    settings = contact_settings(given)
-    mesh = loaded_mesh(given.gear_pair, settings, (given.pinion_speed, given.pinion_torque))
+    base_case = case()
+    settings = contact_settings(base_case)
+    mesh = loaded_mesh(
+        base_case.gear_pair, settings, (base_case.pinion_speed, base_case.pinion_torque)
+    )
 
     def friction(*bodies):
         return mesh.table(replace(settings, bodies=bodies)).friction_coefficient
 
-    alike, nearly = friction(STEEL, STEEL), friction(STEEL, STEEL * (1.0 + 1e-9))
-    assert nearly == pytest.approx(alike, rel=2e-3, abs=1e-5)  # other sliding speeds are asked
+    equal, nearly = friction(STEEL, STEEL), friction(STEEL, STEEL * (1.0 + 1e-9))
+    assert nearly == pytest.approx(equal, rel=2e-3, abs=1e-5)  # other sliding speeds are asked
     soft_pinion, soft_wheel = friction(680.0, STEEL), friction(STEEL, 680.0)
     table = mesh.table(settings)
     for sign, slower, faster in ((1.0, soft_wheel, soft_pinion), (-1.0, soft_pinion, soft_wheel)):
         # far from the pitch point: the slower body carries less heat away, so that it matters less
-        here = table.in_contact & (sign * table.sliding_speed > 0.5)
-        assert np.any(here)
-        assert np.all(faster[here] < slower[here])
-        assert np.all(slower[here] < alike[here])
+        sliding = table.in_contact & (sign * table.sliding_speed > 0.5)
+        assert np.any(sliding)
+        assert np.all(faster[sliding] < slower[sliding])
+        assert np.all(slower[sliding] < equal[sliding])

@@ -87,11 +87,24 @@ def drift():
 
 def test_natural_frequencies_of_the_default_pair():
     # Written down by another program from the same matrices [Hz].
-    known = (292.3, 359.0, 380.1, 452.4, 509.4, 705.5, 711.8, 756.4, 864.4, 942.8, 1139.6, 1591.6,
-             2739.5)  # fmt: skip
+    expected = (
+        292.3,
+        359.0,
+        380.1,
+        452.4,
+        509.4,
+        705.5,
+        711.8,
+        756.4,
+        864.4,
+        942.8,
+        1139.6,
+        1591.6,
+        2739.5,
+    )
     modes = natural_modes(hypoid14(constant_mesh(), **GEARS))
     assert modes.rigid == 1
-    assert modes.frequency[1:] == pytest.approx(known, abs=0.06)
+    assert modes.frequency[1:] == pytest.approx(expected, abs=0.06)
 
 
 def test_the_free_drive_moves_nothing_else():
@@ -115,11 +128,13 @@ def test_compression_at_rest_is_the_load_over_the_stiffness():
 
 def test_rest_at_every_phase_is_the_loaded_transmission_error():
     for phase in (0.0, 0.21, 0.62):
-        own = mesh(stopped=phase)
-        state = static_start(compile_for(hypoid14(own, **GEARS, backlash=BACKLASH), BEAT, 64))
-        row, zero = own.direction(np.zeros(1))[0], np.zeros(1)
+        stopped_mesh = mesh(stopped=phase)
+        state = static_start(
+            compile_for(hypoid14(stopped_mesh, **GEARS, backlash=BACKLASH), BEAT, 64)
+        )
+        row, zero = stopped_mesh.direction(np.zeros(1))[0], np.zeros(1)
         force = TORQUE / row[4]
-        loaded = force / own.stiffness(zero)[0] + own.error(zero)[0]
+        loaded = force / stopped_mesh.stiffness(zero)[0] + stopped_mesh.error(zero)[0]
         assert row @ state[1:13] - 0.5 * BACKLASH == pytest.approx(loaded, abs=1e-15)
 
 
@@ -131,10 +146,10 @@ def test_energy_adds_up_through_the_play():
     state = static_start(compile_for(system, BEAT, 1024))
     kick = np.zeros(14)
     kick[HYPOID14_NAMES.index("pinion_theta")] = -60.0
-    found = simulate(system, BEAT, 4, (state[:14], kick), steps=1024)
-    force = found.contact_force[:, 0]
+    response = simulate(system, BEAT, 4, (state[:14], kick), steps=1024)
+    force = response.contact_force[:, 0]
     assert np.count_nonzero(np.diff((force == 0.0).astype(int))) >= 8
-    assert energy_audit(system, found).imbalance < 1e-8
+    assert energy_audit(system, response).imbalance < 1e-8
 
 
 def test_momentum_of_the_free_drive():
@@ -142,8 +157,8 @@ def test_momentum_of_the_free_drive():
     state, kick = static_start(compile_for(hypoid14(mesh(), **GEARS), BEAT, 512)), drift()
     kick[3] = 0.02
     system = replace(system, balance=None)
-    found = simulate(system, BEAT, 2, (state[:14], kick), steps=512)
-    momentum = found.velocity @ system.mass @ drift()
+    response = simulate(system, BEAT, 2, (state[:14], kick), steps=512)
+    momentum = response.velocity @ system.mass @ drift()
     assert momentum == pytest.approx(momentum[0], rel=1e-12)
 
 
@@ -159,8 +174,8 @@ def test_power_in_is_power_out_and_power_of_friction(balance):
     # Force and velocity of the sliding itself, in the fixed frame: friction takes power.
     assert fed == pytest.approx(float(fine.weight @ lost), rel=1e-6)
     assert fed > 0.01 * TORQUE * SPEED
-    held = torque[0] if balance == "drive" else -torque[-1] * RATIO
-    assert held == pytest.approx(TORQUE, rel=1e-12)
+    torque_in = torque[0] if balance == "drive" else -torque[-1] * RATIO
+    assert torque_in == pytest.approx(TORQUE, rel=1e-12)
 
 
 def test_wrong_meshes_are_refused():

@@ -75,12 +75,12 @@ def located_impacts():
 
                 border.terminal, border.direction = True, bound if side == 0.0 else -bound
                 events.append(border)
-            found = solve_ivp(
+            solution = solve_ivp(
                 rate, (phase, end), y, "DOP853", events=events, args=(side,), rtol=1e-10,
                 atol=[1e-16] * 2 + [1e-12] * 2 + [1e-10] * 9,
             )  # fmt: skip
-            phase, y = found.t[-1], found.y[:, -1]
-            if found.status == 1:
+            phase, y = solution.t[-1], solution.y[:, -1]
+            if solution.status == 1:
                 crossings += 1
                 side = 0.0 if side else float(np.sign(SENSE @ y[:2]))
     return crossings, y[:4], y[4:] / y[-1]
@@ -116,9 +116,9 @@ def cycle_of_the_oscillator(turn, start):
             return y[0] - 1.0
 
         border.terminal, border.direction = True, -1.0 if side else 1.0
-        found = solve_ivp(rate, (time, end), y, "DOP853", events=border, rtol=1e-12, atol=1e-13)
-        time, y = found.t[-1], found.y[:, -1]
-        if found.status == 1:
+        solution = solve_ivp(rate, (time, end), y, "DOP853", events=border, rtol=1e-12, atol=1e-13)
+        time, y = solution.t[-1], solution.y[:, -1]
+        if solution.status == 1:
             # The damping sets in or out: the disturbance of the speed jumps.
             y[4:] += (0.02 if side else -0.02) * y[2:4]
             side = 1.0 - side
@@ -142,10 +142,10 @@ def test_period_doubling_has_the_multiplier_minus_one():
     end, second = cycle_of_the_oscillator(turn, middle)
     assert end == pytest.approx(state, abs=1e-6)
     assert np.abs(middle - state).max() > 0.1
-    own = np.linalg.eigvals(second @ first)
-    found = doubled.floquet_multipliers[number]
-    assert np.sort(found.real) == pytest.approx(np.sort(own.real), abs=1e-5)
-    assert found.real.max() > 1.0
+    eigenvalues = np.linalg.eigvals(second @ first)
+    multiplier = doubled.floquet_multipliers[number]
+    assert np.sort(multiplier.real) == pytest.approx(np.sort(eigenvalues.real), abs=1e-5)
+    assert multiplier.real.max() > 1.0
 
 
 def test_friction_sets_off_a_growing_swing_where_a_multiplier_leaves_the_circle():
@@ -165,12 +165,12 @@ def test_friction_sets_off_a_growing_swing_where_a_multiplier_leaves_the_circle(
         pull = -spring @ x - loss @ v - (0.5 + 0.1 * np.cos(TURN * 0.37 * t)) * push
         return np.concatenate((v, pull)).ravel()
 
-    whole = solve_ivp(
+    fundamental = solve_ivp(
         rate, (0.0, 1.0 / 0.37), np.eye(4).ravel(), "DOP853", rtol=1e-12, atol=1e-13
     )  # fmt: skip
-    own = np.linalg.eigvals(whole.y[:, -1].reshape(4, 4))
-    assert np.abs(own).max() == pytest.approx(1.0, abs=1e-7)
-    assert np.abs(own[np.abs(own).argmax()].imag) > 0.1
+    eigenvalues = np.linalg.eigvals(fundamental.y[:, -1].reshape(4, 4))
+    assert np.abs(eigenvalues).max() == pytest.approx(1.0, abs=1e-7)
+    assert np.abs(eigenvalues[np.abs(eigenvalues).argmax()].imag) > 0.1
 
 
 def test_chaos_of_an_oscillator_whose_stiffness_and_damping_change():
@@ -181,13 +181,13 @@ def test_chaos_of_an_oscillator_whose_stiffness_and_damping_change():
         [[1.0]], [[0.02]], [[0.0]],
         lambda p: (0.05 + 0.2 * np.cos(TURN * p + 0.3))[:, None], [pair],
     )  # fmt: skip
-    found = lyapunov_exponents(
+    result = lyapunov_exponents(
         system, 0.8 / TURN, start=([1.3], [0.2]), cycles=8000, transient=300, steps=96
     )
-    both = np.hypot(error, found.standard_error[0])
-    assert found.chaotic
-    assert abs(found.largest - value) < 3.5 * both
-    assert found.standard_error[0] < 0.02 * value
-    assert found.exponents.sum() == pytest.approx(found.divergence, rel=1e-9)
+    error_sum = np.hypot(error, result.standard_error[0])
+    assert result.chaotic
+    assert abs(result.largest - value) < 3.5 * error_sum
+    assert result.standard_error[0] < 0.02 * value
+    assert result.exponents.sum() == pytest.approx(result.divergence, rel=1e-9)
     # The reference adds up to -0.033302, counted over its own motions.
-    assert found.exponents.sum() == pytest.approx(-0.033302, rel=0.01)
+    assert result.exponents.sum() == pytest.approx(-0.033302, rel=0.01)

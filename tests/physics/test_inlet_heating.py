@@ -45,11 +45,11 @@ def _pressure_is_reached(strength, loading, slide=0.0, steps=300):
 
     places = np.linspace(0.999, 0.0, steps + 1)
     reduced = 0.5 * strength * ((1.0 - places[0]) / places[0]) ** 2
-    for here, there in pairwise(places):
-        middle = reduced + 0.5 * (here - there) * slope(here, reduced)
+    for position, next_position in pairwise(places):
+        middle = reduced + 0.5 * (position - next_position) * slope(position, reduced)
         if middle >= _ENOUGH:
             return True
-        reduced += (here - there) * slope(0.5 * (here + there), middle)
+        reduced += (position - next_position) * slope(0.5 * (position + next_position), middle)
         if reduced >= _ENOUGH:
             return True
     return False
@@ -62,8 +62,8 @@ def solved_inlet(loading, slide=0.0):
         low, high = 0.1, 1e3
         for _ in range(25):
             middle = np.sqrt(low * high)
-            reached = _pressure_is_reached(middle, value, slide if value else 0.0)
-            low, high = (low, middle) if reached else (middle, high)
+            is_reached = _pressure_is_reached(middle, value, slide if value else 0.0)
+            low, high = (low, middle) if is_reached else (middle, high)
         strengths.append(high)
     return (strengths[0] / strengths[1]) ** 0.75
 
@@ -103,8 +103,8 @@ def test_worked_by_hand():
     loading = 0.08 * 0.05 * 9.0 / 0.13
     above = 1.0 - 13.2 * 1e9 / 2.3e11 * loading**0.42
     below = 1.0 + 0.213 * (1.0 + 2.23 * 0.4**0.83) * loading**0.64
-    found = inlet_heating_factor(3.0, -0.4, 1e9, **OIL)
-    assert found == pytest.approx(above / below, rel=1e-14)
+    factor_ = inlet_heating_factor(3.0, -0.4, 1e9, **OIL)
+    assert factor_ == pytest.approx(above / below, rel=1e-14)
 
 
 def test_slow_contacts_keep_their_film():
@@ -117,9 +117,9 @@ def test_slow_contacts_keep_their_film():
 @pytest.mark.parametrize("name", ["loading", "ratio", "pressure"])
 def test_factor_falls_with_everything_that_heats(name):
     values = {"loading": 1.0, "ratio": 0.3, "pressure": 1e9}
-    found = [factor(**{**values, name: values[name] * step}) for step in (1.0, 1.5, 2.0)]
-    assert np.all(np.diff(found) < 0.0)
-    assert 0.0 < found[-1] < found[0] < 1.0
+    factors = [factor(**{**values, name: values[name] * step}) for step in (1.0, 1.5, 2.0)]
+    assert np.all(np.diff(factors) < 0.0)
+    assert 0.0 < factors[-1] < factors[0] < 1.0
 
 
 def test_units_do_not_matter():

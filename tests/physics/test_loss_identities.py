@@ -45,17 +45,17 @@ def test_loss_of_a_run_is_friction_force_times_sliding_of_every_pair(driver, law
 def test_total_of_a_run_with_a_gearbox(balance):
     case = case_of(operation__torque_balance=balance).replace(BOX)
     figures = td.run(case).summary()
-    there = td.loss_map(case, torque=90.0, speed=case.operation.speed)
+    losses = td.loss_map(case, torque=90.0, speed=case.operation.speed)
     names = ("gear", "bearing", "seal", "churning", "windage")
     parts = {name: figures[f"{name}_power_loss"] for name in names}
     assert figures["total_power_loss"] == pytest.approx(sum(parts.values()), rel=1e-14)
     # Bearings, seals and oil do not ask how the teeth vibrate.
-    rest = (there.total - there.gear).item()
-    assert sum(parts.values()) - parts["gear"] == pytest.approx(rest, rel=1e-12)
-    given = 90.0 * case.pinion_speed
-    taken = given + (figures["total_power_loss"] if balance == "load" else 0.0)
+    other_losses = (losses.total - losses.gear).item()
+    assert sum(parts.values()) - parts["gear"] == pytest.approx(other_losses, rel=1e-12)
+    power_in = 90.0 * case.pinion_speed
+    drive_power = power_in + (figures["total_power_loss"] if balance == "load" else 0.0)
     assert figures["total_efficiency"] == pytest.approx(
-        1.0 - figures["total_power_loss"] / taken, rel=1e-12
+        1.0 - figures["total_power_loss"] / drive_power, rel=1e-12
     )
     assert figures["total_efficiency"] < figures["efficiency"]
 
@@ -69,10 +69,10 @@ def test_map_of_constant_friction_is_the_gear_loss_factor():
             "friction.coefficient": 0.06,
         }
     )
-    found = td.loss_map(case, torque=[20.0, 200.0], speed=[50.0, 100.0, 400.0])
+    losses = td.loss_map(case, torque=[20.0, 200.0], speed=[50.0, 100.0, 400.0])
     factor = td.losses.gear_loss_factor(case.gear_pair)
-    assert found.gear_efficiency == pytest.approx(np.full((2, 3), 1.0 - 0.06 * factor), rel=1e-12)
-    assert np.array_equal(found.efficiency, found.gear_efficiency)
+    assert losses.gear_efficiency == pytest.approx(np.full((2, 3), 1.0 - 0.06 * factor), rel=1e-12)
+    assert np.array_equal(losses.efficiency, losses.gear_efficiency)
 
 
 def test_map_of_a_wheel_is_that_of_its_pinion():
@@ -86,12 +86,12 @@ def test_map_of_a_wheel_is_that_of_its_pinion():
         }
     )
     assert turned.pinion_torque == pytest.approx(90.0)
-    one = td.loss_map(case, torque=[45.0, 90.0], speed=[50.0, 100.0])
+    losses = td.loss_map(case, torque=[45.0, 90.0], speed=[50.0, 100.0])
     other = td.loss_map(
         turned, torque=[45.0 * ratio, 90.0 * ratio], speed=[50.0 / ratio, 100.0 / ratio]
     )
-    assert other.pinion_torque == pytest.approx(one.pinion_torque)
-    assert other.total == pytest.approx(one.total, rel=1e-12)
+    assert other.pinion_torque == pytest.approx(losses.pinion_torque)
+    assert other.total == pytest.approx(losses.total, rel=1e-12)
     standing = td.loss_map(turned)
     assert standing.pinion_torque[3] == pytest.approx(90.0)
     assert standing.pinion_speed[3] == pytest.approx(case.pinion_speed)
@@ -108,10 +108,10 @@ def test_warnings_of_a_map_are_told_once_with_their_points():
 def test_rig_of_a_case_has_its_gears_on_both_sides():
     case = case_of(friction__law="schlenk").replace(BOX)
     slave = case.replace({"losses.pinion.bearing": "QJ 308", "losses.wheel.bearing": "QJ 308"})
-    alike, flow = td.rig_power_flow(case), td.rig_power_flow(case, slave)
+    equal, flow = td.rig_power_flow(case), td.rig_power_flow(case, slave)
     point = td.loss_map(case, torque=90.0, speed=case.operation.speed)
-    assert alike.motor_power == pytest.approx(2.0 * point.total.item(), rel=1e-12)
-    assert flow.loss[0] == pytest.approx(alike.loss[0])
+    assert equal.motor_power == pytest.approx(2.0 * point.total.item(), rel=1e-12)
+    assert flow.loss[0] == pytest.approx(equal.loss[0])
     moved = [name for name, a, b in zip(flow.part, *flow.loss, strict=True) if a != b]
     assert moved == ["bearing_rolling", "bearing_sliding"]
     other = case.replace({"operation.torque": "95 N*m"})

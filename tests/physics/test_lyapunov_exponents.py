@@ -70,10 +70,12 @@ def chaotic_system(**contact):
 @pytest.mark.parametrize("zeta", [0.0, 0.01, 0.3, 1.5])
 def test_linear_oscillator_has_the_real_parts_of_its_eigenvalues(zeta):
     system = System([[2.0]], [[4.0 * zeta * 3.0]], [[2.0 * 9.0]], [0.0])
-    found = lyapunov_exponents(system, 1.3, start=([1.0], [0.0]), cycles=40, transient=60, steps=64)
+    result = lyapunov_exponents(
+        system, 1.3, start=([1.0], [0.0]), cycles=40, transient=60, steps=64
+    )
     expected = np.sort(np.real(np.roots([1.0, 6.0 * zeta, 9.0])))[::-1]
-    assert found.exponents == pytest.approx(expected, rel=1e-9, abs=1e-9)
-    assert not found.chaotic
+    assert result.exponents == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert not result.chaotic
 
 
 @pytest.mark.parametrize("turn", [1.95, 2.0, 3.0])
@@ -81,90 +83,94 @@ def test_meissner_exponents_are_those_of_the_multipliers(turn):
     zeta, period = 0.02, TURN / turn
     pair = Contact([1.0], lambda p: np.where(p < 0.5, 1.4, 0.6), events=(0.0, 0.5))
     system = System([[1.0]], [[2.0 * zeta]], [[0.0]], [0.0], [pair])
-    found = lyapunov_exponents(
+    result = lyapunov_exponents(
         system, 1.0 / period, start=([1e-3], [0.0]), cycles=40, transient=160, steps=64
     )
     halves = [expm(np.array([[0.0, 1.0], [-k, -2.0 * zeta]]) * period / 2.0) for k in (1.4, 0.6)]
     expected = np.sort(np.log(np.abs(np.linalg.eigvals(halves[1] @ halves[0]))) / period)[::-1]
-    assert found.exponents == pytest.approx(expected, rel=1e-9)
+    assert result.exponents == pytest.approx(expected, rel=1e-9)
     # Within the tongue the equations repeat and the motion grows: unstable, and no chaos.
-    assert (found.largest > 0.0) == (turn < 2.5)
-    assert found.repeats == 1
-    assert not found.chaotic
+    assert (result.largest > 0.0) == (turn < 2.5)
+    assert result.repeats == 1
+    assert not result.chaotic
 
 
 def test_mathieu_exponents_are_those_of_the_multipliers():
     period = TURN / 1.1
     pair = Contact([1.0], stiffness=lambda p: 1.0 + 0.5 * np.cos(TURN * p))
     system = System([[1.0]], [[0.06]], [[0.0]], [0.0], [pair])
-    found = lyapunov_exponents(system, 1.0 / period, start=([1.0], [0.0]), cycles=40, transient=300)
+    result = lyapunov_exponents(
+        system, 1.0 / period, start=([1.0], [0.0]), cycles=40, transient=300
+    )
 
     def rate(time, y):
         x, v = y.reshape(2, 2)
         stiffness = 1.0 + 0.5 * np.cos(TURN * time / period)
         return np.concatenate((v, -0.06 * v - stiffness * x))
 
-    whole = solve_ivp(rate, (0.0, period), np.eye(2).ravel(), rtol=1e-12, atol=1e-13, max_step=0.1)
-    multipliers = np.linalg.eigvals(whole.y[:, -1].reshape(2, 2))
+    fundamental = solve_ivp(
+        rate, (0.0, period), np.eye(2).ravel(), rtol=1e-12, atol=1e-13, max_step=0.1
+    )
+    multipliers = np.linalg.eigvals(fundamental.y[:, -1].reshape(2, 2))
     expected = np.sort(np.log(np.abs(multipliers)) / period)[::-1]
-    assert found.exponents == pytest.approx(expected, rel=1e-6)
+    assert result.exponents == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize("start", [([1.5], [0.0]), ([3.0], [0.0])])
 def test_both_motions_of_the_hysteresis_case(start):
-    found = lyapunov_exponents(
+    result = lyapunov_exponents(
         hysteresis_system(), 0.88 / TURN, start=start, cycles=40, transient=200, steps=256
     )
-    assert np.exp(found.exponents * TURN / 0.88) == pytest.approx([0.699773] * 2, abs=1e-6)
+    assert np.exp(result.exponents * TURN / 0.88) == pytest.approx([0.699773] * 2, abs=1e-6)
 
 
 def test_gear_pair_has_two_free_exponents_and_the_trace_of_its_damping():
-    found = lyapunov_exponents(reference_system(), 240.0, cycles=40, transient=40)
+    result = lyapunov_exponents(reference_system(), 240.0, cycles=40, transient=40)
     direction = np.asarray(reference_system().contacts[0].direction)
     rate = np.trace(4e3 * np.linalg.inv(MASS) @ SUPPORT)
     rate += 900.0 * direction @ np.linalg.inv(MASS) @ direction
-    assert found.free == 2
-    assert found.exponents[:2].tolist() == [0.0, 0.0]
-    assert found.exponents.sum() == pytest.approx(-rate, rel=1e-9)
-    assert found.divergence == pytest.approx(-rate, rel=1e-12)
+    assert result.free == 2
+    assert result.exponents[:2].tolist() == [0.0, 0.0]
+    assert result.exponents.sum() == pytest.approx(-rate, rel=1e-9)
+    assert result.divergence == pytest.approx(-rate, rel=1e-12)
 
 
 def test_friction_gives_the_known_multiplier():
-    found = lyapunov_exponents(reference_system(0.1), 240.0, cycles=40, transient=40)
-    assert np.exp(found.vibrating[0] / 240.0) == pytest.approx(0.000949, abs=5e-7)
+    result = lyapunov_exponents(reference_system(0.1), 240.0, cycles=40, transient=40)
+    assert np.exp(result.vibrating[0] / 240.0) == pytest.approx(0.000949, abs=5e-7)
 
 
 def test_exponents_that_differ_by_thousands_keep_their_digits():
     stiff = System(np.eye(2), np.diag([0.2, 2000.0]), np.diag([4.0, 1e4]), [0.0, 0.0])
     start = ([1.0, 1.0], [0.0, 0.0])
-    found = lyapunov_exponents(stiff, 1.0, start=start, cycles=40, transient=20, steps=1024)
+    result = lyapunov_exponents(stiff, 1.0, start=start, cycles=40, transient=20, steps=1024)
     fast = np.roots([1.0, 2000.0, 1e4])
-    assert found.exponents == pytest.approx([-0.1, -0.1, fast.max(), fast.min()], rel=1e-9)
+    assert result.exponents == pytest.approx([-0.1, -0.1, fast.max(), fast.min()], rel=1e-9)
 
 
 @pytest.mark.slow
 def test_chaotic_exponent_agrees_with_the_independent_computation():
     frequency = CHAOTIC["W"] / TURN
-    found = lyapunov_exponents(
+    result = lyapunov_exponents(
         chaotic_system(), frequency, start=([1.3], [0.1]), cycles=9000, transient=200, steps=96
     )
     value, error = INDEPENDENT
-    assert found.chaotic
-    assert found.standard_error[0] < 0.01 * value
-    assert abs(found.largest - value) < 3.5 * np.hypot(error, found.standard_error[0])
-    assert found.largest == pytest.approx(value, rel=0.025)
-    assert found.exponents.sum() == pytest.approx(-CHAOTIC["c"], rel=1e-9)
-    assert 1.6 < found.kaplan_yorke_dimension < 1.8
+    assert result.chaotic
+    assert result.standard_error[0] < 0.01 * value
+    assert abs(result.largest - value) < 3.5 * np.hypot(error, result.standard_error[0])
+    assert result.largest == pytest.approx(value, rel=0.025)
+    assert result.exponents.sum() == pytest.approx(-CHAOTIC["c"], rel=1e-9)
+    assert 1.6 < result.kaplan_yorke_dimension < 1.8
 
 
 def test_sum_is_the_damping_of_the_contact_while_it_touches():
     system, frequency = chaotic_system(damping=0.05), CHAOTIC["W"] / TURN
     start = ([1.3], [0.1])
-    found = lyapunov_exponents(system, frequency, start=start, cycles=60, transient=0, steps=256)
+    result = lyapunov_exponents(system, frequency, start=start, cycles=60, transient=0, steps=256)
     motion = simulate(system, frequency, 60, start, steps=256)
     touching = motion.fine.mean((np.abs(motion.fine.deflection[:, 0]) > 1.0).astype(float))
-    assert found.exponents.sum() == pytest.approx(found.divergence, rel=1e-9)
-    assert found.divergence == pytest.approx(-0.04 - 0.05 * touching, rel=1e-3)
+    assert result.exponents.sum() == pytest.approx(result.divergence, rel=1e-9)
+    assert result.divergence == pytest.approx(-0.04 - 0.05 * touching, rel=1e-3)
 
 
 GAP = {"gap": lambda p: 1.0 + 0.2 * np.cos(TURN * p)}
@@ -190,8 +196,10 @@ def test_disturbance_of_one_cycle_agrees_with_two_marched_motions(name):
         steps, _ = _Carrier(tables, state[0], np.zeros(1))._matrices(record[:, :, 0])
         matrix = grouped_products(steps[None], 512)[0, 0]
         y, small = reduce(state)[0], 1e-6 * np.eye(2)
-        both = [march(compiled, np.repeat(period, 2), expand(y + d), 1) for d in (small, -small)]
-        expected = (reduce(both[0]) - reduce(both[1])).T / 2e-6
+        disturbed = [
+            march(compiled, np.repeat(period, 2), expand(y + d), 1) for d in (small, -small)
+        ]
+        expected = (reduce(disturbed[0]) - reduce(disturbed[1])).T / 2e-6
         assert np.abs(matrix - expected).max() < 1e-6 * np.abs(matrix).max()
         crossings += int(np.count_nonzero(np.diff(np.abs(record[:, 0, 0]) > 1.0)))
         state = new
@@ -213,11 +221,11 @@ def test_bad_input_is_refused():
 
 def test_table_has_units():
     system = System([[1.0]], [[0.2]], [[4.0]], [0.0])
-    found = lyapunov_exponents(system, 1.0, start=([1.0], [0.0]), cycles=4, transient=0, steps=32)
-    table = found.to_xarray()
+    result = lyapunov_exponents(system, 1.0, start=([1.0], [0.0]), cycles=4, transient=0, steps=32)
+    table = result.to_xarray()
     assert table["lyapunov_exponent"].attrs["units"] == "1/s"
     assert table.attrs["cycles"] == 4
-    assert "not chaotic" in repr(found)
+    assert "not chaotic" in repr(result)
 
 
 if __name__ == "__main__":

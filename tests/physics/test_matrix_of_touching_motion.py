@@ -25,8 +25,8 @@ def test_multipliers_are_those_of_the_damped_spring() -> None:
     exact = np.exp(root / 0.7)
     assert orbit.converged
     assert orbit.contact_force.min() > 0.0
-    found = orbit.floquet_multipliers[np.argmax(orbit.floquet_multipliers.imag)]
-    assert found == pytest.approx(exact if exact.imag > 0 else np.conj(exact), abs=1e-6)
+    multiplier = orbit.floquet_multipliers[np.argmax(orbit.floquet_multipliers.imag)]
+    assert multiplier == pytest.approx(exact if exact.imag > 0 else np.conj(exact), abs=1e-6)
 
 
 def test_rate_is_that_of_the_whole_grid() -> None:

@@ -96,13 +96,13 @@ def deviations(mesh: Any, places: np.ndarray) -> dict[str, np.ndarray]:
         )  # fmt: skip
     pressure = np.array([solution.pressure.max() for solution in films.solutions])
     solved = (films.central_film, films.minimum_film, pressure, films.film_stiffness)
-    found = {}
+    errors = {}
     for name, values in zip(NAMES, solved, strict=True):
         error = getattr(mesh, name)[index] / values - 1.0
         if name == "film_stiffness":
             error = error[(values > 0.0) & (values < RIGID * 30e-3 * load / films.central_film)]
-        found[name] = error[np.isfinite(error)]
-    return found
+        errors[name] = error[np.isfinite(error)]
+    return errors
 
 
 def touching(mesh: Any) -> np.ndarray:
@@ -135,17 +135,17 @@ def test_relieved_flanks_have_the_films_of_their_contacts_everywhere() -> None:
 
 def test_positions_follow_the_load_without_a_warning(recwarn: pytest.WarningsRecorder) -> None:
     table(pair(tip_relief=10e-6), film_options={"positions": 8})
-    assert not [one for one in recwarn if "film-positions" in str(one.message)]
+    assert not [warning for warning in recwarn if "film-positions" in str(warning.message)]
 
 
 def test_pairs_that_do_not_touch_have_no_film() -> None:
     mesh = relieved("none")
-    apart = mesh.in_contact & (mesh.load_share < 1e-3)
-    assert apart.sum() > 100
+    separated = mesh.in_contact & (mesh.load_share < 1e-3)
+    assert separated.sum() > 100
     for name in (*NAMES, "film_ratio"):
         column = getattr(mesh, name)
-        assert np.all(np.isnan(column[apart]))
-        assert np.all(np.isfinite(column[mesh.in_contact & ~apart]))
+        assert np.all(np.isnan(column[separated]))
+        assert np.all(np.isfinite(column[mesh.in_contact & ~separated]))
         assert np.all(column[~mesh.in_contact] == 0.0)
 
 
@@ -165,9 +165,9 @@ def test_films_over_operation_leave_them_out_too() -> None:
         pair(tip_relief=10e-6), material=STEEL, stiffness_model="weber", lubricant=OIL,
         film_model="newton", pinion_speed=[261.8], pinion_torque=[120.0, 400.0],
     )  # fmt: skip
-    apart = np.isnan(films.central_film[:, 0])
-    assert np.all(apart[:, [0, -1]][0])
-    assert apart[0].sum() >= apart[1].sum()
+    separated = np.isnan(films.central_film[:, 0])
+    assert np.all(separated[:, [0, -1]][0])
+    assert separated[0].sum() >= separated[1].sum()
     assert np.nanmin(films.central_film) == pytest.approx(4e-7, rel=0.2)
 
 
@@ -175,23 +175,25 @@ def test_too_few_places_leave_films_out_and_are_told(monkeypatch: pytest.MonkeyP
     import tribodyn.mesh.film.film_refinement as refinement
 
     monkeypatch.setattr(refinement, "MOST_ADDED", 40)
-    with pytest.warns(ModelWarning, match=r"film-positions.*at \d+ of \d+ contacts.*film") as told:
+    with pytest.warns(
+        ModelWarning, match=r"film-positions.*at \d+ of \d+ contacts.*film"
+    ) as caught:
         mesh = table(pair(tip_relief=10e-6), film_options={"stiffness": "none", "positions": 8})
-    assert sum("film-positions" in str(one.message) for one in told) == 1
+    assert sum("film-positions" in str(warning.message) for warning in caught) == 1
     left_out = np.isnan(mesh.film_stiffness) & (mesh.load_share > 1e-3)
     assert left_out.any()
-    known = touching(mesh)[::9]
-    assert np.abs(deviations(mesh, known)["film_pressure"]).max() < 0.02
+    places = touching(mesh)[::9]
+    assert np.abs(deviations(mesh, places)["film_pressure"]).max() < 0.02
 
 
 def test_flanks_that_relief_keeps_apart_are_carried_by_their_film() -> None:
     """A film as thick as the gap carries what keeps it there, at every place of the path."""
     mesh, dry = relieved(), relieved("none")
-    apart = mesh.in_contact & (dry.load_share == 0.0)
-    assert apart.sum() > 100
-    assert np.all((mesh.load_share[apart] > 1e-3) & (mesh.load_share[apart] < 0.06))
-    assert mesh.central_film[apart].max() < 10e-6
-    assert np.all(mesh.film_stiffness[apart] > 0.0)
+    separated = mesh.in_contact & (dry.load_share == 0.0)
+    assert separated.sum() > 100
+    assert np.all((mesh.load_share[separated] > 1e-3) & (mesh.load_share[separated] < 0.06))
+    assert mesh.central_film[separated].max() < 10e-6
+    assert np.all(mesh.film_stiffness[separated] > 0.0)
 
 
 @pytest.mark.slow

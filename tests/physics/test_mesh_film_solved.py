@@ -80,15 +80,15 @@ def touching(mesh: Any) -> Any:
 @pytest.mark.parametrize("name", PAIRS)
 def test_films_between_the_positions_are_those_solved_at_the_knots(name: str) -> None:
     mesh = table(name, film_options={"stiffness": "tangent"})
-    here = mesh.in_contact
-    loads = mesh.load_per_width[here]
+    in_contact = mesh.in_contact
+    loads = mesh.load_per_width[in_contact]
     direct = touching(mesh)[0].films("newton", loads, stiffness="tangent")
-    assert mesh.central_film[here] == pytest.approx(direct.central_film, rel=5e-5)
-    assert mesh.minimum_film[here] == pytest.approx(direct.minimum_film, rel=3e-4)
+    assert mesh.central_film[in_contact] == pytest.approx(direct.central_film, rel=5e-5)
+    assert mesh.minimum_film[in_contact] == pytest.approx(direct.minimum_film, rel=3e-4)
     # the tangent moves with the node of the outlet, the spike with every node
-    assert mesh.film_stiffness[here] == pytest.approx(direct.film_stiffness, rel=4e-2)
-    assert mesh.film_pressure[here] == pytest.approx(direct.film_pressure, rel=0.15)
-    assert np.all(mesh.film_pressure[here] > 0.9 * mesh.hertz_pressure[here])
+    assert mesh.film_stiffness[in_contact] == pytest.approx(direct.film_stiffness, rel=4e-2)
+    assert mesh.film_pressure[in_contact] == pytest.approx(direct.film_pressure, rel=0.15)
+    assert np.all(mesh.film_pressure[in_contact] > 0.9 * mesh.hertz_pressure[in_contact])
 
 
 def test_more_positions_are_nearer_to_the_knots() -> None:
@@ -108,29 +108,29 @@ def test_more_positions_are_nearer_to_the_knots() -> None:
 def test_film_columns_solve_every_contact_for_itself() -> None:
     mesh = table()
     contacts, motion = touching(mesh)
-    few = slice(0, 3)
-    motion = replace(motion, **{name: getattr(motion, name)[few] for name in vars(motion)})
-    loads = mesh.load_per_width[mesh.in_contact][few]
+    some = slice(0, 3)
+    motion = replace(motion, **{name: getattr(motion, name)[some] for name in vars(motion)})
+    loads = mesh.load_per_width[mesh.in_contact][some]
     films = contacts.films("none", loads)
     contact = tribological_contact(motion, contacts, loads, 0.5e-6, PITCH, films)
-    found = film_columns("newton", contact, STEEL, OIL, common_face_width=20e-3)
-    assert set(found) == {
+    columns = film_columns("newton", contact, STEEL, OIL, common_face_width=20e-3)
+    assert set(columns) == {
         "central_film", "minimum_film", "film_ratio", "film_pressure", "film_stiffness"
     }  # fmt: skip
-    expected = mesh.central_film[mesh.in_contact][few]
-    assert found["central_film"] == pytest.approx(expected, rel=5e-5)
+    expected = mesh.central_film[mesh.in_contact][some]
+    assert columns["central_film"] == pytest.approx(expected, rel=5e-5)
 
 
 @pytest.mark.parametrize("kind", ["tangent", "secant"])
 def test_the_film_in_series_is_solved_at_the_share_that_it_makes(kind: str) -> None:
     mesh = table(film_options={"stiffness": kind})
-    here = mesh.in_contact
+    in_contact = mesh.in_contact
     # films solved anew at the final loads give the stiffness that is in series
-    direct = touching(mesh)[0].films("newton", mesh.load_per_width[here], stiffness=kind)
+    direct = touching(mesh)[0].films("newton", mesh.load_per_width[in_contact], stiffness=kind)
     tolerance = 4e-2 if kind == "tangent" else 5e-3
-    assert mesh.film_stiffness[here] == pytest.approx(direct.film_stiffness, rel=tolerance)
-    again = 1.0 / (1.0 / mesh.tooth_stiffness[here] + 1.0 / mesh.film_stiffness[here])
-    assert mesh.stiffness[here] == pytest.approx(again, rel=1e-12)
+    assert mesh.film_stiffness[in_contact] == pytest.approx(direct.film_stiffness, rel=tolerance)
+    again = 1.0 / (1.0 / mesh.tooth_stiffness[in_contact] + 1.0 / mesh.film_stiffness[in_contact])
+    assert mesh.stiffness[in_contact] == pytest.approx(again, rel=1e-12)
     share = mesh.stiffness / mesh.stiffness.sum(axis=1, keepdims=True)
     assert np.abs(mesh.load_share - share).max() < 1e-6
 
@@ -161,8 +161,10 @@ def test_the_printed_sum_doubles_with_the_grid_and_says_so() -> None:
 
 def test_multigrid_finds_the_same_mesh_cycle() -> None:
     newton, multigrid = table(), table(film_model="multigrid")
-    here = newton.in_contact
-    assert multigrid.central_film[here] == pytest.approx(newton.central_film[here], rel=3e-4)
+    in_contact = newton.in_contact
+    assert multigrid.central_film[in_contact] == pytest.approx(
+        newton.central_film[in_contact], rel=3e-4
+    )
     assert multigrid.film_model == "multigrid"
 
 
@@ -180,10 +182,10 @@ def test_a_starved_inlet_thins_the_film_and_more_so_at_light_load() -> None:
 def test_a_film_that_rises_with_the_load_counts_as_rigid_and_is_told() -> None:
     with pytest.warns(ModelWarning, match=r"film-stiffness.*counts as rigid"):
         mesh = table("wheel drives", pinion_torque=33.0, film_options={"stiffness": "tangent"})
-    here = mesh.in_contact
-    assert np.all(mesh.film_stiffness[here] > 0.0)
-    assert np.all(mesh.stiffness[here] <= mesh.tooth_stiffness[here])
-    rigid = mesh.film_stiffness[here] > 500.0 * mesh.tooth_stiffness[here]
+    in_contact = mesh.in_contact
+    assert np.all(mesh.film_stiffness[in_contact] > 0.0)
+    assert np.all(mesh.stiffness[in_contact] <= mesh.tooth_stiffness[in_contact])
+    rigid = mesh.film_stiffness[in_contact] > 500.0 * mesh.tooth_stiffness[in_contact]
     assert 0.0 < rigid.mean() < 1.0
 
 
@@ -204,12 +206,12 @@ def test_a_nearly_unloaded_entry_is_solved() -> None:
     entry = {"roll_angle": [angles["A"], middle, angles["E"]], "pair_stiffness": [4e7, 3e8, 4e7]}
     options = {"stiffness_model": "table", "stiffness_options": entry}
     mesh = table(**options)
-    here = mesh.in_contact
-    assert mesh.load_share[here].min() < 0.2
-    direct = touching(mesh)[0].films("newton", mesh.load_per_width[here])
-    assert mesh.central_film[here] == pytest.approx(direct.central_film, rel=0.05)
+    in_contact = mesh.in_contact
+    assert mesh.load_share[in_contact].min() < 0.2
+    direct = touching(mesh)[0].films("newton", mesh.load_per_width[in_contact])
+    assert mesh.central_film[in_contact] == pytest.approx(direct.central_film, rel=0.05)
     fine = table(**options, film_options={"positions": 200})
-    assert fine.central_film[here] == pytest.approx(direct.central_film, rel=1e-3)
+    assert fine.central_film[in_contact] == pytest.approx(direct.central_film, rel=1e-3)
 
 
 def test_a_film_that_cannot_be_solved_names_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,51 +246,51 @@ def test_films_over_operation_are_those_of_each_mesh() -> None:
     mesh = table("wheel drives", pinion_torque=160.0, pinion_speed=300.0, film_options=rigid)
     last = np.flatnonzero(mesh.in_contact[:, 1])[-1]
     for name in ("central_film", "minimum_film", "film_ratio", "film_stiffness", "film_pressure"):
-        column, found = getattr(mesh, name), getattr(films, name)[1, 2]
-        assert found[0] == pytest.approx(column[0, 0], rel=1e-6)
-        assert found[-1] == pytest.approx(column[last, 1], rel=1e-6)
+        column, value = getattr(mesh, name), getattr(films, name)[1, 2]
+        assert value[0] == pytest.approx(column[0, 0], rel=1e-6)
+        assert value[-1] == pytest.approx(column[last, 1], rel=1e-6)
     # flooded films fall with the torque and rise with the speed
     assert np.all(np.diff(films.central_film, axis=0) < 0.0)
     assert np.all(np.diff(films.central_film, axis=1) > 0.0)
 
 
 def test_progress_is_told_of_every_position() -> None:
-    told: list[tuple[str, int]] = []
+    reports: list[tuple[str, int]] = []
 
     class Listener:
         def start(self, task: str, total: int | None = None) -> None:
-            told.append((task, total or 0))
+            reports.append((task, total or 0))
 
         def advance(self, steps: int = 1) -> None:
-            told.append(("step", steps))
+            reports.append(("step", steps))
 
         def finish(self) -> None:
-            told.append(("end", 0))
+            reports.append(("end", 0))
 
     table(film_options={"positions": 20}, progress=Listener())
-    assert told[0][1] == 20
+    assert reports[0][1] == 20
     # the positions, then the contacts in between that are checked
-    promised = sum(total for task, total in told if task not in ("step", "end"))
-    assert sum(steps for task, steps in told if task == "step") == promised
-    assert told[-1][0] == "end"
+    promised = sum(total for task, total in reports if task not in ("step", "end"))
+    assert sum(steps for task, steps in reports if task == "step") == promised
+    assert reports[-1][0] == "end"
 
 
 @pytest.mark.parametrize("options", [{}, {"rolling": True}])
 def test_friction_of_the_film_between_positions_is_that_at_the_knots(options: Any) -> None:
     mesh = table("wheel drives", friction_law="ehl", friction_options=options)
-    here = mesh.in_contact
+    in_contact = mesh.in_contact
     contacts, motion = touching(mesh)
-    films = contacts.films("newton", mesh.load_per_width[here])
-    loads = mesh.load_per_width[here]
+    films = contacts.films("newton", mesh.load_per_width[in_contact])
+    loads = mesh.load_per_width[in_contact]
     contact = tribological_contact(motion, contacts, loads, 0.5e-6, PITCH, films)
     direct = LAWS["ehl"](
         replace(contact, film=FilmState.from_solutions(films.solutions)), **options
     )
-    assert mesh.friction_coefficient[here] == pytest.approx(direct, rel=0.03, abs=3e-4)
+    assert mesh.friction_coefficient[in_contact] == pytest.approx(direct, rel=0.03, abs=3e-4)
     if not options:
-        at_rest = np.abs(mesh.sliding_speed[here]) == 0.0
+        at_rest = np.abs(mesh.sliding_speed[in_contact]) == 0.0
         assert at_rest.sum() == 2
-        assert np.all(mesh.friction_coefficient[here][at_rest] < 1e-6)
+        assert np.all(mesh.friction_coefficient[in_contact][at_rest] < 1e-6)
     assert 0.02 < mesh.mean_friction_coefficient < 0.08
     assert mesh.mean_friction_power > 0.0
 
@@ -299,9 +301,9 @@ def test_friction_of_the_film_needs_a_solved_film() -> None:
 
 
 def test_the_printed_sum_is_shown_once_and_is_no_spring() -> None:
-    with pytest.warns(ModelWarning, match="seed-film-stiffness") as told:
+    with pytest.warns(ModelWarning, match="seed-film-stiffness") as caught:
         mesh = table(film_options={"stiffness": "seed"})
-    assert len(told) == 1
+    assert len(caught) == 1
     assert np.array_equal(mesh.stiffness, mesh.tooth_stiffness)
     assert mesh.film_stiffness_kind == "seed"
     assert np.all(mesh.film_stiffness[mesh.in_contact] < 1e6)

@@ -82,20 +82,20 @@ def test_moments_of_a_random_profile_give_its_asperities():
     exact = [0.5 * np.sum(amplitude**2 * k**n) for n in (0, 2, 4)]
     profile = RoughnessProfile(x, height, beyond="periodic")
     assert profile.spectral_moments() == pytest.approx(exact, rel=1e-4)
-    found, wanted = Asperities.from_profiles(profile), Asperities.from_moments(*exact)
-    assert found.rms_height == pytest.approx(math.sqrt(2.0) * profile.rms, rel=1e-9)
-    assert found.summit_density == pytest.approx(wanted.summit_density, rel=1e-4)
+    computed, wanted = Asperities.from_profiles(profile), Asperities.from_moments(*exact)
+    assert computed.rms_height == pytest.approx(math.sqrt(2.0) * profile.rms, rel=1e-9)
+    assert computed.summit_density == pytest.approx(wanted.summit_density, rel=1e-4)
     smooth = RoughnessProfile(x, 0.5 * height, beyond="periodic")
-    both = Asperities.from_profiles(profile, smooth)
-    assert both.rms_height == pytest.approx(math.hypot(profile.rms, smooth.rms), rel=1e-9)
+    combined = Asperities.from_profiles(profile, smooth)
+    assert combined.rms_height == pytest.approx(math.hypot(profile.rms, smooth.rms), rel=1e-9)
 
 
 def test_slope_and_density_give_back_the_moments():
     m0, m2, m4 = 0.2e-12, 0.012, 6e9
     wanted = Asperities.from_moments(m0, m2, m4)
-    found = Asperities.from_slope(math.sqrt(2.0 * m0), math.sqrt(m2), wanted.summit_density)
-    assert found.summit_radius == pytest.approx(wanted.summit_radius, rel=1e-12)
-    assert found.summit_radius == pytest.approx(0.375 * math.sqrt(math.pi / m4), rel=1e-12)
+    asperities = Asperities.from_slope(math.sqrt(2.0 * m0), math.sqrt(m2), wanted.summit_density)
+    assert asperities.summit_radius == pytest.approx(wanted.summit_radius, rel=1e-12)
+    assert asperities.summit_radius == pytest.approx(0.375 * math.sqrt(math.pi / m4), rel=1e-12)
     assert Asperities.from_slope(0.5e-6, 0.07).product == pytest.approx(0.05, rel=1e-12)
 
 
@@ -116,8 +116,8 @@ def test_limits_of_the_share():
     assert share[1] < 1e-12  # film ratio 0.0014
     assert share[-2:] == pytest.approx([1.0, 1.0], abs=1e-12)
     # Shares far from 0 and 1 rise with the film, and so does the gap.
-    told = (share > 1e-12) & (share < 1.0 - 1e-12)
-    assert np.all(np.diff(share[told]) > 0.0)
+    between_limits = (share > 1e-12) & (share < 1.0 - 1e-12)
+    assert np.all(np.diff(share[between_limits]) > 0.0)
     assert np.all(np.diff(gap[:-1]) >= -1e-12 * gap[:-2])
     assert np.all(gap >= film * (1.0 - 1e-12))
 
@@ -138,24 +138,24 @@ def test_both_shares_add_up_to_one_at_one_gap():
     for _ in range(80):  # separation of the mean planes that leaves this mean gap
         middle = 0.5 * (low + high)
         low, high = (middle, high) if asperity_integral(-middle, 1.0) < ratio else (low, middle)
-    rest = FLANKS.pressure(low * FLANKS.rms_height, MODULUS) / (0.25 * math.pi * 0.8e9)
-    assert share + rest == pytest.approx(1.0, abs=1e-9)
+    asperity_share = FLANKS.pressure(low * FLANKS.rms_height, MODULUS) / (0.25 * math.pi * 0.8e9)
+    assert share + asperity_share == pytest.approx(1.0, abs=1e-9)
     assert gap == pytest.approx(0.3e-6 * share**-0.13, rel=1e-9)
 
 
 def contact(film=0.3e-6, roughness=0.7e-6, **changes):
-    one = np.ones(3)
-    radius, pressure = 8e-3 * one, np.array([0.6e9, 0.8e9, 0.8e9])
+    ones = np.ones(3)
+    radius, pressure = 8e-3 * ones, np.array([0.6e9, 0.8e9, 0.8e9])
     state = {
         "load_per_width": 2.0 * np.pi * radius * pressure**2 / MODULUS,
         "hertz_pressure": pressure,
         "sliding_speed": np.array([-1.0, 0.5, 2.0]),
-        "entrainment_speed": 2.0 * one,
+        "entrainment_speed": 2.0 * ones,
         "slide_to_roll_ratio": np.array([-0.5, 0.25, 1.0]),
         "equivalent_radius": radius,
         "dynamic_viscosity": 0.08,
         "composite_roughness": roughness,
-        "film_thickness": film * one,
+        "film_thickness": film * ones,
     }
     return TribologicalContact(**{**state, **changes})
 
@@ -291,29 +291,31 @@ SPEEDS = np.array([0.5, 3.0, 12.0])
 
 
 def test_power_law_of_the_film_is_that_of_its_formula():
-    found = mixed_line_contact(1e5, 8e-3, SPEEDS, OIL, MODULUS, FLANKS)
-    share, gap = balanced_load_share(found.smooth_film, found.hertz_pressure, MODULUS, FLANKS)
-    assert found.film_load_share == pytest.approx(share, rel=1e-8)
-    assert found.gap == pytest.approx(gap, rel=1e-8)
-    assert found.film_load + found.asperity_load == pytest.approx(np.full(3, 1e5), rel=1e-12)
+    film = mixed_line_contact(1e5, 8e-3, SPEEDS, OIL, MODULUS, FLANKS)
+    share, gap = balanced_load_share(film.smooth_film, film.hertz_pressure, MODULUS, FLANKS)
+    assert film.film_load_share == pytest.approx(share, rel=1e-8)
+    assert film.gap == pytest.approx(gap, rel=1e-8)
+    assert film.film_load + film.asperity_load == pytest.approx(np.full(3, 1e5), rel=1e-12)
 
 
 @pytest.mark.parametrize("model", ["moes", "pan-hamrock", "newton"])
 def test_film_carries_its_own_share_at_the_gap_at_which_asperities_carry_theirs(model):
     options = {"nodes": 257} if model == "newton" else {}
     speeds = SPEEDS[:2]
-    found = mixed_line_contact(1e5, 8e-3, speeds, OIL, MODULUS, FLANKS, film_model=model, **options)
-    for i, f in enumerate(found.film_load_share):
+    mixed_film = mixed_line_contact(
+        1e5, 8e-3, speeds, OIL, MODULUS, FLANKS, film_model=model, **options
+    )
+    for i, f in enumerate(mixed_film.film_load_share):
         film = FILM_MODELS[model].films(
             f * 1e5, 8e-3, speeds[i], OIL, float(f) * MODULUS, **options
         )
-        assert film.central_film == pytest.approx(found.gap[i], rel=1e-6)
+        assert film.central_film == pytest.approx(mixed_film.gap[i], rel=1e-6)
         # The flanks keep the width that the whole load gives them.
         width = math.sqrt(8.0 * f * 1e5 * 8e-3 / (math.pi * f * MODULUS))
-        assert found.half_width[i] == pytest.approx(width, rel=1e-12)
-    law, _ = balanced_load_share(found.smooth_film, found.hertz_pressure, MODULUS, FLANKS)
+        assert mixed_film.half_width[i] == pytest.approx(width, rel=1e-12)
+    law, _ = balanced_load_share(mixed_film.smooth_film, mixed_film.hertz_pressure, MODULUS, FLANKS)
     # The law, which knows no more than the film under the whole load, is as near as this.
-    assert found.film_load_share == pytest.approx(law, abs=0.06)
+    assert mixed_film.film_load_share == pytest.approx(law, abs=0.06)
 
 
 def test_rough_contacts_without_film_model_or_in_a_table_are_refused():

@@ -50,8 +50,8 @@ def rectangular(events):
 
 def test_order_with_jumps_of_the_stiffness():
     numbers = (128, 256, 512, 1024)
-    found = errors(rectangular((1 / 3,)), 0.15, [1.0, 0.2], 8, numbers)
-    assert np.log2(found[:-1] / found[1:]) == pytest.approx(2.0, abs=0.05)
+    orders = errors(rectangular((1 / 3,)), 0.15, [1.0, 0.2], 8, numbers)
+    assert np.log2(orders[:-1] / orders[1:]) == pytest.approx(2.0, abs=0.05)
     with pytest.raises(InputError, match=r"jumps by 0.8 at the mesh phase 0.33333"):
         compile_for(rectangular((0.0,)), 0.15, 512)
 
@@ -73,15 +73,15 @@ def test_order_with_separations_and_impacts(damping, in_gap):
     march(compiled, period, np.array([start]), 6, record=record)
     crossings = np.count_nonzero(np.diff(record[:, 0, 0] > 1.0))
     assert crossings >= 2
-    found = errors(system, 0.14, start, 6, (256, 512, 1024, 2048))
-    assert np.log2(found[:-1] / found[1:]) == pytest.approx(2.0, abs=0.1)
+    orders = errors(system, 0.14, start, 6, (256, 512, 1024, 2048))
+    assert np.log2(orders[:-1] / orders[1:]) == pytest.approx(2.0, abs=0.1)
 
 
 def test_gear_pair_with_friction_equals_runge_kutta_in_the_limit():
     start = 1e-5 * np.random.default_rng(1).standard_normal(12)
     system = reference_system(0.1, gap=1e-5)
-    found = errors(system, 900.0, start, 2, (2048, 4096, 8192), 16384)
-    assert np.log2(found[:-1] / found[1:]) == pytest.approx(2.0, abs=0.2)
+    orders = errors(system, 900.0, start, 2, (2048, 4096, 8192), 16384)
+    assert np.log2(orders[:-1] / orders[1:]) == pytest.approx(2.0, abs=0.2)
 
 
 def marched(system, frequency, steps, cycles, first):
@@ -98,24 +98,24 @@ def test_marched_to_the_end_it_is_the_steady_state():
     orbit = steady_state(system, MESH_FREQUENCY, steps=4096)
     exact = mesh_harmonics(orbit, orbit.fine.deflection[:, 0], 3)
     assert np.abs(exact) == pytest.approx([3.377101e-6, 1.734764e-6, 0.070281e-6], rel=2e-5)
-    apart = []
+    distances = []
     for steps in (1024, 2048, 4096):
         motion = marched(system, MESH_FREQUENCY, steps, 6, (orbit.position[0], orbit.velocity[0]))
-        found = mesh_harmonics(motion, motion.fine.deflection[:, 0], 3)
-        apart.append(np.abs(found - exact).max() / np.abs(exact[0]))
-    assert np.log2(apart[1] / apart[2]) == pytest.approx(2.0, abs=0.1)
-    assert apart[2] < 1e-4
+        harmonics = mesh_harmonics(motion, motion.fine.deflection[:, 0], 3)
+        distances.append(np.abs(harmonics - exact).max() / np.abs(exact[0]))
+    assert np.log2(distances[1] / distances[2]) == pytest.approx(2.0, abs=0.1)
+    assert distances[2] < 1e-4
 
 
 def test_third_harmonic_of_the_rig():
     rig = fzg12()
     orbit = steady_state(rig, FZG12_MESH_FREQUENCY, steps=1024)
     motion = marched(rig, FZG12_MESH_FREQUENCY, 1024, 60, (orbit.position[0], orbit.velocity[0]))
-    exact, found = (
+    exact, computed = (
         np.abs(mesh_harmonics(each, each.fine.deflection[:, 0], 5)) for each in (orbit, motion)
     )
-    assert found[2] == pytest.approx(exact[2], rel=6e-4)
-    assert found == pytest.approx(exact, rel=2e-3)
+    assert computed[2] == pytest.approx(exact[2], rel=6e-4)
+    assert computed == pytest.approx(exact, rel=2e-3)
 
 
 def test_friction_that_follows_the_load_keeps_the_order():
@@ -134,5 +134,5 @@ def test_friction_that_follows_the_load_keeps_the_order():
     march_newmark(compiled, period, start[None], 1, record=record)
     plain = newmark_plain(system, compiled.grid, compiled.nodes, MESH_FREQUENCY, 1, start)
     assert np.abs((record[:, :, 0] - plain) / np.abs(plain).max(axis=0)).max() < 1e-11
-    found = errors(system, MESH_FREQUENCY, start, 2, (4096, 8192, 16384), 16384)
-    assert np.log2(found[:-1] / found[1:]) == pytest.approx(2.0, abs=0.15)
+    orders = errors(system, MESH_FREQUENCY, start, 2, (4096, 8192, 16384), 16384)
+    assert np.log2(orders[:-1] / orders[1:]) == pytest.approx(2.0, abs=0.15)

@@ -170,15 +170,15 @@ def test_transfer_keeps_the_load_and_a_parabola():
 @pytest.mark.parametrize("nodes", [257, 1025, 2049])
 def test_tight_tolerances_are_met(nodes):
     for M, L in ((20, 10), (5, 20), (100, 5)):
-        found = solve_line_contact_moes(
+        solution = solve_line_contact_moes(
             M, L, nodes=nodes, domain="auto", inlet="flooded", tolerance=1e-11, flux_tolerance=1e-9
         )
-        assert found.flux_error <= 1.05e-9
-        assert found.load_error <= 1e-12
-        assert found.cavity_residual >= 0.0
+        assert solution.flux_error <= 1.05e-9
+        assert solution.load_error <= 1e-12
+        assert solution.cavity_residual >= 0.0
         loose = solve_line_contact_moes(M, L, nodes=nodes, domain="auto", inlet="flooded")
         assert loose.flux_error <= 1e-3
-        assert loose.central_film == pytest.approx(found.central_film, rel=2e-4)
+        assert loose.central_film == pytest.approx(solution.central_film, rel=2e-4)
 
 
 def test_equal_numbers_give_equal_films():
@@ -196,14 +196,14 @@ def test_equal_numbers_give_equal_films():
 
 
 def test_number_of_moes_and_mean_speed():
-    found = solve_line_contact(1.5e5, 8e-3, 3.0, OIL, 2.2e11, nodes=1025)
-    H = found.central_film / found.film_unit
+    solution = solve_line_contact(1.5e5, 8e-3, 3.0, OIL, 2.2e11, nodes=1025)
+    H = solution.central_film / solution.film_unit
     U = 0.082 * 3.0 / (2.2e11 * 8e-3)
-    moes = found.central_film / 8e-3 / math.sqrt(2.0 * U)
-    assert moes == pytest.approx(8.0 * found.moes_load * H / math.pi, rel=1e-12)
+    moes = solution.central_film / 8e-3 / math.sqrt(2.0 * U)
+    assert moes == pytest.approx(8.0 * solution.moes_load * H / math.pi, rel=1e-12)
     # taking the sum of the surface speeds for their mean: the classic factor 2^0.69 or so
     double = solve_line_contact(1.5e5, 8e-3, 6.0, OIL, 2.2e11, nodes=1025)
-    assert double.central_film / found.central_film == pytest.approx(1.62, abs=0.02)
+    assert double.central_film / solution.central_film == pytest.approx(1.62, abs=0.02)
 
 
 @pytest.mark.parametrize("load", [49267.5, 147802.0, 295604.0])
@@ -230,10 +230,10 @@ def test_stress_set_without_tuning(law, compressible):
     for M in (0.3, 1.0, 10.0, 100.0, 300.0, 1000.0):
         for L in (0.0, 2.0, 10.0, 25.0):
             alpha = max(2.2e-8, L * math.sqrt(M / (2.0 * math.pi)) / 4e9)
-            found = solve_line_contact_moes(
+            solution = solve_line_contact_moes(
                 M, L, nodes=1025, domain="auto", inlet="flooded", viscosity_law=law,
                 compressible=compressible, pressure_viscosity_coefficient=min(alpha, 1e-7),
             )  # fmt: skip
-            assert found.attempts == (), (M, L)
-            assert found.pressure.min() >= 0.0
-            assert found.cavity_residual >= -1e-8
+            assert solution.attempts == (), (M, L)
+            assert solution.pressure.min() >= 0.0
+            assert solution.cavity_residual >= -1e-8

@@ -33,13 +33,13 @@ def oscillator(factor=None):
 @pytest.mark.parametrize("factor", FACTORS)
 def test_a_factor_is_the_system_with_it(factor):
     over = ((f"{factor}_scale", [1.0, 1.3]), ("mesh_frequency", [0.5 / TURN, 0.85 / TURN]))
-    found = parameter_map(oscillator(), over=over, signal="q0", steps=128)
-    assert found.verdicts() == {"physical": 4}
+    map_result = parameter_map(oscillator(), over=over, signal="q0", steps=128)
+    assert map_result.verdicts() == {"physical": 4}
     for i, changed in enumerate((None, factor)):
         for j, turns in enumerate((0.5, 0.85)):
             orbit = steady_state(oscillator(changed), turns / TURN, steps=512)
             x = orbit.fine.position[:, 0]
             spread = math.sqrt(orbit.fine.mean(x**2) - orbit.fine.mean(x) ** 2)
-            assert found.rms[i, j] == pytest.approx(spread, rel=1e-4)
+            assert map_result.rms[i, j] == pytest.approx(spread, rel=1e-4)
     # The factor is felt.
-    assert np.abs(found.rms[1] / found.rms[0] - 1.0).max() > 5e-4
+    assert np.abs(map_result.rms[1] / map_result.rms[0] - 1.0).max() > 5e-4

@@ -31,8 +31,8 @@ def test_means_and_rms(orbit):
 
 def test_harmonics(orbit):
     friction, motion = orbit
-    found = np.abs(mesh_harmonics(motion, motion.fine.deflection[:, 0], 3)) * 1e6
-    np.testing.assert_allclose(found, HARMONICS[friction], rtol=1e-6, atol=1e-6)
+    harmonics = np.abs(mesh_harmonics(motion, motion.fine.deflection[:, 0], 3)) * 1e6
+    np.testing.assert_allclose(harmonics, HARMONICS[friction], rtol=1e-6, atol=1e-6)
 
 
 def test_bearing_and_friction_forces_of_d2():

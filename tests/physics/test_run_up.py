@@ -77,8 +77,8 @@ def test_samples_obey_the_equation_of_motion() -> None:
     force = (1.0 + 0.2 * np.cos(turns)) * d + 0.05 * rate
     np.testing.assert_allclose(run.deflection[:, 0], d, atol=1e-9)
     np.testing.assert_allclose(run.contact_force[:, 0], force, atol=1e-8)
-    own = -0.02 * run.velocity[:, 0] - force
-    np.testing.assert_allclose(run.acceleration[:, 0], own, atol=1e-8)
+    force_from_motion = -0.02 * run.velocity[:, 0] - force
+    np.testing.assert_allclose(run.acceleration[:, 0], force_from_motion, atol=1e-8)
 
 
 def test_a_constant_speed_is_the_steady_state() -> None:
@@ -96,14 +96,16 @@ def test_a_slow_run_comes_near_the_steady_states_and_its_distance_falls_with_the
     # Off the top of the resonance, where the distance is of first order in the rate.
     orbit = steady_state(system, 0.95, steps=512)
     level = rms(orbit.fine, orbit.fine.contact_force[:, 0] - 1.0)
-    apart = []
+    distances = []
     for duration in (400.0, 800.0):
         run = run_up(system, ([0.0, duration], [0.8, 1.2]), samples=8)
         cycles = run.cycles
-        own = np.sqrt(cycles.contact_force.rms[:, 0] ** 2 - 2 * cycles.contact_force.mean[:, 0] + 1)
-        apart.append(abs(np.interp(0.95, cycles.mesh_frequency, own) - level) / level)
-    assert apart[1] < 0.02
-    assert apart[0] / apart[1] == pytest.approx(2.0, rel=0.2)
+        rms_force = np.sqrt(
+            cycles.contact_force.rms[:, 0] ** 2 - 2 * cycles.contact_force.mean[:, 0] + 1
+        )
+        distances.append(abs(np.interp(0.95, cycles.mesh_frequency, rms_force) - level) / level)
+    assert distances[1] < 0.02
+    assert distances[0] / distances[1] == pytest.approx(2.0, rel=0.2)
 
 
 def test_backlash_gives_another_motion_down_than_up() -> None:
@@ -135,8 +137,10 @@ def test_friction_does_not_make_the_drive_drift() -> None:
     assert np.abs(rigid).max() < 1e-3
     assert rigid[::16] == pytest.approx(rigid[0], abs=2e-5)
     slow, quick = (steady_state(balanced, f, steps=1024).extra_force[5] for f in (330.0, 570.0))
-    own = np.interp([330.0, 570.0], run.cycles.mesh_frequency, run.cycles.extra_force[:, 5])
-    assert own == pytest.approx([slow, quick], rel=5e-3)
+    drive_torque = np.interp(
+        [330.0, 570.0], run.cycles.mesh_frequency, run.cycles.extra_force[:, 5]
+    )
+    assert drive_torque == pytest.approx([slow, quick], rel=5e-3)
     assert abs(slow) > 1.0
 
 
@@ -163,13 +167,13 @@ def test_tables_follow_the_speed() -> None:
     k = 50.0 + 25.0 * (run.cycles.mesh_frequency - 1.0)
     mean = run.cycles.deflection.mean[10:-5, 0]
     assert mean == pytest.approx(1.0 / k[10:-5], rel=2e-3)
-    here = run.deflection.reshape(-1, 8).mean(axis=1)[10:-5]
-    assert here == pytest.approx(mean, rel=1e-3)
+    deflection = run.deflection.reshape(-1, 8).mean(axis=1)[10:-5]
+    assert deflection == pytest.approx(mean, rel=1e-3)
     with_friction = Contact([1.0], stiffness=100.0, friction=[0.1])
     rubbing = System([[1.0]], [[4.0]], [[0.0]], [1.0], [with_friction])
-    both = run_up({1.0: spring(100.0), 3.0: rubbing}, speed_ramp(1.0, 3.0, 60.0), samples=8)
-    share = 0.1 * (both.cycles.mesh_frequency - 1.0) / 2.0
-    force = both.cycles.contact_force.mean[:, 0]
+    switched_run = run_up({1.0: spring(100.0), 3.0: rubbing}, speed_ramp(1.0, 3.0, 60.0), samples=8)
+    share = 0.1 * (switched_run.cycles.mesh_frequency - 1.0) / 2.0
+    force = switched_run.cycles.contact_force.mean[:, 0]
     assert force[10:-5] == pytest.approx(1.0 / (1.0 + share[10:-5]), rel=2e-3)
 
 

@@ -60,8 +60,8 @@ def test_carreau_by_integrating_its_slope(n, a):
     slope = 1.0 + (n - 1.0) * power / (1.0 + power)
     ratio = np.exp(logarithms[0] + np.trapezoid(slope, logarithms))
     newtonian = 3e3 * stress
-    found = carreau_shear_stress(500.0, newtonian / 500.0 * 1e-6, 1e-6, stress, n, a)
-    assert found == pytest.approx(ratio * stress, rel=1e-7)
+    computed_stress = carreau_shear_stress(500.0, newtonian / 500.0 * 1e-6, 1e-6, stress, n, a)
+    assert computed_stress == pytest.approx(ratio * stress, rel=1e-7)
     # far beyond: a straight line of slope n through the corner at G
     assert carreau_shear_stress(1.0, 1e16, 1.0, stress, n, a) == pytest.approx(
         stress * (1e16 / stress) ** n, rel=1e-6
@@ -94,8 +94,8 @@ def test_what_a_model_becomes_where_its_numbers_go_to_their_ends(solved):
         sliding("carreau"), rel=1e-6
     )
     # two ways to thin leave less than each
-    both = sliding("carreau-eyring")
-    assert both < 0.9 * min(eyring, sliding("carreau"))
+    combined = sliding("carreau-eyring")
+    assert combined < 0.9 * min(eyring, sliding("carreau"))
 
 
 @pytest.mark.parametrize("name", ["bair-winer", "ree-eyring", "newtonian", "carreau"])
@@ -123,9 +123,9 @@ def newtonian_stress(name, stress, limit):
     if name == "bair-winer":
         return np.sign(stress) * -limit * np.log1p(-np.minimum(size / limit, 1.0 - 1e-15))
     rates = np.geomspace(1e-6, 1e16, 4401)
-    known = carreau_shear_stress(1.0, rates, 1.0)
-    found = np.exp(np.interp(np.log(size + 1e-30), np.log(known), np.log(rates)))
-    return np.sign(stress) * found
+    stresses = carreau_shear_stress(1.0, rates, 1.0)
+    rate = np.exp(np.interp(np.log(size + 1e-30), np.log(stresses), np.log(rates)))
+    return np.sign(stress) * rate
 
 
 @pytest.mark.parametrize(("name", "most"), [("carreau", 0.014), ("bair-winer", 0.007)])
@@ -143,13 +143,13 @@ def test_pressure_gradients_across_the_film_matter_little(solved, name, most):
         enough = 0.5 * thickness * (across @ WEIGHT) >= speed * np.exp(solved.log_viscosity[0])
         low, high = np.where(enough, low, middle), np.where(enough, middle, high)
     expected = low @ solved.interval_width[0]
-    found = film_traction(solved, speed, shear_model=name).sliding[0]
-    assert found == pytest.approx(expected, rel=most)
-    assert found != pytest.approx(expected, rel=1e-4)  # it is no identity
+    sliding_ = film_traction(solved, speed, shear_model=name).sliding[0]
+    assert sliding_ == pytest.approx(expected, rel=most)
+    assert sliding_ != pytest.approx(expected, rel=1e-4)  # it is no identity
 
 
 @pytest.mark.parametrize(
-    ("numbers", "words"),
+    ("numbers", "message"),
     [
         ({"carreau_stress": 5e6}, 'does not belong to shear_model = "ree-eyring"'),
         ({"limit_stress": 5e6}, "limit_stress does not belong"),
@@ -159,6 +159,6 @@ def test_pressure_gradients_across_the_film_matter_little(solved, name, most):
         ({"eyring_stress": -5e6}, "5 MPa is 5e6 Pa"),
     ],
 )
-def test_numbers_that_a_model_cannot_have(hertzian, numbers, words):
-    with pytest.raises(InputError, match=words):
+def test_numbers_that_a_model_cannot_have(hertzian, numbers, message):
+    with pytest.raises(InputError, match=message):
         film_traction(hertzian, 1.0, **numbers)

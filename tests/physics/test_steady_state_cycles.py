@@ -54,16 +54,16 @@ def test_cycles_do_not_grow_with_the_multiplier(decay, gap):
     assert orbit.cycles_used <= 10
     assert orbit.converged
     motion = simulate(system, frequency, 2, (orbit.position[0], orbit.velocity[0]), steps=STEPS)
-    apart = abs(motion.position[STEPS, 0] - orbit.position[0, 0])
-    assert apart < 1e-9
+    difference = abs(motion.position[STEPS, 0] - orbit.position[0, 0])
+    assert difference < 1e-9
 
 
 def test_a_start_far_off_that_parts_the_flanks_is_followed():
     system, frequency = weakly_damped(0.9, 1.0)
     far = steady_state(system, frequency, steps=STEPS, start=([4.5], [0.0]))
-    near = steady_state(system, frequency, steps=STEPS)
-    assert far.search_cycles > near.search_cycles
-    np.testing.assert_allclose(far.position, near.position, rtol=1e-7)
+    orbit = steady_state(system, frequency, steps=STEPS)
+    assert far.search_cycles > orbit.search_cycles
+    np.testing.assert_allclose(far.position, orbit.position, rtol=1e-7)
 
 
 def test_flanks_that_never_part_from_rest_on_are_followed_over_one_cycle():

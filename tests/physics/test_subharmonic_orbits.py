@@ -41,18 +41,18 @@ def repeats_after(system, frequency, orbit, cycles):
 
 
 @pytest.mark.parametrize(
-    ("period", "asked"),
+    ("period", "requested"),
     [(1, 5), (1, 6), (1, 7), (1, 8), (2, 2), (2, 4), (2, 6), (2, 8), (4, 4), (4, 8)],
 )
-def test_the_period_is_the_shortest(period, asked):
+def test_the_period_is_the_shortest(period, requested):
     system, frequency = case(period)
-    orbit = steady_state(system, frequency, steps=STEPS, periods=asked)
+    orbit = steady_state(system, frequency, steps=STEPS, periods=requested)
     assert orbit.converged
     assert orbit.stable
-    assert (orbit.period, orbit.periods) == (period, asked)
-    apart = repeats_after(system, frequency, orbit, period)
-    assert apart[period] < 1e-7
-    assert np.all(apart[1:period] > 1e-2)
+    assert (orbit.period, orbit.periods) == (period, requested)
+    distances = repeats_after(system, frequency, orbit, period)
+    assert distances[period] < 1e-7
+    assert np.all(distances[1:period] > 1e-2)
 
 
 @pytest.mark.parametrize("period", [1, 2, 3, 4])
@@ -67,9 +67,9 @@ def test_automatic_periods_find_the_motion_that_marching_ends_in(period):
     assert orbit.stable
     assert orbit.period == orbit.periods == period
     assert 0 <= orbit.search_cycles < orbit.cycles_used
-    apart = repeats_after(system, frequency, orbit, period)
-    assert apart[period] < 1e-7
-    assert np.all(apart[1:period] > 1e-2)
+    distances = repeats_after(system, frequency, orbit, period)
+    assert distances[period] < 1e-7
+    assert np.all(distances[1:period] > 1e-2)
 
 
 def test_asked_for_one_cycle_the_unstable_orbit_is_told():
@@ -133,12 +133,12 @@ def test_automatic_periods_follow_the_motion_where_several_orbits_are_stable():
     ends = simulate_ensemble(
         system, np.full(count, frequency), 600, (position, velocity), steps=STEPS
     )
-    found = set()
+    periods = set()
     for lane in range(count):
         orbit = steady_state(
             system, frequency, steps=STEPS, periods="auto", start=(position[lane], velocity[lane])
         )
-        found.add(orbit.period)
+        periods.add(orbit.period)
         visited = orbit.position[::STEPS, 0]
         assert np.abs(visited - ends.position[lane, 0]).min() < 1e-5
-    assert found == {1, 3, 4}
+    assert periods == {1, 3, 4}

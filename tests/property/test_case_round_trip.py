@@ -33,7 +33,7 @@ CHOICES: dict[str, list[Any]] = {
 }
 
 
-def drawn(chance: random.Random) -> td.Case:
+def random_case(chance: random.Random) -> td.Case:
     base = chance.choice(["", "fzg-roughness", "fzg-film", "fzg-stiffness", "fzg-12dof"])
     case = td.load_case(base) if base else read_case(start_toml())
     for key in chance.sample(sorted(CHOICES), chance.randint(1, 8)):
@@ -50,7 +50,7 @@ def test_every_key_that_is_drawn_exists() -> None:
 
 def test_cases_read_back_equal(draws: Callable[[int], Iterator[random.Random]]) -> None:
     for chance in draws(40):
-        case = drawn(chance)
+        case = random_case(chance)
         again = read_case(case.to_toml())
         assert again == case
         assert again.to_toml() == case.to_toml()

@@ -118,8 +118,8 @@ def test_tooth_is_symmetric_and_as_thick_as_its_shift_says(pair: SpurPair) -> No
         thickness = module * (
             math.pi / 2.0 + 2.0 * gear.profile_shift_coefficient * math.tan(alpha)
         ) - gear.tooth_thinning / math.cos(alpha)
-        found = gear.tooth_thickness(gear.reference_radius)
-        assert found == pytest.approx(thickness, rel=1e-12)
+        measured = gear.tooth_thickness(gear.reference_radius)
+        assert measured == pytest.approx(thickness, rel=1e-12)
 
 
 @FEW
@@ -156,10 +156,10 @@ def test_separation_begins_with_the_relative_curvature(pair: SpurPair) -> None:
         mate = length - tip
         assume(mate > 0.05 * pair.base_pitch)
         off = 1e-3 * min(mate, tip)
-        found = extended_contact(pair, end + sense * off)
+        contact = extended_contact(pair, end + sense * off)
         expected = tip * length * off**2 / (2.0 * gear.base_radius**2 * mate)
-        if bool(found.possible):
-            assert float(found.separation) == pytest.approx(expected, rel=0.02)
+        if bool(contact.possible):
+            assert float(contact.separation) == pytest.approx(expected, rel=0.02)
 
 
 @FEW
@@ -168,24 +168,26 @@ def test_separation_grows_away_from_the_path_of_contact(pair: SpurPair) -> None:
     low, high = pair.path_limits
     off = pair.base_pitch * np.linspace(0.0, 0.3, 31)
     for path in (high + off, low - off):
-        found = extended_contact(pair, path)
-        assert np.all(np.diff(found.separation[found.possible]) > 0.0)
+        contact = extended_contact(pair, path)
+        assert np.all(np.diff(contact.separation[contact.possible]) > 0.0)
 
 
 @FEW
 @given(pairs(), st.floats(0.0, 100e-6), st.floats(0.0, 100e-6), st.floats(0.0, 1.0))
 def test_gaps_of_both_gears_add(pair: SpurPair, tip: float, root: float, place: float) -> None:
-    given_ = FlankModification(tip_relief=tip, root_relief=root, profile_crowning=-0.5 * tip)
+    wheel_modification = FlankModification(
+        tip_relief=tip, root_relief=root, profile_crowning=-0.5 * tip
+    )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
-        pinion = replace(pair, pinion=replace(pair.pinion, modification=given_))
-        wheel = replace(pair, wheel=replace(pair.wheel, modification=given_))
-        both = replace(pinion, wheel=wheel.wheel)
+        pinion = replace(pair, pinion=replace(pair.pinion, modification=wheel_modification))
+        wheel = replace(pair, wheel=replace(pair.wheel, modification=wheel_modification))
+        modified = replace(pinion, wheel=wheel.wheel)
     low, high = pair.path_limits
     path = low + place * (high - low)
     radii = (path, pair.line_of_action_length - path)
     total = float(flank_gap(pinion, *radii) + flank_gap(wheel, *radii))
-    assert float(flank_gap(both, *radii)) == pytest.approx(total, abs=1e-18)
+    assert float(flank_gap(modified, *radii)) == pytest.approx(total, abs=1e-18)
     assert float(flank_gap(pair, *radii)) == 0.0
     ends = flank_ranges(pair)[0]
     assert ends.lowest - 1e-12 <= radii[0] <= ends.highest + 1e-12

@@ -30,8 +30,8 @@ _ERRORS = ("steady_state_error", "step_error")
 def test_every_point_is_that_of_a_run_of_its_own(changes: dict[str, object]) -> None:
     case = td.load_case("fzg-roughness").replace(changes)
     over = {"operation.torque": _TORQUES[::-1], "operation.speed": _SPEEDS}
-    found = td.sweep(case, over)
-    for place, point in zip(np.ndindex(found.shape), found.points, strict=True):
+    sweep = td.sweep(case, over)
+    for place, point in zip(np.ndindex(sweep.shape), sweep.points, strict=True):
         torque, speed = point.values
         alone = td.run(case.replace({"operation.speed": speed, "operation.torque": torque}))
         figures = alone.summary()

@@ -55,7 +55,7 @@ def pieces(start: np.ndarray, speed: float) -> list[Any]:
     """Solutions over one period between passages of the ends of the dead zone."""
     period, t, state = 2.0 * np.pi / speed, 0.0, np.asarray(start, dtype=float)
     side = 1 if state[0] > 1.0 else -1 if state[0] < -1.0 else 0
-    found = []
+    phases = []
     while t < period:
         solved = solve_ivp(
             _motion, (t, period), state, "DOP853", args=(speed, side), events=_ENDS,
@@ -67,14 +67,14 @@ def pieces(start: np.ndarray, speed: float) -> list[Any]:
                 _motion, (t, t + step), state, "DOP853", args=(speed, side), dense_output=True,
                 rtol=1e-12, atol=1e-13,
             )  # fmt: skip
-        found.append(solved)
+        phases.append(solved)
         t, state = solved.t[-1], solved.y[:, -1].copy()
         if solved.status == 1:
             end = 1.0 if abs(state[0] - 1.0) < abs(state[0] + 1.0) else -1.0
             outward = state[1] * end > 0.0
             side = int(end) if outward else 0
             state[0] = end
-    return found
+    return phases
 
 
 def orbit(guess: tuple[float, float], speed: float = SPEED) -> Orbit:
@@ -110,7 +110,7 @@ def orbit(guess: tuple[float, float], speed: float = SPEED) -> Orbit:
 
 
 if __name__ == "__main__":
-    for name, guess, known in (("low", (1.5, 0.0), LOW), ("high", (2.2, 0.3), HIGH)):
-        found = orbit(guess)
-        print(f"{name}: rms {found.rms:.7f}, stated {known}; least place {found.least:.4f}")
-        print(f"  multipliers {np.abs(found.multipliers)}, stated {MULTIPLIER}")
+    for name, guess, expected in (("low", (1.5, 0.0), LOW), ("high", (2.2, 0.3), HIGH)):
+        orbits = orbit(guess)
+        print(f"{name}: rms {orbits.rms:.7f}, stated {expected}; least place {orbits.least:.4f}")
+        print(f"  multipliers {np.abs(orbits.multipliers)}, stated {MULTIPLIER}")

@@ -81,8 +81,8 @@ if __name__ == "__main__":
         *_, central, minimum, outlet = MOES[name]
         print(f"{name}: stated {central} {minimum} {outlet}")
         for nodes in (700, 1400):
-            found = moes_film(name, nodes)
-            print(f"  {nodes}: {found.central:.6f} {found.minimum:.6f} {found.X[-1]:.4f}")
+            computed = moes_film(name, nodes)
+            print(f"  {nodes}: {computed.central:.6f} {computed.minimum:.6f} {computed.X[-1]:.4f}")
     for torque, stated in FZG.items():
         print(f"{torque} N m: stated {stated[1:]}")
         for nodes in (800, 1200):

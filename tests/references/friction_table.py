@@ -100,5 +100,5 @@ if __name__ == "__main__":
         print("stated", *(f"{value:.6f}" for value in stated))
     load, sliding, entrainment = 2660.44 / 20e-3, TABLE[2][2], TABLE[2][3]
     for roughness in (0.325, 0.53, 0.991):
-        found = benedict_kelly(load, sliding, entrainment, roughness, 0.0137)
-        print(f"factor 0.0137, S {roughness}: {found:.3f}")
+        coefficient = benedict_kelly(load, sliding, entrainment, roughness, 0.0137)
+        print(f"factor 0.0137, S {roughness}: {coefficient:.3f}")

@@ -119,9 +119,11 @@ class Outline:
 
     def half_at(self, radius: np.ndarray) -> np.ndarray:
         """Half angle at any radius, half a pitch in the body, nothing outside."""
-        known = self.profile
-        half = np.interp(radius, known[:, 0], known[:, 1], left=math.pi / self.teeth, right=-1.0)
-        return np.where(radius < known[0, 0], math.pi / self.teeth, half)
+        profile = self.profile
+        half = np.interp(
+            radius, profile[:, 0], profile[:, 1], left=math.pi / self.teeth, right=-1.0
+        )
+        return np.where(radius < profile[0, 0], math.pi / self.teeth, half)
 
     def inside(self, points: np.ndarray) -> np.ndarray:
         """Whether points lie in the gear."""
@@ -151,31 +153,38 @@ class Gear:
     def spacing(self, points: np.ndarray) -> np.ndarray:
         """Wanted distance of neighbours."""
         m, o = self.outline.module, self.outline
-        near = cKDTree(self.loads).query(points)[0]
-        seen = cKDTree(self.places).query(points)[0]
+        load_distance = cKDTree(self.loads).query(points)[0]
+        distance = cKDTree(self.places).query(points)[0]
         depth = np.maximum(0.0, o.profile[0, 0] - np.hypot(*points.T))
         wide = np.minimum(0.1 * m + 0.3 * depth, 0.05 * o.bore_radius)
-        return np.minimum(wide, np.minimum(0.006 * m + 0.25 * near, 0.04 * m + 0.25 * seen))
+        return np.minimum(
+            wide, np.minimum(0.006 * m + 0.25 * load_distance, 0.04 * m + 0.25 * distance)
+        )
 
     def _boundary(self) -> np.ndarray:
         o = self.outline
-        one = o.profile
-        right = np.column_stack((one[:, 0] * np.sin(one[:, 1]), one[:, 0] * np.cos(one[:, 1])))
-        width = one[-1, 1]
+        profile = o.profile
+        right = np.column_stack(
+            (profile[:, 0] * np.sin(profile[:, 1]), profile[:, 0] * np.cos(profile[:, 1]))
+        )
+        width = profile[-1, 1]
         tip = np.linspace(width, -width, 60)[1:-1]
         top = o.tip_radius * np.column_stack((np.sin(tip), np.cos(tip)))
         left = right[::-1] * [-1.0, 1.0]
-        root = np.linspace(-one[0, 1], -2.0 * math.pi / o.teeth + one[0, 1], 60)[1:-1]
-        floor = one[0, 0] * np.column_stack((np.sin(root), np.cos(root)))
+        root = np.linspace(-profile[0, 1], -2.0 * math.pi / o.teeth + profile[0, 1], 60)[1:-1]
+        floor = profile[0, 0] * np.column_stack((np.sin(root), np.cos(root)))
         curve = np.concatenate((right, top, left, floor))
-        whole = []
+        boundary_points = []
         for tooth in range(o.teeth):
             turn = 2.0 * math.pi * tooth / o.teeth
             c, s = math.cos(turn), math.sin(turn)
-            whole.append(curve @ np.array([[c, -s], [s, c]]).T)
+            boundary_points.append(curve @ np.array([[c, -s], [s, c]]).T)
         round_bore = np.linspace(0.0, 2.0 * math.pi, 4000)
         bore = o.bore_radius * np.column_stack((np.sin(round_bore), np.cos(round_bore)))
-        chains = [self._along(np.concatenate((*whole, whole[0][:1]))), self._along(bore)]
+        chains = [
+            self._along(np.concatenate((*boundary_points, boundary_points[0][:1]))),
+            self._along(bore),
+        ]
         points = np.concatenate(chains)
         far = cKDTree(self.places).query(points)[0]
         return np.asarray(points[far > 0.3 * self.spacing(points)])
@@ -192,7 +201,7 @@ class Gear:
 
     def _inner(self, boundary: np.ndarray) -> np.ndarray:
         """Staggered points of halved distances, each where its distance is wanted."""
-        o, found = self.outline, []
+        o, points_inside = self.outline, []
         size, least = 0.5 * o.tip_radius, 0.004 * o.module
         tree = cKDTree(np.concatenate((boundary, self.places)))
         sizes = [size * 0.7071**k for k in range(80) if size * 0.7071**k > least]
@@ -209,8 +218,8 @@ class Gear:
                 grid = grid[(want >= distance) & (want < distance / 0.7071)]
                 if len(grid):
                     off = tree.query(grid)[0]
-                    found.append(grid[off > 0.6 * self.spacing(grid)])
-        points = np.concatenate(found)
+                    points_inside.append(grid[off > 0.6 * self.spacing(grid)])
+        points = np.concatenate(points_inside)
         order = np.argsort(self.spacing(points), kind="stable")
         return _thinned(points[order], self.spacing(points[order]))
 
@@ -220,10 +229,10 @@ class Gear:
         a, b, c = (points[corners[:, i]] for i in range(3))
         area = 0.5 * _cross(b - a, c - a)
         longest = np.max([np.hypot(*(p - q).T) for p, q in ((a, b), (b, c), (c, a))], axis=0)
-        kept = self.outline.inside(middle) & (np.abs(area) > 1e-4 * longest**2)
+        valid = self.outline.inside(middle) & (np.abs(area) > 1e-4 * longest**2)
         flip = area < 0.0
         corners[flip] = corners[flip][:, [0, 2, 1]]
-        return np.asarray(corners[kept])
+        return np.asarray(corners[valid])
 
     def displacement(self, place: np.ndarray, normal: np.ndarray) -> np.ndarray:
         """Displacements of all nodes by a Hertz pressure of unit force about a place."""
@@ -233,8 +242,8 @@ class Gear:
         tangent = np.array([-normal[1], normal[0]])
         force = np.zeros(2 * len(self.points))
         ends = self.points[edges]
-        near = np.hypot(*(ends[:, 2] - place).T) < 3.0 * a
-        for edge, (p, q, middle) in zip(edges[near], ends[near], strict=True):
+        loaded = np.hypot(*(ends[:, 2] - place).T) < 3.0 * a
+        for edge, (p, q, middle) in zip(edges[loaded], ends[loaded], strict=True):
             for t, w in zip(x, weight, strict=True):
                 shape = np.array([0.5 * t * (t - 1.0), 0.5 * t * (t + 1.0), 1.0 - t * t])
                 at = shape @ np.array([p, q, middle])
@@ -264,12 +273,12 @@ def _staggered(centre: np.ndarray, reach: float, distance: float) -> np.ndarray:
 
 def _thinned(points: np.ndarray, spacing: np.ndarray) -> np.ndarray:
     """Leave out points too near to a finer one before them."""
-    tree, kept = cKDTree(points), np.ones(len(points), dtype=bool)
+    tree, retained = cKDTree(points), np.ones(len(points), dtype=bool)
     for index, others in enumerate(tree.query_ball_point(points, 0.65 * spacing)):
-        if kept[index]:
+        if retained[index]:
             later = [other for other in others if other > index]
-            kept[later] = False
-    return points[kept]
+            retained[later] = False
+    return points[retained]
 
 
 def _with_middles(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -333,21 +342,23 @@ def outline_of(name: str | tuple[int, float, float]) -> Outline:
 def column(outline: Outline, curvature: float, other: float) -> tuple[float, float, float]:
     """Compliance at a loaded place, that of another on the next tooth [mm^2/N], and the depth."""
     place, normal, depth = outline.flank_point(curvature)
-    seen, direction, _ = outline.flank_point(other, 1)
-    gear = Gear(outline, np.array([place, seen]), place[None])
+    mate_point, direction, _ = outline.flank_point(other, 1)
+    gear = Gear(outline, np.array([place, mate_point]), place[None])
     moved = gear.displacement(place, normal)
-    at = [int(np.argmin(np.hypot(*(gear.points - p).T))) for p in (place, seen)]
+    at = [int(np.argmin(np.hypot(*(gear.points - p).T))) for p in (place, mate_point)]
     patch = math.log(2.0 * depth / (PATCH * outline.module)) - 0.5 * POISSON
-    own = float(moved[at[0]] @ normal) - 2.0 / (math.pi * MODULUS) * patch
-    return own, float(moved[at[1]] @ direction), depth
+    self_compliance = float(moved[at[0]] @ normal) - 2.0 / (math.pi * MODULUS) * patch
+    return self_compliance, float(moved[at[1]] @ direction), depth
 
 
 def compliances(name: str | tuple[int, float, float]) -> tuple[list[float], list[float]]:
     """Self compliances [1e-5 mm^2/N] and those of the next tooth [1e-6 mm^2/N] of a gear."""
     radii = TRIANGLES[name][0]
     outline = outline_of(name)
-    found = [column(outline, *pair) for pair in zip(radii, reversed(radii), strict=True)]
-    return [1e5 * own for own, _, _ in found], [1e6 * cross for _, cross, _ in found]
+    columns = [column(outline, *pair) for pair in zip(radii, reversed(radii), strict=True)]
+    return [1e5 * self_part for self_part, _, _ in columns], [
+        1e6 * cross for _, cross, _ in columns
+    ]
 
 
 class Pair:
@@ -359,7 +370,7 @@ class Pair:
         path = roll * pinion.base_radius
         self.pinion_base, self.radius = pinion.base_radius, path * (line - path) / line
         bodies = [column(gear, at, at) for gear, at in ((pinion, path), (wheel, line - path))]
-        self.structure = sum(own for own, _, _ in bodies)
+        self.structure = sum(self_part for self_part, _, _ in bodies)
         self.depths = np.array([depth for _, _, depth in bodies])
 
     def approach(self, load: float) -> float:
@@ -388,11 +399,11 @@ TORQUES = (90.0, 150.0, 300.0)
 
 if __name__ == "__main__":
     print(f"pitch point: stated {STIFFNESS}, found {Pair(PITCH_POINT).stiffness():.4f}")
-    for roll, known in DEFLECTIONS.items():
+    for roll, expected in DEFLECTIONS.items():
         pair = Pair(roll)
-        print(roll, "stated", *known, " found", *(f"{pair.deflection(t):.3f}" for t in TORQUES))
+        print(roll, "stated", *expected, " found", *(f"{pair.deflection(t):.3f}" for t in TORQUES))
     for name, (_, *tables) in TRIANGLES.items():
-        found = compliances(name)
+        columns = compliances(name)
         print(name)
-        for known, new in zip(tables, found, strict=True):
-            print("  stated", *known, " found", *(f"{value:.4f}" for value in new))
+        for expected, new in zip(tables, columns, strict=True):
+            print("  stated", *expected, " found", *(f"{value:.4f}" for value in new))

@@ -72,11 +72,11 @@ def equations(phase: float, middle: float, coefficient: float) -> tuple[np.ndarr
             R1 * (R1 + first) / INERTIA[0] + R2 * (R2 + second) / INERTIA[1],
         ]
     )  # fmt: skip
-    held = np.array([1 / MASS[0], 1 / MASS[0], 1 / MASS[1], 1 / MASS[1], 0.0])
+    inverse_mass = np.array([1 / MASS[0], 1 / MASS[0], 1 / MASS[1], 1 / MASS[1], 0.0])
     matrix = np.zeros((10, 10))
     matrix[:5, 5:] = np.eye(5)
-    matrix[5:, :5] = np.outer(push, stiffness * COMPRESSION) - np.diag(SUPPORT * held)
-    matrix[5:, 5:] = np.outer(push, DAMPING * COMPRESSION) - np.diag(SUPPORT_DAMPING * held)
+    matrix[5:, :5] = np.outer(push, stiffness * COMPRESSION) - np.diag(SUPPORT * inverse_mass)
+    matrix[5:, 5:] = np.outer(push, DAMPING * COMPRESSION) - np.diag(SUPPORT_DAMPING * inverse_mass)
     right = np.zeros(10)
     right[9] = R1 * TORQUE[0] / INERTIA[0] + R2 * TORQUE[1] / INERTIA[1]
     return matrix, right
@@ -84,7 +84,7 @@ def equations(phase: float, middle: float, coefficient: float) -> tuple[np.ndarr
 
 def _integrate(state: np.ndarray, coefficient: float, samples: int = 2) -> list[np.ndarray]:
     """States with their phase in front, in each piece of the cycle; several columns at once."""
-    found = []
+    parts = []
     for low, high in pairwise(EDGES):
         middle = 0.5 * (low + high)
 
@@ -100,8 +100,8 @@ def _integrate(state: np.ndarray, coefficient: float, samples: int = 2) -> list[
             rtol=1e-11, atol=1e-14,
         )  # fmt: skip
         state = solved.y[:, -1].reshape(state.shape)
-        found.append(np.vstack((solved.t, solved.y)))
-    return found
+        parts.append(np.vstack((solved.t, solved.y)))
+    return parts
 
 
 def orbit(coefficient: float) -> tuple[list[np.ndarray], float]:
@@ -163,9 +163,9 @@ def figures(coefficient: float) -> dict[str, tuple[float, ...]]:
 
 if __name__ == "__main__":
     for friction, stated in ORBITS.items():
-        found = figures(friction)
+        computed = figures(friction)
         print(f"friction {friction}")
         for name, values in (("orbit", stated), ("harmonics", HARMONICS[friction])):
-            print(f"  {name}: {[round(v, 7) for v in found[name]]}, stated {list(values)}")
-    print("  across:", found["across"], "stated", list(ACROSS.values()))
-    print("  multiplier:", found["multiplier"], "stated", MULTIPLIER)
+            print(f"  {name}: {[round(v, 7) for v in computed[name]]}, stated {list(values)}")
+    print("  across:", computed["across"], "stated", list(ACROSS.values()))
+    print("  multiplier:", computed["multiplier"], "stated", MULTIPLIER)

@@ -30,13 +30,13 @@ def test_backlash_orbits(guess: tuple[float, float], rms: float, touches: bool) 
 @pytest.mark.slow
 @pytest.mark.parametrize("friction", gear_pair_orbits.ORBITS)
 def test_gear_pair_orbits(friction: float) -> None:
-    found = gear_pair_orbits.figures(friction)
-    assert found["orbit"] == pytest.approx(gear_pair_orbits.ORBITS[friction], rel=1e-6)
-    assert found["harmonics"] == pytest.approx(gear_pair_orbits.HARMONICS[friction], abs=6e-7)
+    computed = gear_pair_orbits.figures(friction)
+    assert computed["orbit"] == pytest.approx(gear_pair_orbits.ORBITS[friction], rel=1e-6)
+    assert computed["harmonics"] == pytest.approx(gear_pair_orbits.HARMONICS[friction], abs=6e-7)
     if friction:
         across = list(gear_pair_orbits.ACROSS.values())
-        assert found["across"] == pytest.approx(across, abs=6e-4)
-        assert found["multiplier"][0] == pytest.approx(gear_pair_orbits.MULTIPLIER, abs=6e-7)
+        assert computed["across"] == pytest.approx(across, abs=6e-4)
+        assert computed["multiplier"][0] == pytest.approx(gear_pair_orbits.MULTIPLIER, abs=6e-7)
 
 
 @pytest.mark.parametrize("stated", friction_table.TABLE)
@@ -51,10 +51,10 @@ def test_friction_table(stated: tuple[float, ...]) -> None:
 @pytest.mark.parametrize("name", film_cases.KNOWN)
 def test_films_of_moes(name: str) -> None:
     *_, central, minimum, outlet = film_cases.MOES[name]
-    known = film_cases.moes_film(name, 1000)
-    assert known.central == pytest.approx(central, rel=2e-4)
-    assert known.minimum == pytest.approx(minimum, rel=2e-4)
-    assert known.X[-1] == pytest.approx(outlet, abs=1e-4)
+    expected = film_cases.moes_film(name, 1000)
+    assert expected.central == pytest.approx(central, rel=2e-4)
+    assert expected.minimum == pytest.approx(minimum, rel=2e-4)
+    assert expected.X[-1] == pytest.approx(outlet, abs=1e-4)
 
 
 @pytest.mark.slow

@@ -64,7 +64,7 @@ def star_imports(module: Module) -> list[str]:
 
 def broad_errors(module: Module) -> list[str]:
     """No bare except, no swallowed exception, no `raise Exception`."""
-    found = []
+    problems = []
     for node in module.nodes:
         if isinstance(node, ast.ExceptHandler):
             caught = ast.unparse(node.type) if node.type else ""
@@ -73,12 +73,12 @@ def broad_errors(module: Module) -> list[str]:
             again = isinstance(ends, ast.Raise) and ends.exc is None  # cleans up, then goes on
             broad = caught == "" or (caught == "BaseException" and not again)
             if broad or (caught == "Exception" and idle):
-                found.append(f"{module.path}:{node.lineno}: except {caught or 'everything'}")
+                problems.append(f"{module.path}:{node.lineno}: except {caught or 'everything'}")
         if isinstance(node, ast.Raise) and node.exc is not None:
             raised = ast.unparse(node.exc).split("(")[0]
             if raised in {"Exception", "BaseException", "NotImplementedError"}:
-                found.append(f"{module.path}:{node.lineno}: raise {raised}")
-    return found
+                problems.append(f"{module.path}:{node.lineno}: raise {raised}")
+    return problems
 
 
 def left_overs(module: Module) -> list[str]:
@@ -113,7 +113,7 @@ def exports(module: Module) -> list[str]:
 
 def top_level_imports(module: Module) -> list[str]:
     """Heavy packages are imported where they are needed, not when a module is loaded."""
-    found = []
+    problems = []
     for node in module.tree.body:
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -127,5 +127,5 @@ def top_level_imports(module: Module) -> list[str]:
                 continue
             allowed = TOP_IMPORTS.get(package, set())
             if allowed is not None and module.package not in allowed:
-                found.append(f"{module.path}:{node.lineno}: imports {package} at its top")
-    return found
+                problems.append(f"{module.path}:{node.lineno}: imports {package} at its top")
+    return problems

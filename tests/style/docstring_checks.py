@@ -61,19 +61,19 @@ def _place(module: Module, function: Function) -> str:
 
 def missing_docstrings(module: Module) -> list[str]:
     """Modules, public classes and public functions say what they are."""
-    found = [] if ast.get_docstring(module.tree) else [f"{module.path}: no docstring"]
-    found += [
+    problems = [] if ast.get_docstring(module.tree) else [f"{module.path}: no docstring"]
+    problems += [
         f"{module.path}:{node.lineno}: {node.name}"
         for node in module.classes()
         if not node.name.startswith("_") and not ast.get_docstring(node)
     ]
-    found += [_place(module, f) for f in module.functions() if f.public and not f.docstring]
-    return found
+    problems += [_place(module, f) for f in module.functions() if f.public and not f.docstring]
+    return problems
 
 
 def parameters_differ(module: Module) -> list[str]:
     """Documented parameters equal the signature, in order."""
-    found = []
+    problems = []
     for function in module.functions():
         if not function.public:
             continue
@@ -83,17 +83,19 @@ def parameters_differ(module: Module) -> list[str]:
             name for name in function.parameters if _annotation(function, name) not in OPTIONS
         ]
         if required and documented != wanted:
-            found.append(f"{_place(module, function)}: {documented} != {wanted}")
+            problems.append(f"{_place(module, function)}: {documented} != {wanted}")
     for node in module.classes():
         documented = list(parse_entries(ast.get_docstring(node) or "", "Parameters"))
         fields = _constructor(node)
         if fields is None or node.name.startswith("_"):
             continue
         # fields of a base class are documented with the others, wherever they stand
-        own = [name for name in documented if name in fields] if node.bases else documented
-        if own != fields and (documented or node.name in module.surface):
-            found.append(f"{module.path}:{node.lineno}: {node.name}: {documented} != {fields}")
-    return found
+        documented_fields = (
+            [name for name in documented if name in fields] if node.bases else documented
+        )
+        if documented_fields != fields and (documented or node.name in module.surface):
+            problems.append(f"{module.path}:{node.lineno}: {node.name}: {documented} != {fields}")
+    return problems
 
 
 def _annotation(function: Function, name: str) -> str:
@@ -129,7 +131,7 @@ def _constructor(node: ast.ClassDef) -> list[str] | None:
 
 def missing_returns(module: Module) -> list[str]:
     """A function says what it returns where its annotation does not: shape, unit or meaning."""
-    found = []
+    problems = []
     for function in module.functions():
         annotation = ast.unparse(function.node.returns) if function.node.returns else "None"
         # None, a text, a truth or an object of a class that says itself what it is
@@ -137,15 +139,19 @@ def missing_returns(module: Module) -> list[str]:
         special = function.node.name.startswith("__") or any(
             "property" in decorator or "overload" in decorator for decorator in function.decorators
         )
-        told = re.search(r"^(Returns|Yields)\n-+$", function.docstring, re.MULTILINE)
-        if function.public and not (silent or special or told) and _is_contract(module, function):
-            found.append(_place(module, function))
-    return found
+        section = re.search(r"^(Returns|Yields)\n-+$", function.docstring, re.MULTILINE)
+        if (
+            function.public
+            and not (silent or special or section)
+            and _is_contract(module, function)
+        ):
+            problems.append(_place(module, function))
+    return problems
 
 
 def missing_raises(module: Module) -> list[str]:
     """A public function that raises, or validates, has a Raises section."""
-    found = []
+    problems = []
     for function in module.functions():
         raises = any(
             isinstance(node, ast.Raise)
@@ -155,13 +161,13 @@ def missing_raises(module: Module) -> list[str]:
             )
             for node in ast.walk(function.node)
         )
-        told = re.search(r"^Raises\n-+$", function.docstring, re.MULTILINE)
+        section = re.search(r"^Raises\n-+$", function.docstring, re.MULTILINE)
         dunder = function.node.name.startswith("__")
         on_screen = module.package == "cli"  # there the docstring is the help text
-        excused = told or dunder or on_screen or not _is_contract(module, function)
+        excused = section or dunder or on_screen or not _is_contract(module, function)
         if function.public and raises and not excused:
-            found.append(_place(module, function))
-    return found
+            problems.append(_place(module, function))
+    return problems
 
 
 def missing_doctests(module: Module) -> list[str]:
@@ -224,15 +230,15 @@ def missing_units(module: Module) -> list[str]:
         return []
     public = {name for name in module.surface if not name.startswith("_")}
     numeric = re.compile(r"\b(float|NDArray\[np\.float64\]|ArrayLike|FloatArray|Array)\b")
-    found = []
+    problems = []
     for place, name, entry, annotation in _entries(module):
         pure = name in _ANY or _quantity(name) == "" or _PURE.search(name)
         if place.rsplit(": ", 1)[-1].split(".")[0] not in public:
             continue
-        told = pure or _WORDED.search(entry) or _stated(entry) or "Callable" in annotation
-        if numeric.search(annotation) and not told:
-            found.append(f"{place}: {name} states no unit")
-    return found
+        has_unit = pure or _WORDED.search(entry) or _stated(entry) or "Callable" in annotation
+        if numeric.search(annotation) and not has_unit:
+            problems.append(f"{place}: {name} states no unit")
+    return problems
 
 
 def _same(stated: str, unit: str) -> bool:
@@ -244,7 +250,7 @@ def _same(stated: str, unit: str) -> bool:
 
 def units_differ(module: Module) -> list[str]:
     """Where a name is in the nomenclature, the docstring gives the nomenclature's unit."""
-    found = []
+    problems = []
     for place, name, entry, annotation in _entries(module):
         unit = _quantity(name)
         mixed = "matrix" in entry or " or " in "".join(_stated(entry)) or "int" in annotation
@@ -252,5 +258,5 @@ def units_differ(module: Module) -> list[str]:
             continue
         wrong = [text for text in _stated(entry) if not _same(text, unit)]
         if wrong and len(wrong) == len(_stated(entry)):
-            found.append(f"{place}: {name} [{wrong[0]}], nomenclature [{unit}]")
-    return found
+            problems.append(f"{place}: {name} [{wrong[0]}], nomenclature [{unit}]")
+    return problems

@@ -16,27 +16,27 @@ MOST_FILES = 16
 MOST_ARGUMENTS = 8
 
 
-def crowded_folders(paths: Iterable[str], known: Mapping[str, int]) -> list[str]:
+def crowded_folders(paths: Iterable[str], allowed: Mapping[str, int]) -> list[str]:
     """Folders of more modules than one can look over, unless they are known and did not grow."""
     counts = Counter(
         Path(path).parent.as_posix() for path in paths if not path.endswith("__init__.py")
     )
     return [
-        f"{folder}: {count} files, at most {max(MOST_FILES, known.get(folder, 0))}"
+        f"{folder}: {count} files, at most {max(MOST_FILES, allowed.get(folder, 0))}"
         for folder, count in sorted(counts.items())
-        if count > max(MOST_FILES, known.get(folder, 0))
+        if count > max(MOST_FILES, allowed.get(folder, 0))
     ]
 
 
-def crowded_functions(modules: Iterable[Module], known: Mapping[str, int]) -> list[str]:
+def crowded_functions(modules: Iterable[Module], allowed: Mapping[str, int]) -> list[str]:
     """Inner functions with more arguments than one can remember, unless known and not grown."""
     return [
         f"{module.path}:{function.node.lineno}: {function.name} takes {count} arguments, at most "
-        f"{max(MOST_ARGUMENTS, known.get(function.node.name, 0))}"
+        f"{max(MOST_ARGUMENTS, allowed.get(function.node.name, 0))}"
         for module in modules
         for function in module.functions()
         if (count := len(function.parameters))
-        > max(MOST_ARGUMENTS, known.get(function.node.name, 0))
+        > max(MOST_ARGUMENTS, allowed.get(function.node.name, 0))
         and not (_on_page(module, function) or _for_kernels(function))
     ]
 
@@ -54,12 +54,12 @@ def _for_kernels(function: Function) -> bool:
 
 def long_inner_docstrings(module: Module) -> list[str]:
     """Docstrings of more than one line of what is on no page of public names."""
-    found = [
+    problems = [
         f"{module.path}:{function.node.lineno}: {function.name}"
         for function in module.functions()
         if "\n" in function.docstring and not _on_page(module, function)
     ]
-    return found + [
+    return problems + [
         f"{module.path}:{node.lineno}: {node.name}"
         for node in module.classes()
         if "\n" in (ast.get_docstring(node) or "") and node.name not in module.surface

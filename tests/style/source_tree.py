@@ -140,12 +140,12 @@ class Module:
         return list(ast.walk(self.tree))
 
     @cached_property
-    def _found(self) -> list[Function]:
+    def _functions(self) -> list[Function]:
         return list(_functions(self.tree, "", None, nested=False))
 
     def functions(self) -> list[Function]:
         """All functions with their qualified names."""
-        return self._found
+        return self._functions
 
     def classes(self) -> Iterator[ast.ClassDef]:
         """Classes at the top level."""
@@ -198,15 +198,15 @@ def _surfaces() -> dict[str, set[str]]:
 def modules(folder: Path = PACKAGE) -> tuple[Module, ...]:
     """All modules under a folder; recipes are scripts, in folders that are no packages."""
     surfaces = _surfaces()
-    found = []
+    modules_read = []
     for path in sorted(folder.rglob("*.py")):
         if folder == PACKAGE and not (path.parent / "__init__.py").exists():
             continue
         text, place = path.read_text("utf-8"), path.relative_to(ROOT)
         dotted = ".".join(place.with_suffix("").parts[1:])
         surface = frozenset(surfaces.get(dotted, ()))
-        found.append(Module(place.as_posix(), text, ast.parse(text), surface))
-    return tuple(found)
+        modules_read.append(Module(place.as_posix(), text, ast.parse(text), surface))
+    return tuple(modules_read)
 
 
 def tracked_files(root: Path = ROOT) -> list[Path] | None:

@@ -19,7 +19,7 @@ _STATES = re.compile(r"^(assert|check|expect|raises|warns|fail|refuse)")
 
 def clocks(module: Module) -> list[str]:
     """No test reads a clock: what a busy machine decides is measured in benchmarks only."""
-    found = []
+    problems = []
     for node in module.nodes:
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             owner, names = node.value.id, {node.attr}
@@ -31,8 +31,8 @@ def clocks(module: Module) -> list[str]:
         if suffixes & _CLOCKS.get(owner, set()) and not (
             owner == "datetime" and isinstance(node, ast.ImportFrom)
         ):
-            found.append(f"{module.path}:{node.lineno}: reads a clock")
-    return found
+            problems.append(f"{module.path}:{node.lineno}: reads a clock")
+    return problems
 
 
 def _called(node: ast.Call) -> str:
@@ -41,7 +41,7 @@ def _called(node: ast.Call) -> str:
 
 def idle_tests(module: Module) -> list[str]:
     """Every test states something that can be false."""
-    found = []
+    problems = []
     for function in module.functions():
         if not function.node.name.startswith("test") or function.nested:
             continue
@@ -50,8 +50,8 @@ def idle_tests(module: Module) -> list[str]:
         idle = [a for a in asserts if isinstance(a.test, ast.Constant)]
         states = [a for a in inside if isinstance(a, ast.Call) and _STATES.match(_called(a))]
         if idle or not (asserts or states or _accepts(function.node.name)):
-            found.append(f"{module.path}:{function.node.lineno}: {function.name} states nothing")
-    return found
+            problems.append(f"{module.path}:{function.node.lineno}: {function.name} states nothing")
+    return problems
 
 
 def _accepts(name: str) -> bool:
@@ -61,7 +61,7 @@ def _accepts(name: str) -> bool:
 
 def silent_skips(module: Module) -> list[str]:
     """A test that is skipped or expected to fail says why."""
-    found = []
+    problems = []
     for node in module.nodes:
         if isinstance(node, ast.Attribute) and node.attr in {"skip", "xfail", "skipif"}:
             called = [
@@ -71,8 +71,8 @@ def silent_skips(module: Module) -> list[str]:
                 keyword.arg == "reason" for keyword in called[0].keywords
             ) | bool(node.attr == "skip" and called[0].args)
             if not reasoned:
-                found.append(f"{module.path}:{node.lineno}: {node.attr} without a reason")
-    return found
+                problems.append(f"{module.path}:{node.lineno}: {node.attr} without a reason")
+    return problems
 
 
 def doubled_names(paths: list[str]) -> list[str]:

@@ -57,8 +57,8 @@ def test_kernels_may_be_long_and_docstrings_do_not_count() -> None:
     inner = "".join(f"    {line}\n" for line in f"@njit\ndef g():\n{body}".splitlines())
     assert not code_checks.long_functions(read(f"def f():\n{inner}    return g\n"))
     assert code_checks.long_functions(read(f"def f():\n{inner.replace('@njit', '@wraps')}"))
-    words = "words\n" * 70
-    assert not code_checks.long_functions(read(f'def f():\n    """{words}"""\n    return 1\n'))
+    text = "words\n" * 70
+    assert not code_checks.long_functions(read(f'def f():\n    """{text}"""\n    return 1\n'))
 
 
 def test_pages_may_list_their_names() -> None:

@@ -116,13 +116,13 @@ def test_every_public_name_resolves() -> None:
 
 
 def test_case_fields_have_the_units_of_the_nomenclature() -> None:
-    sections, seen = [Section], []
+    sections, sections_seen = [Section], []
     while sections:
         section = sections.pop()
         sections += section.__subclasses__()
         for name, spec in section.specs():
             if name in QUANTITIES:
-                seen.append(name)
+                sections_seen.append(name)
                 assert spec.unit == QUANTITIES[name].unit, (section, name)
     assert case_model.__doc__  # importing it makes the sections known
-    assert {"normal_module", "face_width", "speed", "torque"} <= set(seen)
+    assert {"normal_module", "face_width", "speed", "torque"} <= set(sections_seen)

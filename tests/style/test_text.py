@@ -21,12 +21,12 @@ def contents() -> list[tuple[str, str]]:
 
 
 def test_no_machine_paths() -> None:
-    complaints = [found for name, text in contents() for found in machine_paths(name, text)]
+    complaints = [match for name, text in contents() for match in machine_paths(name, text)]
     assert not complaints, "\n".join(complaints)
 
 
 def test_only_known_hosts() -> None:
-    complaints = [found for name, text in contents() for found in strange_hosts(name, text)]
+    complaints = [match for name, text in contents() for match in strange_hosts(name, text)]
     assert not complaints, "\n".join(complaints)
 
 

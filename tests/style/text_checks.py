@@ -42,7 +42,7 @@ def machine_paths(name: str, text: str) -> list[str]:
 def strange_hosts(name: str, text: str) -> list[str]:
     """Only known public addresses are named, none with a port."""
     return [
-        f"{name}: {found.group()}"
-        for found in _URL.finditer(text)
-        if found.group(2) or found.group(1) not in HOSTS
+        f"{name}: {match.group()}"
+        for match in _URL.finditer(text)
+        if match.group(2) or match.group(1) not in HOSTS
     ]

@@ -87,8 +87,8 @@ def test_cheapest_setting_is_the_first_that_suffices(bench: Any) -> None:
     def solve(_: Any, setting: float) -> Any:
         return exact * (1.0 + setting)
 
-    found = bench.equal_accuracy.cheapest(solve, (1e-5, 1e-6, 1e-7), trajectories)
-    assert found.value == 1e-6
+    cheapest = bench.equal_accuracy.cheapest(solve, (1e-5, 1e-6, 1e-7), trajectories)
+    assert cheapest.value == 1e-6
     with pytest.raises(RuntimeError, match="no setting"):
         bench.equal_accuracy.cheapest(solve, (1e-5,), trajectories)
 
@@ -105,7 +105,7 @@ def test_a_race_takes_turns(bench: Any) -> None:
 
     times = bench.race.race({"a": runner("a"), "b": runner("b")}, 2)
     assert order == ["a", "b"] * 3  # the first round does not count
-    assert [len(own.processor) for own in times.values()] == [2, 2]
+    assert [len(samples.processor) for samples in times.values()] == [2, 2]
 
 
 def test_ratios_are_medians_over_the_rounds(bench: Any) -> None:

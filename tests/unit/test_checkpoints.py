@@ -36,14 +36,14 @@ def test_a_torn_line_is_dropped_and_written_over(tmp_path: Path) -> None:
     first.keep("1", 2.0)
     first.close()
     path = tmp_path / ".s.members" / NAME
-    whole = path.read_bytes()
-    for end in range(len(whole)):
-        path.write_bytes(whole[:end])
+    content = path.read_bytes()
+    for end in range(len(content)):
+        path.write_bytes(content[:end])
         members = Checkpoints(tmp_path / "s").begin(_STUDY)
-        lines = whole[:end].count(b"\n")
+        lines = content[:end].count(b"\n")
         assert len(members) == max(lines - 1, 0)
         members.close()
-    path.write_bytes(whole[:-3] + b"x" + whole[-2:])
+    path.write_bytes(content[:-3] + b"x" + content[-2:])
     members = Checkpoints(tmp_path / "s").begin(_STUDY)
     assert members.get("0") == 1.0
     assert members.get("1") is None

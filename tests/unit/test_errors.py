@@ -159,11 +159,11 @@ def test_a_resonance_is_told_in_the_units_of_engineers():
 
 def test_what_follows_a_quoted_word_is_told_whole():
     names = ", ".join(f"figure_{number}" for number in range(60))
-    told = str(InputError("no figure", why=f'compute = "summary" gives {names}'))
-    assert told.endswith("figure_59.")
+    message = str(InputError("no figure", why=f'compute = "summary" gives {names}'))
+    assert message.endswith("figure_59.")
 
 
 def test_a_long_value_is_cut_and_told_to_be():
-    told = str(InputError(f'name = "{"ab " * 200}"'))
-    assert len(told) < 230
-    assert told.endswith("...")
+    message = str(InputError(f'name = "{"ab " * 200}"'))
+    assert len(message) < 230
+    assert message.endswith("...")

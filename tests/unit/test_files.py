@@ -64,11 +64,11 @@ def test_a_kill_leaves_the_old_or_the_new_result(tmp_path: Path, at: str, holds:
     assert done.returncode == -signal.SIGKILL
     if not at.startswith("two-step"):
         assert (place / "summary.json").read_text() == holds
-    with collected() as told:
+    with collected() as messages:
         clear_leftovers(place)
     assert (place / "summary.json").read_text() == holds
     assert os.listdir(tmp_path) == ["r"]
-    assert {warning.code for warning in told} == {"leftover"}
+    assert {warning.code for warning in messages} == {"leftover"}
 
 
 def test_without_exchange_a_failing_rename_brings_the_old_result_back(
@@ -76,11 +76,11 @@ def test_without_exchange_a_failing_rename_brings_the_old_result_back(
 ) -> None:
     place = _old(tmp_path)
     monkeypatch.setattr(files, "_exchanger", lambda: None)
-    rename, seen = Path.rename, []
+    rename, renamed = Path.rename, []
 
     def second_fails(self: Path, target: Path) -> Path:
-        seen.append(target)
-        if len(seen) == 2:
+        renamed.append(target)
+        if len(renamed) == 2:
             raise OSError(errno.EIO, "I/O error")
         return rename(self, target)
 
@@ -101,10 +101,10 @@ def test_what_a_living_process_writes_is_left_alone(tmp_path: Path) -> None:
         assert partial.is_dir()
     stopped = tmp_path / ".r.0123abcd.part"
     stopped.mkdir()
-    held = lock(stopped)
+    lock_file = lock(stopped)
     clear_leftovers(place)
     assert stopped.is_dir()
-    os.close(held)
+    os.close(lock_file)
     with collected():
         clear_leftovers(place)
     assert not stopped.exists()
@@ -118,11 +118,11 @@ def test_leftovers_of_the_earlier_version(tmp_path: Path) -> None:
     unfinished = tmp_path / ".r.k2_x9abc"
     unfinished.mkdir()
     (unfinished / "case.toml").write_text("x")
-    with collected() as told:
+    with collected() as messages:
         clear_leftovers(place)
     assert (place / "summary.json").read_text() == "old"
     assert os.listdir(tmp_path) == ["r"]
-    assert len(told) == 2
+    assert len(messages) == 2
 
 
 def test_a_copy_of_the_user_is_no_leftover(tmp_path: Path) -> None:
@@ -144,8 +144,8 @@ def test_a_name_that_no_disk_takes_is_told(tmp_path: Path, name: str) -> None:
 
 
 def test_a_full_disk_is_told_with_the_place(tmp_path: Path) -> None:
-    told = pytest.raises(ComputationError, match="r: cannot write: no space")
-    with told, atomic_write(tmp_path / "r", folder=True):
+    caught = pytest.raises(ComputationError, match="r: cannot write: no space")
+    with caught, atomic_write(tmp_path / "r", folder=True):
         raise OSError(errno.ENOSPC, "no space left on device")
     assert os.listdir(tmp_path) == []
 

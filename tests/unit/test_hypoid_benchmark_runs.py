@@ -32,6 +32,6 @@ def test_rivals_find_the_same(bench: Any) -> None:
 
 def test_quick_run(bench: Any, capsys: pytest.CaptureFixture[str]) -> None:
     bench.main(["--quick"])
-    told = capsys.readouterr().out
-    assert "design to loaded contact" in told
-    assert "general exact contact" in told
+    output = capsys.readouterr().out
+    assert "design to loaded contact" in output
+    assert "general exact contact" in output

@@ -67,18 +67,18 @@ def test_every_engine_looks_at_the_flag_of_its_thread(name):
 @pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals to threads")
 @pytest.mark.parametrize("lanes", [1, 64])
 def test_one_interruption_ends_a_march_and_its_process(lanes):
-    words = [sys.executable, "-c", _PROGRAM, str(lanes)]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+    command = [sys.executable, "-c", _PROGRAM, str(lanes)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdout is not None
         assert process.stdout.readline().strip() == b"ready"
         time.sleep(0.3)
         assert process.poll() is None
         process.send_signal(signal.SIGINT)
         try:
-            _, told = process.communicate(timeout=20.0)
+            _, errors = process.communicate(timeout=20.0)
         finally:
             process.kill()
-    assert b"KeyboardInterrupt" in told
+    assert b"KeyboardInterrupt" in errors
 
 
 #: The command line, which says when its first time integration begins.
@@ -107,12 +107,19 @@ sys.exit(main())
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize(
-    "words", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=100000"],
+    "arguments", [["run", "--set", "solver.method=transient", "--set", "solver.cycles=100000"],
               ["bifurcation", "operation.speed=2000..3000 rpm:4000", "--cycles", "2"]]
 )  # fmt: skip
-def test_one_interruption_ends_a_command(words, tmp_path: Path):
+def test_one_interruption_ends_a_command(arguments, tmp_path: Path):
     target = tmp_path / "out"
-    command = [sys.executable, "-c", _COMMAND, words[0], "time-varying-friction", *words[1:]]
+    command = [
+        sys.executable,
+        "-c",
+        _COMMAND,
+        arguments[0],
+        "time-varying-friction",
+        *arguments[1:],
+    ]
     with subprocess.Popen(
         [*command, "--out", str(target)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     ) as process:
@@ -129,7 +136,7 @@ def test_one_interruption_ends_a_command(words, tmp_path: Path):
     assert running, errors.decode()
     assert process.returncode == 130
     # A diagram of finished motions is stored; a run leaves nothing unfinished.
-    assert not target.exists() or words[0] == "bifurcation"
+    assert not target.exists() or arguments[0] == "bifurcation"
 
 
 def test_flags_are_of_the_threads_that_one_call_began():
@@ -144,15 +151,15 @@ def test_flags_are_of_the_threads_that_one_call_began():
 
 
 def test_what_is_brief_is_computed_where_it_is_asked_for():
-    here = in_threads(lambda _: threading.get_ident(), range(3), 1, brief=True)
-    assert set(here) == {threading.get_ident()}
+    threads = in_threads(lambda _: threading.get_ident(), range(3), 1, brief=True)
+    assert set(threads) == {threading.get_ident()}
 
 
 def test_a_failure_ends_what_has_not_begun_and_is_raised():
-    begun = []
+    started = []
 
     def work(item):
-        begun.append(item)
+        started.append(item)
         if item == 0:
             raise ValueError("no")
         time.sleep(0.05)
@@ -160,7 +167,7 @@ def test_a_failure_ends_what_has_not_begun_and_is_raised():
 
     with pytest.raises(ValueError, match="no"):
         in_threads(work, range(1000), 2)
-    assert len(begun) < 1000
+    assert len(started) < 1000
 
 
 def test_a_deferred_interruption_is_raised_after_the_block():

@@ -141,10 +141,10 @@ def processor_time() -> float:
 
 def seconds_until_it_ends(call: Callable[[], Any], after: float) -> float:
     """Processor time from a signal to the end of a call and of its threads."""
-    begun: list[float] = []
+    signal_times: list[float] = []
 
     def interrupt() -> None:
-        begun.append(processor_time())
+        signal_times.append(processor_time())
         os.kill(os.getpid(), signal.SIGINT)
 
     before = threading.active_count()
@@ -160,7 +160,7 @@ def seconds_until_it_ends(call: Callable[[], Any], after: float) -> float:
         time.sleep(0.01)
         left -= 1
     assert left, "a thread goes on"
-    return processor_time() - begun[0]
+    return processor_time() - signal_times[0]
 
 
 @pytest.mark.slow

@@ -53,10 +53,10 @@ def test_misspelt_name_names_the_nearest() -> None:
 
 def test_entry_points_extend_but_never_replace(monkeypatch: pytest.MonkeyPatch) -> None:
     entries = [Entry("mine", "third party"), Entry("constant", "impostor")]
-    asked = []
+    names_loaded = []
 
     def entry_points(group: str) -> list[Entry]:
-        asked.append(group)
+        names_loaded.append(group)
         return entries
 
     monkeypatch.setattr(module, "entry_points", entry_points)
@@ -65,7 +65,7 @@ def test_entry_points_extend_but_never_replace(monkeypatch: pytest.MonkeyPatch) 
     assert laws["mine"] == "third party"
     assert laws["constant"] == "own"
     assert laws.names() == ["constant", "mine"]
-    assert asked == ["tribodyn.friction"]
+    assert names_loaded == ["tribodyn.friction"]
 
 
 def test_without_a_group_nothing_is_searched(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,10 +21,10 @@ def test_si_units_are_si() -> None:
     for quantity in QUANTITIES.values():
         if quantity.unit and quantity.unit != "rad":
             base = {"kg", "m", "s", "N", "Pa", "Hz", "K", "W", "J", "rad"}
-            words = set(
+            units_used = set(
                 quantity.unit.replace("^2", "").replace("^3", "").replace("/", "*").split("*")
             )
-            assert words <= base | {"1"}, quantity
+            assert units_used <= base | {"1"}, quantity
 
 
 def test_label_shows_the_display_unit() -> None:

@@ -37,6 +37,6 @@ def test_pair_of_the_race_with_ross_is_a_standard_one(bench: Any) -> None:
 
 def test_quick_run(bench: Any, capsys: pytest.CaptureFixture[str]) -> None:
     bench.main(["--quick"])
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     for expected in ("16 phases x 3 torques, fe2d", "best tip relief", "compiled", "ROSS"):
-        assert expected in told
+        assert expected in output

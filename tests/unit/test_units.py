@@ -181,6 +181,6 @@ def test_usual_units_do_not_load_pint() -> None:
 def test_what_a_number_with_separators_may_mean(text: str, meant: list[str]) -> None:
     assert readings(text) == meant
     if meant:
-        with pytest.raises(UnitProblemError) as told:
+        with pytest.raises(UnitProblemError) as caught:
             split(text)
-        assert all(f'"{reading}"' in str(told.value) for reading in meant)
+        assert all(f'"{reading}"' in str(caught.value) for reading in meant)

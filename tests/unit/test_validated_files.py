@@ -36,20 +36,24 @@ def _data() -> xarray.Dataset:
 
 def test_read_as_it_was_written(tmp_path: Path) -> None:
     write_dataset(_data(), tmp_path / "a.nc")
-    told = h5py.File(tmp_path / "a.nc").attrs["_NCProperties"]
-    assert b"tribodyn=" in told
+    properties = h5py.File(tmp_path / "a.nc").attrs["_NCProperties"]
+    assert b"tribodyn=" in properties
     xarray.testing.assert_equal(read_dataset(tmp_path / "a.nc"), _data())
     write_dataset(_data().force, tmp_path / "b.nc")
     assert read_dataset(tmp_path / "b.nc").force.identical(_data().force)
 
 
-def _held(path: Path) -> dict[str, Any]:
+def _contents(path: Path) -> dict[str, Any]:
     """All that HDF5 holds but references, which are told by the dimensions of the variables."""
 
     def plain(attributes: Any) -> dict[str, Any]:
-        own = {n: v for n, v in attributes.items() if n not in ("_NCProperties", "REFERENCE_LIST")}
-        lists = own.pop("DIMENSION_LIST", ())
-        return {n: (repr(v), np.asarray(v).dtype) for n, v in own.items()} | {"": len(lists)}
+        named_attributes = {
+            n: v for n, v in attributes.items() if n not in ("_NCProperties", "REFERENCE_LIST")
+        }
+        lists = named_attributes.pop("DIMENSION_LIST", ())
+        return {n: (repr(v), np.asarray(v).dtype) for n, v in named_attributes.items()} | {
+            "": len(lists)
+        }
 
     with h5py.File(path) as file:
         scales = {n: [[str(s.name) for s in d.values()] for d in v.dims] for n, v in file.items()}
@@ -66,14 +70,14 @@ def test_the_file_is_that_of_xarray(tmp_path: Path) -> None:
     )
     data.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
     write_dataset(data, tmp_path / "b.nc")
-    assert _held(tmp_path / "a.nc") == _held(tmp_path / "b.nc")
+    assert _contents(tmp_path / "a.nc") == _contents(tmp_path / "b.nc")
     parts = Parts(
         {str(n): (v.dims, v.values.tolist(), v.attrs) for n, v in data.data_vars.items()},
         {str(n): (v.dims, v.values, v.attrs) for n, v in data.coords.items()},
         dict(data.attrs),
     )
     write_dataset(parts, tmp_path / "c.nc")
-    assert _held(tmp_path / "c.nc") == _held(tmp_path / "b.nc")
+    assert _contents(tmp_path / "c.nc") == _contents(tmp_path / "b.nc")
     assert read_dataset(tmp_path / "c.nc").identical(read_dataset(tmp_path / "b.nc"))
 
 

@@ -38,9 +38,9 @@ def test_means_and_rms(motion):
 
 
 def test_harmonics_have_amplitude_and_phase(motion):
-    found = mesh_harmonics(motion, _wave(motion), 6)
+    harmonics = mesh_harmonics(motion, _wave(motion), 6)
     exact = np.array([2.0 * np.exp(0.4j), 0, 0, 0, 0.5 * np.exp(-1j), 0])
-    np.testing.assert_allclose(found, exact, atol=1e-7)
+    np.testing.assert_allclose(harmonics, exact, atol=1e-7)
 
 
 def test_spectrum_lines(motion):

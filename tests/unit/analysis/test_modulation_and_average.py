@@ -39,11 +39,11 @@ def test_envelope_of_a_band_is_the_modulation():
 
 @pytest.mark.parametrize("depth", [0.1, 0.6])
 def test_envelope_spectrum_shows_frequency_and_depth(depth):
-    made = envelope_spectrum(modulated(depth, 0.0), RATE)
-    peak = made.peaks(1)[0]
+    envelope = envelope_spectrum(modulated(depth, 0.0), RATE)
+    peak = envelope.peaks(1)[0]
     assert peak.frequency == pytest.approx(SHAFT, abs=0.1)
-    assert peak.amplitude / made.amplitude[0] == pytest.approx(depth, rel=5e-3)
-    assert made.amplitude[0] == pytest.approx(2.0, rel=1e-3)
+    assert peak.amplitude / envelope.amplitude[0] == pytest.approx(depth, rel=5e-3)
+    assert envelope.amplitude[0] == pytest.approx(2.0, rel=1e-3)
 
 
 def test_half_amplitude_at_the_ends_of_the_band():
@@ -54,22 +54,22 @@ def test_half_amplitude_at_the_ends_of_the_band():
 
 @pytest.mark.parametrize(("depth", "index"), [(0.4, 0.0), (0.0, 0.9), (0.3, 0.5)])
 def test_amplitude_and_phase_modulation_are_told_apart(depth, index):
-    made = sidebands(modulated(depth, index), RATE, CARRIER, SHAFT, count=7)
-    assert made.amplitude_modulation == pytest.approx(depth, abs=1e-5)
-    assert made.phase_modulation == pytest.approx(index, abs=1e-5)
-    assert made.frequency_swing == pytest.approx(index * SHAFT, abs=1e-3)
+    bands = sidebands(modulated(depth, index), RATE, CARRIER, SHAFT, count=7)
+    assert bands.amplitude_modulation == pytest.approx(depth, abs=1e-5)
+    assert bands.phase_modulation == pytest.approx(index, abs=1e-5)
+    assert bands.frequency_swing == pytest.approx(index * SHAFT, abs=1e-3)
 
 
 def test_lines_of_both_kinds_of_modulation():
     from scipy.special import jv
 
-    made = sidebands(modulated(0.4, 0.0), RATE, CARRIER, SHAFT, count=2)
-    assert made.amplitude == pytest.approx([0.0, 0.4, 2.0, 0.4, 0.0], abs=1e-9)
-    assert made.sideband_ratio == pytest.approx(0.4)
-    assert made.phase[1:4] == pytest.approx(0.3, abs=1e-9)
-    made = sidebands(modulated(0.0, 0.9), RATE, CARRIER, SHAFT, count=7)
-    assert made.amplitude == pytest.approx(2.0 * np.abs(jv(np.arange(-7, 8), 0.9)), abs=1e-6)
-    assert made.frequency[[0, 7]] == pytest.approx([CARRIER - 7 * SHAFT, CARRIER])
+    bands = sidebands(modulated(0.4, 0.0), RATE, CARRIER, SHAFT, count=2)
+    assert bands.amplitude == pytest.approx([0.0, 0.4, 2.0, 0.4, 0.0], abs=1e-9)
+    assert bands.sideband_ratio == pytest.approx(0.4)
+    assert bands.phase[1:4] == pytest.approx(0.3, abs=1e-9)
+    bands = sidebands(modulated(0.0, 0.9), RATE, CARRIER, SHAFT, count=7)
+    assert bands.amplitude == pytest.approx(2.0 * np.abs(jv(np.arange(-7, 8), 0.9)), abs=1e-6)
+    assert bands.frequency[[0, 7]] == pytest.approx([CARRIER - 7 * SHAFT, CARRIER])
 
 
 def test_both_kinds_together_make_unequal_sidebands():
@@ -81,10 +81,12 @@ def test_both_kinds_together_make_unequal_sidebands():
 
 
 def test_record_need_not_hold_whole_periods():
-    made = sidebands(modulated(0.3, 0.2)[:7133], RATE, CARRIER, SHAFT, count=6)
-    assert (made.amplitude_modulation, made.phase_modulation) == pytest.approx((0.3, 0.2), abs=1e-5)
-    assert made.to_xarray().sel(number=0) == pytest.approx(2.0, rel=0.02)
-    assert "amplitude modulation 0.3" in repr(made)
+    bands = sidebands(modulated(0.3, 0.2)[:7133], RATE, CARRIER, SHAFT, count=6)
+    assert (bands.amplitude_modulation, bands.phase_modulation) == pytest.approx(
+        (0.3, 0.2), abs=1e-5
+    )
+    assert bands.to_xarray().sel(number=0) == pytest.approx(2.0, rel=0.02)
+    assert "amplitude modulation 0.3" in repr(bands)
 
 
 def test_bad_bands_and_sidebands_are_refused():
@@ -115,15 +117,15 @@ def gear(angle):
 
 def test_average_keeps_what_turns_with_the_shaft():
     other = 0.3 * np.cos(7.37 * TURNING)
-    made = time_synchronous_average(
+    mean = time_synchronous_average(
         gear(TURNING) + other, TIME, teeth=TEETH, rotation=TURNING, mesh_harmonics=3, unit="N"
     )
-    assert made.revolutions == 22
-    assert made.mesh_amplitudes(3) == pytest.approx([2.0, 0.5, 0.0], abs=0.03)
-    assert np.abs(made.signal - gear(made.angle)).max() < 0.06
-    assert made.residual(0) == pytest.approx(np.cos(made.angle), abs=0.06)
-    assert np.abs(made.residual(1)).max() < 0.06
-    assert set(made.to_xarray()) == {"signal", "scatter", "residual", "difference"}
+    assert mean.revolutions == 22
+    assert mean.mesh_amplitudes(3) == pytest.approx([2.0, 0.5, 0.0], abs=0.03)
+    assert np.abs(mean.signal - gear(mean.angle)).max() < 0.06
+    assert mean.residual(0) == pytest.approx(np.cos(mean.angle), abs=0.06)
+    assert np.abs(mean.residual(1)).max() < 0.06
+    assert set(mean.to_xarray()) == {"signal", "scatter", "residual", "difference"}
 
 
 def test_noise_falls_with_the_root_of_the_number_of_revolutions():
@@ -134,12 +136,12 @@ def test_noise_falls_with_the_root_of_the_number_of_revolutions():
     left = {}
     for turns in (25, 100, 400):
         part = slice(0, turns * 500 + 1)
-        made = time_synchronous_average(
+        mean = time_synchronous_average(
             noise[part], time[part], teeth=TEETH, speed=2 * np.pi * 20.0, mesh_harmonics=5
         )
-        assert made.revolutions == turns
-        left[turns] = made.signal.std()
-        assert np.sqrt(np.mean(made.scatter**2)) == pytest.approx(left[turns], rel=0.15)
+        assert mean.revolutions == turns
+        left[turns] = mean.signal.std()
+        assert np.sqrt(np.mean(mean.scatter**2)) == pytest.approx(left[turns], rel=0.15)
     assert left[25] / left[100] == pytest.approx(2.0, rel=0.12)
     assert left[100] / left[400] == pytest.approx(2.0, rel=0.12)
 
@@ -150,18 +152,18 @@ def average(wave, angle, revolutions=50):
 
 def test_difference_removes_mesh_and_first_sidebands_only():
     angle = 2 * np.pi * np.arange(400) / 400
-    kept = 0.1 * np.cos((TEETH + 2) * angle) + 0.05 * np.cos(5 * angle)
-    beside = 0.3 * np.cos((TEETH + 1) * angle + 0.4) + 0.2 * np.cos((2 * TEETH - 1) * angle)
-    made = average(3.0 + gear(angle) + beside + kept, angle)
-    np.testing.assert_allclose(made.residual(), beside + kept, atol=1e-12)
-    np.testing.assert_allclose(made.difference(), kept, atol=1e-12)
+    remainder = 0.1 * np.cos((TEETH + 2) * angle) + 0.05 * np.cos(5 * angle)
+    sidebands_ = 0.3 * np.cos((TEETH + 1) * angle + 0.4) + 0.2 * np.cos((2 * TEETH - 1) * angle)
+    mean = average(3.0 + gear(angle) + sidebands_ + remainder, angle)
+    np.testing.assert_allclose(mean.residual(), sidebands_ + remainder, atol=1e-12)
+    np.testing.assert_allclose(mean.difference(), remainder, atol=1e-12)
 
 
 def test_indicators_of_known_waves():
     angle = 2 * np.pi * np.arange(4000) / 4000
-    made = condition_indicators(average(gear(angle) + 0.1 * np.cos(21 * angle), angle))
-    assert made.fm4 == pytest.approx(1.5, rel=1e-9)
-    assert made.na4 == pytest.approx(1.5, rel=1e-9)
+    indicators = condition_indicators(average(gear(angle) + 0.1 * np.cos(21 * angle), angle))
+    assert indicators.fm4 == pytest.approx(1.5, rel=1e-9)
+    assert indicators.na4 == pytest.approx(1.5, rel=1e-9)
     plain = condition_indicators(average(np.cos(TEETH * angle) + 1e-6 * np.cos(21 * angle), angle))
     assert plain.fm0 == pytest.approx(2.0, rel=1e-5)
     assert plain.crest_factor == pytest.approx(np.sqrt(2.0), rel=1e-5)

@@ -14,17 +14,17 @@ def pumped():
 
 def test_a_parametric_resonance_over_the_mesh_frequency():
     values = np.array([2.0, 6.0]) / (2.0 * np.pi)
-    found = bifurcation(
+    diagram = bifurcation(
         pumped(), values, sweep="independent", steps=128, transient=8000, cycles=8, keep=8
     )
-    assert found.ran_away.tolist() == [[True, False]]
-    assert found.verdict.tolist() == [["undecided", "physical"]]
-    assert repr(found).endswith("1 physical, 1 undecided, 1 ran away)")
+    assert diagram.ran_away.tolist() == [[True, False]]
+    assert diagram.verdict.tolist() == [["undecided", "physical"]]
+    assert repr(diagram).endswith("1 physical, 1 undecided, 1 ran away)")
 
 
 def test_a_parametric_resonance_in_a_map():
     over = (("mesh_frequency", np.array([2.0, 6.0]) / (2.0 * np.pi)), ("force_scale", [1.0]))
-    found = parameter_map(pumped(), over=over, signal="q0", steps=128, transient=8000)
-    assert found.ran_away.tolist() == [[True], [False]]
-    assert repr(found).endswith("1 ran away)")
-    assert "1 of 2 responses grows without bound" in found.plot().layout.title.text
+    map_result = parameter_map(pumped(), over=over, signal="q0", steps=128, transient=8000)
+    assert map_result.ran_away.tolist() == [[True], [False]]
+    assert repr(map_result).endswith("1 ran away)")
+    assert "1 of 2 responses grows without bound" in map_result.plot().layout.title.text

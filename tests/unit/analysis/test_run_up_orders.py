@@ -58,11 +58,11 @@ def test_cuts_tell_the_speed_and_the_way(bare: RunUp) -> None:
 
 
 def test_order_maps_count_per_revolution(bare: RunUp) -> None:
-    made = run_up_order_map(synthetic(bare, (1.0, 3.0), (2.5, 0.5)), cycles=8)
-    assert float(made.order[made.strongest()[0]]) == 16.0
-    assert made.cut(40.0).amplitude == pytest.approx(0.5, abs=1e-11)
-    assert order_cut(made, 40.0).amplitude == pytest.approx(0.5, abs=1e-11)
-    assert made.speed[0] == pytest.approx(2 * np.pi * 100 / 16, rel=0.1)
+    orders_map = run_up_order_map(synthetic(bare, (1.0, 3.0), (2.5, 0.5)), cycles=8)
+    assert float(orders_map.order[orders_map.strongest()[0]]) == 16.0
+    assert orders_map.cut(40.0).amplitude == pytest.approx(0.5, abs=1e-11)
+    assert order_cut(orders_map, 40.0).amplitude == pytest.approx(0.5, abs=1e-11)
+    assert orders_map.speed[0] == pytest.approx(2 * np.pi * 100 / 16, rel=0.1)
 
 
 def test_the_overall_level_is_the_rms_without_the_mean(bare: RunUp) -> None:
@@ -76,8 +76,8 @@ def test_the_overall_level_is_the_rms_without_the_mean(bare: RunUp) -> None:
     )
     assert overall_level(run, "q0").rms == pytest.approx(np.sqrt(2.0), rel=1e-12)
     two = np.stack((acceleration, acceleration), axis=1)
-    both = replace(run, contact_force=two, deflection=two)  # sum of two contacts: from samples
-    assert overall_level(both).rms == pytest.approx(2.0 * np.sqrt(2.0), rel=1e-12)
+    scaled = replace(run, contact_force=two, deflection=two)  # sum of two contacts: from samples
+    assert overall_level(scaled).rms == pytest.approx(2.0 * np.sqrt(2.0), rel=1e-12)
 
 
 def test_peaks_lie_where_orders_meet_modes() -> None:
@@ -90,9 +90,9 @@ def test_peaks_lie_where_orders_meet_modes() -> None:
     )
     system = System([[1.0]], [[0.0]], [[0.0]], [0.0], [teeth])
     run = run_up(system, speed_ramp(600.0, 2200.0, 6.0), teeth=20, samples=16)
-    found = resonances(run, "deflection", orders=(1, 2, 3), prominence=0.3)
-    assert [each.order for each in sorted(found, key=lambda one: one.order)] == [1.0, 3.0]
-    for each in found:
+    peaks = resonances(run, "deflection", orders=(1, 2, 3), prominence=0.3)
+    assert [each.order for each in sorted(peaks, key=lambda peak: peak.order)] == [1.0, 3.0]
+    for each in peaks:
         assert each.mode == 0
         assert each.mode_frequency == pytest.approx(natural, rel=1e-9)
         assert each.frequency == pytest.approx(natural, rel=0.015)
@@ -111,5 +111,5 @@ def test_peaks_at_mains_frequency_are_flagged() -> None:
                     error=lambda p: np.cos(2 * np.pi * p))  # fmt: skip
     system = System([[1.0]], [[0.0]], [[0.0]], [0.0], [teeth])
     run = run_up(system, speed_ramp(30.0, 80.0, 20.0), samples=16)
-    (found,) = resonances(run, "deflection", orders=[1])
-    assert found.mains == 50.0
+    (peak,) = resonances(run, "deflection", orders=[1])
+    assert peak.mains == 50.0

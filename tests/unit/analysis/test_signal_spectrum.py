@@ -18,20 +18,20 @@ def wave(frequency, amplitude=3.0, phase=0.4):
 
 @pytest.mark.parametrize("window", ["flattop", "hann", "boxcar", "blackman"])
 def test_sine_on_a_line_has_its_amplitude_and_phase(window):
-    made = spectrum(2.0 + wave(50.0), RATE, window=window)
-    line = int(np.argmin(np.abs(made.frequency - 50.0)))
-    assert made.amplitude[line] == pytest.approx(3.0, rel=1e-9)
-    assert made.phase[line] == pytest.approx(0.4, abs=1e-9)
-    assert made.amplitude[0] == pytest.approx(2.0, rel=1e-9)
+    lines = spectrum(2.0 + wave(50.0), RATE, window=window)
+    line = int(np.argmin(np.abs(lines.frequency - 50.0)))
+    assert lines.amplitude[line] == pytest.approx(3.0, rel=1e-9)
+    assert lines.phase[line] == pytest.approx(0.4, abs=1e-9)
+    assert lines.amplitude[0] == pytest.approx(2.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("window", list(LOSS))
 def test_loss_between_lines_is_within_the_stated_bound(window):
     away = np.linspace(-0.5, 0.5, 11)
-    found = [spectrum(wave(100.0 + d), RATE, window=window).amplitude.max() for d in away]
-    assert min(found) > 3.0 * (1.0 - LOSS[window])
-    assert min(found) < 3.0 * (1.0 - 0.8 * LOSS[window])
-    assert max(found) < 3.0 * 1.001
+    amplitudes = [spectrum(wave(100.0 + d), RATE, window=window).amplitude.max() for d in away]
+    assert min(amplitudes) > 3.0 * (1.0 - LOSS[window])
+    assert min(amplitudes) < 3.0 * (1.0 - 0.8 * LOSS[window])
+    assert max(amplitudes) < 3.0 * 1.001
 
 
 @pytest.mark.parametrize(("window", "bound"), [("flattop", 1e-5), ("hann", 1e-5), ("boxcar", 0.01)])
@@ -44,9 +44,9 @@ def test_peaks_between_lines(window, bound):
 
 
 def test_peaks_come_from_the_largest_down():
-    made = spectrum(wave(50.3, 1.0) + wave(150.2, 4.0) + wave(333.0, 2.0), RATE, window="hann")
-    assert [round(peak.frequency, 2) for peak in made.peaks(3)] == [150.2, 333.0, 50.3]
-    assert len(made.peaks(2)) == 2
+    lines = spectrum(wave(50.3, 1.0) + wave(150.2, 4.0) + wave(333.0, 2.0), RATE, window="hann")
+    assert [round(peak.frequency, 2) for peak in lines.peaks(3)] == [150.2, 333.0, 50.3]
+    assert len(lines.peaks(2)) == 2
 
 
 @pytest.mark.parametrize("size", [999, 1000])
@@ -62,53 +62,57 @@ def test_parseval(size):
 @pytest.mark.parametrize("window", ["hann", "flattop"])
 def test_density_of_white_noise_is_its_variance_over_half_the_rate(window):
     noise = 2.0 * np.random.default_rng(4).standard_normal(200_000)
-    made = spectrum(noise, RATE, window=window, scaling="density", block_length=500, unit="N")
-    assert np.median(made.amplitude[5:-5]) == pytest.approx(4.0 / 500.0, rel=0.02)
-    assert made.averages > 300
-    assert made.phase is None
-    assert made.value_unit == "(N)^2/Hz"
+    density = spectrum(noise, RATE, window=window, scaling="density", block_length=500, unit="N")
+    assert np.median(density.amplitude[5:-5]) == pytest.approx(4.0 / 500.0, rel=0.02)
+    assert density.averages > 300
+    assert density.phase is None
+    assert density.value_unit == "(N)^2/Hz"
 
 
 def test_same_as_scipy_welch():
     from scipy.signal import welch
 
     noise = np.random.default_rng(5).standard_normal(5000)
-    made = spectrum(noise, RATE, window="hann", scaling="density", block_length=512)
+    density = spectrum(noise, RATE, window="hann", scaling="density", block_length=512)
     _, other = welch(noise, RATE, "hann", 512, detrend=False)
-    np.testing.assert_allclose(made.amplitude, other, rtol=1e-10)
+    np.testing.assert_allclose(density.amplitude, other, rtol=1e-10)
 
 
 def test_zoom_tells_two_close_lines_apart():
-    made = zoom_spectrum(wave(50.0, 2.0) + wave(56.3, 1.0), RATE, 45.0, 60.0, points=1501)
-    near, far = made.frequency < 53.0, made.frequency > 53.0
-    for part, frequency, amplitude in ((near, 50.0, 2.0), (far, 56.3, 1.0)):
-        top = np.argmax(made.amplitude[part])
-        assert made.frequency[part][top] == pytest.approx(frequency, abs=0.02)
-        assert made.amplitude[part][top] == pytest.approx(amplitude, rel=0.005)
+    zoom = zoom_spectrum(wave(50.0, 2.0) + wave(56.3, 1.0), RATE, 45.0, 60.0, points=1501)
+    lower, far = zoom.frequency < 53.0, zoom.frequency > 53.0
+    for part, frequency, amplitude in ((lower, 50.0, 2.0), (far, 56.3, 1.0)):
+        top = np.argmax(zoom.amplitude[part])
+        assert zoom.frequency[part][top] == pytest.approx(frequency, abs=0.02)
+        assert zoom.amplitude[part][top] == pytest.approx(amplitude, rel=0.005)
 
 
 def test_spectrogram_follows_a_jump_and_keeps_the_mean_square():
     signal = np.where(TIME < 0.5, wave(100.0, 1.0), wave(200.0, 3.0))
-    made = spectrogram(signal, RATE, block_length=100, unit="m/s^2")
-    early, late = made.time < 0.4, made.time > 0.6
-    assert made.frequency[made.amplitude[:, early].argmax(axis=0)] == pytest.approx(100.0)
-    assert made.frequency[made.amplitude[:, late].argmax(axis=0)] == pytest.approx(200.0)
-    assert made.amplitude[:, late].max(axis=0) == pytest.approx(3.0, rel=1e-6)
-    assert made.rms()[early] == pytest.approx(1.0 / np.sqrt(2.0), rel=1e-6)
-    assert made.rms()[late] == pytest.approx(3.0 / np.sqrt(2.0), rel=1e-6)
-    assert made.time[0] == pytest.approx(0.05)
-    assert made.to_xarray().sel(frequency=200.0).attrs["units"] == "m/s^2"
+    spectrogram_ = spectrogram(signal, RATE, block_length=100, unit="m/s^2")
+    early, late = spectrogram_.time < 0.4, spectrogram_.time > 0.6
+    assert spectrogram_.frequency[spectrogram_.amplitude[:, early].argmax(axis=0)] == pytest.approx(
+        100.0
+    )
+    assert spectrogram_.frequency[spectrogram_.amplitude[:, late].argmax(axis=0)] == pytest.approx(
+        200.0
+    )
+    assert spectrogram_.amplitude[:, late].max(axis=0) == pytest.approx(3.0, rel=1e-6)
+    assert spectrogram_.rms()[early] == pytest.approx(1.0 / np.sqrt(2.0), rel=1e-6)
+    assert spectrogram_.rms()[late] == pytest.approx(3.0 / np.sqrt(2.0), rel=1e-6)
+    assert spectrogram_.time[0] == pytest.approx(0.05)
+    assert spectrogram_.to_xarray().sel(frequency=200.0).attrs["units"] == "m/s^2"
 
 
 @pytest.mark.parametrize("length", [99, 100])
 def test_rms_of_a_spectrogram_is_exact_for_any_signal(length):
     noise = np.random.default_rng(6).standard_normal(length) + 1.0
-    made = spectrogram(noise, RATE, block_length=length, window="boxcar")
-    assert made.rms() == pytest.approx([np.sqrt(np.mean(noise**2))], rel=1e-12)
+    levels = spectrogram(noise, RATE, block_length=length, window="boxcar")
+    assert levels.rms() == pytest.approx([np.sqrt(np.mean(noise**2))], rel=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("change", "words"),
+    ("change", "message"),
     [
         ({"signal": np.append(np.zeros(20), np.nan)}, "sample 20"),
         ({"signal": np.zeros(5)}, "5 samples"),
@@ -122,10 +126,10 @@ def test_rms_of_a_spectrogram_is_exact_for_any_signal(length):
         ({"overlap": 1.0}, "overlap"),
     ],
 )
-def test_bad_input_is_refused(change, words):
-    given = {"signal": wave(50.0), "sampling_rate": RATE, **change}
-    with pytest.raises(InputError, match=words):
-        spectrum(given.pop("signal"), given.pop("sampling_rate"), **given)
+def test_bad_input_is_refused(change, message):
+    arguments = {"signal": wave(50.0), "sampling_rate": RATE, **change}
+    with pytest.raises(InputError, match=message):
+        spectrum(arguments.pop("signal"), arguments.pop("sampling_rate"), **arguments)
 
 
 def test_refusals_of_zoom_and_peaks():
@@ -145,9 +149,16 @@ def test_lines_of_the_mains_are_flagged_in_a_recording():
     time = np.arange(8192) / rate
     parts = {50.1: 0.5, 119.8: 0.4, 53.7: 0.3, 240.0: 1.0}
     signal = sum(size * np.sin(2.0 * np.pi * f * time) for f, size in parts.items())
-    found = {round(peak.frequency, 1): peak for peak in spectrum(signal, rate).peaks(4)}
-    assert {f: found[f].mains for f in parts} == {50.1: 50.0, 119.8: 60.0, 53.7: 0.0, 240.0: 0.0}
-    assert "mains of 50 Hz?" in repr(found[50.1])
+    peaks_by_frequency = {
+        round(peak.frequency, 1): peak for peak in spectrum(signal, rate).peaks(4)
+    }
+    assert {f: peaks_by_frequency[f].mains for f in parts} == {
+        50.1: 50.0,
+        119.8: 60.0,
+        53.7: 0.0,
+        240.0: 0.0,
+    }
+    assert "mains of 50 Hz?" in repr(peaks_by_frequency[50.1])
 
 
 def shaft_at(rotation, mains=0.0):

@@ -16,8 +16,8 @@ def test_a_linear_motion_repeats_after_one_cycle_or_has_not_settled(ratio):
     contact = Contact([1.0], 1.0, error=lambda phase: 0.1 * np.cos(TURN * phase))
     damping = 2.0 * 0.02 * mesh_frequency
     system = System([[1.0]], [[damping]], [[0.0]], [1.0], [contact])
-    near = mesh_frequency * np.array([1.0, 1.0001])
-    over = (("mesh_frequency", near), ("force_scale", [1.0, 2.0]))
+    frequencies = mesh_frequency * np.array([1.0, 1.0001])
+    over = (("mesh_frequency", frequencies), ("force_scale", [1.0, 2.0]))
     long = parameter_map(system, over=over, transient=1600, steps=64)
     assert np.all(long.period == 1)
     # The state falls by 0.98 in a cycle: what is known after 96 cycles is no period.

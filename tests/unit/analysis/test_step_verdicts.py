@@ -79,43 +79,43 @@ def test_a_known_motion_is_judged_with_its_system():
 
 def test_exponents_carry_a_verdict():
     options = {"start": START, "cycles": 60, "transient": 200, "steps": 64}
-    found = lyapunov_exponents(hysteresis_system(), BEAT, **options)
-    assert found.verdict == "physical"
-    assert repr(found).endswith("not chaotic, physical)")
-    assert found.to_xarray().attrs["verdict"] == "physical"
+    result = lyapunov_exponents(hysteresis_system(), BEAT, **options)
+    assert result.verdict == "physical"
+    assert repr(result).endswith("not chaotic, physical)")
+    assert result.to_xarray().attrs["verdict"] == "physical"
     plain = lyapunov_exponents(hysteresis_system(), BEAT, verdict=False, **options)
     assert plain.verdict == ""
     assert repr(plain).endswith("not chaotic)")
-    np.testing.assert_array_equal(plain.exponents, found.exponents)
+    np.testing.assert_array_equal(plain.exponents, result.exponents)
     assert (
         "dependent on the time step"
-        in replace(found, verdict="step-limited").plot().layout.title.text.lower()
+        in replace(result, verdict="step-limited").plot().layout.title.text.lower()
     )
 
 
 def test_exponents_that_disagree():
-    found = lyapunov_exponents(
+    result = lyapunov_exponents(
         hysteresis_system(), BEAT, start=START, cycles=60, transient=200, steps=64, verdict=False
     )
-    assert found.repeats == 1
-    assert exponent_verdict(found, found) == "physical"
-    assert exponent_verdict(found, replace(found, repeats=2)) == "step-limited"
+    assert result.repeats == 1
+    assert exponent_verdict(result, result) == "physical"
+    assert exponent_verdict(result, replace(result, repeats=2)) == "step-limited"
     chaos = replace(
-        found, repeats=0, exponents=np.array([0.1, -0.2]), standard_error=np.array([0.01, 0.01])
+        result, repeats=0, exponents=np.array([0.1, -0.2]), standard_error=np.array([0.01, 0.01])
     )
     assert chaos.chaotic
-    assert exponent_verdict(found, chaos) == "step-limited"
-    assert exponent_verdict(chaos, found) == "step-limited"
+    assert exponent_verdict(result, chaos) == "step-limited"
+    assert exponent_verdict(chaos, result) == "step-limited"
 
-    def beside(value, error=0.01):
+    def exponents_of(value, error=0.01):
         return replace(chaos, exponents=np.array([value, -0.2]),
                        standard_error=np.array([error, 0.01]))  # fmt: skip
 
-    assert exponent_verdict(chaos, beside(0.13)) == "physical"
-    assert exponent_verdict(chaos, beside(0.15)) == "undecided"
-    sharp = beside(0.1, 1e-5)
-    assert exponent_verdict(sharp, beside(0.104, 1e-5)) == "physical"
-    assert exponent_verdict(sharp, beside(0.107, 1e-5)) == "undecided"
+    assert exponent_verdict(chaos, exponents_of(0.13)) == "physical"
+    assert exponent_verdict(chaos, exponents_of(0.15)) == "undecided"
+    sharp = exponents_of(0.1, 1e-5)
+    assert exponent_verdict(sharp, exponents_of(0.104, 1e-5)) == "physical"
+    assert exponent_verdict(sharp, exponents_of(0.107, 1e-5)) == "undecided"
 
 
 def test_steps_beyond_the_limit_are_refused():

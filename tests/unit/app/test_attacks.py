@@ -76,7 +76,7 @@ def desk(user: Browser) -> str:
     return user.desk()
 
 
-def said(answer: Any) -> str:
+def message_of(answer: Any) -> str:
     assert answer.status_code == 200, answer.text
     return str(answer.json["response"]["notice"]["children"])
 
@@ -168,9 +168,9 @@ def test_no_path_leaves_the_folder(user: Browser, desk: str, home: Path, name: s
     if not link.is_symlink():
         link.symlink_to(home.parent / "secret.toml")
     before = sorted(home.parent.rglob("*"))
-    assert "bad" in said(user.ask(desk, "open", f"file:{name}"))
+    assert "bad" in message_of(user.ask(desk, "open", f"file:{name}"))
     for act in ("save", "replace", "save-job"):
-        assert "bad" in said(user.ask(desk, act, "1", act={"text": name}))
+        assert "bad" in message_of(user.ask(desk, act, "1", act={"text": name}))
     assert sorted(home.parent.rglob("*")) == before
     assert (home.parent / "secret.toml").read_text() == 'title = "secret"\n'
 
@@ -178,7 +178,7 @@ def test_no_path_leaves_the_folder(user: Browser, desk: str, home: Path, name: s
 def test_a_case_cannot_name_a_file_outside(user: Browser, desk: str, home: Path) -> None:
     text = load_case("fzg-roughness").to_toml().replace("[gears]", '[gears]\ntable = "../s.csv"')
     (home / "reaching.toml").write_text(text)
-    assert "outside of the folder" in said(user.ask(desk, "open", "file:reaching.toml"))
+    assert "outside of the folder" in message_of(user.ask(desk, "open", "file:reaching.toml"))
     edit = {"key": "gears.pinion.modification.profile_map", "value": "../../etc/passwd"}
     answer = user.ask(desk, edit=edit).json["response"]["form"]["data"]
     assert "is no name of a file here" in answer["case"]["faults"][0]["text"]
@@ -199,10 +199,10 @@ BOMBS = {
 @pytest.mark.parametrize("bomb", BOMBS)
 def test_a_bomb_is_refused_in_words(user: Browser, desk: str, home: Path, bomb: str) -> None:
     (home / "bomb.toml").write_text(BOMBS[bomb])
-    told = said(user.ask(desk, "open", "file:bomb.toml"))
-    assert "bad" in told
-    assert len(told) < 40_000
-    assert "Traceback" not in told
+    message = message_of(user.ask(desk, "open", "file:bomb.toml"))
+    assert "bad" in message
+    assert len(message) < 40_000
+    assert "Traceback" not in message
     (home / "bomb.toml").unlink()
 
 

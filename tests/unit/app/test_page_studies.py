@@ -40,11 +40,11 @@ def test_every_study_shows_and_saves_what_it_finds(kind: str, tmp_path: Path) ->
     if kind in ("continuation", "basins", "lyapunov"):  # exponents take a single coefficient
         case = case.replace({"stiffness.model": "analytic", "friction.law": "none"})
     values = first_values(kind, case) | _FEW.get(kind, {})
-    shown = STUDIES[kind].compute(case, values, SILENT, tmp_path / "result")
-    assert shown["sentences"]
-    assert all(figure.data for _, figure, _ in shown["figures"])
-    assert shown["figures"]
-    assert all(len(row) == len(head) for _, head, rows in shown["tables"] for row in rows)
+    study_result = STUDIES[kind].compute(case, values, SILENT, tmp_path / "result")
+    assert study_result["sentences"]
+    assert all(figure.data for _, figure, _ in study_result["figures"])
+    assert study_result["figures"]
+    assert all(len(row) == len(head) for _, head, rows in study_result["tables"] for row in rows)
     assert any(path.suffix == ".html" for path in (tmp_path / "result").iterdir())
 
 
@@ -60,14 +60,14 @@ def test_the_relief_that_a_study_offers_is_that_of_its_better_case(
     """Keys of the relieved gears alone: the rest of the case may have changed meanwhile."""
     case = load_case("fzg-roughness").replace({"stiffness.model": "analytic"})
     case = case.replace({"gears.pinion.modification.tip_relief": "30 um"})
-    shown = STUDIES["relief"].compute(
+    study_result = STUDIES["relief"].compute(
         case, {"torque": "90 N*m", "gears": gears}, SILENT, tmp_path / "r"
     )
     best = load_case(tmp_path / "r" / "best.toml")
-    assert case.replace(shown["relief"]).gears == best.gears
-    relieved = {key.split(".")[1] for key in shown["relief"]}
+    assert case.replace(study_result["relief"]).gears == best.gears
+    relieved = {key.split(".")[1] for key in study_result["relief"]}
     assert relieved == ({"pinion", "wheel"} if gears == "both" else {"wheel"})
-    assert all(key.partition(".")[0] == "gears" for key in shown["relief"])
+    assert all(key.partition(".")[0] == "gears" for key in study_result["relief"])
 
 
 def test_a_tolerance_that_is_none_is_refused() -> None:

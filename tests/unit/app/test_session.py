@@ -29,8 +29,8 @@ def desk(tmp_path: Path) -> TabSession:
     return TabSession(Workspace(tmp_path), NoJobs(), load_case("fzg-roughness"))  # type: ignore[arg-type]
 
 
-def typed(desk: TabSession, key: str, **told: Any) -> list[dict[str, str]]:
-    desk.edit({"form": "case", "key": key, "number": desk.edits + 1, **told})
+def typed(desk: TabSession, key: str, **text: Any) -> list[dict[str, str]]:
+    desk.edit({"form": "case", "key": key, "number": desk.edits + 1, **text})
     return desk.faults
 
 
@@ -48,12 +48,14 @@ def shown_parts(desk: TabSession) -> list[Any]:
 @pytest.mark.parametrize("name", case_files())
 def test_every_given_value_has_its_field_and_the_pair_is_drawn(desk: TabSession, name: str) -> None:
     desk.take(load_case(name), "")
-    shown = fields(desk)
-    given = [key for key in desk.case.user_input.typed if key.split(".")[0] not in ("assumed",)]
-    assert set(given) <= {*shown, *(k for k in given if k.startswith("based_on"))}
-    known = {key for key, _, _ in case_keys()}
-    assert set(shown) <= known
-    assert set(shown) == set(CaseForm(desk.case, {}, {}).options())
+    displayed = fields(desk)
+    typed_keys = [
+        key for key in desk.case.user_input.typed if key.split(".")[0] not in ("assumed",)
+    ]
+    assert set(typed_keys) <= {*displayed, *(k for k in typed_keys if k.startswith("based_on"))}
+    keys = {key for key, _, _ in case_keys()}
+    assert set(displayed) <= keys
+    assert set(displayed) == set(CaseForm(desk.case, {}, {}).options())
     (pair,) = shown_parts(desk)
     assert len(pair["children"]) >= 2
 
@@ -109,9 +111,9 @@ def test_a_late_edit_does_not_undo_a_later_one(desk: TabSession) -> None:
 def test_a_saved_case_opens_as_it_was(desk: TabSession, tmp_path: Path) -> None:
     typed(desk, "operation.torque", value="77", unit="N*m")
     desk.save("mine", force=False)
-    kept, before = desk.case, fields(desk)
+    saved, before = desk.case, fields(desk)
     desk.open("file:mine.toml")
-    assert desk.case == kept
+    assert desk.case == saved
     assert {k for k, f in fields(desk).items() if f["value"]} == {
         k for k, f in before.items() if f["value"]
     }

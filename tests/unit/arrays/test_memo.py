@@ -8,23 +8,23 @@ from tribodyn.arrays.memo import Memo
 
 
 def test_a_value_is_computed_once_for_equal_arrays_and_anew_for_others() -> None:
-    known: Memo[float] = Memo(2)
-    asked = []
+    memo: Memo[float] = Memo(2)
+    computed_for = []
 
     def total(array: np.ndarray) -> float:
         def compute() -> float:
-            asked.append(array.copy())
+            computed_for.append(array.copy())
             return float(array.sum())
 
-        return known.get((array,), compute)
+        return memo.get((array,), compute)
 
     first, second = np.array([1.0, 2.0, 3.0]), np.array([5.0, 2.0, 3.0])
     assert [total(first), total(first.copy()), total(second), total(first)] == [6.0, 6.0, 10.0, 6.0]
-    assert len(asked) == 2
+    assert len(computed_for) == 2
     first[0] = 2.0  # what is remembered does not follow its array
     assert total(first) == 7.0
     assert total(first[:2]) == 4.0
     assert total(np.empty(0)) == total(np.empty(0)) == 0.0
-    assert len(asked) == 5
+    assert len(computed_for) == 5
     assert total(second) == 10.0  # of which only the last two are known
-    assert len(asked) == 6
+    assert len(computed_for) == 6

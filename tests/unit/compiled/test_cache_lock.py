@@ -27,14 +27,14 @@ class _Cache:
 
 class _Kernel:
     def __init__(self, cache: _Cache) -> None:
-        self._cache, self.py_func, self.told = cache, len, []
-        use_lock(self, lambda: self.told.append("waits"))
+        self._cache, self.py_func, self.messages = cache, len, []
+        use_lock(self, lambda: self.messages.append("waits"))
 
     def wanted(self, signature: str, data: str) -> str:
         """What a dispatcher does: load, or compile and save."""
-        found = self._cache.load_overload(signature, None)
-        if found is not None:
-            return found
+        code = self._cache.load_overload(signature, None)
+        if code is not None:
+            return code
         self._cache.save_overload(signature, data)
         return data
 
@@ -57,7 +57,7 @@ def test_whoever_comes_first_compiles_and_the_other_waits_for_it(tmp_path: Path)
     writer.start()
     with locked(CacheLock(tmp_path, lambda: True)):
         assert kernel.wanted("a", "of the second") == "of the first"
-        assert kernel.told
+        assert kernel.messages
         assert kernel.wanted("b", "of the second") == "of the second"  # nobody came before
     writer.join()
 

@@ -22,9 +22,9 @@ _FOLDERS = "tribodyn.ehl._kernel", "tribodyn.dynamics._engine", "tribodyn.stiffn
 def test_functions_of_kernels_are_inner_or_cached(folder: str) -> None:
     package = importlib.import_module(folder)
     modules = [
-        importlib.import_module(f"{folder}.{found.name}")
-        for found in pkgutil.iter_modules(package.__path__)
-        if not found.ispkg
+        importlib.import_module(f"{folder}.{module_info.name}")
+        for module_info in pkgutil.iter_modules(package.__path__)
+        if not module_info.ispkg
     ]
     compiled = {
         f"{module.__name__}.{name}": value

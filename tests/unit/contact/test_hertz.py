@@ -61,32 +61,32 @@ def test_wrong_values_are_refused(arguments: tuple[float, float, float], name: s
 
 def test_ellipse_of_known_figures():
     # A = 1/m and B = 16.3/m under 5 kN.
-    found = hertz_ellipse(5000.0, 0.5, 0.5 / 16.3, 2.2637e11)
-    assert found.first_semi_axis == pytest.approx(3.61194e-3, rel=2e-6)
-    assert found.second_semi_axis == pytest.approx(0.591478e-3, rel=2e-6)
-    assert found.maximum_pressure == pytest.approx(1.11746e9, rel=2e-6)
-    assert found.approach == pytest.approx(18.7486e-6, rel=3e-6)
+    ellipse = hertz_ellipse(5000.0, 0.5, 0.5 / 16.3, 2.2637e11)
+    assert ellipse.first_semi_axis == pytest.approx(3.61194e-3, rel=2e-6)
+    assert ellipse.second_semi_axis == pytest.approx(0.591478e-3, rel=2e-6)
+    assert ellipse.maximum_pressure == pytest.approx(1.11746e9, rel=2e-6)
+    assert ellipse.approach == pytest.approx(18.7486e-6, rel=3e-6)
     other = hertz_ellipse(5000.0, 0.5 / 16.3, 0.5, 2.2637e11)
-    assert other.second_semi_axis == found.first_semi_axis
-    assert other.maximum_pressure == found.maximum_pressure
+    assert other.second_semi_axis == ellipse.first_semi_axis
+    assert other.maximum_pressure == ellipse.maximum_pressure
 
 
 def test_ellipse_of_equal_radii_is_the_circle_of_hertz():
     force, radius, reduced = np.array([10.0, 5000.0]), 0.02, 0.5 * MODULUS
-    found = hertz_ellipse(force, radius, radius, MODULUS)
+    ellipse = hertz_ellipse(force, radius, radius, MODULUS)
     circle = np.cbrt(0.75 * force * radius / reduced)
-    assert found.first_semi_axis == pytest.approx(circle, rel=1e-12)
-    assert found.second_semi_axis == pytest.approx(circle, rel=1e-12)
-    assert found.approach == pytest.approx(circle**2 / radius, rel=1e-12)
-    assert found.maximum_pressure == pytest.approx(1.5 * force / (np.pi * circle**2), rel=1e-12)
+    assert ellipse.first_semi_axis == pytest.approx(circle, rel=1e-12)
+    assert ellipse.second_semi_axis == pytest.approx(circle, rel=1e-12)
+    assert ellipse.approach == pytest.approx(circle**2 / radius, rel=1e-12)
+    assert ellipse.maximum_pressure == pytest.approx(1.5 * force / (np.pi * circle**2), rel=1e-12)
 
 
 def test_long_ellipse_has_the_pressure_of_a_line_in_its_middle():
-    found = hertz_ellipse(1000.0, 1e5, 0.01, MODULUS)
+    ellipse = hertz_ellipse(1000.0, 1e5, 0.01, MODULUS)
     # In the middle the load per length of a parabola is 3/4 of the force over the half axis.
-    line = hertz_line(0.75 * 1000.0 / found.first_semi_axis, 0.01, MODULUS)
-    assert found.maximum_pressure == pytest.approx(line.maximum_pressure, rel=1e-4)
-    assert found.second_semi_axis == pytest.approx(line.half_width, rel=1e-4)
+    line = hertz_line(0.75 * 1000.0 / ellipse.first_semi_axis, 0.01, MODULUS)
+    assert ellipse.maximum_pressure == pytest.approx(line.maximum_pressure, rel=1e-4)
+    assert ellipse.second_semi_axis == pytest.approx(line.half_width, rel=1e-4)
     for wrong in ((0.0, 1.0, 1.0), (1.0, np.inf, 1.0), (1.0, 1.0, -1.0)):
         with pytest.raises(InputError):
             hertz_ellipse(*wrong, MODULUS)

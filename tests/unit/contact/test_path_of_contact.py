@@ -59,14 +59,14 @@ def test_samples_are_what_they_are_called(name: str) -> None:
     contact = contact_of(name)
     first_double = contact.A < contact.C < contact.B
     single = contact.B < contact.C < contact.D
-    found = {
+    samples = {
         "pitch point in the first double zone": first_double,
         "pitch point in the single zone": single,
         "pitch point before the path of contact": contact.C < contact.A,
         "contact ratio above two": contact.pairs == 3,
         "contact ratio above three": contact.pairs == 4,
     }
-    assert found[name]
+    assert samples[name]
 
 
 @all_pairs

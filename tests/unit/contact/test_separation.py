@@ -59,13 +59,13 @@ def rotation_to_touch(pair: SpurPair, path: float) -> float:
     # Right flank of the pinion: point of the involute with radius of curvature ``path`` at
     # (path, base1), its tooth axis turned by the polar angle of that point.
     flank1 = flank_points(pair.pinion)
-    own = pair.pinion.base_half_angle - (path / base1 - math.atan(path / base1))
-    placed1 = turned(flank1, own - math.atan(path / base1))
+    half_angle = pair.pinion.base_half_angle - (path / base1 - math.atan(path / base1))
+    placed1 = turned(flank1, half_angle - math.atan(path / base1))
     reach = length - path
     flank2 = flank_points(pair.wheel)
-    own = pair.wheel.base_half_angle - (reach / base2 - math.atan(reach / base2))
+    half_angle = pair.wheel.base_half_angle - (reach / base2 - math.atan(reach / base2))
     # The wheel hangs upside down: its tooth axis points to the pinion.
-    placed2 = turned(-flank2, own - math.atan(reach / base2))
+    placed2 = turned(-flank2, half_angle - math.atan(reach / base2))
     about = placed1 - centre
     radius1, angle1 = np.hypot(*about), np.arctan2(about[0], -about[1])
     radius2, angle2 = np.hypot(*placed2), np.arctan2(placed2[0], -placed2[1])
@@ -75,8 +75,8 @@ def rotation_to_touch(pair: SpurPair, path: float) -> float:
     at_pinion = placed2 + centre
     radius, angle = np.hypot(*at_pinion), np.arctan2(at_pinion[0], at_pinion[1])
     own_radius, own_angle = np.hypot(*placed1), np.arctan2(placed1[0], placed1[1])
-    seen = (radius >= own_radius.min()) & (radius <= own_radius.max())
-    back = angle[seen] - np.interp(radius[seen], own_radius, own_angle)
+    common = (radius >= own_radius.min()) & (radius <= own_radius.max())
+    back = angle[common] - np.interp(radius[common], own_radius, own_angle)
     return min(float(gaps.min()) * base2, float(back.min()) * base1)
 
 
@@ -95,21 +95,21 @@ def test_outlines_meet_where_it_says(name: str, driver: str, pitches: float) -> 
     pair = spur_pair(**PAIRS[name], driver=driver)
     low, high = pair.path_limits
     for path in (low - pitches * pair.base_pitch, high + pitches * pair.base_pitch):
-        found = extended_contact(pair, path)
-        assert bool(found.possible)
+        contact = extended_contact(pair, path)
+        assert bool(contact.possible)
         expected = rotation_to_touch(pair, path)
-        assert float(found.separation) == pytest.approx(expected, rel=2e-3, abs=2e-8)
+        assert float(contact.separation) == pytest.approx(expected, rel=2e-3, abs=2e-8)
 
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_on_the_path_of_contact_involutes_touch(name: str) -> None:
     pair = spur_pair(**PAIRS[name])
     path = np.linspace(*pair.path_limits, 11)
-    found = extended_contact(pair, path)
-    assert np.all(found.separation == 0.0)
-    assert np.all(found.possible)
-    assert np.array_equal(found.pinion_curvature_radius, path)
-    assert np.array_equal(found.wheel_curvature_radius, pair.line_of_action_length - path)
+    contact = extended_contact(pair, path)
+    assert np.all(contact.separation == 0.0)
+    assert np.all(contact.possible)
+    assert np.array_equal(contact.pinion_curvature_radius, path)
+    assert np.array_equal(contact.wheel_curvature_radius, pair.line_of_action_length - path)
     assert rotation_to_touch(pair, float(path[5])) == pytest.approx(0.0, abs=2e-8)
 
 
@@ -128,11 +128,11 @@ def test_the_corner_keeps_its_curvature_and_the_mate_is_met_above_its_lowest_poi
     pair = spur_pair(**FZG_A)
     low, high = pair.path_limits
     length, off = pair.line_of_action_length, 0.05 * pair.base_pitch
-    found = extended_contact(pair, [low - off, high + off])
-    assert found.pinion_curvature_radius[1] == pytest.approx(high, rel=1e-14)
-    assert found.wheel_curvature_radius[0] == pytest.approx(length - low, rel=1e-14)
-    assert low < found.pinion_curvature_radius[0] < low + off
-    assert length - high < found.wheel_curvature_radius[1]
+    contact = extended_contact(pair, [low - off, high + off])
+    assert contact.pinion_curvature_radius[1] == pytest.approx(high, rel=1e-14)
+    assert contact.wheel_curvature_radius[0] == pytest.approx(length - low, rel=1e-14)
+    assert low < contact.pinion_curvature_radius[0] < low + off
+    assert length - high < contact.wheel_curvature_radius[1]
 
 
 def test_curvature_of_the_mate_is_that_of_the_touching_point() -> None:
@@ -144,17 +144,17 @@ def test_curvature_of_the_mate_is_that_of_the_touching_point() -> None:
     across = pair.pinion.base_radius + pair.wheel.base_radius
     radius = math.hypot(corner[0, 0] - pair.line_of_action_length, corner[1, 0] - across)
     expected = math.sqrt(radius**2 - pair.wheel.base_radius**2)
-    found = float(extended_contact(pair, path).wheel_curvature_radius)
-    assert found == pytest.approx(expected, rel=1e-12)
+    mate_radius = float(extended_contact(pair, path).wheel_curvature_radius)
+    assert mate_radius == pytest.approx(expected, rel=1e-12)
 
 
 def test_driver_does_not_matter() -> None:
     pinion, wheel = (spur_pair(**FZG_A, driver=driver) for driver in ("pinion", "wheel"))
     path = np.linspace(-0.002, 0.04, 40)
-    for one, other in zip(
+    for distance, other in zip(
         extended_contact(pinion, path), extended_contact(wheel, path), strict=True
     ):
-        assert np.array_equal(one, other)
+        assert np.array_equal(distance, other)
 
 
 def test_equal_gears_are_alike_on_both_ends() -> None:
@@ -163,19 +163,21 @@ def test_equal_gears_are_alike_on_both_ends() -> None:
         normal_pressure_angle=math.radians(20.0), pinion_face_width=20e-3,
     )  # fmt: skip
     path = np.linspace(-0.01, 0.05, 61)
-    one = extended_contact(pair, path)
+    contact = extended_contact(pair, path)
     other = extended_contact(pair, pair.line_of_action_length - path)
-    finite = np.isfinite(one.separation)
+    finite = np.isfinite(contact.separation)
     assert np.array_equal(finite, np.isfinite(other.separation))
-    assert one.separation[finite] == pytest.approx(other.separation[finite], rel=1e-9, abs=1e-17)
+    assert contact.separation[finite] == pytest.approx(
+        other.separation[finite], rel=1e-9, abs=1e-17
+    )
 
 
 def test_far_beyond_the_ends_nothing_can_touch() -> None:
     pair = spur_pair(**FZG_A)
     low, high = pair.path_limits
-    found = extended_contact(pair, [low - 2.0 * pair.base_pitch, high + 2.0 * pair.base_pitch])
-    assert not np.any(found.possible)
-    assert np.all(np.isinf(found.separation))
+    contact = extended_contact(pair, [low - 2.0 * pair.base_pitch, high + 2.0 * pair.base_pitch])
+    assert not np.any(contact.possible)
+    assert np.all(np.isinf(contact.separation))
 
 
 def test_a_corner_that_would_meet_the_fillet_is_impossible() -> None:
@@ -188,11 +190,11 @@ def test_a_corner_that_would_meet_the_fillet_is_impossible() -> None:
         wheel_rack=rack,
     )  # fmt: skip
     _, high = pair.path_limits
-    found = extended_contact(pair, high + pair.base_pitch * np.linspace(0.0, 1.0, 101))
+    contact = extended_contact(pair, high + pair.base_pitch * np.linspace(0.0, 1.0, 101))
     form = pair.wheel.roll_angle(pair.wheel.form_radius) * pair.wheel.base_radius
-    assert np.any(found.wheel_curvature_radius < form)
-    assert np.array_equal(found.possible, found.wheel_curvature_radius >= form - 1e-6 * 4e-3)
-    assert np.array_equal(found.possible, np.isfinite(found.separation))
+    assert np.any(contact.wheel_curvature_radius < form)
+    assert np.array_equal(contact.possible, contact.wheel_curvature_radius >= form - 1e-6 * 4e-3)
+    assert np.array_equal(contact.possible, np.isfinite(contact.separation))
 
 
 @pytest.mark.parametrize("path", [math.nan, math.inf])

@@ -40,8 +40,8 @@ def test_exponent_of_moes_is_the_derivative_of_his_film(load):
         np.log(moes_central(load * np.exp(sign * step), RADIUS, SPEED, *oil))
         for sign in (-1.0, 1.0)
     )
-    found = moes_load_exponent(load, RADIUS, SPEED, *oil)
-    assert found == pytest.approx((high - low) / (2.0 * step), abs=1e-9)
+    exponent = moes_load_exponent(load, RADIUS, SPEED, *oil)
+    assert exponent == pytest.approx((high - low) / (2.0 * step), abs=1e-9)
 
 
 def test_exponent_of_moes_reaches_the_rigid_limit():
@@ -50,8 +50,8 @@ def test_exponent_of_moes_reaches_the_rigid_limit():
 
 
 def test_stiffness_is_in_proportion_to_the_length():
-    one, two = (films("moes", length=length).film_stiffness for length in (0.01, 0.02))
-    assert two == pytest.approx(2.0 * one, rel=1e-14)
+    first, two = (films("moes", length=length).film_stiffness for length in (0.01, 0.02))
+    assert two == pytest.approx(2.0 * first, rel=1e-14)
     with pytest.raises(InputError, match="length = 0"):
         films("moes", length=0.0)
 
@@ -95,10 +95,12 @@ def test_options_are_completed():
 
 def test_an_approach_that_rises_with_the_load_is_told():
     # Beside it, at M 0.6 and 0.8, the distance falls with the load.
-    for load, told in ((0.6, False), (0.7, True), (0.8, False)):
+    for load, warns in ((0.6, False), (0.7, True), (0.8, False)):
         contact = solve_line_contact_moes(load, 25.0, domain="auto", inlet="flooded", nodes=513)
-        with warnings.catch_warnings(record=True) as said:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             stiffness = contact.film_stiffness(kind="approach")
-        assert (stiffness < 0.0) == told
-        assert any("film keeps rises with the load" in str(each.message) for each in said) == told
+        assert (stiffness < 0.0) == warns
+        assert (
+            any("film keeps rises with the load" in str(each.message) for each in caught) == warns
+        )

@@ -52,8 +52,8 @@ def test_exponents_follow_from_those_of_the_groups(formula):
         "pressure_viscosity_coefficient": g,
         "effective_modulus": g - u - w,
     }
-    found = {name: exponent(formula, name) for name in ARGUMENTS}
-    assert found == pytest.approx(expected, abs=1e-9)
+    exponents = {name: exponent(formula, name) for name in ARGUMENTS}
+    assert exponents == pytest.approx(expected, abs=1e-9)
 
 
 @pytest.mark.parametrize("formula", list(POWER_LAWS))
@@ -169,8 +169,8 @@ def test_models_by_name():
         pan_hamrock_minimum,
         moes_central,
     ]
-    held = [dowson.central, dowson.minimum, pan.central, pan.minimum, moes.central]
-    assert held == [inspect.unwrap(formula) for formula in formulas]
+    films = [dowson.central, dowson.minimum, pan.central, pan.minimum, moes.central]
+    assert films == [inspect.unwrap(formula) for formula in formulas]
     assert moes.minimum is None
 
 

@@ -89,8 +89,8 @@ def test_hertz_pressure_makes_a_flat_gap():
     assert np.ptp(H[inside]) < 2e-4
     wide = np.abs(contact.X[np.abs(contact.X) > 1.05])
     dry = 0.5 * (wide * np.sqrt(wide**2 - 1.0) - np.log(wide + np.sqrt(wide**2 - 1.0)))
-    found = H[np.abs(contact.X) > 1.05] - H[inside].mean()
-    np.testing.assert_allclose(found, dry, atol=2e-4)
+    flatness = H[np.abs(contact.X) > 1.05] - H[inside].mean()
+    np.testing.assert_allclose(flatness, dry, atol=2e-4)
 
 
 def test_influence_is_the_integral_of_the_logarithm():
@@ -136,15 +136,15 @@ def test_plain_jacobian_is_the_derivative(law, compressible):
 
 def test_plain_solution_meets_every_condition():
     contact = make(256, 20.0, 10.0)
-    found = solve_plain(contact)
-    P, H, free = found.P, found.H, found.free
+    solution = solve_plain(contact)
+    P, H, free = solution.P, solution.H, solution.free
     assert P[1 : free + 1].min() > 0.0
     assert np.all(P[free + 1 :] == 0.0)
     residual = contact.residual(P, H)
     assert np.abs(residual[:free]).max() < 1e-12
     assert residual[free:].min() > 0.0
     assert contact.width * P.sum() == pytest.approx(math.pi / 2.0, rel=1e-12)
-    np.testing.assert_allclose(H, contact.film(P, found.offset), atol=1e-14)
+    np.testing.assert_allclose(H, contact.film(P, solution.offset), atol=1e-14)
     flux = contact.flux(P, H)[: free + 1]
     assert np.ptp(flux) < 1e-10 * flux.mean()
 
@@ -195,8 +195,8 @@ def test_oil_kernel_equals_plain(law, compressible):
     hertz = 2.5e9 if law == "roelands" else 0.6e9
     oil = plain_oil(law, hertz, 2.4e-8, 0.6, compressible=compressible)
     P = np.concatenate((np.linspace(0.0, 1.4, 300), [1e-12, 1e-6, 0.0]))
-    found = _oil(len(P) - 1, P, np.array(oil))
-    for kernel, plain in zip(found, (*oil.log_viscosity(P), *oil.density(P)), strict=True):
+    coefficients = _oil(len(P) - 1, P, np.array(oil))
+    for kernel, plain in zip(coefficients, (*oil.log_viscosity(P), *oil.density(P)), strict=True):
         np.testing.assert_allclose(kernel, plain, rtol=2e-14, atol=2e-14)
 
 
@@ -235,12 +235,12 @@ def test_eight_coefficients_are_the_derivatives(law, u, squeeze):
         unit = 1j * tiny * (np.arange(n + 1) == j)
         by_film[1:-1, j] = contact.residual(P, H + unit, u, squeeze).imag / tiny
         by_pressure[1:-1, j] = contact.residual(P + unit, H, u, squeeze).imag / tiny
-    for found, exact in ((cH, by_film), (cP, by_pressure)):
+    for derivative, exact in ((cH, by_film), (cP, by_pressure)):
         size = np.abs(exact).max()
         assert size > 0.1
         for i in range(1, n):
             row = np.zeros(n + 3)
-            row[i - 1 : i + 3] = found[i]  # nodes i-2..i+1, after one place for node -1
+            row[i - 1 : i + 3] = derivative[i]  # nodes i-2..i+1, after one place for node -1
             np.testing.assert_allclose(row[1:-1], exact[i], rtol=1e-11, atol=1e-12 * size)
             assert row[0] == 0.0
     assert not np.any(cH[[0, n]])
@@ -286,38 +286,38 @@ def twin(solution):
 @pytest.mark.parametrize("name", _CONTACTS)
 def test_solver_equals_plain(name, method):
     case = {"nodes": 257, **_CONTACTS[name]}
-    found = solve_line_contact_moes(
+    solution = solve_line_contact_moes(
         case.pop("M"), case.pop("L"), method=method, tolerance=1e-9, flux_tolerance=1e-8, **case
     )
-    assert found.method == method
-    contact = twin(found)
-    plain = solve_plain(contact, (found._grid.P, found._grid.H0))
+    assert solution.method == method
+    contact = twin(solution)
+    plain = solve_plain(contact, (solution._grid.P, solution._grid.H0))
     precision = _TIGHT[method] * 10.0
-    np.testing.assert_allclose(found.film, plain.H, rtol=precision)
-    np.testing.assert_allclose(found.pressure, plain.P, atol=precision)
-    assert found._grid.free == plain.free
+    np.testing.assert_allclose(solution.film, plain.H, rtol=precision)
+    np.testing.assert_allclose(solution.pressure, plain.P, atol=precision)
+    assert solution._grid.free == plain.free
     cold = solve_plain(contact)  # nothing of the solution that is judged goes in
-    np.testing.assert_allclose(found.film, cold.H, rtol=precision)
+    np.testing.assert_allclose(solution.film, cold.H, rtol=precision)
 
 
 def test_solver_in_si_equals_plain():
     oil = from_library("80W")
-    found = solve_line_contact(
+    solution = solve_line_contact(
         1.2e5, 9e-3, 4.0, oil, 2.2e11, nodes=257, tolerance=1e-10, flux_tolerance=1e-9
     )
     half_width = math.sqrt(8.0 * 1.2e5 * 9e-3 / (math.pi * 2.2e11))
     hertz = 2.0 * 1.2e5 / (math.pi * half_width)
-    assert found.half_width == pytest.approx(half_width, rel=1e-13)
-    assert found.hertz_pressure == pytest.approx(hertz, rel=1e-13)
+    assert solution.half_width == pytest.approx(half_width, rel=1e-13)
+    assert solution.hertz_pressure == pytest.approx(hertz, rel=1e-13)
     alpha = oil.pressure_viscosity_coefficient
     lam = 12.0 * oil.dynamic_viscosity * 4.0 * 9e-3**2 / (half_width**3 * hertz)
     same = PlainContact(
-        256, found.domain, lam, plain_oil("roelands", hertz, alpha, oil.roelands_index),
-        found._grid.load, found._grid.tail,
+        256, solution.domain, lam, plain_oil("roelands", hertz, alpha, oil.roelands_index),
+        solution._grid.load, solution._grid.tail,
     )  # fmt: skip
     plain = solve_plain(same)
-    np.testing.assert_allclose(found.film, plain.H * half_width**2 / 9e-3, rtol=1e-8)
-    np.testing.assert_allclose(found.pressure, plain.P * hertz, atol=1e-8 * hertz)
+    np.testing.assert_allclose(solution.film, plain.H * half_width**2 / 9e-3, rtol=1e-8)
+    np.testing.assert_allclose(solution.pressure, plain.P * hertz, atol=1e-8 * hertz)
 
 
 def test_random_gear_contacts_meet_the_plain_equations():
@@ -325,19 +325,19 @@ def test_random_gear_contacts_meet_the_plain_equations():
     for _ in range(25):
         M, L = math.exp(generator.uniform(0.0, math.log(300.0))), generator.uniform(0.0, 25.0)
         L = min(L, 2.2e-8 * 2e9 / math.sqrt(M / (2.0 * math.pi)))
-        found = solve_line_contact_moes(M, L, domain="auto", inlet="flooded", nodes=513)
-        contact, P = twin(found), found.pressure
-        H = contact.film(P, found._grid.H0)
-        np.testing.assert_allclose(found.film, H, rtol=1e-10)
-        free, flux = found._grid.free, contact.flux(P, H)
+        solution = solve_line_contact_moes(M, L, domain="auto", inlet="flooded", nodes=513)
+        contact, P = twin(solution), solution.pressure
+        H = contact.film(P, solution._grid.H0)
+        np.testing.assert_allclose(solution.film, H, rtol=1e-10)
+        free, flux = solution._grid.free, contact.flux(P, H)
         assert P.min() == 0.0
         assert np.all(P[free + 1 :] == 0.0)
         wet = flux[: free + 1]
         deviation = np.abs(wet / wet.mean() - 1.0).max()
         assert deviation < 1e-3
-        assert found.flux_error == pytest.approx(deviation, rel=0.02, abs=1e-9)
+        assert solution.flux_error == pytest.approx(deviation, rel=0.02, abs=1e-9)
         gain = contact.residual(P, H)[free:] / contact.width
         assert gain.min() > -1e-8
-        assert found.cavity_residual == pytest.approx(gain.min(), rel=1e-6, abs=1e-8)
+        assert solution.cavity_residual == pytest.approx(gain.min(), rel=1e-6, abs=1e-8)
         load = contact.width * (P.sum() - 0.5 * P[0])
-        assert load == pytest.approx(found._grid.load, rel=1e-10)
+        assert load == pytest.approx(solution._grid.load, rel=1e-10)

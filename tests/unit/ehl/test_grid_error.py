@@ -32,19 +32,19 @@ def _errors(solution):
 def test_the_estimate_bounds_the_error(draws):
     """Random flooded contacts: within it in 19 of 20, and none above 2 % goes untold."""
     inside = count = 0
-    for drawn in draws(8):
+    for random in draws(8):
         count += 1
-        M, L = 10.0 ** drawn.uniform(0.0, 2.9), drawn.uniform(0.0, 12.0)
-        oil = {"pressure_viscosity_index": drawn.uniform(0.4, 0.7),
-               "pressure_viscosity_coefficient": 10.0 ** drawn.uniform(-8.0, -7.6)}  # fmt: skip
-        nodes = int(drawn.choice([65, 129, 257, 513, 1025]))
-        coarse = _solved(M, L, nodes=nodes, method=str(drawn.choice(["newton", "multigrid"])),
+        M, L = 10.0 ** random.uniform(0.0, 2.9), random.uniform(0.0, 12.0)
+        oil = {"pressure_viscosity_index": random.uniform(0.4, 0.7),
+               "pressure_viscosity_coefficient": 10.0 ** random.uniform(-8.0, -7.6)}  # fmt: skip
+        nodes = int(random.choice([65, 129, 257, 513, 1025]))
+        coarse = _solved(M, L, nodes=nodes, method=str(random.choice(["newton", "multigrid"])),
                          **oil)  # fmt: skip
         fine = _figures(_solved(M, L, nodes=16385, **oil))
-        true, told = np.abs(_figures(coarse) - fine), _errors(coarse)
-        assert np.all(np.isfinite(told))
-        inside += bool(np.all(true <= told + 2e-4 * fine))
-        assert not np.any((true > 0.02 * _figures(coarse)) & (told < 0.02 * _figures(coarse)))
+        true, estimate = np.abs(_figures(coarse) - fine), _errors(coarse)
+        assert np.all(np.isfinite(estimate))
+        inside += bool(np.all(true <= estimate + 2e-4 * fine))
+        assert not np.any((true > 0.02 * _figures(coarse)) & (estimate < 0.02 * _figures(coarse)))
     assert inside >= 0.95 * count - 1.0
 
 
@@ -67,9 +67,9 @@ def test_nodes_that_were_raised_are_told():
 def test_a_resolved_film_is_not_told():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = solve_line_contact(147802.0, 8e-3, 3.0722, OIL, 2.2e11, nodes=513)
-    assert 0.0 < found.central_film_error < 5e-3 * found.central_film
-    assert 0.0 < found.pressure_error < 0.5 * found.pressure.max()
+        solution = solve_line_contact(147802.0, 8e-3, 3.0722, OIL, 2.2e11, nodes=513)
+    assert 0.0 < solution.central_film_error < 5e-3 * solution.central_film
+    assert 0.0 < solution.pressure_error < 0.5 * solution.pressure.max()
 
 
 def test_the_worst_of_many_contacts_is_told():
@@ -80,20 +80,20 @@ def test_the_worst_of_many_contacts_is_told():
 
 def test_the_estimate_bounds_the_error_of_a_domain_that_begins_too_near(draws):
     """Random flooded contacts, of thick films too, against a domain four times as long."""
-    for drawn in draws(6):
-        M, L = 10.0 ** drawn.uniform(-1.3, 2.0), drawn.choice([0.0, drawn.uniform(0.5, 25.0)])
-        law = drawn.choice(["roelands", "barus"]) if L else "isoviscous"
-        options = {"viscosity_law": law, "compressible": drawn.random() < 0.5, "nodes": "auto"}
+    for random in draws(6):
+        M, L = 10.0 ** random.uniform(-1.3, 2.0), random.choice([0.0, random.uniform(0.5, 25.0)])
+        law = random.choice(["roelands", "barus"]) if L else "isoviscous"
+        options = {"viscosity_law": law, "compressible": random.random() < 0.5, "nodes": "auto"}
         chosen = _solved(M, L, **options)
         start, end = chosen.domain
-        near = -max(3.0, drawn.uniform(0.3, 1.0) * abs(start))
-        stated = _solved(M, L, **(options | {"domain": (near, end)}))
+        inlet = -max(3.0, random.uniform(0.3, 1.0) * abs(start))
+        stated = _solved(M, L, **(options | {"domain": (inlet, end)}))
         far = _solved(M, L, film_tolerance=2e-5, **(options | {"domain": (4.0 * start, end)}))
         fine = _figures(far)
         assert chosen.central_film == pytest.approx(fine[0], rel=5e-4)
         for each in (chosen, stated):
             true = np.abs(_figures(each) - fine)
-            assert np.all(true <= _errors(each) + 2e-4 * fine), (M, L, law, near)
+            assert np.all(true <= _errors(each) + 2e-4 * fine), (M, L, law, inlet)
 
 
 @pytest.mark.slow
@@ -103,5 +103,5 @@ def test_the_film_of_a_case_tells_too_few_nodes():
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # such a slow pair has more to tell
-        told = [warning.code for warning in td.run(slow).warnings]
-    assert "film-resolution" in told
+        codes = [warning.code for warning in td.run(slow).warnings]
+    assert "film-resolution" in codes

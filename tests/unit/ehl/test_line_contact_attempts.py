@@ -36,10 +36,10 @@ def broken(_):
 
 def test_other_engine_steps_in_and_is_told(monkeypatch):
     monkeypatch.setitem(ENGINES._items, "multigrid", broken)
-    found = solve_problem(problem(), "multigrid")
-    assert found.method == "newton"
-    assert found.attempts[0] == "it is broken"
-    assert found.check.complaint(1e-3) == ""
+    solution = solve_problem(problem(), "multigrid")
+    assert solution.method == "newton"
+    assert solution.attempts[0] == "it is broken"
+    assert solution.check.complaint(1e-3) == ""
 
 
 def test_error_tells_all_attempts(monkeypatch):
@@ -56,7 +56,7 @@ def test_error_tells_all_attempts(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("spoil", "words"),
+    ("spoil", "message"),
     [
         (lambda g: replace(g, P=np.where(g.X > 0.9, 0.9 * g.P, g.P)), "flux error"),
         (lambda g: replace(g, P=np.where(np.arange(g.n + 1) == 9, -1e-3, g.P)), "negative"),
@@ -66,15 +66,15 @@ def test_error_tells_all_attempts(monkeypatch):
         (lambda g: replace(g, lam=1.01 * g.lam), "flux error"),
     ],
 )
-def test_wrong_solutions_are_found_out(monkeypatch, spoil, words):
+def test_wrong_solutions_are_found_out(monkeypatch, spoil, message):
     right = newton_engine(problem())
     assert verify(right.grid).complaint(1e-3) == ""
     wrong = replace(right, grid=spoil(right.grid))
-    assert words in verify(wrong.grid).complaint(1e-3)
+    assert message in verify(wrong.grid).complaint(1e-3)
     for name in ("newton", "multigrid"):
         monkeypatch.setitem(ENGINES._items, name, lambda _: wrong)
     monkeypatch.setattr(attempts, "continue_to", lambda _: wrong)
-    with pytest.raises(ComputationError, match=words):
+    with pytest.raises(ComputationError, match=message):
         solve_problem(problem(), "newton")
 
 

@@ -31,40 +31,42 @@ class Told:
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_batch_equals_single_contacts(threads):
-    told = Told()
-    found = solve_line_contacts(
+    progress = Told()
+    batch = solve_line_contacts(
         LOADS, 8e-3, SPEEDS, OIL, 2.2e11, nodes=257, threads=threads, keep_solutions=True,
-        progress=told, length=0.02,
+        progress=progress, length=0.02,
     )  # fmt: skip
-    assert found.central_film.shape == found.solutions.shape == (3, 4)
+    assert batch.central_film.shape == batch.solutions.shape == (3, 4)
     for place in ((0, 0), (2, 1), (1, 3)):
-        one = solve_line_contact(LOADS[place[1]], 8e-3, SPEEDS[place[0], 0], OIL, 2.2e11, nodes=257)
-        assert found.central_film[place] == one.central_film
-        assert found.minimum_film[place] == one.minimum_film
-        assert found.outlet[place] == one.outlet
-        assert found.hertz_pressure[place] == one.hertz_pressure
-        assert found.half_width[place] == one.half_width
-        assert found.flux_error[place] == one.flux_error
-        assert found.central_film_error[place] == one.central_film_error
-        assert found.solutions[place].film == pytest.approx(one.film, rel=0)
-        assert found.film_stiffness[place] == pytest.approx(one.film_stiffness(0.02), rel=1e-6)
-    assert told.events == [12, *["one"] * 12, "end"]
-    assert np.all(np.diff(found.central_film, axis=0) > 0.0)  # speed
-    assert np.all(np.diff(found.central_film, axis=1) < 0.0)  # load
-    assert "12 contacts" in repr(found)
+        single = solve_line_contact(
+            LOADS[place[1]], 8e-3, SPEEDS[place[0], 0], OIL, 2.2e11, nodes=257
+        )
+        assert batch.central_film[place] == single.central_film
+        assert batch.minimum_film[place] == single.minimum_film
+        assert batch.outlet[place] == single.outlet
+        assert batch.hertz_pressure[place] == single.hertz_pressure
+        assert batch.half_width[place] == single.half_width
+        assert batch.flux_error[place] == single.flux_error
+        assert batch.central_film_error[place] == single.central_film_error
+        assert batch.solutions[place].film == pytest.approx(single.film, rel=0)
+        assert batch.film_stiffness[place] == pytest.approx(single.film_stiffness(0.02), rel=1e-6)
+    assert progress.events == [12, *["one"] * 12, "end"]
+    assert np.all(np.diff(batch.central_film, axis=0) > 0.0)  # speed
+    assert np.all(np.diff(batch.central_film, axis=1) < 0.0)  # load
+    assert "12 contacts" in repr(batch)
 
 
 def test_stiffness_and_solutions_are_optional():
-    found = solve_line_contacts(LOADS[0], 8e-3, 2.0, OIL, 2.2e11, nodes=129, stiffness=False)
-    assert found.central_film.shape == ()
-    assert found.film_stiffness.size == found.solutions.size == 0
+    batch = solve_line_contacts(LOADS[0], 8e-3, 2.0, OIL, 2.2e11, nodes=129, stiffness=False)
+    assert batch.central_film.shape == ()
+    assert batch.film_stiffness.size == batch.solutions.size == 0
 
 
 def test_rising_films_are_told_once():
-    with pytest.warns(ModelWarning, match=r"of 2 of 3 contacts, the first of them \[0\]") as told:
-        found = solve_line_contacts([3e4, 3.5e4, 2e5], 8e-3, 3.0, OIL, 2.2e11, nodes=257)
-    assert len(told) == 1
-    assert list(found.film_stiffness < 0.0) == [True, True, False]
+    with pytest.warns(ModelWarning, match=r"of 2 of 3 contacts, the first of them \[0\]") as caught:
+        batch = solve_line_contacts([3e4, 3.5e4, 2e5], 8e-3, 3.0, OIL, 2.2e11, nodes=257)
+    assert len(caught) == 1
+    assert list(batch.film_stiffness < 0.0) == [True, True, False]
 
 
 @pytest.mark.parametrize("threads", [1, 2])
@@ -78,9 +80,9 @@ def test_failure_names_its_index_and_stops_the_rest(monkeypatch, threads):
         return solve_line_contact(case.load_per_width, 8e-3, 3.0, OIL, 2.2e11, nodes=65)
 
     monkeypatch.setattr(batches, "solve_case", solve)
-    many = np.concatenate((LOADS, np.full(500, LOADS[0])))
+    loads = np.concatenate((LOADS, np.full(500, LOADS[0])))
     with pytest.raises(ComputationError, match=r"contact \[2\] with 233333 N/m.*no solution"):
-        solve_line_contacts(many, 8e-3, 3.0, OIL, 2.2e11, threads=threads, stiffness=False)
+        solve_line_contacts(loads, 8e-3, 3.0, OIL, 2.2e11, threads=threads, stiffness=False)
     assert len(done) < 100
 
 

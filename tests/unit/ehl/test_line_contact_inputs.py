@@ -28,7 +28,7 @@ def refusal(**changes):
 
 
 @pytest.mark.parametrize(
-    ("field", "value", "shown"),
+    ("field", "value", "text"),
     [
         ("load_per_width", -1.0, "-1 N/m"),
         ("load_per_width", math.nan, "nan"),
@@ -42,10 +42,10 @@ def refusal(**changes):
         ("lubricant", 0.082, "float"),
     ],
 )
-def test_bad_values_are_named(field, value, shown):
+def test_bad_values_are_named(field, value, text):
     message = refusal(**{field: value})
     assert field in message
-    assert shown in message
+    assert text in message
 
 
 def test_missing_pressure_viscosity_coefficient_is_named():
@@ -88,7 +88,7 @@ def test_nodes_that_can_be_halved_are_taken(nodes):
 
 
 @pytest.mark.parametrize(
-    ("domain", "inlet", "shown"),
+    ("domain", "inlet", "message"),
     [
         ("wide", "flooded", "wide"),
         ((1.5, -4.5), "flooded", "(1.5, -4.5)"),
@@ -102,8 +102,8 @@ def test_nodes_that_can_be_halved_are_taken(nodes):
         ((math.nan, 1.5), "zero", "nan"),
     ],
 )
-def test_domain_and_inlet(domain, inlet, shown):
-    assert shown in refusal(domain=domain, inlet=inlet)
+def test_domain_and_inlet(domain, inlet, message):
+    assert message in refusal(domain=domain, inlet=inlet)
 
 
 def test_film_thicker_than_the_domain():

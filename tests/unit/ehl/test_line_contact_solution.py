@@ -58,10 +58,10 @@ def test_load_film_and_outlet(solution):
 
 
 def test_spike_is_the_maximum_next_to_the_outlet(solution):
-    here = int(np.argmin(np.abs(solution.position - solution.spike_position)))
-    assert solution.pressure[here] == solution.spike_pressure
-    assert solution.pressure[here - 1] < solution.spike_pressure > solution.pressure[here + 1]
-    later = solution.pressure[here:]
+    index = int(np.argmin(np.abs(solution.position - solution.spike_position)))
+    assert solution.pressure[index] == solution.spike_pressure
+    assert solution.pressure[index - 1] < solution.spike_pressure > solution.pressure[index + 1]
+    later = solution.pressure[index:]
     assert np.all(np.diff(later) <= 0.0)
 
 
@@ -122,25 +122,28 @@ def test_automatic_nodes_stop_at_the_tolerance():
     coarse = solve_line_contact(*CONTACT, film_tolerance=5e-4)
     fine = solve_line_contact(*CONTACT, film_tolerance=5e-5)
     assert fine.nodes > coarse.nodes
-    for found, tolerance in ((coarse, 5e-4), (fine, 5e-5)):
-        assert found.central_film_error < tolerance * found.central_film
-        half = solve_line_contact(*CONTACT, nodes=(found.nodes + 1) // 2, domain=found.domain)
+    for solution, tolerance in ((coarse, 5e-4), (fine, 5e-5)):
+        assert solution.central_film_error < tolerance * solution.central_film
+        half = solve_line_contact(*CONTACT, nodes=(solution.nodes + 1) // 2, domain=solution.domain)
         assert half.central_film_error > tolerance * half.central_film
-        step = found.central_film - half.central_film
-        cut = 2.0 * (np.interp(0.0, found._grid.X, found._grid.H) / found.domain[0] ** 2) ** 2
-        told = found.central_film_error - cut * found.central_film
-        assert told == pytest.approx(abs(step) / 3.0, rel=0.02)
-        assert found.central_film_extrapolated == pytest.approx(
-            found.central_film + step / 3.0, rel=1e-5
+        step = solution.central_film - half.central_film
+        cut = (
+            2.0
+            * (np.interp(0.0, solution._grid.X, solution._grid.H) / solution.domain[0] ** 2) ** 2
+        )
+        extrapolation_error = solution.central_film_error - cut * solution.central_film
+        assert extrapolation_error == pytest.approx(abs(step) / 3.0, rel=0.02)
+        assert solution.central_film_extrapolated == pytest.approx(
+            solution.central_film + step / 3.0, rel=1e-5
         )
 
 
 def test_automatic_nodes_say_when_they_do_not_suffice():
     with pytest.warns(ModelWarning, match=r"\[film-resolution\] With 16385 nodes"):
-        found = solve_line_contact_moes(
+        solution = solve_line_contact_moes(
             500, 12, nodes="auto", film_tolerance=1e-5, pressure_viscosity_coefficient=3e-8
         )
-    assert found.nodes == 16385
+    assert solution.nodes == 16385
 
 
 def test_starved_inlet_is_told_once_it_is_si():
@@ -178,9 +181,9 @@ def test_warm_start_gives_the_same_contact_in_fewer_products():
 
 def test_a_poor_start_does_no_harm():
     far = solve_line_contact(2e3, 8e-3, 20.0, OIL, 2.2e11, nodes=129)
-    found = solve_line_contact(*CONTACT, nodes=129, start=far)
+    solution = solve_line_contact(*CONTACT, nodes=129, start=far)
     cold = solve_line_contact(*CONTACT, nodes=129)
-    assert found.central_film == pytest.approx(cold.central_film, rel=1e-4)
+    assert solution.central_film == pytest.approx(cold.central_film, rel=1e-4)
 
 
 def test_profile_is_added_to_the_gap(solution):

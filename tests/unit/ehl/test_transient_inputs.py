@@ -15,7 +15,7 @@ TIME = np.linspace(0.0, 1e-4, 9)
 
 
 def solve(**changes: Any) -> Any:
-    given: dict[str, Any] = {
+    arguments: dict[str, Any] = {
         "time": TIME,
         "load_per_width": 147802.0,
         "equivalent_radius": 8e-3,
@@ -24,7 +24,7 @@ def solve(**changes: Any) -> Any:
         "effective_modulus": 2.2e11,
         "nodes": 129,
     }
-    return solve_transient_line_contact(**(given | changes))
+    return solve_transient_line_contact(**(arguments | changes))
 
 
 @pytest.mark.parametrize(

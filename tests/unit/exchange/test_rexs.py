@@ -26,10 +26,10 @@ def test_both_forms_of_one_gearbox_give_the_figures_of_its_data_sheet(name: str)
     """Angles and sums of shifts follow from teeth, helix and distance alone, and must agree."""
     model = read_rexs(MODELS / name)
     assert sum(model.components.values()) == 49
-    one, two = model.stages
-    assert [(s.gear_1.teeth, s.gear_2.teeth) for s in (one, two)] == [(27, 51), (23, 34)]
+    first, two = model.stages
+    assert [(s.gear_1.teeth, s.gear_2.teeth) for s in (first, two)] == [(27, 51), (23, 34)]
     for stage, angle, total, reference in (
-        (one, 22.8062, 0.46283, 187.9859), (two, 21.7751, 0.30148, 188.1078),
+        (first, 22.8062, 0.46283, 187.9859), (two, 21.7751, 0.30148, 188.1078),
     ):  # fmt: skip
         assert math.degrees(stage.operating_pressure_angle) == pytest.approx(angle, abs=5e-5)
         assert stage.shift_sum == pytest.approx(total, abs=5e-6)
@@ -37,7 +37,7 @@ def test_both_forms_of_one_gearbox_give_the_figures_of_its_data_sheet(name: str)
             2 * stage.gear_1.profile_shift_coefficient, abs=5e-6
         )
         assert stage.reference_center_distance == pytest.approx(reference * 1e-3, abs=5e-8)
-    assert math.degrees(one.gear_1.helix_angle) == pytest.approx(21.0)
+    assert math.degrees(first.gear_1.helix_angle) == pytest.approx(21.0)
     assert math.degrees(two.gear_1.helix_angle) == pytest.approx(-10.0)
     rows = [
         (0.20, 543.0, 567.0, 244.35, 287.47, 110.197, 194.465),
@@ -64,12 +64,12 @@ def test_both_forms_of_one_gearbox_give_the_figures_of_its_data_sheet(name: str)
 
 
 def test_xml_and_json_say_the_same() -> None:
-    one, other = (read_rexs(MODELS / f"two_stages.{end}") for end in ("rexs", "rexsj"))
-    assert one.stages == other.stages
-    assert one.loads == other.loads
-    assert one.remarks == other.remarks
-    assert "27 / 51" in one._repr_html_()
-    assert "22.8062 deg" in one._repr_html_()
+    from_xml, other = (read_rexs(MODELS / f"two_stages.{end}") for end in ("rexs", "rexsj"))
+    assert from_xml.stages == other.stages
+    assert from_xml.loads == other.loads
+    assert from_xml.remarks == other.remarks
+    assert "27 / 51" in from_xml._repr_html_()
+    assert "22.8062 deg" in from_xml._repr_html_()
 
 
 def test_a_planetary_gearbox_is_listed_and_not_computed() -> None:
@@ -78,10 +78,10 @@ def test_a_planetary_gearbox_is_listed_and_not_computed() -> None:
     assert [s.gear_2.teeth for s in model.stages] == [22, 22, 22, -61, -61, -61]
     assert all(s.shift_sum == pytest.approx(0.0, abs=1e-12) for s in model.stages)
     assert model.loads[0].torques == {34: pytest.approx(1591.549, abs=1e-3)}
-    told = model.remarks[-1]
-    assert "sun 17, 3 planets 22, ring 61" in told
-    assert "4.588" in told
-    assert told.endswith("equally spaced planets assemble")
+    remark = model.remarks[-1]
+    assert "sun 17, 3 planets 22, ring 61" in remark
+    assert "4.588" in remark
+    assert remark.endswith("equally spaced planets assemble")
     with pytest.raises(InputError, match="stage 211 is part of a planetary stage"):
         case_from_rexs(model, 211)
 
@@ -89,8 +89,8 @@ def test_a_planetary_gearbox_is_listed_and_not_computed() -> None:
 @pytest.fixture
 def tree() -> dict[str, Any]:
     """The gearbox with straight teeth on axes that fit them."""
-    held: dict[str, Any] = json.loads((MODELS / "two_stages.rexsj").read_text(encoding="utf-8"))
-    for part in held["model"]["components"]:
+    model: dict[str, Any] = json.loads((MODELS / "two_stages.rexsj").read_text(encoding="utf-8"))
+    for part in model["model"]["components"]:
         for attribute in part["attributes"]:
             if attribute["id"] == "helix_angle_reference_diameter":
                 attribute["floating_point"] = 0.0
@@ -100,7 +100,7 @@ def tree() -> dict[str, Any]:
                 )  # fmt: skip
                 fitting = zero_backlash_center_distance(teeth, module, math.radians(20), shift)
                 attribute["floating_point"] = fitting * 1e3
-    return held
+    return model
 
 
 def stored(tree: dict[str, Any], folder: Path) -> Path:
@@ -129,10 +129,10 @@ def test_a_spur_stage_becomes_a_case_that_tells_what_was_assumed(tree, tmp_path)
     points = ((313.15, 100e-6), (373.15, 11e-6))
     oil = Lubricant.from_temperature(343.15, points, 880.0, base_oil="mineral")
     assert case.lubricant_properties.dynamic_viscosity == pytest.approx(oil.dynamic_viscosity)
-    said = case.to_toml().partition("[assumed]")[2].partition("\n[")[0]
+    assumed = case.to_toml().partition("[assumed]")[2].partition("\n[")[0]
     for key in ("bearing_stiffness", "backlash", "roughness_ra", "pressure_viscosity_coefficient"):
-        assert key in said
-    assert "speed" not in said
+        assert key in assumed
+    assert "speed" not in assumed
 
 
 def test_the_driver_follows_from_the_sign_of_the_torque(tree, tmp_path) -> None:
@@ -153,9 +153,9 @@ def test_what_the_file_lacks_is_asked_for(tree, tmp_path) -> None:
     points = ((313.15, 100e-6), (373.15, 11e-6))
     for kelvin, more in ((333.15, {}), (363.15, {"lubricant.temperature": "90 degC"})):
         oil = Lubricant.from_temperature(kelvin, points, 880.0, base_oil="mineral")
-        found = case_from_rexs(model, 19, changes={**changes, **more}).lubricant_properties
-        assert found.temperature == pytest.approx(kelvin)
-        assert found.dynamic_viscosity == pytest.approx(oil.dynamic_viscosity)
+        lubricant = case_from_rexs(model, 19, changes={**changes, **more}).lubricant_properties
+        assert lubricant.temperature == pytest.approx(kelvin)
+        assert lubricant.dynamic_viscosity == pytest.approx(oil.dynamic_viscosity)
     assert "temperature" in case.to_toml().partition("[assumed]")[2]
     other = case_from_rexs(model, 19, changes={**changes, "lubricant.name": "ISO VG 220"})
     assert other.lubricant.name == "ISO VG 220"
@@ -167,8 +167,8 @@ def test_what_the_file_lacks_is_asked_for(tree, tmp_path) -> None:
 
 def test_shifts_that_do_not_fit_the_distance_are_told(tree, tmp_path) -> None:
     attribute(tree, 19, "center_distance")["floating_point"] += 0.1
-    told = read_rexs(stored(tree, tmp_path)).remarks
-    assert any("the profile shifts sum up to 0.4628" in remark for remark in told)
+    remarks = read_rexs(stored(tree, tmp_path)).remarks
+    assert any("the profile shifts sum up to 0.4628" in remark for remark in remarks)
 
 
 @pytest.mark.parametrize("name", list(td.cases()))
@@ -208,10 +208,10 @@ def flanks_of(tree: dict[str, Any], gear: int) -> tuple[int, ...]:
 
 
 def test_reliefs_and_crownings_of_the_flanks_are_read(tree, tmp_path) -> None:
-    both = flanks_of(tree, 15)
-    hang(tree, both, "tip_relief", tip_relief_depth=0.02, tip_relief_datum_length=3.5)
-    hang(tree, both, "root_relief", root_relief_depth=0.01)
-    hang(tree, both, "helix_crowning", helix_crowning_amount_datum_face=0.005,
+    flanks = flanks_of(tree, 15)
+    hang(tree, flanks, "tip_relief", tip_relief_depth=0.02, tip_relief_datum_length=3.5)
+    hang(tree, flanks, "root_relief", root_relief_depth=0.01)
+    hang(tree, flanks, "helix_crowning", helix_crowning_amount_datum_face=0.005,
          helix_crowning_amount_non_datum_face=0.005)  # fmt: skip
     case = case_from_rexs(read_rexs(stored(tree, tmp_path)), 19)
     modified = case.gears.pinion.modification
@@ -227,21 +227,21 @@ def test_a_relief_from_a_diameter_on_is_as_long_as_the_involute_rolls(tmp_path: 
     case = td.load_case("fzg-roughness").replace({"gears.pinion.modification.tip_relief": 1e-5})
     pinion = case.gear_pair.pinion
     write_rexs(case, tmp_path / "case.rexsj")
-    held = json.loads((tmp_path / "case.rexsj").read_text(encoding="utf-8"))
-    (part,) = (p for p in held["model"]["components"] if p["type"] == "tip_relief")
+    model = json.loads((tmp_path / "case.rexsj").read_text(encoding="utf-8"))
+    (part,) = (p for p in model["model"]["components"] if p["type"] == "tip_relief")
     start = 0.5 * pinion.tip_diameter - 1e-3
     part["attributes"].append(
         {"id": "tip_relief_datum_diameter", "unit": "mm", "floating_point": 2e3 * start}
     )
-    found = read_rexs(stored(held, tmp_path)).stages[0].gear_1.modification["tip_relief_length"]
+    length = read_rexs(stored(model, tmp_path)).stages[0].gear_1.modification["tip_relief_length"]
     tip, base = 0.5 * pinion.tip_diameter, pinion.base_radius
     # by the angles of the involute instead of by Pythagoras
     roll = base * (math.tan(math.acos(base / tip)) - math.tan(math.acos(base / start)))
-    assert found == pytest.approx(roll, rel=1e-9)
+    assert length == pytest.approx(roll, rel=1e-9)
 
 
 @pytest.mark.parametrize(
-    ("kind", "values", "told"),
+    ("kind", "values", "message"),
     [
         ("profile_slope", {"profile_slope": 0.01}, "its sign differs between programs"),
         ("tip_relief", {"tip_relief_depth": 0.02,
@@ -253,10 +253,10 @@ def test_a_relief_from_a_diameter_on_is_as_long_as_the_involute_rolls(tmp_path: 
          "is not on the flank"),
     ],
 )  # fmt: skip
-def test_a_form_that_a_case_has_not_is_told_and_left_out(tree, tmp_path, kind, values, told):
+def test_a_form_that_a_case_has_not_is_told_and_left_out(tree, tmp_path, kind, values, message):
     hang(tree, flanks_of(tree, 15), kind, **values)
     model = read_rexs(stored(tree, tmp_path))
-    assert any(kind in remark and told in remark for remark in model.remarks)
+    assert any(kind in remark and message in remark for remark in model.remarks)
     assert case_from_rexs(model, 19).gears.pinion.modification is None
 
 
@@ -287,15 +287,15 @@ def test_modifications_are_written_for_other_programs(tmp_path: Path) -> None:
 
 def test_spellings_of_other_programs_are_read(tree, tmp_path) -> None:
     text = (MODELS / "two_stages.rexs").read_text(encoding="utf-8-sig")
-    known = read_rexs(MODELS / "two_stages.rexs")
+    expected = read_rexs(MODELS / "two_stages.rexs")
     path = tmp_path / "model.rexs"
     path.write_text(text.replace("<model ", '<model xmlns="urn:any" ', 1), encoding="utf-8")
-    assert read_rexs(path).stages == known.stages
+    assert read_rexs(path).stages == expected.stages
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("folder/inside/model.rexs", text)
         archive.writestr("__MACOSX/folder/inside/._model.rexs", b"\x00")
         archive.writestr("folder/part.fe", b"mesh")
-    assert read_rexs(path).stages == known.stages
+    assert read_rexs(path).stages == expected.stages
     # values at the gear instead of at flanks, as in a model of part of a gearbox
     model = tree["model"]
     model["relations"] = [r for r in model["relations"] if r["type"] != "flank"]
@@ -309,8 +309,8 @@ def test_spellings_of_other_programs_are_read(tree, tmp_path) -> None:
 
 def test_negative_teeth_are_those_of_a_ring(tree, tmp_path) -> None:
     gear = read_rexs(stored(tree, tmp_path)).stages[0].gear_2
-    found = attribute(tree, gear.id, "number_of_teeth")
-    found[next(key for key in found if key in ("integer", "floating_point"))] = -gear.teeth
+    entry = attribute(tree, gear.id, "number_of_teeth")
+    entry[next(key for key in entry if key in ("integer", "floating_point"))] = -gear.teeth
     attribute(tree, 19, "center_distance")["floating_point"] = -54.0
     model = read_rexs(stored(tree, tmp_path))
     assert model.stages[0].ratio < 0.0
@@ -341,14 +341,14 @@ def test_nothing_is_replaced_unasked(tmp_path: Path) -> None:
 
 
 def bomb() -> bytes:
-    held = io.BytesIO()
-    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("model.rexs", b" " * 60_000_000)
-    return held.getvalue()
+    return buffer.getvalue()
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         (b"", "it is not a REXS file"),
         (b"\x00\xff", "it is not a REXS file"),
@@ -365,15 +365,15 @@ def bomb() -> bytes:
         (b"PK\x03\x04 cut off", "damaged zip"),
     ],
 )  # fmt: skip
-def test_what_is_no_model_is_refused_in_words(content: bytes, told: str, tmp_path: Path) -> None:
+def test_what_is_no_model_is_refused_in_words(content: bytes, message: str, tmp_path: Path) -> None:
     path = tmp_path / "model.rexs"
     path.write_bytes(content)
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         read_rexs(path)
 
 
 @pytest.mark.parametrize(
-    ("number", "name", "value", "told"),
+    ("number", "name", "value", "message"),
     [
         (15, "normal_module", math.nan, "normal_module = nan"),
         (15, "normal_module", -4.5, "normal_module = -0.0045"),
@@ -382,21 +382,21 @@ def test_what_is_no_model_is_refused_in_words(content: bytes, told: str, tmp_pat
         (19, "center_distance", None, "center_distance is missing"),
     ],
 )
-def test_impossible_values_are_refused(tree, tmp_path, number, name, value, told) -> None:
-    found = attribute(tree, number, name)
+def test_impossible_values_are_refused(tree, tmp_path, number, name, value, message) -> None:
+    entry = attribute(tree, number, name)
     for key in ("floating_point", "integer"):
-        if key in found:
-            found[key] = value
-    with pytest.raises(InputError, match=told):
+        if key in entry:
+            entry[key] = value
+    with pytest.raises(InputError, match=message):
         read_rexs(stored(tree, tmp_path))
 
 
 def test_units_are_those_that_the_file_names(tree, tmp_path) -> None:
-    found = attribute(tree, 19, "center_distance")
-    found["floating_point"] /= 25.4
-    found["unit"] = "in"
-    here = read_rexs(stored(tree, tmp_path)).stages[0].center_distance
-    assert here == pytest.approx(found["floating_point"] * 0.0254)
-    found["unit"] = "N m"
+    entry = attribute(tree, 19, "center_distance")
+    entry["floating_point"] /= 25.4
+    entry["unit"] = "in"
+    from_file = read_rexs(stored(tree, tmp_path)).stages[0].center_distance
+    assert from_file == pytest.approx(entry["floating_point"] * 0.0254)
+    entry["unit"] = "N m"
     with pytest.raises(InputError, match=r'cylindrical_stage 19 .*"N m"'):
         read_rexs(stored(tree, tmp_path))

@@ -28,16 +28,16 @@ def test_tables_and_figures_hold_what_the_result_holds(tmp_path: Path, capsys) -
         rows = list(csv.DictReader(file))
     motion = result.to_xarray()
     for name, unit in (("mesh_force", "N"), ("dynamic_transmission_error", "m")):
-        told = [float(row[f"{name} [{unit}]"]) for row in rows]
-        np.testing.assert_allclose(told, motion[name].values, rtol=1e-12)
+        values = [float(row[f"{name} [{unit}]"]) for row in rows]
+        np.testing.assert_allclose(values, motion[name].values, rtol=1e-12)
     mesh = json.loads((place / "mesh_over_knot.json").read_text(encoding="utf-8"))
     np.testing.assert_array_equal(mesh["mesh_stiffness [N/m]"], result.mesh.mesh_stiffness)
-    drawn = result.plot_mesh_force().data[0]
-    kept = json.loads((place / "figure_mesh_force.json").read_text(encoding="utf-8"))
-    assert kept["layout"]["title"]["text"] == result.plot_mesh_force().layout.title.text
+    curve = result.plot_mesh_force().data[0]
+    stored = json.loads((place / "figure_mesh_force.json").read_text(encoding="utf-8"))
+    assert stored["layout"]["title"]["text"] == result.plot_mesh_force().layout.title.text
     with (place / "figure_mesh_force.csv").open() as file:
         points = [row for row in csv.DictReader(file) if row["curve"] == "dynamic"]
-    np.testing.assert_array_equal([float(row["y"]) for row in points], drawn.y)
+    np.testing.assert_array_equal([float(row["y"]) for row in points], curve.y)
     with pytest.raises(InputError, match="exists already"):
         write_tables(result, place)
     capsys.readouterr()
@@ -52,10 +52,10 @@ def test_results_of_studies_are_written_too(tmp_path: Path) -> None:
     with (place / "table_over_mode.csv").open() as file:
         rows = list(csv.DictReader(file))
     np.testing.assert_allclose([float(row["frequency [Hz]"]) for row in rows], modes.frequency)
-    drawn = json.loads((place / "figure_mode_shapes.json").read_text(encoding="utf-8"))
-    assert len(drawn["data"]) == len(modes.plot().data)
-    found = td.harris_map(case, torque=["60 N*m", "90 N*m"])
-    place = write_tables(found, tmp_path / "harris")
-    told = json.loads((place / "table_over_torque.json").read_text(encoding="utf-8"))
-    measured = told["peak_to_peak_transmission_error [m]"]
-    np.testing.assert_array_equal(measured, found.peak_to_peak_transmission_error)
+    stored_figure = json.loads((place / "figure_mode_shapes.json").read_text(encoding="utf-8"))
+    assert len(stored_figure["data"]) == len(modes.plot().data)
+    harris = td.harris_map(case, torque=["60 N*m", "90 N*m"])
+    place = write_tables(harris, tmp_path / "harris")
+    stored_table = json.loads((place / "table_over_torque.json").read_text(encoding="utf-8"))
+    measured = stored_table["peak_to_peak_transmission_error [m]"]
+    np.testing.assert_array_equal(measured, harris.peak_to_peak_transmission_error)

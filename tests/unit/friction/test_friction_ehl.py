@@ -34,14 +34,14 @@ def film_state(contacts=1, lubricant=OIL, thickness=(1e-6, 0.7e-6), **changes):
 
 def contact(sliding=(0.5,), entrainment=2.0, **changes):
     speed = np.array(sliding, dtype=float)
-    one = np.ones(speed.shape)
+    ones = np.ones(speed.shape)
     values = {
-        "load_per_width": LOAD * one,
-        "hertz_pressure": PRESSURE * one,
+        "load_per_width": LOAD * ones,
+        "hertz_pressure": PRESSURE * ones,
         "sliding_speed": speed,
-        "entrainment_speed": entrainment * one,
+        "entrainment_speed": entrainment * ones,
         "slide_to_roll_ratio": speed / entrainment,
-        "equivalent_radius": 8e-3 * one,
+        "equivalent_radius": 8e-3 * ones,
         "dynamic_viscosity": OIL.dynamic_viscosity,
         "composite_roughness": 0.0,
         "film": film_state(speed.size),
@@ -70,9 +70,9 @@ def test_law_is_known_with_its_options():
 
 
 def test_coefficient_is_the_sliding_traction_over_the_load():
-    here = contact((0.5, -0.5, 1.5))
-    expected = np.abs(film_traction(here.film, here.sliding_speed).sliding) / LOAD
-    assert ehl(here) == pytest.approx(expected, rel=1e-13)
+    state = contact((0.5, -0.5, 1.5))
+    expected = np.abs(film_traction(state.film, state.sliding_speed).sliding) / LOAD
+    assert ehl(state) == pytest.approx(expected, rel=1e-13)
     assert np.all(expected > 0.0)
 
 
@@ -93,10 +93,10 @@ def test_no_sliding_no_friction_but_that_of_rolling(heated):
     wedge = film_state(
         1, film_thickness=np.linspace(2e-6, 1e-6, 301) * np.ones((2, 1)), index=np.array([0])
     )
-    here = contact((0.0,), film=wedge)
+    state = contact((0.0,), film=wedge)
     options = {"flash_temperature": heated, "inlet_heating": heated}
-    assert ehl(here, **options)[0] == 0.0
-    rolling = ehl(here, rolling=True, **options)[0]
+    assert ehl(state, **options)[0] == 0.0
+    rolling = ehl(state, rolling=True, **options)[0]
     gap, pressure = wedge.film_thickness[0], wedge.pressure[0]
     by_hand = -0.5 * np.trapezoid(pressure, gap) / LOAD
     factor = 1.0
@@ -110,8 +110,8 @@ def test_rolling_adds_to_sliding():
     wedge = film_state(
         2, film_thickness=np.linspace(2e-6, 1e-6, 301) * np.ones((2, 1)), index=np.array([0, 1])
     )
-    here = contact((0.5, -0.5), film=wedge)
-    added = ehl(here, rolling=True) - ehl(here)
+    state = contact((0.5, -0.5), film=wedge)
+    added = ehl(state, rolling=True) - ehl(state)
     assert added[0] == pytest.approx(added[1], rel=1e-9)
     assert added[0] > 0.0
 
@@ -138,12 +138,12 @@ def test_friction_rises_with_sliding_and_falls_again_when_the_film_heats():
 
 
 def test_film_temperature_balances_the_heat_of_the_friction():
-    here = contact((1.5,), entrainment=3.0)
-    coefficient = ehl(here, flash_temperature=True)[0]
+    state = contact((1.5,), entrainment=3.0)
+    coefficient = ehl(state, flash_temperature=True)[0]
     heat = coefficient * LOAD * 1.5
     surface = blok_flash_temperature(heat, HALF_WIDTH, 3.75, 2.25, kind="mean")
     oil = heat / (2.0 * HALF_WIDTH) * 1e-6 / (12.0 * 0.13)
-    traction = film_traction(here.film, 1.5, temperature_rise=surface + oil)
+    traction = film_traction(state.film, 1.5, temperature_rise=surface + oil)
     assert traction.sliding[0] / LOAD == pytest.approx(coefficient, rel=1e-7)
     assert 5.0 < surface < 60.0
     assert 5.0 < oil < 60.0
@@ -153,12 +153,12 @@ def test_each_body_takes_up_heat_by_its_own_properties():
     # sqrt(k rho c) of steel 47 W/m/K, 7800 kg/m^3, 460 J/kg/K, and of a polyamide
     bodies = (np.sqrt(47.0 * 7800.0 * 460.0), np.sqrt(0.25 * 1140.0 * 1700.0))
     steel = ehl(contact((1.5,), entrainment=3.0), flash_temperature=True)[0]
-    here = contact((1.5,), entrainment=3.0, bodies=bodies)
-    coefficient = ehl(here, flash_temperature=True)[0]
+    state = contact((1.5,), entrainment=3.0, bodies=bodies)
+    coefficient = ehl(state, flash_temperature=True)[0]
     heat = coefficient * LOAD * 1.5
     surface = blok_flash_temperature(heat, HALF_WIDTH, 3.75, 2.25, *bodies, kind="mean")
     oil = heat / (2.0 * HALF_WIDTH) * 1e-6 / (12.0 * 0.13)
-    traction = film_traction(here.film, 1.5, temperature_rise=surface + oil)
+    traction = film_traction(state.film, 1.5, temperature_rise=surface + oil)
     assert traction.sliding[0] / LOAD == pytest.approx(coefficient, rel=1e-7)
     assert coefficient < 0.95 * steel
     # the slower body is the polymer: with the roles of both exchanged it is hotter or cooler
@@ -171,11 +171,11 @@ def test_each_body_takes_up_heat_by_its_own_properties():
 
 
 def test_heated_inlet_thins_the_film():
-    here = contact((0.5,))
+    state = contact((0.5,))
     factor = inlet_heating_factor(2.0, 0.25, PRESSURE, 0.082, 0.0533, 0.13, MODULUS)
-    expected = film_traction(here.film, 0.5, film_factor=factor).sliding[0] / LOAD
-    assert ehl(here, inlet_heating=True)[0] == pytest.approx(expected, rel=1e-12)
-    assert ehl(here, inlet_heating=True)[0] > ehl(here)[0]
+    expected = film_traction(state.film, 0.5, film_factor=factor).sliding[0] / LOAD
+    assert ehl(state, inlet_heating=True)[0] == pytest.approx(expected, rel=1e-12)
+    assert ehl(state, inlet_heating=True)[0] > ehl(state)[0]
 
 
 def test_newtonian_oil_under_pressure_is_warned_of():
@@ -271,7 +271,7 @@ def test_films_come_from_solutions():
 
 
 @pytest.mark.parametrize(
-    ("given", "match"),
+    ("options", "match"),
     [
         ([], "no solution"),
         (solutions(lubricant=None), "numbers of Moes"),
@@ -279,9 +279,9 @@ def test_films_come_from_solutions():
         ([*solutions(), *solutions(viscosity_law="barus")], "viscosity_law"),
     ],
 )
-def test_solutions_that_make_no_film_state_are_refused(given, match):
+def test_solutions_that_make_no_film_state_are_refused(options, match):
     with pytest.raises(InputError, match=match):
-        FilmState.from_solutions(given)
+        FilmState.from_solutions(options)
 
 
 def test_isoviscous_film_keeps_its_viscosity():

@@ -77,12 +77,12 @@ def test_every_law_gives_a_coefficient_for_every_contact(name):
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 @pytest.mark.parametrize("name", LAWS.names())
 def test_no_law_sees_the_direction_of_sliding(name):
-    here = contact()
+    state = contact()
     mirrored = contact(
-        sliding_speed=-here.sliding_speed, slide_to_roll_ratio=-here.slide_to_roll_ratio
+        sliding_speed=-state.sliding_speed, slide_to_roll_ratio=-state.slide_to_roll_ratio
     )
     options = OPTIONS.get(name, {})
-    assert np.array_equal(LAWS[name](here, **options), LAWS[name](mirrored, **options))
+    assert np.array_equal(LAWS[name](state, **options), LAWS[name](mirrored, **options))
 
 
 def test_none_and_constant():
@@ -197,9 +197,9 @@ def test_sum_of_the_surface_speeds_is_noticed():
 
 
 def test_single_contact_as_numbers():
-    one = TribologicalContact(150e3, 0.8e9, -1.0, 2.0, -0.5, 7e-3, 0.082, 0.4e-6)
-    assert one.size == 1
-    assert LAWS["xu-2007"](one) == pytest.approx(LAWS["xu-2007"](contact())[0])
+    state = TribologicalContact(150e3, 0.8e9, -1.0, 2.0, -0.5, 7e-3, 0.082, 0.4e-6)
+    assert state.size == 1
+    assert LAWS["xu-2007"](state) == pytest.approx(LAWS["xu-2007"](contact())[0])
 
 
 @pytest.mark.parametrize(

@@ -33,9 +33,9 @@ def test_one_point_worked_by_hand_in_the_units_of_the_paper():
 
 def test_pure_rolling_has_no_friction():
     assert friction(slide_to_roll_ratio=0.0) == 0.0
-    near = friction(slide_to_roll_ratio=np.array([1e-3, 1e-6, 1e-9]))
-    assert np.all(np.diff(near) < 0.0)
-    assert near[-1] < 1e-8
+    near_rolling = friction(slide_to_roll_ratio=np.array([1e-3, 1e-6, 1e-9]))
+    assert np.all(np.diff(near_rolling) < 0.0)
+    assert near_rolling[-1] < 1e-8
 
 
 def test_sign_of_sliding_does_not_matter():
@@ -70,7 +70,7 @@ def test_limits_of_the_range_are_inclusive():
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "told"),
+    ("name", "value", "message"),
     [
         ("slide_to_roll_ratio", -1.49, r"\|slide_to_roll_ratio\| 1\.49.*0 to 1"),
         ("hertz_pressure", 0.4e9, r"hertz_pressure 0\.4 GPa.*0\.5 to 2\.5 GPa"),
@@ -82,8 +82,8 @@ def test_limits_of_the_range_are_inclusive():
         ("roughness_rms", 0.7e-6, r"roughness 0\.7 um.*0 to 0\.6 um"),
     ],
 )
-def test_every_limit_is_warned_of_with_value_limit_and_remedy(name, value, told):
-    with pytest.warns(ModelWarning, match=told + ".*another friction law") as caught:
+def test_every_limit_is_warned_of_with_value_limit_and_remedy(name, value, message):
+    with pytest.warns(ModelWarning, match=message + ".*another friction law") as caught:
         friction(**{name: value})
     assert caught[0].message.code == "friction-range"
     assert caught[0].filename == __file__
@@ -93,11 +93,11 @@ def test_one_warning_names_all_quantities():
     with pytest.warns(ModelWarning) as caught:
         friction(hertz_pressure=np.array([0.2e9, 0.3e9, 3e9]), slide_to_roll_ratio=1.2)
     assert len(caught) == 1
-    for told in (
+    for text in (
         "hertz_pressure 0.2 to 3 GPa, fitted for 0.5 to 2.5 GPa",
         "slide_to_roll_ratio| 1.2,",
     ):
-        assert told in str(caught[0].message)
+        assert text in str(caught[0].message)
 
 
 @pytest.mark.parametrize("name", INSIDE)

@@ -91,10 +91,10 @@ def test_high_contact_ratio_has_a_short_default(make_pair: Maker) -> None:
 
 def test_reliefs_add_where_they_overlap(make_pair: Maker, ends: Array) -> None:
     length = flank_ranges(make_pair())[0].length
-    both = FlankModification(
+    modification = FlankModification(
         tip_relief=10e-6, tip_relief_length=length, root_relief=6e-6, root_relief_length=length
     )
-    pair = make_pair(pinion_modification=both)
+    pair = make_pair(pinion_modification=modification)
     assert over_path(pair, ends) == pytest.approx([6e-6, 8e-6, 10e-6], rel=1e-9)
 
 

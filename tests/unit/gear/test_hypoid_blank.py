@@ -59,7 +59,7 @@ def _frame(blank):
     radius = 0.5 * blank.mean_pitch_diameter_wheel
     y, z = blank.calculation_point_pinion, blank.calculation_point_wheel
     point = np.array([-radius * math.sin(axial), y, z])
-    found = []
+    vectors = []
     for axis, apex, angle in (
         (1, [-offset, -blank.pitch_apex_pinion, 0.0], blank.pitch_angle_pinion),
         (2, [0.0, 0.0, -blank.pitch_apex_wheel], blank.pitch_angle_wheel),
@@ -69,8 +69,8 @@ def _frame(blank):
         across[axis] = 0.0
         normal = math.cos(angle) * across / np.linalg.norm(across)
         normal[axis] -= math.sin(angle)
-        found.append((normal, generator))
-    return point, *found
+        vectors.append((normal, generator))
+    return point, *vectors
 
 
 @pytest.fixture(scope="module")
@@ -153,9 +153,9 @@ def test_without_offset_the_cones_of_a_spiral_bevel_pair_roll():
     assert np.linalg.norm(_sliding(blank, point)) < 1e-15
     # Tip and root of one gear run along those of the other, a clearance apart.
     assert blank.face_angle_pinion == pytest.approx(math.pi / 2 - blank.root_angle_wheel)
-    apart = blank.face_apex_pinion * math.sin(blank.face_angle_pinion)
-    apart += blank.root_apex_wheel * math.sin(blank.root_angle_wheel)
-    assert -apart == pytest.approx(blank.clearance, rel=1e-9)
+    apex_distance = blank.face_apex_pinion * math.sin(blank.face_angle_pinion)
+    apex_distance += blank.root_apex_wheel * math.sin(blank.root_angle_wheel)
+    assert -apex_distance == pytest.approx(blank.clearance, rel=1e-9)
 
 
 def test_spiral_angles_are_those_of_a_circle():

@@ -15,15 +15,15 @@ from tribodyn.gear.hypoid.tooth_contact import exact_contact, lightest, start_va
 NONE = Misalignment()
 
 
-def _eased(along=1e-4, across=3e-4, both=0.5e-4, scale=1.0, side="drive", **more):
-    return eased(h1043(**more), side, along, across, both, scale)
+def _eased(along=1e-4, across=3e-4, twist=0.5e-4, scale=1.0, side="drive", **more):
+    return eased(h1043(**more), side, along, across, twist, scale)
 
 
-def _both(flanks, rotation, misalignment=NONE):
+def _linear_and_exact(flanks, rotation, misalignment=NONE):
     """Lag to first order and exact contact at rotations of the wheel."""
     lines = ContactLines(flanks.conjugate)
-    ends, there = lines.ends(rotation)
-    assert there.all()
+    ends, valid = lines.ends(rotation)
+    assert valid.all()
     station, lag, edge = lightest(lines, rotation, ends, misalignment)
     assert not edge.any()
     guess = start_values(lines, rotation, station, lag)
@@ -43,9 +43,9 @@ def _ahead(flanks, contact, rotation):
 def test_exact_contact_of_ten_against_43():
     flanks = _eased()
     rotation = _from_design_point(flanks, [-0.3, -0.2, -0.1, 0.1, 0.2, 0.3])
-    lag, contact = _both(flanks, rotation)
-    known = [-45.9816, -20.0019, -4.8911, -4.6690, -18.2226, -39.9623]
-    assert 1e6 * _ahead(flanks, contact, rotation) == pytest.approx(known, abs=6e-5)
+    lag, contact = _linear_and_exact(flanks, rotation)
+    expected = [-45.9816, -20.0019, -4.8911, -4.6690, -18.2226, -39.9623]
+    assert 1e6 * _ahead(flanks, contact, rotation) == pytest.approx(expected, abs=6e-5)
     assert 1e3 * contact.places[:, 0] == pytest.approx(
         [-3.818, -2.467, -1.191, 1.099, 2.097, 2.984], abs=6e-4
     )
@@ -53,7 +53,7 @@ def test_exact_contact_of_ten_against_43():
         [-5.341, -4.310, -3.262, -1.123, -0.032, 1.072], abs=6e-4
     )
     assert contact.residual.max() < 1e-14
-    assert -1e6 * lag == pytest.approx(known, rel=8e-3)
+    assert -1e6 * lag == pytest.approx(expected, rel=8e-3)
 
 
 def test_first_order_theory_errs_in_proportion_to_the_ease_off():
@@ -61,7 +61,7 @@ def test_first_order_theory_errs_in_proportion_to_the_ease_off():
     for scale in (1.0, 0.1, 0.01):
         flanks = _eased(scale=scale)
         rotation = _from_design_point(flanks, [-0.25, -0.1, 0.15, 0.3])
-        lag, contact = _both(flanks, rotation)
+        lag, contact = _linear_and_exact(flanks, rotation)
         errors.append(np.max(np.abs(lag / -_ahead(flanks, contact, rotation) - 1.0)))
     assert errors[0] < 9e-3
     assert errors[0] / errors[1] == pytest.approx(10.0, rel=0.05)
@@ -73,13 +73,13 @@ def test_curvature_of_the_transmission_error_at_the_design_point():
     flanks = _eased(scale=0.1)
     step = 1e-3
     rotation = _from_design_point(flanks, [0.0]) + step * np.array([-1.0, 0.0, 1.0])
-    _, contact = _both(flanks, rotation)
+    _, contact = _linear_and_exact(flanks, rotation)
     bent = np.diff(_ahead(flanks, contact, rotation), 2)[0] / step**2
     conjugate = flanks.conjugate
     place = np.array([[0.0, -2.2e-3]])
     touch = conjugate.touch(place)
-    near = place + 1e-6 * np.array([[[1.0, 0.0], [0.0, 1.0]], [[-1.0, 0.0], [0.0, -1.0]]])
-    turns = conjugate.touch(near).contact.rotation
+    neighbours = place + 1e-6 * np.array([[[1.0, 0.0], [0.0, 1.0]], [[-1.0, 0.0], [0.0, -1.0]]])
+    turns = conjugate.touch(neighbours).contact.rotation
     slope = (turns[0] - turns[1]) / 2e-6
     hessian = 1e2 * np.array([[2e-4, 0.5e-4], [0.5e-4, 6e-4]])
     wanted = -1.0 / (touch.lever[0] * slope @ np.linalg.inv(hessian) @ slope)
@@ -94,7 +94,7 @@ def test_the_exact_ratio_is_that_of_the_moment_arms():
     middle = _from_design_point(flanks, [-0.2, 0.0, 0.25])
     misaligned = Misalignment(offset=30e-6, pinion_axial=-20e-6, wheel_axial=40e-6)
     turns = [
-        _both(flanks, middle + k * step * flanks.conjugate.axes.ratio, misaligned)[1]
+        _linear_and_exact(flanks, middle + k * step * flanks.conjugate.axes.ratio, misaligned)[1]
         for k in (-2, -1, 0, 1, 2)
     ]
     rotations = [each.wheel_rotation for each in turns]
@@ -130,8 +130,8 @@ def test_lines_end_on_the_flanks_and_are_found_again():
     lines = ContactLines(flanks.conjugate)
     low, high = lines.span()
     rotation = np.linspace(low, high, 30)[1:-1]
-    ends, there = lines.ends(rotation)
-    assert there.all()
+    ends, valid = lines.ends(rotation)
+    assert valid.all()
     touch = lines.touch(rotation[:, None], ends)
     assert np.abs(touch.contact.rotation - rotation[:, None]).max() < 1e-12
     assert np.abs(np.min(flanks.conjugate.margins(touch), axis=-1)).max() < 1e-12
@@ -150,8 +150,8 @@ def test_the_shortest_lines_are_found():
         lines = ContactLines(flanks.conjugate)
         low, high = lines.span()
         inner = np.array([1e-5, 1e-4, 1e-3]) * (high - low)
-        ends, there = lines.ends(np.concatenate([low + inner, high - inner]))
-        assert there.all()
+        ends, valid = lines.ends(np.concatenate([low + inner, high - inner]))
+        assert valid.all()
         lengths = np.ptp(ends, axis=1).reshape(2, 3)
         assert np.all(np.diff(lengths, axis=1) > 0.0)
         assert lengths[:, 0].max() < 5e-5
@@ -161,8 +161,8 @@ def test_lines_have_the_curvature_of_the_ease_off_across_their_ends():
     flanks = _eased()
     contact = tooth_contact(flanks, marking_thickness=1e-6, rotations_per_pitch=6, cells=401)
     for number in np.flatnonzero(contact.leads & ~contact.on_edge):
-        near = contact.clearance[number] <= 1e-6
-        share = near.mean() * contact.line_length[number]
+        touching = contact.clearance[number] <= 1e-6
+        share = touching.mean() * contact.line_length[number]
         assert share == pytest.approx(2.0 * contact.semi_axes[number, 0], rel=0.025)
     across = contact.semi_axes[contact.leads, 1]
     assert np.all(across < 0.1 * contact.semi_axes[contact.leads, 0])

@@ -151,18 +151,18 @@ def test_the_curvature_is_that_of_the_gap_of_the_surfaces():
 
     def above(surface, step):
         """Height of a surface over the tangent plane at a place in it."""
-        found, contact = start.copy(), touch.contact.wheel.position[0]
+        coordinates, contact = start.copy(), touch.contact.wheel.position[0]
         for _ in range(20):
-            error = basis @ (surface(found) - contact) - step
+            error = basis @ (surface(coordinates) - contact) - step
             slope = np.stack(
                 [
-                    basis @ (surface(found + d) - surface(found - d)) / 2e-6
+                    basis @ (surface(coordinates + d) - surface(coordinates - d)) / 2e-6
                     for d in 1e-6 * np.eye(2)
                 ],
                 axis=-1,
             )
-            found = found - np.linalg.solve(slope, error)
-        return normal @ (surface(found) - contact)
+            coordinates = coordinates - np.linalg.solve(slope, error)
+        return normal @ (surface(coordinates) - contact)
 
     for step in (np.array([0.0, 2e-4]), np.array([3e-4, 0.0]), np.array([1e-4, 1e-4])):
         # The mean of both directions is free of the third order.
@@ -244,10 +244,10 @@ def test_undercut_is_told_and_ends_where_teeth_are_enough():
     shares = []
     for teeth in (5, 7, 10, 16):
         blank = hypoid_blank(teeth, 35, 0.0, 0.3, 0.05, math.radians(30.0), 0.1143)
-        with warnings.catch_warnings(record=True) as told:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             flanks = hypoid_flanks(blank)
-        codes = {each.message.code for each in told}
+        codes = {each.message.code for each in caught}
         shares.append(flanks.undercut_share)
         assert shares[-1] == flanks.interference_share
         assert codes == ({"hypoid-undercut", "hypoid-interference"} if shares[-1] else set())
@@ -266,8 +266,8 @@ def test_points_and_triangles_are_written(tmp_path, gear):
     teeth = getattr(flanks.blank, f"teeth_{gear}")
     assert text.count("facet") == teeth * 2 * 8 * 8
     vertices, facets = (
-        np.array([text[i + 1 : i + 4] for i, each in enumerate(text) if each == word], float)
-        for word in ("vertex", "normal")
+        np.array([text[i + 1 : i + 4] for i, each in enumerate(text) if each == kind], float)
+        for kind in ("vertex", "normal")
     )
     a, b, c = vertices.reshape(-1, 3, 3).swapaxes(0, 1)
     facing = np.cross(b - a, c - a)

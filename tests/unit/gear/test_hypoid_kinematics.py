@@ -57,13 +57,13 @@ def test_sliding_and_entrainment_of_ten_against_43(motion):
     # Loaded parts of the flank have 3.5 to 8.9 m/s, in the fixed frame 6.2 to 10.8 m/s;
     # they slide by 0.59 to 1.08 of it. The corners of the flank go somewhat beyond.
     fixed = hypoid_kinematics(motion.contact, SPEED, entrainment="fixed_frame")
-    for found, (low, high) in (
+    for speed, (low, high) in (
         (motion.entrainment_speed, (3.5, 8.9)),
         (fixed.entrainment_speed, (6.2, 10.8)),
         (motion.slide_to_roll_ratio, (0.59, 1.08)),
     ):
-        assert 0.8 * low < found.min() < 1.02 * low
-        assert 0.98 * high < found.max() < 1.25 * high
+        assert 0.8 * low < speed.min() < 1.02 * low
+        assert 0.98 * high < speed.max() < 1.25 * high
     assert np.all(fixed.sliding_velocity == motion.sliding_velocity)
 
 

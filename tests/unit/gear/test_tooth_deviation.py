@@ -77,8 +77,8 @@ def test_common_factors_shorten_the_hunting_period(make_pair: Maker) -> None:
 def test_single_deviations_sum_to_places(make_pair: Maker) -> None:
     single = np.zeros(20)
     single[[0, 4, 9]] = [3e-6, 2e-6, -5e-6]
-    given = FlankModification(single_pitch_deviation=tuple(single))
-    pair = make_pair(pinion_modification=given)
+    modification = FlankModification(single_pitch_deviation=tuple(single))
+    pair = make_pair(pinion_modification=modification)
     place = tooth_positions(pair.pinion)
     assert place[[0, 3, 4, 8, 9, 19]] == pytest.approx(
         [0.0, 0.0, 2e-6, 2e-6, -3e-6, -3e-6], abs=1e-18
@@ -102,16 +102,18 @@ def test_run_out_turns_with_its_own_gear(make_pair: Maker) -> None:
     pinion, wheel = make_pair(pinion_modification=run_out), make_pair(wheel_modification=run_out)
     assert run_out_gap(pinion, turn) == pytest.approx([0.0, -10e-6, 10e-6], abs=1e-18)
     assert run_out_gap(wheel, turn * wheel.ratio) == pytest.approx([0.0, -10e-6, 10e-6], abs=1e-18)
-    both = make_pair(pinion_modification=run_out, wheel_modification=run_out)
+    combined = make_pair(pinion_modification=run_out, wheel_modification=run_out)
     total = run_out_gap(pinion, turn) + run_out_gap(wheel, turn)
-    assert run_out_gap(both, turn) == pytest.approx(total, abs=1e-20)
-    assert both.has_run_out
-    assert both.has_modification
+    assert run_out_gap(combined, turn) == pytest.approx(total, abs=1e-20)
+    assert combined.has_run_out
+    assert combined.has_modification
 
 
 def test_run_out_repeats_with_the_teeth(make_pair: Maker) -> None:
-    both = FlankModification(run_out=20e-6, run_out_phase=0.3)
-    pair = make_pair(wheel_teeth=33, pinion_modification=both, wheel_modification=both)
+    modification = FlankModification(run_out=20e-6, run_out_phase=0.3)
+    pair = make_pair(
+        wheel_teeth=33, pinion_modification=modification, wheel_modification=modification
+    )
     cycles = np.array([0.3, 1.7, 20.3])
     turn = 2.0 * math.pi / pair.pinion.teeth
     period = turn * hunting_period(pair)
@@ -125,8 +127,8 @@ def test_run_out_repeats_with_the_teeth(make_pair: Maker) -> None:
 
 def test_an_eccentric_toothing_touches_early_where_it_stands_proud(make_pair: Maker) -> None:
     """The axis of the pinion's toothing moved towards the wheel along the line of action."""
-    given = FlankModification(run_out=30e-6)
-    pair = make_pair(pinion_modification=given)
+    modification = FlankModification(run_out=30e-6)
+    pair = make_pair(pinion_modification=modification)
     gap = run_out_gap(pair, np.linspace(0.0, 2.0 * math.pi, 361))
     assert int(np.argmin(gap)) in (0, 360)
     assert gap.min() == pytest.approx(-15e-6)

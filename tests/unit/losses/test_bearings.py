@@ -27,21 +27,21 @@ def factors(n, nu, d, D, k_z):
 
 @pytest.mark.parametrize(("n", "nu", "radial"), [(1400.0, 60.0, 2000.0), (300.0, 200.0, 500.0)])
 def test_cylindrical_rollers_in_the_units_of_the_catalogue(n, nu, radial):
-    found = bearing_moments(BEARINGS["NJ 406"], n * RPM, nu * 1e-6, radial, 100.0)
+    moments = bearing_moments(BEARINGS["NJ 406"], n * RPM, nu * 1e-6, radial, 100.0)
     rolling = factors(n, nu, 30.0, 90.0, 5.1) * 1e-6 * 60.0**2.41 * radial**0.31
     sliding = (0.16 * 60.0**0.9 * 100.0 + 0.0015 * 60.0 * radial) * sliding_friction(
         n, nu, 60, 0.02
     )
-    assert 1e3 * found.rolling == pytest.approx(rolling, rel=1e-12)
-    assert 1e3 * found.sliding == pytest.approx(sliding, rel=1e-12)
-    assert found.seal == found.drag == 0.0
-    assert found.total == found.rolling + found.sliding
+    assert 1e3 * moments.rolling == pytest.approx(rolling, rel=1e-12)
+    assert 1e3 * moments.sliding == pytest.approx(sliding, rel=1e-12)
+    assert moments.seal == moments.drag == 0.0
+    assert moments.total == moments.rolling + moments.sliding
 
 
 @pytest.mark.parametrize("axial", [0.0, 300.0, -300.0])
 def test_deep_groove_balls(axial):
     n, nu, radial, dm = 1400.0, 60.0, 1000.0, 46.0
-    found = bearing_moments(BEARINGS["6206"], n * RPM, nu * 1e-6, radial, axial)
+    moments = bearing_moments(BEARINGS["6206"], n * RPM, nu * 1e-6, radial, axial)
     if axial:
         angle = math.sin(math.radians(24.6 * (300.0 / 11200.0) ** 0.24))
         rolling = 3.9e-7 * dm**1.96 * (radial + 1.7 / angle * 300.0) ** 0.54
@@ -50,26 +50,28 @@ def test_deep_groove_balls(axial):
     else:
         rolling = 3.9e-7 * dm**1.96 * radial**0.54
         sliding = 3.23e-3 * dm**-0.26 * radial ** (5 / 3)
-    assert 1e3 * found.rolling == pytest.approx(factors(n, nu, 30, 62, 3.1) * rolling, rel=1e-12)
+    assert 1e3 * moments.rolling == pytest.approx(factors(n, nu, 30, 62, 3.1) * rolling, rel=1e-12)
     wanted = sliding * sliding_friction(n, nu, dm, 0.05)
-    assert 1e3 * found.sliding == pytest.approx(wanted, rel=1e-12)
+    assert 1e3 * moments.sliding == pytest.approx(wanted, rel=1e-12)
 
 
 def test_four_point_contact_carries_the_centrifugal_force_of_its_balls():
     n, dm = 1400.0, 65.0
-    found = bearing_moments(BEARINGS["QJ 308"], n * RPM, 60e-6, 2000.0, 500.0)
+    moments = bearing_moments(BEARINGS["QJ 308"], n * RPM, 60e-6, 2000.0, 500.0)
     turned = 2000.0 + 1.4e-12 * dm**4 * n**2
     rolling = 4.78e-7 * dm**1.97 * (turned + 2.42 * 500.0) ** 0.54
-    assert 1e3 * found.rolling == pytest.approx(factors(n, 60.0, 40, 90, 3.1) * rolling, rel=1e-12)
+    assert 1e3 * moments.rolling == pytest.approx(
+        factors(n, 60.0, 40, 90, 3.1) * rolling, rel=1e-12
+    )
     sliding = 1.2e-2 * dm**0.26 * (turned ** (4 / 3) + 0.9 * 500.0 ** (4 / 3))
     wanted = sliding * sliding_friction(n, 60.0, dm, 0.05)
-    assert 1e3 * found.sliding == pytest.approx(wanted, rel=1e-12)
+    assert 1e3 * moments.sliding == pytest.approx(wanted, rel=1e-12)
 
 
 def test_seals_and_drag():
     sealed = replace(BEARINGS["6206"], seal=(0.018, 2.25, 36.0, 20.0))
-    found = bearing_moments(sealed, 100.0, 60e-6, 500.0)
-    assert 1e3 * found.seal == pytest.approx(0.018 * 36.0**2.25 + 20.0)
+    moments = bearing_moments(sealed, 100.0, 60e-6, 500.0)
+    assert 1e3 * moments.seal == pytest.approx(0.018 * 36.0**2.25 + 20.0)
     n, dm, d, D = 100.0 / RPM, 46.0, 30.0, 62.0
     bath = bearing_moments(BEARINGS["6206"], 100.0, 60e-6, 500.0, drag_factor=5e-4)
     ball = 0.4 * 5e-4 * 3.1 * (d + D) / (D - d) * 1e-12 * dm**5 * n**2
@@ -89,10 +91,10 @@ def test_seals_and_drag():
 
 
 def test_standing_bearing_has_sliding_friction_only():
-    found = bearing_moments(BEARINGS["6206"], 0.0, 60e-6, 1000.0)
-    assert found.rolling == found.drag == 0.0
+    moments = bearing_moments(BEARINGS["6206"], 0.0, 60e-6, 1000.0)
+    assert moments.rolling == moments.drag == 0.0
     running = bearing_moments(BEARINGS["6206"], 1e-6, 60e-6, 1000.0)
-    assert found.sliding == pytest.approx(running.sliding * 0.15 / 0.12, rel=1e-6)
+    assert moments.sliding == pytest.approx(running.sliding * 0.15 / 0.12, rel=1e-6)
 
 
 def test_bad_bearings_are_explained():

@@ -23,9 +23,9 @@ def by_areas(pair):
     def area(low, high):
         return 0.5 * (high * abs(high) - low * abs(low))  # of |x|
 
-    whole = 0.5 * area(first, last - 1.0) + area(last - 1.0, first + 1.0)
-    whole += 0.5 * area(first + 1.0, last)
-    return whole * 2.0 * math.pi / pair.pinion.teeth * (1.0 + 1.0 / pair.ratio)
+    area_sum = 0.5 * area(first, last - 1.0) + area(last - 1.0, first + 1.0)
+    area_sum += 0.5 * area(first + 1.0, last)
+    return area_sum * 2.0 * math.pi / pair.pinion.teeth * (1.0 + 1.0 / pair.ratio)
 
 
 @pytest.mark.parametrize("pair", [type_c(), standard((20, 30)), standard((30, 31)), pair_of()])

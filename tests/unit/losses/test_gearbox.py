@@ -41,7 +41,7 @@ def stage(box=BOX, gear=0.0, torque=TORQUE, speed=SPEED, oil=OIL, **more):
 
 
 def test_every_part_is_its_law_at_the_speed_of_its_shaft():
-    pair, found = pair_of(), stage()
+    pair, losses = pair_of(), stage()
     for i, torque in enumerate(TORQUE):
         for j, speed in enumerate(SPEED):
             slow, force = speed / 1.5, torque / pair.pinion.base_radius
@@ -51,43 +51,45 @@ def test_every_part_is_its_law_at_the_speed_of_its_shaft():
             )
             for part in ("rolling", "sliding", "seal", "drag"):
                 wanted = 2 * speed * getattr(fast_one, part) + 3 * slow * getattr(slow_one, part)
-                assert getattr(found, f"bearing_{part}")[i, j] == pytest.approx(wanted, rel=1e-12)
+                assert getattr(losses, f"bearing_{part}")[i, j] == pytest.approx(wanted, rel=1e-12)
             seals = 2 * seal_loss(30e-3, speed) + seal_loss(30e-3, slow)
-            assert found.seal[i, j] == pytest.approx(float(seals), rel=1e-12)
+            assert losses.seal[i, j] == pytest.approx(float(seals), rel=1e-12)
             # 91.5 mm between centres: pitch radii of 36.6 and 54.9 mm.
             bath = churning_loss(54.9e-3, 20e-3, 4.5e-3, 30e-3, slow, 1.2e-3, 880.0, NU)
-            assert found.churning[i, j] == pytest.approx(bath, rel=1e-12)
+            assert losses.churning[i, j] == pytest.approx(bath, rel=1e-12)
             air = windage_loss(36.6e-3, 20e-3, speed, 0.082) + windage_loss(
                 54.9e-3, 20e-3, slow, 0.082
             )
-            assert found.windage[i, j] == pytest.approx(air, rel=1e-12)
-    parts = sum(getattr(found, part) for part in PARTS)
-    assert found.total == pytest.approx(parts, rel=1e-14)
+            assert losses.windage[i, j] == pytest.approx(air, rel=1e-12)
+    parts = sum(getattr(losses, part) for part in PARTS)
+    assert losses.total == pytest.approx(parts, rel=1e-14)
 
 
 @pytest.mark.parametrize("balance", ["drive", "load", "both"])
 def test_efficiency_is_output_over_input_whoever_pays(balance):
     lost = np.arange(1.0, 7.0).reshape(3, 2)
-    found = stage(gear=lost, torque_balance=balance)
-    held = np.outer(TORQUE, SPEED)
-    taken, given = (held, held - found.total) if balance != "load" else (held + found.total, held)
-    assert found.efficiency == pytest.approx(given / taken, rel=1e-14)
-    alone = held / (held + lost) if balance == "load" else 1.0 - lost / held
-    assert found.gear_efficiency == pytest.approx(alone, rel=1e-14)
+    losses = stage(gear=lost, torque_balance=balance)
+    power = np.outer(TORQUE, SPEED)
+    power_in, power_out = (
+        (power, power - losses.total) if balance != "load" else (power + losses.total, power)
+    )
+    assert losses.efficiency == pytest.approx(power_out / power_in, rel=1e-14)
+    alone = power / (power + lost) if balance == "load" else 1.0 - lost / power
+    assert losses.gear_efficiency == pytest.approx(alone, rel=1e-14)
 
 
 def test_without_shafts_the_teeth_are_all():
-    found = stage(Gearbox(windage=False), 7.0, oil=None)
-    assert np.all(found.total == 7.0)
-    assert np.array_equal(found.efficiency, found.gear_efficiency)
+    losses = stage(Gearbox(windage=False), 7.0, oil=None)
+    assert np.all(losses.total == 7.0)
+    assert np.array_equal(losses.efficiency, losses.gear_efficiency)
     mist, dry = (stage(Gearbox(), oil=oil).windage for oil in (OIL, None))
     assert mist == pytest.approx(dry * ((0.028 * 82 + 0.019) / 0.019) ** 0.2, rel=1e-12)
 
 
 def test_seals_and_oil_matter_most_under_little_load():
-    found = stage(gear=0.02 * np.outer(TORQUE, SPEED))
-    assert np.all(np.diff(found.efficiency, axis=0) > 0.0)
-    assert found.gear_efficiency == pytest.approx(0.98)
+    losses = stage(gear=0.02 * np.outer(TORQUE, SPEED))
+    assert np.all(np.diff(losses.efficiency, axis=0) > 0.0)
+    assert losses.gear_efficiency == pytest.approx(0.98)
 
 
 @pytest.mark.parametrize(

@@ -30,34 +30,34 @@ def table(noise=0.0, repeats=1, seed=0, idle=1.0, **more):
 
 
 def test_exact_readings_give_back_the_friction():
-    found = friction_from_power_loss(table(torque_loss_uncertainty=0.0))
-    assert found.friction_coefficient == pytest.approx(MU, rel=1e-12)
-    assert found.standard_uncertainty == pytest.approx([0.0] * 3)
-    assert found.verdict == ("sound",) * 3
+    result = friction_from_power_loss(table(torque_loss_uncertainty=0.0))
+    assert result.friction_coefficient == pytest.approx(MU, rel=1e-12)
+    assert result.standard_uncertainty == pytest.approx([0.0] * 3)
+    assert result.verdict == ("sound",) * 3
 
 
 def test_conditioning_of_low_torque():
-    found = friction_from_power_loss(table(torque_loss_uncertainty=0.1))
-    per_tenth = 0.1 * found.sensitivity
+    result = friction_from_power_loss(table(torque_loss_uncertainty=0.1))
+    per_tenth = 0.1 * result.sensitivity
     assert per_tenth == pytest.approx(0.1 / (TORQUES * H), rel=1e-12)
     assert per_tenth[[0, 2]] == pytest.approx([0.0066, 0.0011], abs=5e-5)
     assert per_tenth[0] / 0.0271 == pytest.approx(0.24, abs=5e-3)
-    assert found.standard_uncertainty == pytest.approx(math.sqrt(2.0) * per_tenth, rel=1e-12)
-    assert found.verdict[0].startswith("uncertain: 23 %")
-    assert found.verdict[1:] == ("sound", "sound")
+    assert result.standard_uncertainty == pytest.approx(math.sqrt(2.0) * per_tenth, rel=1e-12)
+    assert result.verdict[0].startswith("uncertain: 23 %")
+    assert result.verdict[1:] == ("sound", "sound")
     worse = friction_from_power_loss(table(torque_loss_uncertainty=0.2)).verdict[0]
     assert worse == "ill-conditioned: 47 % standard uncertainty"
 
 
-@pytest.mark.parametrize(("repeats", "given"), [(1, 0.05), (4, None)])
-def test_band_holds_the_truth_in_95_of_100(repeats, given):
+@pytest.mark.parametrize(("repeats", "uncertainty"), [(1, 0.05), (4, None)])
+def test_band_holds_the_truth_in_95_of_100(repeats, uncertainty):
     inside = np.zeros(3)
     trials = 1000
     for seed in range(trials):
-        rows = table(0.05, repeats, seed, torque_loss_uncertainty=given)
+        rows = table(0.05, repeats, seed, torque_loss_uncertainty=uncertainty)
         with quiet():
-            found = friction_from_power_loss(rows, draws=2)
-        inside += (found.low <= MU) & (found.high >= MU)
+            result = friction_from_power_loss(rows, draws=2)
+        inside += (result.low <= MU) & (result.high >= MU)
     # 1000 trials scatter by 0.7 %; the effective degrees of freedom are on the safe side.
     assert np.all(inside / trials > 0.93)
     assert np.all(inside / trials < 0.98)
@@ -68,43 +68,43 @@ def test_first_order_and_drawn_uncertainty_agree():
         torque_loss_uncertainty=0.05, torque_uncertainty=0.5, other_loss=0.1,
         other_loss_uncertainty=0.03, gear_loss_factor_uncertainty=0.005,
     )  # fmt: skip
-    found = friction_from_power_loss(rows, draws=200_000)
-    assert found.monte_carlo_uncertainty == pytest.approx(found.standard_uncertainty, rel=0.01)
-    mu, u = found.friction_coefficient, found.standard_uncertainty
+    result = friction_from_power_loss(rows, draws=200_000)
+    assert result.monte_carlo_uncertainty == pytest.approx(result.standard_uncertainty, rel=0.01)
+    mu, u = result.friction_coefficient, result.standard_uncertainty
     parts = (0.05**2 * 2.0 + 0.03**2) / (TORQUES * H) ** 2
     parts += mu**2 * ((0.5 / TORQUES) ** 2 + (0.005 / H) ** 2)
     assert u == pytest.approx(np.sqrt(parts), rel=1e-12)
-    assert np.all(np.isinf(found.degrees_of_freedom))
+    assert np.all(np.isinf(result.degrees_of_freedom))
 
 
 def test_repeats_tell_their_scatter():
     rows = PowerLossTable([100.0] * 4, [5.0, 5.0, 100.0, 100.0], [1.0, 1.2, 3.0, 3.4], H)
-    found = friction_from_power_loss(rows)
-    assert found.friction_coefficient == pytest.approx((3.2 - 1.1) / (100.0 * H))
+    result = friction_from_power_loss(rows)
+    assert result.friction_coefficient == pytest.approx((3.2 - 1.1) / (100.0 * H))
     variance = (0.2**2 / 4.0 + 0.4**2 / 4.0) / (100.0 * H) ** 2
-    assert found.standard_uncertainty == pytest.approx(math.sqrt(variance))
+    assert result.standard_uncertainty == pytest.approx(math.sqrt(variance))
     freedom = (0.2**2 + 0.4**2) ** 2 / (0.2**4 + 0.4**4)
-    assert found.degrees_of_freedom == pytest.approx(freedom)
+    assert result.degrees_of_freedom == pytest.approx(freedom)
 
 
 def test_slave_gears_alike_halve_the_friction():
-    both = friction_from_power_loss(table(torque_loss_uncertainty=0.1, gear_sets=2.0))
-    assert both.friction_coefficient == pytest.approx(0.5 * MU)
+    result = friction_from_power_loss(table(torque_loss_uncertainty=0.1, gear_sets=2.0))
+    assert result.friction_coefficient == pytest.approx(0.5 * MU)
 
 
 def test_factors_of_the_printed_points():
     rows = power_loss_table("fzg-wheel-driven")
-    found = friction_from_power_loss(rows)
+    result = friction_from_power_loss(rows)
     points = {
         (round(torque), round(speed / RPM)): mu
         for torque, speed, mu in zip(
-            found.torque, found.speed, found.friction_coefficient, strict=True
+            result.torque, result.speed, result.friction_coefficient, strict=True
         )
     }
     # 339 % from 50 to 300 N*m, -63.2 % from 400 to 1800 rpm, as printed.
     assert points[300, 1400] / points[50, 1400] - 1.0 == pytest.approx(3.39, abs=5e-3)
     assert points[150, 1800] / points[150, 400] - 1.0 == pytest.approx(-0.632, abs=5e-4)
-    assert found.verdict[0].startswith("ill-conditioned")
+    assert result.verdict[0].startswith("ill-conditioned")
     for (torque, speed), mu in points.items():
         assert measured(float(torque), speed * RPM) == pytest.approx(mu, rel=1e-9)
     assert "neither is printed" in rows.source
@@ -118,8 +118,8 @@ def test_a_run_without_load_still_rubs():
     rows = PowerLossTable(
         np.full(4, 100.0), torque, 1.0 + 0.05 * torque * H, H, torque_loss_uncertainty=0.0
     )
-    found = friction_from_power_loss(rows)
-    assert found.friction_coefficient == pytest.approx(0.05 * (1.0 - 5.0 / TORQUES), rel=1e-12)
+    result = friction_from_power_loss(rows)
+    assert result.friction_coefficient == pytest.approx(0.05 * (1.0 - 5.0 / TORQUES), rel=1e-12)
 
 
 def rows_of(speed, torque, loss, **more):
@@ -146,10 +146,10 @@ def test_negative_friction_is_kept_and_told():
     rows = rows_of([400, 400, 400], [5.0, 50.0, 150.0], [1.0, 1.2, 4.0], other_loss=0.5,
                    torque_loss_uncertainty=0.05)  # fmt: skip
     with pytest.warns(ModelWarning, match="friction-from-loss.*row 2 is not positive"):
-        found = friction_from_power_loss(rows)
-    assert found.friction_coefficient[0] == pytest.approx(-0.3 / (50.0 * H))
-    assert found.verdict[0].startswith("negative")
-    assert found.verdict[1] == "sound"
+        result = friction_from_power_loss(rows)
+    assert result.friction_coefficient[0] == pytest.approx(-0.3 / (50.0 * H))
+    assert result.verdict[0].startswith("negative")
+    assert result.verdict[1] == "sound"
 
 
 @pytest.mark.parametrize(
@@ -194,10 +194,10 @@ def test_columns_without_a_unit_are_told(tmp_path):
 def test_more_friction_than_lubricated_teeth_have_is_told_with_its_row():
     rows = rows_of([400] * 3, [5.0, 50.0, 150.0], [1.0, 60.0, 4.0], torque_loss_uncertainty=0.05)
     with pytest.warns(ModelWarning, match=r"friction-from-loss.*row 2 \(3\.9.*above 0\.2"):
-        found = friction_from_power_loss(rows)
-    assert found.friction_coefficient[0] == pytest.approx(59.0 / (50.0 * H))
-    assert found.verdict[0].startswith("implausible")
-    assert found.verdict[1] == "sound"
+        result = friction_from_power_loss(rows)
+    assert result.friction_coefficient[0] == pytest.approx(59.0 / (50.0 * H))
+    assert result.verdict[0].startswith("implausible")
+    assert result.verdict[1] == "sound"
 
 
 def test_repeats_that_do_not_differ_tell_no_uncertainty():

@@ -71,7 +71,7 @@ def test_both_procedures_meet_at_an_index_of_100() -> None:
 
 
 @pytest.mark.parametrize(
-    ("at_40", "at_100", "told"),
+    ("at_40", "at_100", "message"),
     [
         (10e-6, 20e-6, "thinner when it is warmer"),
         (10e-6, 1.9e-6, "viscosity_at_100"),
@@ -79,8 +79,8 @@ def test_both_procedures_meet_at_an_index_of_100() -> None:
         (220.0, 18.7e-6, "1 mm.2/s is 1e-6"),
     ],
 )
-def test_what_has_no_index_is_refused(at_40: float, at_100: float, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_what_has_no_index_is_refused(at_40: float, at_100: float, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         viscosity_index(at_40, at_100)
 
 
@@ -94,7 +94,7 @@ def test_a_viscosity_out_of_the_reach_of_an_index_is_refused() -> None:
 @pytest.mark.parametrize("grade", [32, 68, 220, 460])
 @pytest.mark.parametrize("celsius", [15.0, 40.0, 60.0, 100.0, 125.0])
 def test_a_sheet_of_index_95_is_the_oil_of_the_library(grade: int, celsius: float) -> None:
-    known = from_library(f"ISO VG {grade}", celsius + 273.15)
+    library_oil = from_library(f"ISO VG {grade}", celsius + 273.15)
     density = from_library(f"ISO VG {grade}", 313.15).density + 0.7 * 25.0
     oil = from_data_sheet(celsius + 273.15, density, viscosity_at_40=grade * 1e-6, index=95)
     for name in (
@@ -103,7 +103,7 @@ def test_a_sheet_of_index_95_is_the_oil_of_the_library(grade: int, celsius: floa
         "pressure_viscosity_coefficient",
         "temperature_viscosity_coefficient",
     ):
-        assert getattr(oil, name) == pytest.approx(getattr(known, name), rel=1e-3)
+        assert getattr(oil, name) == pytest.approx(getattr(library_oil, name), rel=1e-3)
     assert oil.thermal_conductivity == pytest.approx(0.13, abs=0.015)
 
 
@@ -127,9 +127,9 @@ def test_what_a_sheet_does_not_state_is_estimated_and_said() -> None:
     oil = from_data_sheet(333.15, 892.0, viscosity_at_40=220e-6, viscosity_at_100=18.7e-6)
     estimate = agma_925_coefficient(oil.dynamic_viscosity, "mineral")
     assert oil.pressure_viscosity_coefficient == estimate
-    said = " ".join(oil.assumptions)
+    assumptions = " ".join(oil.assumptions)
     for part in ("Base oil mineral", "AGMA 925", "Cragoe"):
-        assert part in said
+        assert part in assumptions
     measured = from_data_sheet(
         333.15,
         892.0,
@@ -180,13 +180,17 @@ def test_an_oil_known_at_one_temperature_is_unchanged_there(name: str) -> None:
 @pytest.mark.parametrize("name", PRINTED)
 def test_an_oil_known_at_one_temperature_follows_its_index_to_others(name: str) -> None:
     """It goes through the printed point, and its slope there is the printed one."""
-    known = PRINTED[name][0]
+    temperature = PRINTED[name][0]
     printed = from_library(name)
-    near = [from_library(name, known + step) for step in (-0.5, 0.5)]
-    slope = math.log(near[0].dynamic_viscosity / near[1].dynamic_viscosity)
+    neighbours = [from_library(name, temperature + step) for step in (-0.5, 0.5)]
+    slope = math.log(neighbours[0].dynamic_viscosity / neighbours[1].dynamic_viscosity)
     assert slope == pytest.approx(printed.temperature_viscosity_coefficient, rel=0.02)
-    assert near[0].dynamic_viscosity > printed.dynamic_viscosity > near[1].dynamic_viscosity
-    assert near[0].density > printed.density > near[1].density
+    assert (
+        neighbours[0].dynamic_viscosity
+        > printed.dynamic_viscosity
+        > neighbours[1].dynamic_viscosity
+    )
+    assert neighbours[0].density > printed.density > neighbours[1].density
     at_40, at_100 = (from_library(name, known_at) for known_at in (313.149999, 373.15))
     index = viscosity_index(at_40.kinematic_viscosity, at_100.kinematic_viscosity)
     assert index == pytest.approx({"80W": 95.0, "75W90-A": 147.0}[name], abs=0.3)
@@ -199,7 +203,7 @@ def test_the_density_of_75w90_at_15_degc_is_the_printed_one() -> None:
 
 def test_a_sheet_is_an_oil_of_its_two_points() -> None:
     points = sheet_points(100e-6, 11.066e-6, None)
-    one = Lubricant.from_temperature(343.15, points, 892.2, 1.6e-8, thermal_conductivity=0.13)
+    oil_ = Lubricant.from_temperature(343.15, points, 892.2, 1.6e-8, thermal_conductivity=0.13)
     other = from_data_sheet(
         343.15,
         892.2,
@@ -208,5 +212,5 @@ def test_a_sheet_is_an_oil_of_its_two_points() -> None:
         pressure_viscosity_coefficient=1.6e-8,
         thermal_conductivity=0.13,
     )
-    assert other.dynamic_viscosity == one.dynamic_viscosity
-    assert other.density == one.density
+    assert other.dynamic_viscosity == oil_.dynamic_viscosity
+    assert other.density == oil_.density

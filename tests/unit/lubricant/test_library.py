@@ -75,9 +75,9 @@ def test_75w90_says_how_far_its_two_viscosities_are_apart():
     assert oil.pressure_viscosity_coefficient == pytest.approx(estimate, rel=1e-3)
 
 
-def line_through_index(index, known):
+def line_through_index(index, expected):
     """Viscosity at 40 and 100 degC of a line of this viscosity index through one known point."""
-    temperature, viscosity = known
+    temperature, viscosity = expected
 
     def ends(at_100):
         rows = np.array([INDEX_TABLE[grade][0] for grade in GRADES])

@@ -24,7 +24,7 @@ def gears(driver="pinion"):
 
 
 def study(driver="pinion", **options):
-    given = {
+    arguments = {
         "material": Material(),
         "lubricant": OIL,
         "film_model": "moes",
@@ -32,50 +32,52 @@ def study(driver="pinion", **options):
         "pinion_speed": SPEEDS,
         "steps": 32,
     }
-    return comprehensive_stiffness(gears(driver), **{**given, **options})
+    return comprehensive_stiffness(gears(driver), **{**arguments, **options})
 
 
 @pytest.fixture(scope="module")
-def found():
+def stiffness():
     return study()
 
 
-def test_each_pair_is_a_series_of_teeth_and_film(found):
-    expected = 1.0 / (1.0 / found.tooth_stiffness + 1.0 / found.film_stiffness)
-    np.testing.assert_allclose(found.pair_stiffness, expected, rtol=1e-6)
-    assert found.pair_stiffness.shape == (2, 3, found.path.size)
-    assert np.all(found.film_stiffness > 20.0 * found.tooth_stiffness)
+def test_each_pair_is_a_series_of_teeth_and_film(stiffness):
+    expected = 1.0 / (1.0 / stiffness.tooth_stiffness + 1.0 / stiffness.film_stiffness)
+    np.testing.assert_allclose(stiffness.pair_stiffness, expected, rtol=1e-6)
+    assert stiffness.pair_stiffness.shape == (2, 3, stiffness.path.size)
+    assert np.all(stiffness.film_stiffness > 20.0 * stiffness.tooth_stiffness)
 
 
-def test_mesh_is_the_sum_of_its_pairs(found):
+def test_mesh_is_the_sum_of_its_pairs(stiffness):
     # 32 intervals of the phase of one pair after another: the ends of the path included
-    whole = found.pair_stiffness.sum(axis=2)
-    np.testing.assert_allclose(found.comprehensive_mesh_stiffness.sum(axis=2), whole, rtol=1e-9)
-    teeth = found.tooth_stiffness.sum(axis=2)
-    np.testing.assert_allclose(found.tooth_mesh_stiffness.sum(axis=2), teeth, rtol=1e-9)
-    film = found.film_stiffness.sum(axis=2)
-    np.testing.assert_allclose(found.film_mesh_stiffness.sum(axis=2), film, rtol=1e-9)
+    total = stiffness.pair_stiffness.sum(axis=2)
+    np.testing.assert_allclose(stiffness.comprehensive_mesh_stiffness.sum(axis=2), total, rtol=1e-9)
+    teeth = stiffness.tooth_stiffness.sum(axis=2)
+    np.testing.assert_allclose(stiffness.tooth_mesh_stiffness.sum(axis=2), teeth, rtol=1e-9)
+    film = stiffness.film_stiffness.sum(axis=2)
+    np.testing.assert_allclose(stiffness.film_mesh_stiffness.sum(axis=2), film, rtol=1e-9)
 
 
-def test_series_of_totals_is_stiffer_than_series_of_pairs(found):
+def test_series_of_totals_is_stiffer_than_series_of_pairs(stiffness):
     """Equal only where both pairs have the same ratio of film to teeth."""
-    assert np.all(found.series_of_totals >= found.comprehensive_mesh_stiffness * (1.0 - 1e-6))
+    assert np.all(
+        stiffness.series_of_totals >= stiffness.comprehensive_mesh_stiffness * (1.0 - 1e-6)
+    )
     np.testing.assert_allclose(
-        found.series_of_totals, found.comprehensive_mesh_stiffness, rtol=5e-3
+        stiffness.series_of_totals, stiffness.comprehensive_mesh_stiffness, rtol=5e-3
     )
 
 
-def test_it_is_the_mesh_table_of_each_operating_point(found):
+def test_it_is_the_mesh_table_of_each_operating_point(stiffness):
     table = build(
         gears(), material=Material(), lubricant=OIL, friction_law="none", composite_roughness=0.0,
         film_model="moes", film_options={"stiffness": "tangent"}, pinion_speed=SPEEDS[2],
         pinion_torque=TORQUES[1], steps=32,
     )  # fmt: skip
-    np.testing.assert_allclose(found.comprehensive_mesh_stiffness[1, 2], table.mesh_stiffness)
-    assert found.mean_mesh_stiffness[1, 2] == pytest.approx(table.mean_mesh_stiffness, rel=1e-3)
-    middle = found.path.size // 2
-    near = np.argmin(np.abs(table.path[:, 0] - found.path[middle]))
-    assert found.film_stiffness[1, 2, middle] == table.film_stiffness[near, 0]
+    np.testing.assert_allclose(stiffness.comprehensive_mesh_stiffness[1, 2], table.mesh_stiffness)
+    assert stiffness.mean_mesh_stiffness[1, 2] == pytest.approx(table.mean_mesh_stiffness, rel=1e-3)
+    middle = stiffness.path.size // 2
+    nearest = np.argmin(np.abs(table.path[:, 0] - stiffness.path[middle]))
+    assert stiffness.film_stiffness[1, 2, middle] == table.film_stiffness[nearest, 0]
 
 
 @pytest.mark.parametrize("driver", ["pinion", "wheel"])
@@ -92,19 +94,19 @@ def test_places_follow_the_pair_from_entry_to_exit(driver):
     assert max(share[0], share[-1]) < 0.8
 
 
-def test_formula_film_stiffens_with_torque_and_softens_with_speed(found):
-    film = found.film_mesh_stiffness.mean(axis=2)
+def test_formula_film_stiffens_with_torque_and_softens_with_speed(stiffness):
+    film = stiffness.film_mesh_stiffness.mean(axis=2)
     assert np.all(np.diff(film, axis=0) > 0.0)
     assert np.all(np.diff(film, axis=1) < 0.0)
-    mean = found.mean_mesh_stiffness
+    mean = stiffness.mean_mesh_stiffness
     assert np.all(np.diff(mean, axis=0) > 0.0)
     assert np.all(np.diff(mean, axis=1) < 0.0)
-    assert np.all(mean < found.mean_tooth_stiffness)
-    assert np.all(found.maximum_mesh_stiffness > mean)
+    assert np.all(mean < stiffness.mean_tooth_stiffness)
+    assert np.all(stiffness.maximum_mesh_stiffness > mean)
 
 
-def test_stiffness_of_teeth_does_not_know_the_speed(found):
-    teeth = found.tooth_stiffness
+def test_stiffness_of_teeth_does_not_know_the_speed(stiffness):
+    teeth = stiffness.tooth_stiffness
     np.testing.assert_allclose(teeth, np.repeat(teeth[:, :1], 3, axis=1), rtol=1e-12)
 
 
@@ -119,16 +121,16 @@ def test_pairs_that_act_on_each_other_are_solved_with_their_films():
     assert np.all(dry.mean_mesh_stiffness < dry.mean_tooth_stiffness)
 
 
-def test_data_set_and_line(found):
-    data = found.to_xarray()
-    sizes = {"torque": 2, "speed": 3, "place": found.path.size, "phase": found.phase.size}
+def test_data_set_and_line(stiffness):
+    data = stiffness.to_xarray()
+    sizes = {"torque": 2, "speed": 3, "place": stiffness.path.size, "phase": stiffness.phase.size}
     assert dict(data.sizes) == sizes
     assert data["film_stiffness"].attrs["units"] == "N/m"
-    assert "tangent, moes, potential-energy, 2 torques, 3 speeds" in repr(found)
+    assert "tangent, moes, potential-energy, 2 torques, 3 speeds" in repr(stiffness)
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"film_model": "none"}, "no oil film"),
         ({"kind": "none"}, 'kind = "none"'),
@@ -137,6 +139,6 @@ def test_data_set_and_line(found):
         ({"pinion_speed": [[100.0]]}, "shape"),
     ],
 )
-def test_what_has_no_such_stiffness_is_refused(options, told):
-    with pytest.raises(InputError, match=told):
+def test_what_has_no_such_stiffness_is_refused(options, message):
+    with pytest.raises(InputError, match=message):
         study(**options)

@@ -103,8 +103,8 @@ def test_ends_of_contact_are_those_of_the_loaded_contact(changes, tolerance):
     case = case_with(**changes)
     mesh, ends = table_of(case), exact(case)
     assert mesh.contact_ratio_under_load == pytest.approx(np.diff(ends)[::2].sum(), abs=tolerance)
-    found = np.ravel(loaded_ages(mesh, teeth_shares(mesh)))
-    assert found == pytest.approx(ends, abs=tolerance)
+    ages = np.ravel(loaded_ages(mesh, teeth_shares(mesh)))
+    assert ages == pytest.approx(ends, abs=tolerance)
 
 
 @pytest.mark.parametrize("model", ["potential-energy", "rectangular", "iso6336"])
@@ -168,8 +168,8 @@ def test_a_table_of_another_program_has_one_too(tmp_path):
         operation=PAIR["operation"],
         dynamics={"model": "torsional"},
     )
-    found = table_of(case).contact_ratio_under_load
-    assert found == pytest.approx(mesh.contact_ratio_under_load, rel=1e-9)
+    contact_ratio = table_of(case).contact_ratio_under_load
+    assert contact_ratio == pytest.approx(mesh.contact_ratio_under_load, rel=1e-9)
 
 
 def test_a_hypoid_pair_has_the_mean_number_of_its_loaded_pairs():

@@ -37,20 +37,20 @@ def test_what_is_checked_is_met_and_cells_are_fine_only_at_the_bend() -> None:
 
 def test_an_answer_does_not_depend_on_what_was_asked_before() -> None:
     log_m, log_l = places(60)
-    whole, one_by_one = table(), table()
+    at_once, one_by_one = table(), table()
     each = [one_by_one(log_m[k : k + 1], log_l[k : k + 1]) for k in range(60)[::-1]]
-    assert np.array_equal(whole(log_m, log_l), np.concatenate(each[::-1], axis=1))
-    before = whole.solved
-    whole(log_m, log_l)
-    assert whole.solved == before
+    assert np.array_equal(at_once(log_m, log_l), np.concatenate(each[::-1], axis=1))
+    before = at_once.solved
+    at_once(log_m, log_l)
+    assert at_once.solved == before
 
 
 def test_without_solutions_it_has_no_answer_and_has_one_beside_them() -> None:
     films = table()
     log_l = np.array([3.05, 3.2, 3.35])
-    told = films(np.zeros(3), log_l)[0]
-    assert np.isfinite(told).tolist() == [True, True, False]
-    assert told[:2] == pytest.approx(surface(np.zeros(2), log_l[:2])[0], abs=3.0 * EXACT)
+    film = films(np.zeros(3), log_l)[0]
+    assert np.isfinite(film).tolist() == [True, True, False]
+    assert film[:2] == pytest.approx(surface(np.zeros(2), log_l[:2])[0], abs=3.0 * EXACT)
 
 
 FILMS = {
@@ -70,9 +70,9 @@ FILMS = {
 def test_a_sweep_has_the_films_of_single_runs(stiffness: str) -> None:
     case = td.load_case("fzg-film").replace({"film.stiffness": stiffness, "film.nodes": 129})
     torques = ["180 N*m", "190 N*m", "210 N*m", "220 N*m"]
-    found = td.sweep(case, {"operation.torque": torques})
-    assert not found.failed.any()
+    sweep = td.sweep(case, {"operation.torque": torques})
+    assert not sweep.failed.any()
     with quiet():
         alone = td.run(case.replace({"operation.torque": "210 N*m"})).summary()
     for name, tolerance in FILMS.items():
-        assert found[name][2] == pytest.approx(alone[name], rel=tolerance), name
+        assert sweep[name][2] == pytest.approx(alone[name], rel=tolerance), name

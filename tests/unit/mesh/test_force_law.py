@@ -57,12 +57,12 @@ def test_tangent_is_the_slope_and_never_falls():
 def test_every_force_has_its_deflection(columns):
     law = _law(columns)
     force = np.array([1.0, 200.0, 700.0, 1500.0, 4000.0])
-    found = law.deflection(PHASES[:, None], force)
+    deflection = law.deflection(PHASES[:, None], force)
     np.testing.assert_allclose(
-        law.force(PHASES[:, None], found), np.tile(force, (5, 1)), rtol=1e-12
+        law.force(PHASES[:, None], deflection), np.tile(force, (5, 1)), rtol=1e-12
     )
     root = brentq(lambda d: float(law.force(0.62, d)) - 1500.0, 0.0, 1e-3, xtol=1e-18, rtol=1e-14)
-    assert found[3, 3] == pytest.approx(root, rel=1e-12)
+    assert deflection[3, 3] == pytest.approx(root, rel=1e-12)
     np.testing.assert_array_equal(law.deflection(PHASES, 0.0), law.first_touch(PHASES))
     assert law.first_touch(0.0) == pytest.approx(1.5e-6, rel=1e-12)
     with pytest.raises(InputError, match="force"):

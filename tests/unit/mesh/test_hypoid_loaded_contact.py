@@ -38,11 +38,11 @@ def test_known_figures_of_ten_against_43(loaded):
     assert loaded.mean_mesh_stiffness == pytest.approx(5.69e8, rel=2e-3)
     assert loaded.mesh_stiffness.min() == pytest.approx(5.46e8, rel=2e-3)
     assert loaded.grid.mean(loaded.mesh_force) == pytest.approx(18.88e3, rel=1e-3)
-    known = {
+    expected = {
         "pinion_direction": [-0.633321, 0.760835, -0.141528, 0.0519107, 0.0264771, -0.0897330],
         "wheel_direction": [-0.633321, 0.141528, 0.760835, 0.0519107, 0.1138515, 0.0219907],
     }
-    for name, values in known.items():
+    for name, values in expected.items():
         assert loaded.grid.mean(getattr(loaded, name)) == pytest.approx(values, abs=2e-4)
     light, heavy = (loaded.under(torque) for torque in (50.0, 2000.0))
     assert light.mean_mesh_stiffness == pytest.approx(2.56e8, rel=3e-3)
@@ -62,39 +62,39 @@ def test_without_load_the_wheel_lags_as_without_any_contact_force(loaded):
     lag = -free.angular_transmission_error[inner]
     assert np.abs(lags - lag).max() < 2e-3 * np.ptp(lag)
     light = loaded.under(1e-4)
-    gone = light.loaded_rotation - light.unloaded_rotation
-    assert np.all(gone > 0.0)
-    assert gone.max() < 1e-3 * np.ptp(lags)
+    lag_change = light.loaded_rotation - light.unloaded_rotation
+    assert np.all(lag_change > 0.0)
+    assert lag_change.max() < 1e-3 * np.ptp(lags)
     still = loaded.under(1e-6)
     lighter = still.loaded_rotation - still.unloaded_rotation
-    assert np.all(lighter < 0.2 * gone)
+    assert np.all(lighter < 0.2 * lag_change)
 
 
 def test_conjugate_flanks_are_linear_springs():
     flanks = hypoid_flanks(h1043(), points=9)
-    one = hypoid_loaded_contact(flanks, 100.0, **COARSE)
-    two = one.under(900.0)
-    assert np.abs(one.unloaded_rotation).max() == 0.0
-    assert two.loaded_rotation == pytest.approx(9.0 * one.loaded_rotation, rel=1e-12)
-    cells = one.cells
+    contact = hypoid_loaded_contact(flanks, 100.0, **COARSE)
+    two = contact.under(900.0)
+    assert np.abs(contact.unloaded_rotation).max() == 0.0
+    assert two.loaded_rotation == pytest.approx(9.0 * contact.loaded_rotation, rel=1e-12)
+    cells = contact.cells
     compliant = cells.summed((cells.length * cells.touch.lever**2).sum(axis=1))
-    closed = one.wheel_torque / (one.line_stiffness * compliant)
-    assert one.loaded_rotation == pytest.approx(closed, rel=1e-4)
+    closed = contact.wheel_torque / (contact.line_stiffness * compliant)
+    assert contact.loaded_rotation == pytest.approx(closed, rel=1e-4)
     # Lines come in with no length, so that nothing jumps at the ends of the cycle.
-    assert np.ptp(one.loaded_rotation[[0, -1]]) < 1e-12 * one.loaded_rotation[0]
-    assert np.abs(np.diff(one.mesh_stiffness)).max() < 0.1 * one.mean_mesh_stiffness
+    assert np.ptp(contact.loaded_rotation[[0, -1]]) < 1e-12 * contact.loaded_rotation[0]
+    assert np.abs(np.diff(contact.mesh_stiffness)).max() < 0.1 * contact.mean_mesh_stiffness
 
 
 def test_stiffness_grows_with_the_load_at_every_phase(loaded):
-    found = [loaded.under(torque) for torque in (1.0, 20.0, 100.0, 500.0, 2500.0)]
+    stiffnesses = [loaded.under(torque) for torque in (1.0, 20.0, 100.0, 500.0, 2500.0)]
     for name in ("mesh_stiffness", "loaded_rotation"):
-        assert np.all(np.diff([getattr(each, name) for each in found], axis=0) > 0.0)
+        assert np.all(np.diff([getattr(each, name) for each in stiffnesses], axis=0) > 0.0)
     # Where all lines carry over their full length the torque is straight in the rotation.
-    slopes = [each.mesh_stiffness_tangent * each.wheel_lever**2 for each in found]
+    slopes = [each.mesh_stiffness_tangent * each.wheel_lever**2 for each in stiffnesses]
     assert np.all(np.diff(slopes, axis=0) > -1e-9 * slopes[0])
-    for each in found:
+    for each in stiffnesses:
         assert np.all(each.mesh_stiffness_tangent >= each.mesh_stiffness)
-    assert found[3].loaded_rotation == pytest.approx(loaded.loaded_rotation, rel=1e-14)
+    assert stiffnesses[3].loaded_rotation == pytest.approx(loaded.loaded_rotation, rel=1e-14)
 
 
 def test_figures_converge_with_the_square_of_the_cells():
@@ -123,9 +123,9 @@ def test_the_other_hand_is_the_mirror_image(loaded):
     assert other.loaded_rotation == pytest.approx(mirrored.loaded_rotation, rel=1e-9)
     # Levers of the running senses stay, and axial forces turn round.
     for name in ("pinion_direction", "wheel_direction"):
-        one, two = getattr(mirrored, name), getattr(other, name)
-        assert np.abs(two) == pytest.approx(np.abs(one), abs=1e-9)
-        assert np.all(one[:, 4] * two[:, 4] > 0.0)
+        computed, two = getattr(mirrored, name), getattr(other, name)
+        assert np.abs(two) == pytest.approx(np.abs(computed), abs=1e-9)
+        assert np.all(computed[:, 4] * two[:, 4] > 0.0)
     assert np.all(mirrored.pinion_direction[:, 1] > 0.0)
     assert np.all(other.pinion_direction[:, 1] < 0.0)
 

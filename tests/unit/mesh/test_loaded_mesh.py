@@ -36,12 +36,12 @@ PAIRS = {
 
 
 def table(pair, **changes) -> MeshTable:
-    given = {
+    arguments = {
         "material": Material(), "stiffness_model": "analytic", "lubricant": OIL,
         "friction_law": "constant", "friction_options": {"coefficient": 0.05},
         "composite_roughness": 0.0, "pinion_speed": 100.0, "pinion_torque": 90.0, "steps": 256,
     }  # fmt: skip
-    return build(pair, **{**given, **changes})
+    return build(pair, **{**arguments, **changes})
 
 
 @pytest.mark.parametrize("name", PAIRS)
@@ -86,8 +86,8 @@ def test_the_force_law_is_the_loaded_contact_within_its_error(name):
     loaded = loaded_contact(PAIRS[name], torque, provider="analytic", phases=phase)
     for error, force in zip(loaded.transmission_error, loaded.total_normal_force, strict=True):
         assert law.force(phase, error) == pytest.approx(force, rel=close)
-        found = law.deflection(phase, np.full(phase.size, force))
-        assert np.abs(found - error).max() < (0.1e-6 if name != "crowned" else 0.2e-6)
+        deflection = law.deflection(phase, np.full(phase.size, force))
+        assert np.abs(deflection - error).max() < (0.1e-6 if name != "crowned" else 0.2e-6)
     # Nothing softens, nothing carries before the first touch, and the phase has no jump.
     assert np.all(mesh.ramp_stiffness >= 0.0)
     first = loaded.unloaded_transmission_error
@@ -118,8 +118,8 @@ def test_independent_pairs_have_a_law_of_their_own_when_asked():
     half = loaded_contact(
         pair_of(), 45.0, provider="potential-energy", extended_contact=False, phases=phase
     )
-    found = fitted.force_law.force(phase, half.transmission_error)
-    assert found == pytest.approx(float(half.total_normal_force), rel=LARGEST_ERROR)
+    force_ = fitted.force_law.force(phase, half.transmission_error)
+    assert force_ == pytest.approx(float(half.total_normal_force), rel=LARGEST_ERROR)
 
 
 @pytest.mark.parametrize("name", ["A", "relieved"])
@@ -177,19 +177,19 @@ def test_tables_at_all_speeds_share_the_teeth_and_nothing_that_changes(monkeypat
     )
     loaded, problem_of = [], sharing.mesh_problem
 
-    def counted(*args, **given):
+    def counted(*args, **arguments):
         loaded.append(args)
-        return problem_of(*args, **given)
+        return problem_of(*args, **arguments)
 
     monkeypatch.setattr(sharing, "mesh_problem", counted)
-    given = {"stiffness_model": "iso6336", "stiffness_options": {}}
-    with warnings.catch_warnings(record=True) as told:
+    arguments = {"stiffness_model": "iso6336", "stiffness_options": {}}
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        tables = [table(pair, pinion_speed=speed, **given) for speed in (50.0, 100.0, 200.0)]
+        tables = [table(pair, pinion_speed=speed, **arguments) for speed in (50.0, 100.0, 200.0)]
         tables[0].stiffness[:] = 0.0
-        table(pair, pinion_torque=91.0, **given)
+        table(pair, pinion_torque=91.0, **arguments)
         assert len(loaded) == 2
-        assert ["iso6336-range" in str(each.message) for each in told] == 4 * [True]
+        assert ["iso6336-range" in str(each.message) for each in caught] == 4 * [True]
         sys.modules["tribodyn.mesh.build"]._cached_teeth.cache_clear()
-        assert tables[2] == table(pair, pinion_speed=200.0, **given)
+        assert tables[2] == table(pair, pinion_speed=200.0, **arguments)
         assert len(loaded) == 3

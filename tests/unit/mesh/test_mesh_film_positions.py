@@ -26,9 +26,9 @@ def test_zones_end_where_the_load_jumps_and_at_the_pitch_point(contact):
     inside = {round(contact.direction * (contact.C - contact.A) / pitch, 9)}
     for number in range(1, contact.pairs):
         inside |= {float(number), round(ratio - number, 9)}
-    found = path_positions(contact, 30).edges
-    assert (found[0], found[-1]) == (0.0, ratio)
-    assert sorted(inside) == pytest.approx(found[1:-1], abs=1e-8)
+    edges = path_positions(contact, 30).edges
+    assert (edges[0], edges[-1]) == (0.0, ratio)
+    assert sorted(inside) == pytest.approx(edges[1:-1], abs=1e-8)
 
 
 def test_a_contact_ratio_above_two_has_more_zones(high_contact_pair, fzg):
@@ -63,8 +63,8 @@ def test_interpolation_is_exact_for_polynomials_and_on_the_positions(contact):
     degree = min(places.counts) - 1
     age = np.linspace(0.0, places.edges[-1], 301)
     zone = places.zone_of(age)
-    found = places.interpolate(places.age**degree, age, zone)
-    assert found == pytest.approx(age**degree, abs=1e-12)
+    interpolated = places.interpolate(places.age**degree, age, zone)
+    assert interpolated == pytest.approx(age**degree, abs=1e-12)
     itself = np.repeat(np.arange(len(places.counts)), places.counts)
     jumps = np.exp(places.age) + itself
     assert places.interpolate(jumps, places.age, itself) == pytest.approx(jumps, rel=1e-14)
@@ -85,9 +85,11 @@ def test_several_columns_are_interpolated_at_once(contact):
     age = np.linspace(0.0, places.edges[-1], 50)
     zone = places.zone_of(age)
     columns = np.stack([places.age, places.age**2], axis=1)
-    found = places.interpolate(columns, age, zone)
-    assert found.shape == (50, 2)
-    assert found[:, 1] == pytest.approx(places.interpolate(columns[:, 1], age, zone), rel=1e-15)
+    interpolated = places.interpolate(columns, age, zone)
+    assert interpolated.shape == (50, 2)
+    assert interpolated[:, 1] == pytest.approx(
+        places.interpolate(columns[:, 1], age, zone), rel=1e-15
+    )
 
 
 @pytest.mark.parametrize("positions", [7, 0, 201, -30])
@@ -117,14 +119,16 @@ def test_a_contact_that_is_known_is_not_solved_again():
     def solve(new):
         solved.append(new.tolist())
         options = FILM_MODELS["newton"].complete({"nodes": 129})
-        films = pairs.some(new).films("newton", asked[new], **options)
-        return places_of(pairs.some(new), zone[new], asked[new], films, np.ones(new.size, bool))
+        films = pairs.some(new).films("newton", requested_loads[new], **options)
+        return places_of(
+            pairs.some(new), zone[new], requested_loads[new], films, np.ones(new.size, bool)
+        )
 
-    asked = load
-    first = memory.films_of(pairs, zone, asked, solve)
-    asked = load * [1.0, 1.1]
-    memory.retain(contact_numbers(pairs, asked))
-    again = memory.films_of(pairs, zone, asked, solve)
+    requested_loads = load
+    first = memory.films_of(pairs, zone, requested_loads, solve)
+    requested_loads = load * [1.0, 1.1]
+    memory.retain(contact_numbers(pairs, requested_loads))
+    again = memory.films_of(pairs, zone, requested_loads, solve)
     assert solved == [[0, 1], [1]]
     np.testing.assert_array_equal(again.values[:, 0], first.values[:, 0])
     assert again.solution[0] is first.solution[0]

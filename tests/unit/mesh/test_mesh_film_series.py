@@ -231,8 +231,8 @@ def test_one_pair_alone_keeps_its_load():
 
 def power_film(distance, power):
     """Distances that fall with a power of the load per width, and their slopes."""
-    kept = lambda load: distance * (load / 1e5) ** -power  # noqa: E731
-    return _film(lambda load: load / (power * kept(load)), kept)
+    film = lambda load: distance * (load / 1e5) ** -power  # noqa: E731
+    return _film(lambda load: load / (power * film(load)), film)
 
 
 @pytest.mark.parametrize("power", [0.03, 0.1, 1.0])

@@ -40,10 +40,10 @@ def _friction(law="xu-2007", options=None):
 
 @pytest.mark.parametrize("load", [0.2, 0.6, 1.0, 1.45, 2.8])
 def test_it_is_the_friction_of_the_mesh_at_that_load(load):
-    found, mesh = _friction(), _mesh(TORQUE * load)
+    friction, mesh = _friction(), _mesh(TORQUE * load)
     for name in CHANNELS:
         expected = mesh.at(name, PHASES)
-        value = found.value(name, PHASES, np.full(PHASES.size, mesh.total_normal_force))
+        value = friction.value(name, PHASES, np.full(PHASES.size, mesh.total_normal_force))
         np.testing.assert_allclose(value * load, expected * load, atol=4e-3 * abs(expected).max())
     # The load matters: pressure, and with it friction, grows with its square root.
     nominal = _mesh(TORQUE).at("friction_sum", PHASES)
@@ -52,21 +52,25 @@ def test_it_is_the_friction_of_the_mesh_at_that_load(load):
 
 
 def test_a_constant_coefficient_does_not_follow_the_load():
-    found = _friction("constant", {"coefficient": 0.07})
-    assert found.fit_error < 1e-10
+    friction = _friction("constant", {"coefficient": 0.07})
+    assert friction.fit_error < 1e-10
     nominal = _mesh(TORQUE, "constant", options={"coefficient": 0.07})
     for name in CHANNELS:
         expected = nominal.at(name, PHASES)
         for force in (100.0, 7000.0):
-            value = found.value(name, PHASES, np.full(PHASES.size, force))
+            value = friction.value(name, PHASES, np.full(PHASES.size, force))
             np.testing.assert_allclose(value, expected, atol=1e-9 * abs(expected).max())
 
 
 def test_beyond_the_loads_that_were_looked_at_it_stays():
-    found = _friction()
-    last = found.value("friction_sum", 0.6, 3.0 * found.load)
-    assert found.value("friction_sum", 0.6, 9.0 * found.load) == pytest.approx(last, rel=1e-12)
-    assert found.value("friction_sum", 0.6, -9.0 * found.load) == pytest.approx(last, rel=1e-12)
+    friction = _friction()
+    last = friction.value("friction_sum", 0.6, 3.0 * friction.load)
+    assert friction.value("friction_sum", 0.6, 9.0 * friction.load) == pytest.approx(
+        last, rel=1e-12
+    )
+    assert friction.value("friction_sum", 0.6, -9.0 * friction.load) == pytest.approx(
+        last, rel=1e-12
+    )
 
 
 def test_it_says_how_well_it_fits():

@@ -37,8 +37,10 @@ def test_the_pair_there_has_the_pitch_point_and_its_own_share(driver, fzg):
     assert mesh.at_pitch_point("sliding_speed") == pytest.approx(0.0, abs=1e-12)
     # C lies in a double zone of this pair, where equal pairs share equally
     assert mesh.at_pitch_point("load_share") == pytest.approx(0.5, rel=1e-12)
-    near = np.abs(mesh.path - contact.C) < 1e-12
-    assert mesh.at_pitch_point("central_film") == pytest.approx(mesh.central_film[near].max())
+    at_pitch_point = np.abs(mesh.path - contact.C) < 1e-12
+    assert mesh.at_pitch_point("central_film") == pytest.approx(
+        mesh.central_film[at_pitch_point].max()
+    )
 
 
 def test_one_pair_at_the_pitch_point_carries_all():

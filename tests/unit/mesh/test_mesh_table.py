@@ -263,7 +263,7 @@ def test_an_unknown_column_is_named(fzg):
 
 
 def test_a_model_that_gives_no_stiffness_is_refused(fzg, monkeypatch):
-    nothing = StiffnessModel("nothing", lambda p, m, path, *rest: np.zeros(path.shape), {})
+    nothing = StiffnessModel("nothing", lambda p, m, path, *arguments: np.zeros(path.shape), {})
     monkeypatch.setitem(MODELS._items, "nothing", nothing)
     with pytest.raises(ComputationError, match='"nothing" returned an unusable'):
         table(fzg(), stiffness_model="nothing")
@@ -308,9 +308,9 @@ def test_figures_of_fzg_type_a(place, fzg):
     if place == "E":
         phase -= 1e-9
     names = ("sliding_speed", "entrainment_speed", "slide_to_roll_ratio", "equivalent_radius")
-    found = [float(mesh.at(name, phase)[pair]) for name in (*names, "hertz_pressure")]
+    computed = [float(mesh.at(name, phase)[pair]) for name in (*names, "hertz_pressure")]
     assert mesh.at("load_share", phase)[pair] == pytest.approx(share)
-    assert found == pytest.approx(figures, rel=2e-6)
+    assert computed == pytest.approx(figures, rel=2e-6)
     other = table(fzg(), **shared, friction_law="benedict-kelly")
     assert mesh.at("friction_coefficient", phase)[pair] == pytest.approx(xu, abs=1e-6)
     assert other.at("friction_coefficient", phase)[pair] == pytest.approx(benedict_kelly, abs=1e-6)

@@ -79,19 +79,19 @@ def test_knots_are_met_and_columns_kept_apart():
     grid = phase_grid(EVENTS, 32)
     values = np.stack([np.cos(grid.phase), grid.phase**2], axis=1)
     inner = slice(grid.segments[1].start, grid.segments[1].stop - 1)
-    found = PhaseFunction(grid, values)(grid.phase[inner])
-    assert found == pytest.approx(values[inner], rel=1e-14)
+    interpolated = PhaseFunction(grid, values)(grid.phase[inner])
+    assert interpolated == pytest.approx(values[inner], rel=1e-14)
 
 
 @pytest.mark.parametrize("phase", [0.37, np.linspace(0.0, 2.0, 101), np.full((2, 3), 0.6)])
 def test_many_columns_are_those_of_single_functions(phase):
     grid = phase_grid(EVENTS, 32)
     values = np.sin(np.outer(grid.phase, np.arange(30))).reshape(-1, 10, 3)
-    found = PhaseFunction(grid, values)(phase)
-    assert found.shape == (*np.shape(phase), 10, 3)
+    interpolated = PhaseFunction(grid, values)(phase)
+    assert interpolated.shape == (*np.shape(phase), 10, 3)
     for column in np.ndindex(10, 3):
         single = PhaseFunction(grid, values[:, *column])(phase)
-        np.testing.assert_allclose(found[..., *column], single, rtol=1e-14, atol=1e-16)
+        np.testing.assert_allclose(interpolated[..., *column], single, rtol=1e-14, atol=1e-16)
 
 
 def test_cubics_are_interpolated_exactly():
@@ -131,5 +131,5 @@ def test_many_phases_are_looked_up_as_each_by_itself(columns):
     onto = np.random.default_rng(4).standard_normal((columns, 5))
     phase = np.linspace(-0.5, 1.5, 200).reshape(20, 10)
     for function in (PhaseFunction(grid, values), PhaseFunction(grid, values, onto)):
-        each = np.array([[function(one) for one in row] for row in phase])
+        each = np.array([[function(phase_) for phase_ in row] for row in phase])
         assert function(phase) == pytest.approx(each, rel=1e-13, abs=1e-14)

@@ -43,12 +43,12 @@ def test_every_column_is_that_of_a_single_point(changes: dict[str, Any]) -> None
     case = td.load_case("fzg-roughness").replace(changes)
     pending = with_tables(_pending(case))
     assert [callable(mesh_source) for _, mesh_source in pending] == [True] * len(_POINTS)
-    for one, mesh_source in pending:
-        with collected() as beside:
+    for mesh_column, mesh_source in pending:
+        with collected() as single_warnings:
             together = _columns(mesh_source())
-        with collected() as told:
-            alone = _columns(mesh_of(one))
-        assert [str(each) for each in beside] == [str(each) for each in told]
+        with collected() as messages:
+            alone = _columns(mesh_of(mesh_column))
+        assert [str(each) for each in single_warnings] == [str(each) for each in messages]
         assert together.keys() == alone.keys()
         for name, value in alone.items():
             if isinstance(value, np.ndarray):

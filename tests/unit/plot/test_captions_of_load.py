@@ -44,9 +44,9 @@ def test_the_stiffness_jumps_where_pairs_carry_at_once():
 
 @pytest.mark.parametrize("changes", [{}, relief("15 um", "4 mm")], ids=["plain", "relief"])
 def test_the_stiffness_does_not_jump_where_pairs_come_in_gradually(changes):
-    words = caption(table(**changes), "mesh_stiffness")
-    assert "has no jump" in words
-    assert "jumps" not in words.replace("has no jump", "")
+    text = caption(table(**changes), "mesh_stiffness")
+    assert "has no jump" in text
+    assert "jumps" not in text.replace("has no jump", "")
 
 
 def test_an_even_stiffness_is_called_even():
@@ -56,8 +56,8 @@ def test_an_even_stiffness_is_called_even():
         "stiffness.single_pair_stiffness": "3e8 N/m",
         "stiffness.double_pair_stiffness": "3e8 N/m",
     }
-    words = caption(table(**even, **totals), "mesh_stiffness")
-    assert "is constant over the mesh cycle" in words
+    text = caption(table(**even, **totals), "mesh_stiffness")
+    assert "is constant over the mesh cycle" in text
 
 
 @pytest.mark.parametrize(
@@ -65,8 +65,8 @@ def test_an_even_stiffness_is_called_even():
 )
 def test_parts_of_the_cycle_add_up_to_the_contact_ratio_under_load(changes):
     mesh = table(**changes)
-    words = caption(mesh, "load_sharing")
-    parts = re.findall(r"(one|two|three) pairs? carr(?:ies|y) during ([\d.]+) %", words)
+    text = caption(mesh, "load_sharing")
+    parts = re.findall(r"(one|two|three) pairs? carr(?:ies|y) during ([\d.]+) %", text)
     number = {"one": 1, "two": 2, "three": 3}
     assert sum(float(part) for _, part in parts) == pytest.approx(100.0, abs=0.2)
     mean = sum(number[pairs] * float(part) for pairs, part in parts) / 100.0
@@ -77,22 +77,22 @@ def test_the_ends_of_contact_are_named_by_where_they_lie():
     plain, relieved = table(), table(**relief("15 um", "4 mm"))
     rigid = table(**{"stiffness.extended_contact": False})
     assert re.search(r"begins to carry before A .* ceases after E", caption(plain, "load_sharing"))
-    words = caption(relieved, "load_sharing")
-    assert re.search(r"begins to carry after A .* ceases before E", words)
+    text = caption(relieved, "load_sharing")
+    assert re.search(r"begins to carry after A .* ceases before E", text)
     assert "begins to carry at A and ceases at E" in caption(rigid, "load_sharing")
-    first = float(re.search(r"after A \(([\d.]+) rad\)", words)[1])
+    first = float(re.search(r"after A \(([\d.]+) rad\)", text)[1])
     share = relieved.load_share[:, 0]
-    shown = FIGURES["load_sharing"](relieved).data[0]
-    loaded = np.asarray(shown.x)[np.asarray(shown.y) > 0.0]
+    curve_ = FIGURES["load_sharing"](relieved).data[0]
+    loaded = np.asarray(curve_.x)[np.asarray(curve_.y) > 0.0]
     assert first == pytest.approx(loaded.min(), abs=1e-3)
     assert share[0] == 0.0
 
 
 @pytest.mark.parametrize("name", ["mesh_stiffness", "load_sharing", "path_of_contact"])
 def test_no_caption_of_relieved_teeth_tells_of_geometry_as_of_load(name):
-    words = caption(table(**relief("30 um", "4 mm")), name)
-    assert "Before B and after D" not in words
-    assert "whenever" not in words
+    text = caption(table(**relief("30 um", "4 mm")), name)
+    assert "Before B and after D" not in text
+    assert "whenever" not in text
 
 
 def test_the_drawing_of_the_pair_names_geometry_alone():
@@ -102,7 +102,7 @@ def test_the_drawing_of_the_pair_names_geometry_alone():
     assert "load" not in title + caption(mesh.gear_pair, "gear_pair")
 
 
-def told(mesh):
+def reduced_ratio_warnings(mesh):
     return [w for w in mesh_cautions(mesh) if w.code == "contact-ratio-reduced"]
 
 
@@ -111,16 +111,16 @@ def told(mesh):
 def test_a_relief_is_reported_where_it_takes_more_than_a_tenth(amount, torque):
     mesh = table(**relief(amount), **{"operation.torque": torque})
     lost = 1.0 - mesh.contact_ratio_under_load / mesh.transverse_contact_ratio
-    messages = told(mesh)
+    messages = reduced_ratio_warnings(mesh)
     assert bool(messages) == (lost > 0.1)
     if messages:
         assert f"take off {100.0 * lost:.2g} %" in messages[0].message
 
 
 def test_both_sides_of_the_limit_are_met():
-    assert not told(table())
-    assert not told(table(**relief("2 um")))
-    assert told(table(**relief("30 um", "4 mm")))
+    assert not reduced_ratio_warnings(table())
+    assert not reduced_ratio_warnings(table(**relief("2 um")))
+    assert reduced_ratio_warnings(table(**relief("30 um", "4 mm")))
 
 
 def test_check_reports_what_the_run_reports():
@@ -133,5 +133,5 @@ def test_check_reports_what_the_run_reports():
     before = [w.message for w in rehearse(case) if w.code == "contact-ratio-reduced"]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
-        after = [w.message for w in told(mesh_of(case))]
+        after = [w.message for w in reduced_ratio_warnings(mesh_of(case))]
     assert before == after != []

@@ -21,14 +21,14 @@ def test_curves_are_the_branch_in_display_units(branch):
     figure = branch.plot()
     traces = {trace.name: trace for trace in figure.data if (trace.yaxis or "y") == "y"}
     stable, unstable = traces["stable"], traces["unstable"]
-    drawn = np.isfinite(stable.y)
-    assert drawn[branch.stable].all()
-    np.testing.assert_allclose(stable.y[drawn], branch.rms[drawn, 0])
+    is_stable = np.isfinite(stable.y)
+    assert is_stable[branch.stable].all()
+    np.testing.assert_allclose(stable.y[is_stable], branch.rms[is_stable, 0])
     assert figure.layout.yaxis.title.text == "Alternating rms of deflection [m]"
     assert unstable.line.dash == "dash"
     # Both parts meet: no gap is left between them.
-    assert (np.isfinite(unstable.y) | drawn)[1:].all()
-    assert (np.isfinite(unstable.y) & drawn).sum() == 2
+    assert (np.isfinite(unstable.y) | is_stable)[1:].all()
+    assert (np.isfinite(unstable.y) & is_stable).sum() == 2
     folds = [point.parameter for point in branch.special("fold")]
     assert list(traces["fold"].x) == pytest.approx(folds)
     assert figure.layout.xaxis.title.text == "Mesh frequency [Hz]"

@@ -55,7 +55,7 @@ def result(drawable: Any) -> Any:
 
 
 @pytest.fixture(scope="module")
-def drawn(result: Any) -> dict[str, go.Figure]:
+def figures(result: Any) -> dict[str, go.Figure]:
     return {name: FIGURES[name](result) for name in NAMES}
 
 
@@ -77,7 +77,7 @@ def test_what_a_result_has_not_is_refused(result: Any, name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_reports_need_no_plotly_to_write_the_same(
-    result: Any, drawn: dict[str, go.Figure], name: str
+    result: Any, figures: dict[str, go.Figure], name: str
 ) -> None:
     figure = FIGURES[name]
     assert isinstance(figure, Drawing)
@@ -86,12 +86,12 @@ def test_reports_need_no_plotly_to_write_the_same(
     written = json.loads(sketch.to_json())
     # Plotly leaves out lists of no marks.
     written["layout"] = {key: each for key, each in written["layout"].items() if each != []}
-    assert written == json.loads(drawn[name].to_json())
+    assert written == json.loads(figures[name].to_json())
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_axis_has_a_unit(drawn: dict[str, go.Figure], name: str) -> None:
-    layout = drawn[name].layout
+def test_every_axis_has_a_unit(figures: dict[str, go.Figure], name: str) -> None:
+    layout = figures[name].layout
     labels = [layout[key].title.text for key in layout if key.startswith(("xaxis", "yaxis"))]
     labels = [label for label in labels if label]
     assert len(labels) >= 2
@@ -101,9 +101,9 @@ def test_every_axis_has_a_unit(drawn: dict[str, go.Figure], name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_figure_is_finite_and_answers_in_its_title(
-    drawn: dict[str, go.Figure], name: str
+    figures: dict[str, go.Figure], name: str
 ) -> None:
-    figure = drawn[name]
+    figure = figures[name]
     assert any(character.isdigit() for character in figure.layout.title.text)
     assert "nan" not in figure.layout.title.text
     for trace in figure.data:
@@ -112,29 +112,29 @@ def test_every_figure_is_finite_and_answers_in_its_title(
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_hovering_tells_the_unit(drawn: dict[str, go.Figure], name: str) -> None:
+def test_hovering_tells_the_unit(figures: dict[str, go.Figure], name: str) -> None:
     if name == "gear_pair":
         return
-    for trace in drawn[name].data:
-        label = drawn[name].layout[trace.yaxis.replace("y", "yaxis")].title.text
+    for trace in figures[name].data:
+        label = figures[name].layout[trace.yaxis.replace("y", "yaxis")].title.text
         unit = label[label.rindex("[") + 1 : -1] if "[" in label else ""
         assert f" {unit}".rstrip() in trace.hovertemplate
 
 
-def test_mesh_force_is_that_of_the_response(drawn: dict[str, go.Figure], result: Any) -> None:
+def test_mesh_force_is_that_of_the_response(figures: dict[str, go.Figure], result: Any) -> None:
     fine = result.response.fine
-    force = curve(drawn["mesh_force"], "dynamic")
+    force = curve(figures["mesh_force"], "dynamic")
     for cycle in range(2):
         at = np.interp(fine.phase + cycle, force.x, force.y)
         np.testing.assert_allclose(at[::3], fine.contact_force[::3, 0], rtol=1e-12)
-    static = curve(drawn["mesh_force"], "static")
+    static = curve(figures["mesh_force"], "static")
     assert static.y[0] == pytest.approx(90.0 / result.case.gear_pair.pinion.base_radius)
 
 
 def test_transmission_error_counts_from_first_contact(
-    drawn: dict[str, go.Figure], result: Any
+    figures: dict[str, go.Figure], result: Any
 ) -> None:
-    error = curve(drawn["transmission_error"], "dynamic")
+    error = curve(figures["transmission_error"], "dynamic")
     deflection = result.response.fine.deflection[0, 0]
     assert error.y[0] == pytest.approx(1e6 * (deflection - result.half_backlash))
 
@@ -149,44 +149,44 @@ def test_quasi_static_error_counts_what_relieved_flanks_leave_open(drawable: Any
     result = drawable(changes=relief)
     mesh = result.mesh
     deflection = mesh.total_normal_force / mesh.mesh_stiffness
-    drawn = np.asarray(curve(FIGURES["transmission_error"](result), "quasi-static").y, dtype=float)
-    assert np.nanmax(drawn) == pytest.approx(1e6 * mesh.static_transmission_error.max(), rel=1e-6)
+    error = np.asarray(curve(FIGURES["transmission_error"](result), "quasi-static").y, dtype=float)
+    assert np.nanmax(error) == pytest.approx(1e6 * mesh.static_transmission_error.max(), rel=1e-6)
     # The rigid mesh already has an error of its own: force over stiffness alone is too little.
     assert mesh.static_transmission_error.max() > deflection.max() + 3e-6
 
 
 def test_quasi_static_error_is_force_over_stiffness(
-    drawn: dict[str, go.Figure], result: Any
+    figures: dict[str, go.Figure], result: Any
 ) -> None:
     # 2e8 N/m each: one pair alone bends twice as far as two together
-    error = curve(drawn["transmission_error"], "quasi-static")
+    error = curve(figures["transmission_error"], "quasi-static")
     alone = 1e6 * result.mesh.total_normal_force / 2e8
     assert max(error.y) == pytest.approx(alone, rel=1e-12)
     assert min(error.y) == pytest.approx(0.5 * alone, rel=1e-12)
 
 
 def test_bars_are_the_amplitudes(
-    drawn: dict[str, go.Figure], amplitudes: tuple[float, ...]
+    figures: dict[str, go.Figure], amplitudes: tuple[float, ...]
 ) -> None:
-    bars = curve(drawn["spectrum"], "transmission error")
+    bars = curve(figures["spectrum"], "transmission error")
     assert list(bars.x[:4]) == [1, 2, 3, 4]
     assert bars.y[:4] == pytest.approx(amplitudes, abs=1e-4)
     assert np.max(bars.y[4:12]) < 1e-3
     assert bars.customdata[1] == pytest.approx(2.0 * bars.customdata[0])
     # coordinates are scaled by powers of ten in the order of their names: pinion y is the second
-    along = curve(drawn["spectrum"], "pinion", "y2")
+    along = curve(figures["spectrum"], "pinion", "y2")
     assert along.y[:4] == pytest.approx([10.0 * size for size in amplitudes], abs=1e-3)
 
 
-def test_bearing_force_is_spring_force(drawn: dict[str, go.Figure], result: Any) -> None:
-    across = curve(drawn["bearing_force"], "wheel", "y2")
+def test_bearing_force_is_spring_force(figures: dict[str, go.Figure], result: Any) -> None:
+    across = curve(figures["bearing_force"], "wheel", "y2")
     position = result.response.fine.position[:, result.response.names.index("wheel_x")]
     assert across.y[0] == pytest.approx(1e9 * position[0], rel=1e-12)
     assert np.ptp(across.y) == pytest.approx(1e9 * np.ptp(position), rel=1e-2)
 
 
-def test_friction_force_turns_round_at_the_pitch_point(drawn: dict[str, go.Figure]) -> None:
-    figure = drawn["friction"]
+def test_friction_force_turns_round_at_the_pitch_point(figures: dict[str, go.Figure]) -> None:
+    figure = figures["friction"]
     (pitch_point,) = (note.x for note in figure.layout.annotations if note.text == "C")
     force = curve(figure, "friction force", "y2")
     angle, values = np.asarray(force.x), np.asarray(force.y)
@@ -199,18 +199,18 @@ def test_mesh_table_alone_draws_its_own_figures(result: Any) -> None:
     assert len(result.mesh.plot_friction().data) == 3
 
 
-def test_equal_scales_in_the_drawing_of_the_gears(drawn: dict[str, go.Figure]) -> None:
-    layout = drawn["gear_pair"].layout
+def test_equal_scales_in_the_drawing_of_the_gears(figures: dict[str, go.Figure]) -> None:
+    layout = figures["gear_pair"].layout
     assert (layout.yaxis.scaleanchor, layout.yaxis2.scaleanchor) == ("x", "x2")
 
 
-def test_drawing_shows_all_teeth(drawn: dict[str, go.Figure], result: Any) -> None:
+def test_drawing_shows_all_teeth(figures: dict[str, go.Figure], result: Any) -> None:
     pair = result.case.gear_pair
     for gear, center, name in (
         (pair.pinion, 0.0, "pinion, 16 teeth, drives"),
         (pair.wheel, pair.center_distance, "wheel, 24 teeth, is driven"),
     ):
-        outline = next(trace for trace in drawn["gear_pair"].data if trace.name == name)
+        outline = next(trace for trace in figures["gear_pair"].data if trace.name == name)
         radius = np.hypot(np.asarray(outline.x) - 1e3 * center, outline.y) * 1e-3
         on_tip = np.abs(radius - gear.tip_radius) < 1e-9
         tips = np.sum(np.diff(np.append(on_tip, on_tip[0]).astype(int)) == 1)
@@ -242,10 +242,10 @@ def test_no_friction_is_told_instead_of_drawn(drawable: Any) -> None:
     assert "without friction" in caption("transmission_error", drawable())
     rubbing = drawable()
     fine, static = rubbing.response.fine, rubbing.mesh.total_normal_force
-    for factor, words in ((1.02, "2 % above the static force"), (0.97, "3 % below the static")):
+    for factor, text in ((1.02, "2 % above the static force"), (0.97, "3 % below the static")):
         mean = float(fine.weight @ response_series.mesh_force(fine))
         fine.contact_force[:] *= factor * static / mean
-        assert words in caption("mesh_force", rubbing)
+        assert text in caption("mesh_force", rubbing)
         assert "friction carries a part" in caption("mesh_force", rubbing)
     fine.contact_force[:] /= 0.97
     assert "friction" not in caption("mesh_force", rubbing)  # which moves the mean by nothing
@@ -259,10 +259,10 @@ def test_a_transient_is_drawn_over_time(drawable: Any) -> None:
     assert max(force.x) == pytest.approx(1e3 * fine.time[-1])
     assert len(force.x) <= 4000 < len(fine.time)
     # the whole run at first, the last two of its 60 mesh cycles by a button
-    whole, zoom = figure.layout.updatemenus[0].buttons
+    full, zoom = figure.layout.updatemenus[0].buttons
     end = 1e3 * fine.time[-1]
     assert figure.layout.xaxis.range == pytest.approx((0.0, end))
-    assert whole.args[0]["xaxis.range"] == pytest.approx((0.0, end))
+    assert full.args[0]["xaxis.range"] == pytest.approx((0.0, end))
     assert zoom.args[0]["xaxis.range"] == pytest.approx((end * 58 / 60, end))
     # thinning keeps the peaks
     assert max(force.y) == fine.contact_force.max()
@@ -317,10 +317,10 @@ def test_captions_follow_the_pairs_under_load(drawable: Any) -> None:
         assert f"two pairs carry during {two} of the mesh cycle" in caption(name, result)
 
 
-def test_spectra_end_where_the_lines_vanish(drawn: dict[str, go.Figure]) -> None:
+def test_spectra_end_where_the_lines_vanish(figures: dict[str, go.Figure]) -> None:
     # the known motion has four harmonics
-    assert tuple(drawn["spectrum"].layout.xaxis.range) == (0.4, 4.6)
-    menu = drawn["spectrum"].layout.updatemenus[0]
+    assert tuple(figures["spectrum"].layout.xaxis.range) == (0.4, 4.6)
+    menu = figures["spectrum"].layout.updatemenus[0]
     assert (menu.x, menu.xanchor) == (0.0, "left")
 
 

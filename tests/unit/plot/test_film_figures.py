@@ -15,14 +15,14 @@ from tribodyn.plot import FIGURES
 
 @pytest.fixture
 def result(drawable: Any) -> Any:
-    made = drawable(film_model="dowson-higginson")
-    made.mesh = replace(
-        made.mesh,
-        film_pressure=1.1 * made.mesh.hertz_pressure,
-        stiffness=0.98 * made.mesh.tooth_stiffness,
+    drawn_result = drawable(film_model="dowson-higginson")
+    drawn_result.mesh = replace(
+        drawn_result.mesh,
+        film_pressure=1.1 * drawn_result.mesh.hertz_pressure,
+        stiffness=0.98 * drawn_result.mesh.tooth_stiffness,
         film_stiffness_kind="tangent",
     )
-    return made
+    return drawn_result
 
 
 def test_the_film_ratio_has_a_panel_of_its_own(result: Any) -> None:
@@ -54,8 +54,8 @@ def test_film_stiffness_stands_against_the_teeth(result: Any) -> None:
     film, teeth = curve(figure, "oil film"), curve(figure, "teeth")
     assert max(film.y) == pytest.approx(result.mesh.film_stiffness.max() * 1e-6)
     assert np.asarray(teeth.y) == pytest.approx(np.full(len(teeth.y), 200.0))
-    both = curve(figure, "teeth and film", "y2")
-    assert np.asarray(both.y) == pytest.approx(0.98 * np.asarray(teeth.y))
+    combined = curve(figure, "teeth and film", "y2")
+    assert np.asarray(combined.y) == pytest.approx(0.98 * np.asarray(teeth.y))
     lowest = (np.asarray(film.y) / np.asarray(teeth.y)).min()
     assert f"{lowest:.3g}"[:3] in figure.layout.title.text
     assert "tangent" in caption("film_stiffness", result)

@@ -86,8 +86,8 @@ def test_figures_under_load_show_their_figures():
     ):
         with quiet():
             rubbed = hypoid_friction(loaded, 314.0, lubricant=oil, composite_roughness=roughness)
-        drawn = rubbed.plot_friction()
-        assert [each.name for each in drawn.data if "flank" not in each.name] == names
+        figure = rubbed.plot_friction()
+        assert [each.name for each in figure.data if "flank" not in each.name] == names
 
 
 def test_figures_of_other_results_are_refused(contact):

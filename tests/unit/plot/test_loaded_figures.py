@@ -143,36 +143,38 @@ def test_bent_teeth_touch_where_the_loads_are(driver: str) -> None:
 def test_deformation_is_drawn_with_its_factor_and_its_loads(contact: Any) -> None:
     figure = FIGURES["mesh_deformation"]
     assert isinstance(figure, Drawing)
-    drawn = figure(contact, phase=0.125, torque=0)
-    assert "90 N·m" in drawn.layout.title.text
-    assert len(drawn.frames) == 0
-    factor = float(drawn.layout.title.text.split("magnified ")[1].split()[0])
-    bent = next(trace for trace in drawn.data if trace.name == "wheel, loaded")
-    rest = [trace for trace in drawn.data if trace.name == "without load"][1]
-    moved = np.hypot(bent.x[: len(rest.x)] - rest.x, bent.y[: len(rest.x)] - rest.y)
+    drawing = figure(contact, phase=0.125, torque=0)
+    assert "90 N·m" in drawing.layout.title.text
+    assert len(drawing.frames) == 0
+    factor = float(drawing.layout.title.text.split("magnified ")[1].split()[0])
+    bent = next(trace for trace in drawing.data if trace.name == "wheel, loaded")
+    undeformed = [trace for trace in drawing.data if trace.name == "without load"][1]
+    moved = np.hypot(
+        bent.x[: len(undeformed.x)] - undeformed.x, bent.y[: len(undeformed.x)] - undeformed.y
+    )
     mesh = bent_mesh(contact, 4, 0)
     assert moved.max() == pytest.approx(
         1e3 * factor * np.abs(mesh.displacement["wheel"]).max(), rel=1e-3
     )
-    values = next(trace for trace in drawn.data if trace.name == "values")
-    told = [float(word.strip("<b>/").split()[0]) for word in values.text]
-    assert told == pytest.approx([load.force for load in loads_at(contact, 4, 0)], rel=1e-3)
-    assert (drawn.layout.yaxis.scaleanchor, drawn.layout.hovermode) == ("x", False)
+    values = next(trace for trace in drawing.data if trace.name == "values")
+    printed = [float(text.strip("<b>/").split()[0]) for text in values.text]
+    assert printed == pytest.approx([load.force for load in loads_at(contact, 4, 0)], rel=1e-3)
+    assert (drawing.layout.yaxis.scaleanchor, drawing.layout.hovermode) == ("x", False)
 
 
 def test_slider_runs_over_a_mesh_cycle() -> None:
     contact = loaded(90.0, phases=np.array([0.0, 0.33, 0.67]))
-    drawn = FIGURES["mesh_deformation"](contact)
-    steps = drawn.layout.sliders[0].steps
-    assert len(drawn.frames) == len(steps) == 3
+    drawing = FIGURES["mesh_deformation"](contact)
+    steps = drawing.layout.sliders[0].steps
+    assert len(drawing.frames) == len(steps) == 3
     assert [step.label.split(":")[0] for step in steps] == [
         "Mesh phase 0",
         "Mesh phase 0.33",
         "Mesh phase 0.67",
     ]
     # the same number of traces in each frame, whatever the number of pairs
-    assert {len(frame.data) for frame in drawn.frames} == {len(drawn.data)}
-    assert len(drawn.to_json()) < 1.5e6
+    assert {len(frame.data) for frame in drawing.frames} == {len(drawing.data)}
+    assert len(drawing.to_json()) < 1.5e6
 
 
 @pytest.mark.parametrize("name", [*STUDIES, "comprehensive_stiffness"])
@@ -231,7 +233,7 @@ def test_harris_map_shows_each_torque_and_the_quietest() -> None:
 def relief(**more: Any) -> Any:
     amount, length = np.array([0.0, 5e-6, 10e-6]), np.array([1e-3, 2e-3])
     flat = np.full((3, 4), 10e-6)
-    given = {
+    fields = {
         "phase": np.arange(4) / 4.0,
         "map_amount": amount,
         "map_length": length,
@@ -248,7 +250,7 @@ def relief(**more: Any) -> Any:
         "transmission_error_before": flat,
         "transmission_error_after": 2.0 * flat,
     }
-    return study(TipReliefOptimum, **{**given, **more})
+    return study(TipReliefOptimum, **{**fields, **more})
 
 
 def test_tip_relief_map_has_amount_across_and_length_upwards() -> None:
@@ -339,13 +341,13 @@ def test_without_tip_corners_the_load_begins_and_ends_at_once() -> None:
 def test_the_phase_of_a_hunting_pair_counts_all_mesh_cycles() -> None:
     late = FlankModification(cumulative_pitch_deviation=(0.0, 9e-6) + (0.0,) * 14)
     contact = loaded(90.0, phases=16, pinion_modification=late)
-    drawn = FIGURES["mesh_deformation"]
-    assert isinstance(drawn, Drawing)
-    words = [
-        next(trace for trace in drawn(contact, phase=phase).data if trace.name == "values").text
+    draw = FIGURES["mesh_deformation"]
+    assert isinstance(draw, Drawing)
+    texts = [
+        next(trace for trace in draw(contact, phase=phase).data if trace.name == "values").text
         for phase in (0.25, 1.25)
     ]
-    assert words[0] != words[1]
+    assert texts[0] != texts[1]
 
 
 @pytest.mark.parametrize(("relief", "name"), [(18e-6, "before"), (0.0, "without relief")])

@@ -80,7 +80,7 @@ def test_campbell_diagram_in_display_units() -> None:
     assert len(met.x) == len(diagram.resonances)
     np.testing.assert_allclose(met.y, [each.frequency for each in diagram.resonances])
     assert "Harmonic 4 meets 5276 Hz, 77 % mesh, at 4947 rpm" in figure.layout.title.text
-    assert [word for word in rising.text if word] == ["4"]
+    assert [label for label in rising.text if label] == ["4"]
     none = campbell(reference_system(), [1.0, 2.0], teeth=16, orders=(1,)).plot()
     assert none.layout.title.text == "None of 1 mesh harmonics meets a natural frequency"
 

@@ -16,31 +16,31 @@ BEAT = 0.88 / (2.0 * np.pi)
 
 
 def test_plane_of_starts_has_one_colour_for_each_attractor():
-    found = basins(
+    basin_plane = basins(
         hysteresis_system(), BEAT, between=((-3.0, 3.0), (-2.0, 2.0)), points=(9, 7), steps=64,
         verdict=False,
     )  # fmt: skip
-    figure = found.plot()
+    figure = basin_plane.plot()
     plane, large, small = figure.data
-    assert np.array_equal(plane.z, found.attractor.T)
+    assert np.array_equal(plane.z, basin_plane.attractor.T)
     assert len({color for _, color in plane.colorscale}) == 3
     assert large.name.startswith("period 1, rms 0.667 m:")
-    assert small.x[0] == pytest.approx(found.attractors[1].position[0, 0])
+    assert small.x[0] == pytest.approx(basin_plane.attractors[1].position[0, 0])
     assert figure.layout.xaxis.title.text == "Q0 [m]"
     assert figure.layout.yaxis.title.text == "Q0 velocity [m/s]"
     assert figure.layout.title.text.startswith("2 attractors coexist")
-    assert found.to_xarray()["share"].values.sum() == pytest.approx(1.0)
+    assert basin_plane.to_xarray()["share"].values.sum() == pytest.approx(1.0)
 
 
 def test_map_shows_period_rms_and_loss():
     beats = np.array([0.7, 0.88, 1.0]) / (2.0 * np.pi)
     over = (("mesh_frequency", beats), ("force_scale", [0.5, 1.0]))
-    found = parameter_map(hysteresis_system(), over=over)
-    figure = found.plot()
+    map_result = parameter_map(hysteresis_system(), over=over)
+    figure = map_result.plot()
     period, rms, loss = figure.data
     assert np.array_equal(period.z, np.zeros((2, 3)))
-    assert rms.z == pytest.approx(found.rms.T)
-    assert loss.z == pytest.approx(100.0 * found.contact_loss_share.T)
+    assert rms.z == pytest.approx(map_result.rms.T)
+    assert loss.z == pytest.approx(100.0 * map_result.contact_loss_share.T)
     assert rms.colorbar.title.text == "Rms [m]"
     assert period.customdata[0][0][1] == "physical"
     assert figure.layout.xaxis.title.text == "Mesh frequency [Hz]"
@@ -69,10 +69,10 @@ def test_portrait_marks_the_backlash():
 
 
 def test_exponents_end_at_their_result():
-    found = lyapunov_exponents(hysteresis_system(), BEAT, cycles=60, transient=60, steps=64)
-    figure = found.plot()
+    exponents = lyapunov_exponents(hysteresis_system(), BEAT, cycles=60, transient=60, steps=64)
+    figure = exponents.plot()
     curves = [trace for trace in figure.data if trace.name == "exponent 1"]
-    assert curves[0].y[-1] == pytest.approx(found.growth.mean(axis=0).max())
+    assert curves[0].y[-1] == pytest.approx(exponents.growth.mean(axis=0).max())
     assert figure.layout.title.text.startswith("Not chaotic")
     assert figure.layout.yaxis.title.text == "Exponent [1/s]"
 

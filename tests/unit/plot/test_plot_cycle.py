@@ -26,9 +26,9 @@ DRIVERS = pytest.mark.parametrize("driver", ["pinion", "wheel"])
 def test_positions_are_those_of_the_path_of_contact(drawable: Any, driver: str) -> None:
     result = drawable(driver)
     expected = path_of_contact(result.case.gear_pair).roll_angles
-    found = roll_angle_positions(result.mesh)
-    assert list(found) == list("ABCDE")
-    for name, angle in found.items():
+    positions = roll_angle_positions(result.mesh)
+    assert list(positions) == list("ABCDE")
+    for name, angle in positions.items():
         assert angle == pytest.approx(expected[name], abs=1e-12)
 
 

@@ -36,8 +36,8 @@ def test_own_words_keep_the_unit() -> None:
 
 
 def test_values_are_shown_in_the_display_unit() -> None:
-    shown = displayed("deflection", np.array([[1e-6, -2e-6]]))
-    np.testing.assert_allclose(shown, [[1.0, -2.0]], rtol=1e-15)
+    values = displayed("deflection", np.array([[1e-6, -2e-6]]))
+    np.testing.assert_allclose(values, [[1.0, -2.0]], rtol=1e-15)
     assert displayed("hertz_pressure", 1.2e9) == pytest.approx(1.2)
     assert display_unit("hertz_pressure") == "GPa"
 

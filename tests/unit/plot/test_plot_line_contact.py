@@ -47,24 +47,24 @@ def bare() -> Any:
 
 def trace(figure: go.Figure, start: str, axis: str = "y") -> Any:
     """The one trace on an axis whose name begins so."""
-    (found,) = (
+    (curve,) = (
         each for each in figure.data if each.name.startswith(start) and (each.yaxis or "y") == axis
     )
-    return found
+    return curve
 
 
 def labels(figure: go.Figure) -> set[str]:
     layout = figure.layout
-    found = [layout[key].title.text for key in layout if key.startswith(("xaxis", "yaxis"))]
-    return {label for label in found if label}
+    titles = [layout[key].title.text for key in layout if key.startswith(("xaxis", "yaxis"))]
+    return {label for label in titles if label}
 
 
 def test_curves_are_those_of_the_solution_in_display_units(contacts: list[Any]) -> None:
-    one = contacts[1]
-    figure = line_contact(one)
-    np.testing.assert_allclose(trace(figure, "oil film").x, 1e6 * one.position)
-    np.testing.assert_allclose(trace(figure, "oil film").y, 1e-9 * one.pressure)
-    np.testing.assert_allclose(trace(figure, "film", "y2").y, 1e6 * one.film)
+    solution = contacts[1]
+    figure = line_contact(solution)
+    np.testing.assert_allclose(trace(figure, "oil film").x, 1e6 * solution.position)
+    np.testing.assert_allclose(trace(figure, "oil film").y, 1e-9 * solution.pressure)
+    np.testing.assert_allclose(trace(figure, "film", "y2").y, 1e6 * solution.film)
     assert labels(figure) == {"Position [µm]", "Pressure [GPa]", "Film [µm]"}
 
 
@@ -78,21 +78,21 @@ def test_dry_pressure_carries_the_load(contacts: list[Any]) -> None:
 
 
 def test_marks_stand_on_the_film(contacts: list[Any]) -> None:
-    one = contacts[1]
-    figure = line_contact(one)
+    solution = contacts[1]
+    figure = line_contact(solution)
     central, least = trace(figure, "central", "y2"), trace(figure, "minimum", "y2")
-    assert (central.x[0], central.y[0]) == (0.0, pytest.approx(1e6 * one.central_film))
-    assert least.y[0] == pytest.approx(1e6 * one.minimum_film)
+    assert (central.x[0], central.y[0]) == (0.0, pytest.approx(1e6 * solution.central_film))
+    assert least.y[0] == pytest.approx(1e6 * solution.minimum_film)
     # the constriction lies between the centre and the outlet
-    assert 0.0 < least.x[0] < 1e6 * one.outlet
+    assert 0.0 < least.x[0] < 1e6 * solution.outlet
     assert least.y[0] == pytest.approx(
-        np.interp(least.x[0], 1e6 * one.position, 1e6 * one.film), 1e-3
+        np.interp(least.x[0], 1e6 * solution.position, 1e6 * solution.film), 1e-3
     )
     places = {note.text: note.x for note in figure.layout.annotations}
-    assert places == {"centre": 0.0, "outlet": pytest.approx(1e6 * one.outlet)}
+    assert places == {"centre": 0.0, "outlet": pytest.approx(1e6 * solution.outlet)}
     spike = trace(figure, "spike")
-    assert spike.x[0] == pytest.approx(1e6 * one.spike_position)
-    assert spike.y[0] == pytest.approx(1e-9 * one.spike_pressure)
+    assert spike.x[0] == pytest.approx(1e6 * solution.spike_position)
+    assert spike.y[0] == pytest.approx(1e-9 * solution.spike_pressure)
 
 
 def test_title_tells_both_films(contacts: list[Any]) -> None:
@@ -104,12 +104,12 @@ def test_dimensionless_form(contacts: list[Any], bare: Any) -> None:
     figure = line_contact(bare)
     assert labels(figure) == {"Position [b]", "Pressure [p<sub>h</sub>]", "Film [b²/R]"}
     np.testing.assert_allclose(trace(figure, "oil film").x, bare.position)
-    one = contacts[1]
-    made = line_contact(one, dimensionless=True)
-    assert labels(made) == labels(figure)
-    film = trace(made, "film", "y2")
-    np.testing.assert_allclose(film.y, one.film * 8e-3 / one.half_width**2)
-    assert trace(made, "dry").y.max() == pytest.approx(1.0)
+    solution = contacts[1]
+    dimensionless = line_contact(solution, dimensionless=True)
+    assert labels(dimensionless) == labels(figure)
+    film = trace(dimensionless, "film", "y2")
+    np.testing.assert_allclose(film.y, solution.film * 8e-3 / solution.half_width**2)
+    assert trace(dimensionless, "dry").y.max() == pytest.approx(1.0)
 
 
 def test_a_pressure_without_spike_has_no_mark(bare: Any) -> None:
@@ -129,15 +129,15 @@ def test_solution_draws_itself(contacts: list[Any]) -> None:
 
 def test_thinning_keeps_the_curves(contacts: list[Any]) -> None:
     fine = solve_line_contact(LOADS[2], 8e-3, 3.0722, OIL, 2.2e11, nodes=4097)
-    kept = thinned(fine, 200)
-    assert len(kept) <= 200
-    assert (kept[0], kept[-1]) == (0, 4096)
-    assert np.all(np.diff(kept) > 0)
-    assert fine.pressure[kept].max() == fine.pressure.max()
+    thin = thinned(fine, 200)
+    assert len(thin) <= 200
+    assert (thin[0], thin[-1]) == (0, 4096)
+    assert np.all(np.diff(thin) > 0)
+    assert fine.pressure[thin].max() == fine.pressure.max()
     for values, size in ((fine.pressure, fine.hertz_pressure), (fine.film, fine.central_film)):
-        between = np.interp(fine.position, fine.position[kept], values[kept])
-        near = fine.film < 3.0 * fine.central_film
-        assert np.abs(between - values)[near].max() < 0.01 * size
+        between = np.interp(fine.position, fine.position[thin], values[thin])
+        near_contact = fine.film < 3.0 * fine.central_film
+        assert np.abs(between - values)[near_contact].max() < 0.01 * size
     assert len(thinned(contacts[0], 5000)) == 513
 
 
@@ -146,8 +146,8 @@ def test_comparison_names_the_thinnest(contacts: list[Any]) -> None:
     figure = compare_line_contacts(contacts, names)
     assert figure.layout.title.text.startswith("The thinnest film, 0.83")
     assert figure.layout.title.text.endswith(" µm, is that of 300 N·m")
-    for one, name in zip(contacts, names, strict=True):
-        assert trace(figure, name).y.max() == pytest.approx(1e-9 * one.pressure.max())
+    for solution, name in zip(contacts, names, strict=True):
+        assert trace(figure, name).y.max() == pytest.approx(1e-9 * solution.pressure.max())
     looks = [(trace(figure, name).line.color, trace(figure, name).line.dash) for name in names]
     assert len({color for color, _ in looks}) == len({dash for _, dash in looks}) == 3
 
@@ -180,17 +180,19 @@ LETTERS = SimpleNamespace(A=9e-3, B=11e-3, C=12e-3, D=13e-3, E=16e-3)
 def test_animation_moves_profile_and_marks(contacts: list[Any]) -> None:
     figure = film_along_path(contacts, PATH, path_of_contact=LETTERS)
     assert [frame.name for frame in figure.frames] == ["0", "1", "2"]
-    for one, at, frame in zip(contacts, PATH, figure.frames, strict=True):
+    for solution, at, frame in zip(contacts, PATH, figure.frames, strict=True):
         moved = [figure.data[number] for number in frame.traces]
         assert [each.name for each in frame.data] == [each.name for each in moved]
         assert [each.yaxis for each in frame.data] == [each.yaxis for each in moved]
         pressure, film, load, least, dry = frame.data
-        assert max(pressure.y) == pytest.approx(1e-9 * one.pressure.max(), rel=1e-6)
-        assert np.interp(0.0, film.x, film.y) == pytest.approx(1e6 * one.central_film, rel=1e-3)
-        assert (load.x[0], load.y[0]) == pytest.approx((1e3 * at, 1e-3 * one.load_per_width))
-        assert (least.x[0], least.y[0]) == pytest.approx((1e3 * at, 1e6 * one.minimum_film))
+        assert max(pressure.y) == pytest.approx(1e-9 * solution.pressure.max(), rel=1e-6)
+        assert np.interp(0.0, film.x, film.y) == pytest.approx(
+            1e6 * solution.central_film, rel=1e-3
+        )
+        assert (load.x[0], load.y[0]) == pytest.approx((1e3 * at, 1e-3 * solution.load_per_width))
+        assert (least.x[0], least.y[0]) == pytest.approx((1e3 * at, 1e6 * solution.minimum_film))
         assert len(pressure.x) <= 200
-        assert max(dry.y) == pytest.approx(1e-9 * one.hertz_pressure, rel=1e-6)
+        assert max(dry.y) == pytest.approx(1e-9 * solution.hertz_pressure, rel=1e-6)
     assert {note.text for note in figure.layout.annotations} == set("ABCDE")
     steps = figure.layout.sliders[0].steps
     assert [step.args[0][0] for step in steps] == ["0", "1", "2"]
@@ -205,8 +207,8 @@ def test_animation_runs_from_left_to_right(contacts: list[Any]) -> None:
 
 
 def test_animation_is_a_small_file(contacts: list[Any]) -> None:
-    many = [contacts[number % 3] for number in range(30)]
-    text = film_along_path(many, np.linspace(9e-3, 16e-3, 30)).to_json()
+    solutions = [contacts[number % 3] for number in range(30)]
+    text = film_along_path(solutions, np.linspace(9e-3, 16e-3, 30)).to_json()
     assert len(text) < 500_000
 
 
@@ -227,8 +229,8 @@ def test_response_over_the_frequency(contacts: list[Any], bare: Any) -> None:
     np.testing.assert_allclose(trace(figure, "stiffness", "y2").y[:3], 1e-6 * stiffness)
     np.testing.assert_allclose(trace(figure, "damping", "y3").y[:3], damping)
     # um/kN is 1e-9 m/N
-    both = np.abs(stiffness + 2j * np.pi * at * damping)
-    np.testing.assert_allclose(trace(figure, "compliance").y[:3], 1e9 / both)
+    response = np.abs(stiffness + 2j * np.pi * at * damping)
+    np.testing.assert_allclose(trace(figure, "compliance").y[:3], 1e9 / response)
     (note,) = figure.layout.annotations
     # u_e over twice the half width, on an axis of powers of ten
     assert note.x == pytest.approx(math.log10(3.0722 / (2.0 * 116.989e-6)), abs=1e-4)
@@ -260,7 +262,7 @@ def test_response_tells_where_the_stiffness_at_rest_ends() -> None:
 def transient(impose: str = "load") -> Any:
     """A contact whose load doubles within 1 ms, as a result of the solver."""
     time = np.linspace(0.0, 1e-3, 101)
-    kept = np.arange(0, 101, 10)
+    times = np.arange(0, 101, 10)
     position = np.linspace(-4e-4, 2e-4, 61)
     pressure = 1e9 * np.sqrt(np.maximum(1.0 - (position / 1e-4) ** 2, 0.0))
     film = 1e-6 + np.maximum(np.abs(position) - 1e-4, 0.0) ** 2 / 16e-3
@@ -273,7 +275,7 @@ def transient(impose: str = "load") -> Any:
         maximum_pressure=0.7e9 * np.sqrt(1.0 + 1e3 * time),
         outlet=np.full(101, 1.2e-4),
         position=position,
-        stored_instants=kept,
+        stored_instants=times,
         pressure=np.tile(pressure, (11, 1)),
         film=np.tile(film, (11, 1)),
         half_width=1e-4,
@@ -305,9 +307,9 @@ def test_animation_over_time() -> None:
     assert max(first.x) == pytest.approx(100.0 / math.sqrt(2.0), rel=1e-6)
     for dry, load in ((first, 100.0), (last, 200.0)):
         assert np.trapezoid(dry.y, dry.x) == pytest.approx(load, rel=5e-3)
-    whole = figure.data[0]
-    assert len(whole.x) == 101
-    assert whole.y[-1] == pytest.approx(200.0)
+    profile = figure.data[0]
+    assert len(profile.x) == 101
+    assert profile.y[-1] == pytest.approx(200.0)
     assert all("dry" not in each.name for each in film_over_time(transient("approach")).data)
     bare = transient()
     bare.stored_instants = bare.stored_instants[:1]

@@ -20,10 +20,10 @@ def curves(count: int) -> list[dict[str, object]]:
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_panels_fill_the_height_from_the_top_without_overlap(count: int) -> None:
     heights = [1.0, 0.5, 2.0][:count]
-    made = stack(
+    figure = stack(
         "T", "x", [Panel(f"y{n}", curves(1), height=h) for n, h in enumerate(heights)]
     ).figure()
-    axes = [made.layout[f"yaxis{'' if n == 0 else n + 1}"] for n in range(count)]
+    axes = [figure.layout[f"yaxis{'' if n == 0 else n + 1}"] for n in range(count)]
     assert axes[0].domain[1] == pytest.approx(1.0)
     assert axes[-1].domain[0] == pytest.approx(0.0, abs=1e-12)
     for upper, lower in itertools.pairwise(axes):
@@ -31,25 +31,25 @@ def test_panels_fill_the_height_from_the_top_without_overlap(count: int) -> None
     spans = [axis.domain[1] - axis.domain[0] for axis in axes]
     assert [span / spans[0] for span in spans] == pytest.approx(heights)
     assert [axis.title.text for axis in axes] == [f"y{n}" for n in range(count)]
-    assert made.layout.xaxis.anchor == ("y" if count == 1 else f"y{count}")
+    assert figure.layout.xaxis.anchor == ("y" if count == 1 else f"y{count}")
 
 
 def test_panels_grow_the_figure() -> None:
-    one, two = (stack("T", "x", [Panel("y", curves(1))] * count).figure() for count in (1, 2))
-    assert two.layout.height > 1.5 * one.layout.height
+    single, two = (stack("T", "x", [Panel("y", curves(1))] * count).figure() for count in (1, 2))
+    assert two.layout.height > 1.5 * single.layout.height
 
 
 def test_a_single_curve_has_no_legend_and_several_have_one_beside_their_panel() -> None:
-    made = stack("T", "x", [Panel("a", curves(1)), Panel("b", curves(2))]).figure()
-    assert [trace.showlegend for trace in made.data] == [False, True, True]
-    assert [trace.legend for trace in made.data] == ["legend", "legend2", "legend2"]
-    assert made.layout.legend2.y == pytest.approx(made.layout.yaxis2.domain[1])
+    figure = stack("T", "x", [Panel("a", curves(1)), Panel("b", curves(2))]).figure()
+    assert [trace.showlegend for trace in figure.data] == [False, True, True]
+    assert [trace.legend for trace in figure.data] == ["legend", "legend2", "legend2"]
+    assert figure.layout.legend2.y == pytest.approx(figure.layout.yaxis2.domain[1])
 
 
 def test_layout_of_the_common_axis_is_merged() -> None:
-    made = stack("T", "x", [Panel("a", curves(1))], {"xaxis": {"range": [0, 3]}}).figure()
-    assert made.layout.xaxis.title.text == "x"
-    assert tuple(made.layout.xaxis.range) == (0, 3)
+    figure = stack("T", "x", [Panel("a", curves(1))], {"xaxis": {"range": [0, 3]}}).figure()
+    assert figure.layout.xaxis.title.text == "x"
+    assert tuple(figure.layout.xaxis.range) == (0, 3)
 
 
 def test_marks_at_one_place_share_a_line_and_a_name() -> None:
@@ -104,5 +104,5 @@ def test_every_point_of_a_curve_is_drawn() -> None:
     """By default plotly leaves points out, so that smooth curves look like polygons."""
     x = np.linspace(0.0, 1.0, 2000)
     assert line(x, x**2, "smooth", "black")["line"]["simplify"] is False
-    many = np.linspace(0.0, 1.0, 200_000)
-    assert "simplify" not in line(many, many, "long record", "black")["line"]
+    points = np.linspace(0.0, 1.0, 200_000)
+    assert "simplify" not in line(points, points, "long record", "black")["line"]

@@ -33,9 +33,9 @@ def test_every_change_is_marked_and_nothing_else(ratio: float) -> None:
 
 @RATIOS
 def test_words_name_the_numbers_of_pairs(ratio: float) -> None:
-    words = ("no", "one", "two", "three", "four")
+    number_words = ("no", "one", "two", "three", "four")
     counts = {pairs(ratio, age) for age in np.linspace(1e-6, ratio - 1e-6, 997)}
-    said = sharing_sentence(ratio).lower()
+    sentence = sharing_sentence(ratio).lower()
     for count in counts:
-        assert words[count] in said or str(count) in said
-    assert ("alone" in said) == (1 in counts)
+        assert number_words[count] in sentence or str(count) in sentence
+    assert ("alone" in sentence) == (1 in counts)

@@ -46,25 +46,25 @@ def test_order_map_over_time_where_the_speed_turns_back(run_up):
 
 
 def test_spectrogram_says_where_and_when():
-    made = spectrogram(np.where(TIME < 2.0, 0.1, 1.0) * np.cos(2 * np.pi * 250 * TIME), RATE)
-    figure = draw_spectrogram(made)
+    levels = spectrogram(np.where(TIME < 2.0, 0.1, 1.0) * np.cos(2 * np.pi * 250 * TIME), RATE)
+    figure = draw_spectrogram(levels)
     assert "Hz after" in figure.layout.title.text
     assert figure.layout.yaxis.title.text == "Frequency [Hz]"
     assert figure.layout.xaxis.title.text == "Time [s]"
     surface, level = figure.data
     assert np.asarray(level.y)[-1] == pytest.approx(1.0 / np.sqrt(2.0), rel=0.01)
-    assert np.asarray(surface.z).shape == made.amplitude[1:].shape
+    assert np.asarray(surface.z).shape == levels.amplitude[1:].shape
 
 
 def test_large_maps_keep_their_peaks():
     size = np.full((1000, 1500), 1e-6)
     size[777, 1234] = 2.0
-    made = amplitude_heatmap(np.arange(1500.0), np.arange(1000.0), size, "N", "")
-    line, column = np.unravel_index(np.argmax(made["z"]), made["z"].shape)
-    assert max(made["z"].shape) <= 480
-    assert made["x"][column] == pytest.approx(1234, abs=2)
-    assert made["y"][line] == pytest.approx(777, abs=2)
-    assert made["z"].min() == -3.0
+    heatmap = amplitude_heatmap(np.arange(1500.0), np.arange(1000.0), size, "N", "")
+    line, column = np.unravel_index(np.argmax(heatmap["z"]), heatmap["z"].shape)
+    assert max(heatmap["z"].shape) <= 480
+    assert heatmap["x"][column] == pytest.approx(1234, abs=2)
+    assert heatmap["y"][line] == pytest.approx(777, abs=2)
+    assert heatmap["z"].min() == -3.0
 
 
 def test_waterfall_of_an_order_map_stacks_its_spectra(run_up):
@@ -80,8 +80,8 @@ def test_waterfall_of_an_order_map_stacks_its_spectra(run_up):
 
 
 def test_waterfall_of_a_spectrogram_is_over_frequency():
-    made = spectrogram(np.cos(2 * np.pi * 250 * TIME), RATE, block_length=200, unit="N")
-    figure = waterfall(made)
+    levels = spectrogram(np.cos(2 * np.pi * 250 * TIME), RATE, block_length=200, unit="N")
+    figure = waterfall(levels)
     assert "1.00 N, 250 Hz at" in figure.layout.title.text
     assert figure.layout.xaxis.title.text == "Frequency [Hz]"
     assert len(figure.data) == 40

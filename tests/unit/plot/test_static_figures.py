@@ -84,10 +84,10 @@ def test_tip_corners_extend_the_life_of_a_pair(result: Any) -> None:
     grey = [shape for shape in figure.layout.shapes if shape.type == "rect"]
     assert grey[0].x1 == pytest.approx(marks(figure)["A"])
     assert grey[1].x0 == pytest.approx(marks(figure)["E"])
-    drawn = FIGURES["load_sharing"]
-    assert isinstance(drawn, Drawing)
-    assert "tip corner" in drawn.caption_of(changed)
-    assert "tip corner" not in drawn.caption_of(result)
+    draw = FIGURES["load_sharing"]
+    assert isinstance(draw, Drawing)
+    assert "tip corner" in draw.caption_of(changed)
+    assert "tip corner" not in draw.caption_of(result)
 
 
 @pytest.mark.parametrize("driver", ["pinion", "wheel"])
@@ -134,11 +134,11 @@ def test_perfect_flanks_are_told_instead_of_drawn(result: Any) -> None:
 def test_tip_relief_of_the_pinion_lies_where_its_tip_touches(driver: str, end: int) -> None:
     pair = pair_with(driver, pinion_modification=FlankModification(tip_relief=12e-6))
     figure = flank_modification(pair)
-    pinion, wheel, both = (curve(figure, name) for name in ("pinion", "wheel", "both"))
+    pinion, wheel, combined = (curve(figure, name) for name in ("pinion", "wheel", "both"))
     assert pinion.y[end] == pytest.approx(12.0)
     assert pinion.y[-1 - end] == pytest.approx(0.0)
     assert np.all(np.asarray(wheel.y) == 0.0)
-    assert both.y == pytest.approx(np.asarray(pinion.y))
+    assert combined.y == pytest.approx(np.asarray(pinion.y))
     assert "12.0 µm" in figure.layout.title.text
     assert {trace.yaxis for trace in figure.data} == {"y"}
 

@@ -15,9 +15,9 @@ NAMES = (
 
 def compared():
     """A summary in which each figure is a little more than with nominal friction."""
-    own = {name: 1e-5 if "error" in name else 200.0 for name in NAMES}
-    other = {f"{name}_nominal_friction": value / 1.25 for name, value in own.items()}
-    return own | other | {"friction_fit_error": 1e-3}
+    values = {name: 1e-5 if "error" in name else 200.0 for name in NAMES}
+    other = {f"{name}_nominal_friction": value / 1.25 for name, value in values.items()}
+    return values | other | {"friction_fit_error": 1e-3}
 
 
 def test_five_figures_in_display_units_with_their_change():

@@ -32,15 +32,15 @@ class Outline(HTMLParser):
         self.close()
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        known = {name: value or "" for name, value in attrs}
+        attributes = {name: value or "" for name, value in attrs}
         self._heading = tag in {"h1", "h2"}
-        self.ids.add(known.get("id", ""))
+        self.ids.add(attributes.get("id", ""))
         if tag not in {"meta", "link", "br", "wbr"}:
             self.open.append(tag)
         if tag == "a":
-            self.links.append(known["href"])
-        elif "src" in known or "href" in known:
-            self.fetched.append(known.get("src", known.get("href", "")))
+            self.links.append(attributes["href"])
+        elif "src" in attributes or "href" in attributes:
+            self.fetched.append(attributes.get("src", attributes.get("href", "")))
 
     def handle_endtag(self, tag: str) -> None:
         self._heading = False
@@ -91,9 +91,9 @@ def test_links_lead_to_sections(outline: Outline) -> None:
 
 def test_nothing_is_fetched(page: str, outline: Outline) -> None:
     assert outline.fetched == ["data:,"]
-    own = page.replace(get_plotlyjs(), "")
-    assert len(own) < len(page)
-    assert not re.search(r"https?://|url\(|@import", own)
+    text = page.replace(get_plotlyjs(), "")
+    assert len(text) < len(page)
+    assert not re.search(r"https?://|url\(|@import", text)
 
 
 def test_plotly_is_there_once(page: str) -> None:
@@ -105,9 +105,9 @@ def test_size(page: str) -> None:
 
 
 def test_every_drawn_figure_has_its_place_and_its_data(page: str, outline: Outline) -> None:
-    found = re.search(r"const figures = (\{.*?\n\});", page, re.DOTALL)
-    assert found
-    figures = json.loads(found.group(1))
+    match = re.search(r"const figures = (\{.*?\n\});", page, re.DOTALL)
+    assert match
+    figures = json.loads(match.group(1))
     missing = {
         "campbell",
         "film",
@@ -201,8 +201,8 @@ def test_report_is_written_whole_or_not_at_all(
 ) -> None:
     target = tmp_path / "report.html"
     assert write_report(drawable(), target) == target
-    whole = target.read_text(encoding="utf-8")
-    assert whole.startswith("<!DOCTYPE html>")
+    report = target.read_text(encoding="utf-8")
+    assert report.startswith("<!DOCTYPE html>")
 
     def broken(result: Any) -> str:
         raise KeyboardInterrupt
@@ -210,7 +210,7 @@ def test_report_is_written_whole_or_not_at_all(
     monkeypatch.setattr(html, "render_report", broken)
     with pytest.raises(KeyboardInterrupt):
         write_report(drawable(), target)
-    assert target.read_text(encoding="utf-8") == whole
+    assert target.read_text(encoding="utf-8") == report
     assert [file.name for file in tmp_path.iterdir()] == ["report.html"]
 
 

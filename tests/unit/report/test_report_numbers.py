@@ -14,7 +14,7 @@ from tribodyn.units import parse
 
 
 @pytest.mark.parametrize(
-    ("name", "words"),
+    ("name", "label"),
     [
         ("mesh_frequency", "Mesh frequency"),
         ("rms_mesh_force", "Mesh force, rms"),
@@ -34,12 +34,12 @@ from tribodyn.units import parse
         ),
     ],
 )
-def test_names_read_like_words(name: str, words: str) -> None:
-    assert in_words(name) == words
+def test_names_read_like_words(name: str, label: str) -> None:
+    assert in_words(name) == label
 
 
 @pytest.mark.parametrize(
-    ("name", "words"),
+    ("name", "label"),
     [
         ("rms_bearing_force_loa_pinion",
          "rms bearing force along the line of action of the pinion"),
@@ -48,12 +48,12 @@ def test_names_read_like_words(name: str, words: str) -> None:
         ("efficiency", "efficiency"),
     ],
 )  # fmt: skip
-def test_names_read_within_a_sentence(name: str, words: str) -> None:
-    assert in_a_sentence(name) == words
+def test_names_read_within_a_sentence(name: str, label: str) -> None:
+    assert in_a_sentence(name) == label
 
 
 @pytest.mark.parametrize(
-    ("value", "unit", "digits", "shown"),
+    ("value", "unit", "digits", "text"),
     [
         (18350.0, "N/µm", 4, ("18.35", "kN/µm")),
         (9999.0, "N", 4, ("9999", "N")),
@@ -65,9 +65,9 @@ def test_names_read_within_a_sentence(name: str, words: str) -> None:
     ],
 )
 def test_large_numbers_have_no_power_of_ten(
-    value: float, unit: str, digits: int, shown: tuple[str, str]
+    value: float, unit: str, digits: int, text: tuple[str, str]
 ) -> None:
-    assert engineering(value, unit, digits) == shown
+    assert engineering(value, unit, digits) == text
 
 
 def test_rows_stand_by_topic() -> None:
@@ -87,8 +87,8 @@ def test_both_columns_are_the_same_value() -> None:
     for name, figure in SUMMARY.items():
         value = 300.25 if figure.unit == "K" else 0.0123  # degrees are counted from elsewhere
         row = describe(name, value)
-        shown = parse(f"{row.value} {row.unit}".strip(), figure.unit)
-        assert shown == pytest.approx(value, rel=1e-4)
+        value_on_page = parse(f"{row.value} {row.unit}".strip(), figure.unit)
+        assert value_on_page == pytest.approx(value, rel=1e-4)
         assert float(row.si) == value
 
 

@@ -40,8 +40,8 @@ def test_a_contact_of_larger_radius_is_on_the_clockwise_tooth(fzg):
     y = sine * load.half_thickness + cosine * load.height
     # Loads on both lie on one line, the line of action.
     along = np.array([-np.cos(load.load_angle[0]), -np.sin(load.load_angle[0])])
-    apart = np.array([x[0] - x[1], y[0] - y[1]])
-    assert apart == pytest.approx(gear.base_pitch * along, rel=1e-9)
+    offset = np.array([x[0] - x[1], y[0] - y[1]])
+    assert offset == pytest.approx(gear.base_pitch * along, rel=1e-9)
 
 
 def test_the_side_of_the_larger_radius_gives_way_more(fzg, steel):
@@ -78,19 +78,21 @@ def test_the_whole_gear_takes_energy_under_any_loads(steel, bore):
     gear = standard_gear(17, bore, 0.2)
     influence = analytic_influence(gear, steel, neighbours=8)
     rho = np.linspace(influence.curvature_radius[0], influence.curvature_radius[-1], 5)
-    own = influence.at(rho)
+    self_compliance = influence.at(rho)
     matrix = np.zeros((17, 5, 17, 5))
     for loaded in range(17):
-        for seen in range(17):
-            on = (seen - loaded + 8) % 17 - 8
+        for seed in range(17):
+            on = (seed - loaded + 8) % 17 - 8
             if on == 0:
                 # The places on one flank see each other at least as the ring carries them.
-                matrix[loaded, :, seen, :] = np.diag(own)
+                matrix[loaded, :, seed, :] = np.diag(self_compliance)
             else:
-                matrix[loaded, :, seen, :] = influence.between(rho[:, None], rho[None, :], on)
+                matrix[loaded, :, seed, :] = influence.between(rho[:, None], rho[None, :], on)
     one_load_per_tooth = matrix[:, 2, :, 2]
     assert one_load_per_tooth == pytest.approx(one_load_per_tooth.T, rel=1e-9)
-    assert np.linalg.eigvalsh(one_load_per_tooth).min() > 0.3 * (own[2] - matrix[0, 2, 1, 2])
+    assert np.linalg.eigvalsh(one_load_per_tooth).min() > 0.3 * (
+        self_compliance[2] - matrix[0, 2, 1, 2]
+    )
 
 
 def test_cubic_splines_between_the_nodes_are_enough(fzg, steel):
@@ -99,8 +101,8 @@ def test_cubic_splines_between_the_nodes_are_enough(fzg, steel):
         low, high = coarse.curvature_radius[[0, -1]]
         rho = np.linspace(low, high, 400)
         assert coarse.at(rho) == pytest.approx(fine.at(rho), rel=1e-4)
-        seen = rho[::-1]
-        assert coarse.between(rho, seen, 1) == pytest.approx(fine.between(rho, seen, 1), rel=1e-6)
+        mates = rho[::-1]
+        assert coarse.between(rho, mates, 1) == pytest.approx(fine.between(rho, mates, 1), rel=1e-6)
 
 
 def test_more_waves_and_points_change_little(fzg, steel, monkeypatch):
@@ -129,30 +131,30 @@ def test_the_ring_is_what_the_foundation_formula_was_fitted_to(steel, teeth, bor
 def test_the_formula_is_that_of_the_tooth_compliance(steel):
     gear = standard_gear(32, 0.1)
     for reference in ("bore", "rim"):
-        found = analytic_influence(gear, steel, foundation="sainsot", reference=reference)
-        load = load_point(gear, found.curvature_radius)
+        influence = analytic_influence(gear, steel, foundation="sainsot", reference=reference)
+        load = load_point(gear, influence.curvature_radius)
         parts = tooth_compliance(gear, load, 1.0, steel, reference)
-        beam = found.self_compliance - parts.foundation - parts.wind_up
+        beam = influence.self_compliance - parts.foundation - parts.wind_up
         # The beam of the other ends under the load and not where the load crosses the axis.
-        whole = parts.bending + parts.shear + parts.axial
-        assert np.all((beam > 0.2 * whole) & (beam < 1.001 * whole))
+        compliance = parts.bending + parts.shear + parts.axial
+        assert np.all((beam > 0.2 * compliance) & (beam < 1.001 * compliance))
 
 
 def test_a_thinner_rim_is_stiffer_in_torsion_and_its_neighbours_matter_less(steel):
     bores = (0.3, 0.6, 0.9)
-    found = [analytic_influence(standard_gear(40, bore), steel) for bore in bores]
-    own = [gear.self_compliance[12] for gear in found]
-    cross = [gear.cross_compliance[0, 12, 12] for gear in found]
-    assert own == sorted(own, reverse=True)
+    influences = [analytic_influence(standard_gear(40, bore), steel) for bore in bores]
+    self_compliance = [gear.self_compliance[12] for gear in influences]
+    cross = [gear.cross_compliance[0, 12, 12] for gear in influences]
+    assert self_compliance == sorted(self_compliance, reverse=True)
     assert cross == sorted(cross, reverse=True)
-    assert cross[2] / own[2] < 0.25 * cross[0] / own[0]
+    assert cross[2] / self_compliance[2] < 0.25 * cross[0] / self_compliance[0]
 
 
 def test_a_gear_without_bore_can_be_seen_from_its_rim(steel):
     solid = standard_gear(24, 0.0)
-    held = dataclasses.replace(solid, bore_diameter=2.0 * solid.root_radius / 7.0)
-    found, same = (analytic_influence(gear, steel, reference="rim") for gear in (solid, held))
-    assert found.self_compliance == pytest.approx(same.self_compliance, rel=1e-9)
+    bored = dataclasses.replace(solid, bore_diameter=2.0 * solid.root_radius / 7.0)
+    influence, same = (analytic_influence(gear, steel, reference="rim") for gear in (solid, bored))
+    assert influence.self_compliance == pytest.approx(same.self_compliance, rel=1e-9)
     with pytest.raises(InputError, match='reference = "rim"'):
         analytic_influence(solid, steel)
 

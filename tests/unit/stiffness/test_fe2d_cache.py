@@ -44,8 +44,8 @@ def counted(folder, monkeypatch) -> list[tuple[object, ...]]:
     def stand_in(gear: SpurGear, nu: float, neighbours: int, size: MeshSize) -> UnitCompliances:
         calls.append((gear, nu, neighbours, size))
         rho = np.linspace(1.0, 2.0, NODES) * gear.normal_module
-        own = np.full(NODES, 3.0 + len(calls))
-        return UnitCompliances(rho, own, np.ones((neighbours, NODES, NODES)))
+        self_values = np.full(NODES, 3.0 + len(calls))
+        return UnitCompliances(rho, self_values, np.ones((neighbours, NODES, NODES)))
 
     monkeypatch.setattr(provider, "unit_compliances", stand_in)
     return calls
@@ -110,12 +110,12 @@ def test_other_sources_are_computed(counted, monkeypatch):
 
 
 def test_every_source_that_counts_is_in_the_digest():
-    here = Path(provider.__file__).parent
+    package = Path(provider.__file__).parent
     listed = set(provider._SOURCES[0][1].split())
     kept_out = {"__init__", "picture"}
-    assert listed | kept_out == {path.stem for path in here.glob("*.py")}
+    assert listed | kept_out == {path.stem for path in package.glob("*.py")}
     for folder, names in provider._SOURCES:
-        assert all((here / folder / f"{name}.py").is_file() for name in names.split())
+        assert all((package / folder / f"{name}.py").is_file() for name in names.split())
 
 
 def test_without_cache_nothing_is_kept(counted, folder):
@@ -130,7 +130,7 @@ def test_damaged_file_is_ignored_and_written_anew(counted, folder, damage):
     fe2d_influence(gear_of(), STEEL)
     (path,) = files(folder)
     good = path.read_bytes()
-    kept = dict(np.load(path))
+    stored = dict(np.load(path))
     if damage == "cut":
         path.write_bytes(good[: len(good) // 2])
     elif damage == "text":
@@ -138,11 +138,11 @@ def test_damaged_file_is_ignored_and_written_anew(counted, folder, damage):
     elif damage == "empty":
         path.write_bytes(b"")
     elif damage == "shape":
-        np.savez(path, **{**kept, "self_compliance": np.ones(3)})
+        np.savez(path, **{**stored, "self_compliance": np.ones(3)})
     elif damage == "names":
         np.savez(path, other=np.ones(3))
     else:
-        np.savez(path, **{**kept, "self_compliance": np.full(NODES, np.nan)})
+        np.savez(path, **{**stored, "self_compliance": np.full(NODES, np.nan)})
     fe2d_influence(gear_of(), STEEL)
     assert len(counted) == 2
     fe2d_influence(gear_of(), STEEL)
@@ -195,18 +195,18 @@ def test_folder_of_the_platform(monkeypatch, tmp_path):
 def test_kept_result_is_the_computed_one(folder):
     coarse = MeshSize(flank=0.15, largest=0.3, growth=2.0, body_growth=0.6, body_ratio=0.4)
     first = fe2d_influence(gear_of(), STEEL, size=coarse)
-    kept = fe2d_influence(gear_of(), STEEL, size=coarse)
+    cached = fe2d_influence(gear_of(), STEEL, size=coarse)
     fresh = fe2d_influence(gear_of(), STEEL, size=coarse, cache=False)
-    for one in (kept, fresh):
-        assert one.self_compliance == pytest.approx(first.self_compliance, rel=1e-12)
-        assert one.cross_compliance == pytest.approx(first.cross_compliance, rel=1e-12)
+    for influence in (cached, fresh):
+        assert influence.self_compliance == pytest.approx(first.self_compliance, rel=1e-12)
+        assert influence.cross_compliance == pytest.approx(first.cross_compliance, rel=1e-12)
     assert len(files(folder)) == 1
 
 
-@pytest.mark.parametrize(("asked", "known"), [(1, 1), (2, 2), (3, 2), (9, 2)])
-def test_no_more_neighbours_than_there_are(counted, asked, known):
+@pytest.mark.parametrize(("neighbours", "expected"), [(1, 1), (2, 2), (3, 2), (9, 2)])
+def test_no_more_neighbours_than_there_are(counted, neighbours, expected):
     gear = gear_of(teeth=6, profile_shift_coefficient=0.5, tip_diameter=17e-3, bore_diameter=3e-3)
-    assert fe2d_influence(gear, STEEL, neighbours=asked).neighbours == known
+    assert fe2d_influence(gear, STEEL, neighbours=neighbours).neighbours == expected
 
 
 def test_wrong_requests_are_refused(counted):

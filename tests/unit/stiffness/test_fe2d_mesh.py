@@ -70,8 +70,8 @@ def areas(mesh: SectorMesh) -> np.ndarray:
 
 def test_area_is_that_of_the_section(gear, mesh):
     section = section_moments(gear)[0] - 0.25 * math.pi * gear.bore_diameter**2
-    found = mesh.count * areas(mesh).sum() * gear.normal_module**2
-    assert found == pytest.approx(section, rel=3e-6)
+    area = mesh.count * areas(mesh).sum() * gear.normal_module**2
+    assert area == pytest.approx(section, rel=3e-6)
 
 
 def test_no_element_is_far_from_a_rectangle(mesh):
@@ -96,7 +96,7 @@ def test_outline_lies_on_the_exact_curves(gear, mesh):
     points = mesh.nodes[mesh.outline] * gear.normal_module
     radius, angle = np.hypot(*points.T), np.abs(np.arctan2(*points.T))
     flank = (radius > gear.form_radius * (1.0 + 1e-9)) & (radius < gear.tip_radius * (1.0 - 1e-9))
-    exact = [gear.half_tooth_angle(one) for one in radius[flank]]
+    exact = [gear.half_tooth_angle(distance) for distance in radius[flank]]
     assert flank.sum() > 20
     assert angle[flank] == pytest.approx(exact, abs=1e-12)
     assert radius.max() == pytest.approx(gear.tip_radius, rel=1e-12)
@@ -128,10 +128,10 @@ def test_linear_displacement_is_exact_on_the_mesh(gear, mesh):
     matrix = sector_stiffness(plain, plane_stress(1.0, 0.3)).tocsr()
     cuts = np.concatenate([mesh.right_cut, mesh.left_cut])
     boundary = np.unique(np.concatenate([mesh.outline, cuts, mesh.fixed]))
-    given = (2 * boundary[:, None] + np.arange(2)).ravel()
-    free = np.setdiff1d(np.arange(2 * len(mesh.nodes)), given)
+    boundary_dofs = (2 * boundary[:, None] + np.arange(2)).ravel()
+    free = np.setdiff1d(np.arange(2 * len(mesh.nodes)), boundary_dofs)
     moved = exact.ravel().copy()
-    load = -matrix[free][:, given] @ moved[given]
+    load = -matrix[free][:, boundary_dofs] @ moved[boundary_dofs]
     moved[free] = spsolve(matrix[free][:, free].tocsc(), load)
     assert np.abs(moved - exact.ravel()).max() < 1e-10 * np.abs(exact).max()
 

@@ -64,19 +64,19 @@ def test_displacement_grows_with_the_load_and_falls_with_the_modulus(gear):
 
 def test_loads_add_up_and_turn_with_their_tooth(gear):
     pitch = 2.0 * math.pi / 12
-    outline, both = deformed_gear(gear, STEEL, [(0, 7e-3, 1e5), (1, 9e-3, 5e4)])
+    outline, loaded = deformed_gear(gear, STEEL, [(0, 7e-3, 1e5), (1, 9e-3, 5e4)])
     first = deformed_gear(gear, STEEL, [(0, 7e-3, 1e5)])
     second = deformed_gear(gear, STEEL, [(0, 9e-3, 5e4)])
     # tooth 1 stands clockwise; each alone shows three teeth of the four
     per_tooth = (first[0].shape[1] - 1) // 3
-    alone = np.zeros_like(both)
-    there = turned(second[0], -pitch)
-    assert there == pytest.approx(outline[:, : there.shape[1]], abs=1e-12)
+    alone = np.zeros_like(loaded)
+    turned_back = turned(second[0], -pitch)
+    assert turned_back == pytest.approx(outline[:, : turned_back.shape[1]], abs=1e-12)
     assert first[0] == pytest.approx(outline[:, -first[0].shape[1] :], abs=1e-12)
     alone[:, -first[0].shape[1] :] += first[1]
-    alone[:, : there.shape[1]] += turned(second[1], -pitch)
+    alone[:, : turned_back.shape[1]] += turned(second[1], -pitch)
     shared = slice(per_tooth, 3 * per_tooth)
-    assert both[:, shared] == pytest.approx(alone[:, shared], abs=1e-15)
+    assert loaded[:, shared] == pytest.approx(alone[:, shared], abs=1e-15)
 
 
 def test_rim_differs_by_a_turn_of_the_body(gear):

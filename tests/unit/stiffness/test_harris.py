@@ -24,40 +24,42 @@ def pair(fzg):
 
 
 def test_map_is_the_loaded_contact_at_each_torque(pair):
-    found = transmission_error_over_torque(pair, [150.0, 60.0, 150.0], provider="analytic")
-    assert found.torque.tolist() == [60.0, 150.0]
-    for row, torque in enumerate(found.torque):
-        one = loaded_contact(pair, torque, provider="analytic", phases=256)
-        np.testing.assert_allclose(found.transmission_error[row], one.transmission_error, rtol=1e-9)
-        stiffness = one.mesh_stiffness_secant.mean(), one.mesh_stiffness_tangent.mean()
-        assert found.mean_mesh_stiffness_secant[row] == pytest.approx(stiffness[0], rel=1e-9)
-        assert found.mean_mesh_stiffness_tangent[row] == pytest.approx(stiffness[1], rel=1e-9)
+    harris = transmission_error_over_torque(pair, [150.0, 60.0, 150.0], provider="analytic")
+    assert harris.torque.tolist() == [60.0, 150.0]
+    for row, torque in enumerate(harris.torque):
+        single = loaded_contact(pair, torque, provider="analytic", phases=256)
+        np.testing.assert_allclose(
+            harris.transmission_error[row], single.transmission_error, rtol=1e-9
+        )
+        stiffness = single.mesh_stiffness_secant.mean(), single.mesh_stiffness_tangent.mean()
+        assert harris.mean_mesh_stiffness_secant[row] == pytest.approx(stiffness[0], rel=1e-9)
+        assert harris.mean_mesh_stiffness_tangent[row] == pytest.approx(stiffness[1], rel=1e-9)
 
 
 def test_mean_is_force_over_stiffness_in_micrometres(pair):
     # 90 N*m over 33.83 mm is 2660 N; over 2.3e8 N/m that is 11.6 um
-    found = transmission_error_over_torque(pair, 90.0, provider="analytic")
-    assert found.mean_transmission_error[0] == pytest.approx(11.7e-6, rel=0.03)
-    assert found.peak_to_peak_transmission_error[0] == pytest.approx(5.2e-6, rel=0.06)
+    harris = transmission_error_over_torque(pair, 90.0, provider="analytic")
+    assert harris.mean_transmission_error[0] == pytest.approx(11.7e-6, rel=0.03)
+    assert harris.peak_to_peak_transmission_error[0] == pytest.approx(5.2e-6, rel=0.06)
 
 
 def test_harmonics_hold_the_whole_variance(pair):
-    found = transmission_error_over_torque(
+    harris = transmission_error_over_torque(
         pair, [90.0], provider="analytic", phases=64, harmonics=31
     )
-    wave = found.transmission_error[0] - found.mean_transmission_error[0]
+    wave = harris.transmission_error[0] - harris.mean_transmission_error[0]
     middle = abs(np.fft.rfft(wave)[32]) ** 2 / 64**2  # order 32 of 64 phases
-    assert 0.5 * np.sum(found.harmonics[0] ** 2) + middle == pytest.approx(np.var(wave), rel=1e-9)
+    assert 0.5 * np.sum(harris.harmonics[0] ** 2) + middle == pytest.approx(np.var(wave), rel=1e-9)
 
 
 def test_relief_makes_one_torque_the_quietest(pair):
     relieved = with_tip_relief(pair, 12e-6, 4.3e-3)
     torques = np.linspace(20.0, 300.0, 15)
-    found = transmission_error_over_torque(relieved, torques, provider="analytic")
-    assert torques[0] < found.quietest_torque < torques[-1]
+    harris = transmission_error_over_torque(relieved, torques, provider="analytic")
+    assert torques[0] < harris.quietest_torque < torques[-1]
     plain = transmission_error_over_torque(pair, torques, provider="analytic")
     assert plain.quietest_torque == torques[0]
-    assert np.all(found.mean_transmission_error > plain.mean_transmission_error)
+    assert np.all(harris.mean_transmission_error > plain.mean_transmission_error)
     assert plain.unloaded_transmission_error.max() == 0.0
 
 
@@ -66,9 +68,9 @@ def test_corners_of_the_curves_are_where_they_are(pair, amount, length):
     """A grid ten times as fine finds no value beyond the corners, and no other curve between."""
     relieved = with_tip_relief(pair, amount, length)
     torques = [60.0, 150.0]
-    found = transmission_error_over_torque(relieved, torques, provider="analytic")
+    harris = transmission_error_over_torque(relieved, torques, provider="analytic")
     fine = transmission_error_over_torque(relieved, torques, provider="analytic", phases=2560)
-    phase, error = found.curves()
+    phase, error = harris.curves()
     assert np.all(np.diff(phase) >= 0.0)
     for row, exact in enumerate(fine.transmission_error):
         swing = np.ptp(exact)
@@ -76,62 +78,62 @@ def test_corners_of_the_curves_are_where_they_are(pair, amount, length):
         np.testing.assert_allclose(curve, exact, atol=2e-2 * swing, rtol=0)
         over = np.ptp(error[row]) / swing - 1.0
         assert -3e-4 < over < 2e-3  # the corners may lie beyond the fine phases
-        even = np.append(found.transmission_error[row], found.transmission_error[row, 0])
-        cut = np.interp(found.corner_phase, np.append(found.phase, 1.0), even)
-        cut = np.abs(cut - found.corner_transmission_error[row]).max()
+        even = np.append(harris.transmission_error[row], harris.transmission_error[row, 0])
+        cut = np.interp(harris.corner_phase, np.append(harris.phase, 1.0), even)
+        cut = np.abs(cut - harris.corner_transmission_error[row]).max()
         assert cut > 1e-3 * swing  # what even phases alone leave out
 
 
 def test_corners_are_the_ends_of_the_path_and_of_the_reliefs(pair):
     relieved = with_tip_relief(pair, 12e-6, 4.3e-3)
-    found = transmission_error_over_torque(relieved, [60.0], provider="analytic")
+    harris = transmission_error_over_torque(relieved, [60.0], provider="analytic")
     path = path_of_contact(relieved)
     wanted = [path.contact_ratio, 4.3e-3 / pair.base_pitch]
     wanted.append(path.contact_ratio - 4.3e-3 / pair.base_pitch)
     for age in wanted:
-        assert np.min(np.abs(found.corner_phase - age % 1.0)) < 1e-9
+        assert np.min(np.abs(harris.corner_phase - age % 1.0)) < 1e-9
 
 
 def test_teeth_that_differ_are_followed_over_the_hunting_period(fzg):
     steps = (3e-6, -3e-6) * 8
     pair = fzg(pinion_modification=FlankModification(single_pitch_deviation=steps))
-    found = transmission_error_over_torque(pair, [30.0, 60.0], provider="analytic", phases=16)
-    assert found.mesh_cycles == 48
-    assert found.transmission_error.shape == (2, 48 * 16)
+    harris = transmission_error_over_torque(pair, [30.0, 60.0], provider="analytic", phases=16)
+    assert harris.mesh_cycles == 48
+    assert harris.transmission_error.shape == (2, 48 * 16)
     # a tooth in two stands on: every second mesh cycle is another one, and the third like the first
-    error = found.transmission_error[0].reshape(48, 16)
+    error = harris.transmission_error[0].reshape(48, 16)
     np.testing.assert_allclose(error[2], error[0], rtol=1e-9)
     assert np.max(np.abs(error[1] - error[0])) > 0.5e-6
 
 
 def test_parts_that_fit_in_memory_give_the_same(pair, monkeypatch):
     torques = [30.0, 60.0, 90.0, 120.0, 150.0]
-    whole = transmission_error_over_torque(pair, torques, provider="analytic", phases=16)
+    at_once = transmission_error_over_torque(pair, torques, provider="analytic", phases=16)
     monkeypatch.setattr(harris, "_AT_ONCE", 100)
     parts = transmission_error_over_torque(pair, torques, provider="analytic", phases=16)
-    np.testing.assert_allclose(parts.transmission_error, whole.transmission_error, rtol=1e-9)
+    np.testing.assert_allclose(parts.transmission_error, at_once.transmission_error, rtol=1e-9)
     assert parts.torque.tolist() == torques
 
 
 def test_models_whose_stiffness_knows_the_load(pair):
-    found = transmission_error_over_torque(pair, [50.0, 200.0], provider="potential-energy")
-    one = loaded_contact(pair, 200.0, provider="potential-energy", phases=256)
-    np.testing.assert_allclose(found.transmission_error[1], one.transmission_error, rtol=1e-9)
+    harris = transmission_error_over_torque(pair, [50.0, 200.0], provider="potential-energy")
+    single = loaded_contact(pair, 200.0, provider="potential-energy", phases=256)
+    np.testing.assert_allclose(harris.transmission_error[1], single.transmission_error, rtol=1e-9)
 
 
 def test_data_set_and_line(pair):
-    found = transmission_error_over_torque(pair, [60.0, 120.0], provider="analytic", harmonics=4)
-    data = found.to_xarray()
+    harris = transmission_error_over_torque(pair, [60.0, 120.0], provider="analytic", harmonics=4)
+    data = harris.to_xarray()
     corners = data.sizes["corner"]
     assert dict(data.sizes) == {"torque": 2, "phase": 256, "order": 4, "corner": corners}
     assert data["harmonics"].attrs["units"] == "m"
     peak = data["transmission_error"].max("phase") - data["transmission_error"].min("phase")
     np.testing.assert_allclose(data["peak_to_peak_transmission_error"], peak)
-    assert "2 torques from 60 to 120 N*m" in repr(found)
+    assert "2 torques from 60 to 120 N*m" in repr(harris)
 
 
 @pytest.mark.parametrize(
-    ("torque", "options", "told"),
+    ("torque", "options", "message"),
     [
         ([90.0, -1.0], {}, "torque"),
         ([[90.0, 100.0]], {}, "shape"),
@@ -140,8 +142,8 @@ def test_data_set_and_line(pair):
         ([90.0], {"phases": 64, "harmonics": 32}, "1 to 31 harmonics"),
     ],
 )
-def test_what_makes_no_map_is_refused(pair, torque, options, told):
-    with pytest.raises(InputError, match=told):
+def test_what_makes_no_map_is_refused(pair, torque, options, message):
+    with pytest.raises(InputError, match=message):
         transmission_error_over_torque(pair, torque, provider="analytic", **options)
 
 

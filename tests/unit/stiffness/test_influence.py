@@ -26,9 +26,9 @@ def test_between_nodes_a_cubic_is_exact():
 
 
 def test_the_other_side_follows_from_reciprocity():
-    found = table()
-    assert found.between(0.012, 0.017, -1) == pytest.approx(found.between(0.017, 0.012, 1))
-    assert found.between(0.012, 0.017, -1) != pytest.approx(found.between(0.012, 0.017, 1))
+    influence = table()
+    assert influence.between(0.012, 0.017, -1) == pytest.approx(influence.between(0.017, 0.012, 1))
+    assert influence.between(0.012, 0.017, -1) != pytest.approx(influence.between(0.012, 0.017, 1))
 
 
 def test_teeth_further_than_known_do_not_move():
@@ -45,7 +45,7 @@ def test_rounding_is_brought_back_and_more_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("change", "word"),
+    ("change", "message"),
     [
         ({"self_compliance": np.ones(8)}, "shapes"),
         ({"cross_compliance": np.ones((1, 9, 8))}, "shapes"),
@@ -54,9 +54,9 @@ def test_rounding_is_brought_back_and_more_is_refused():
         ({"cross_compliance": np.full((1, 9, 9), np.nan)}, "not finite"),
     ],
 )
-def test_unusable_tables_are_refused(change, word):
+def test_unusable_tables_are_refused(change, message):
     good = {"curvature_radius": RHO, "self_compliance": np.ones(9)}
-    with pytest.raises(InputError, match=word):
+    with pytest.raises(InputError, match=message):
         GearInfluence(**{**good, "cross_compliance": np.ones((1, 9, 9)), **change})
 
 

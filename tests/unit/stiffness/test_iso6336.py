@@ -31,9 +31,9 @@ def make(z1=30, z2=30, **changes):
 
 def test_one_pair_worked_by_hand(steel):
     q = 0.04723 + 0.15551 / 20 + 0.25791 / 60
-    found = iso6336_single_stiffness(make(20, 60), steel, 4000.0)
+    stiffness = iso6336_single_stiffness(make(20, 60), steel, 4000.0)
     # C_B = 1 + 0.5 (1.2 - 1.25) for the rack of ISO 53, profile A.
-    assert found == pytest.approx(0.8e9 * 0.975 / q, rel=1e-12)
+    assert stiffness == pytest.approx(0.8e9 * 0.975 / q, rel=1e-12)
 
 
 def test_profile_shift_worked_by_hand(fzg, steel):
@@ -42,8 +42,8 @@ def test_profile_shift_worked_by_hand(fzg, steel):
         0.04723 + 0.15551 / 16 + 0.25791 / 24 - 0.00635 * x1 - 0.11654 * x1 / 16
         - 0.00193 * x2 - 0.24188 * x2 / 24 + 0.00529 * x1**2 + 0.00182 * x2**2
     )  # fmt: skip
-    found = iso6336_single_stiffness(fzg(), steel, 4000.0)
-    assert found == pytest.approx(0.8e9 * 0.975 / q, rel=1e-12)
+    stiffness = iso6336_single_stiffness(fzg(), steel, 4000.0)
+    assert stiffness == pytest.approx(0.8e9 * 0.975 / q, rel=1e-12)
 
 
 def test_common_gears_lie_where_the_standard_says(steel):

@@ -81,12 +81,16 @@ def test_independent_pairs_share_as_the_model_itself_does():
 def test_models_of_the_literature_give_force_over_their_stiffness(model):
     pair = standard((30, 30))
     options = {"rectangular": {"pair_stiffness": 3e8}, "fourier": {"mean_stiffness": 3e8}}
-    given = options.get(model, {})
-    mesh = loaded_contact(pair, [50.0, 100.0], provider=model, options=given)
+    options_of_model = options.get(model, {})
+    mesh = loaded_contact(pair, [50.0, 100.0], provider=model, options=options_of_model)
     path, touching = path_of_contact(pair).pair_paths(mesh.phase)
     for k, force in enumerate(mesh.total_normal_force):
-        whole = MODELS[model](pair, Material(), path, touching, mesh.phase, force, **given)
-        assert mesh.transmission_error[k] == pytest.approx(force / whole.sum(axis=1), rel=1e-9)
+        force_over_stiffness = MODELS[model](
+            pair, Material(), path, touching, mesh.phase, force, **options_of_model
+        )
+        assert mesh.transmission_error[k] == pytest.approx(
+            force / force_over_stiffness.sum(axis=1), rel=1e-9
+        )
 
 
 def test_either_driver_has_the_same_mesh_mirrored_in_time():
@@ -125,12 +129,12 @@ def test_tip_relief_takes_load_from_the_end_of_the_path_and_keeps_the_middle():
     length = (pair.transverse_contact_ratio - 1.0) * pair.base_pitch
     plain = loaded_contact(pair, 150.0, provider="analytic", phases=256)
     change = FlankModification(tip_relief=10e-6, tip_relief_length=length)
-    both = replace(
+    relieved_pair = replace(
         pair,
         pinion=replace(pair.pinion, modification=change),
         wheel=replace(pair.wheel, modification=change),
     )
-    mesh = loaded_contact(both, 150.0, provider="analytic", phases=256)
+    mesh = loaded_contact(relieved_pair, 150.0, provider="analytic", phases=256)
     assert mesh.peak_to_peak_transmission_error < 0.75 * plain.peak_to_peak_transmission_error
     # Where one unrelieved pair carries alone nothing changes.
     single = (plain.normal_force > 0.0).sum(axis=1) == 1
@@ -140,31 +144,38 @@ def test_tip_relief_takes_load_from_the_end_of_the_path_and_keeps_the_middle():
     # The pinion's tip is at E: the pair about to leave carries less.
     contact = path_of_contact(pair)
     leaving = plain.path > contact.E - 0.2 * (contact.E - contact.D)
-    taken = plain.normal_force[leaving].sum() - mesh.normal_force[leaving].sum()
-    assert taken > 0.3 * plain.normal_force[leaving].sum()
+    shed_load = plain.normal_force[leaving].sum() - mesh.normal_force[leaving].sum()
+    assert shed_load > 0.3 * plain.normal_force[leaving].sum()
 
 
 @pytest.mark.parametrize(("gear", "position"), [("pinion", -8e-6), ("wheel", 8e-6)])
 def test_a_flank_that_stands_proud_takes_load_and_lessens_the_error(gear, position):
     # A driving tooth before its place, or a driven one behind it, meets its mate too early.
     pair = pair_of()
-    one = getattr(pair, gear)
-    proud = FlankModification(cumulative_pitch_deviation=(position, *[0.0] * (one.teeth - 1)))
+    modified_gear = getattr(pair, gear)
+    proud = FlankModification(
+        cumulative_pitch_deviation=(position, *[0.0] * (modified_gear.teeth - 1))
+    )
     mesh = loaded_contact(
-        replace(pair, **{gear: replace(one, modification=proud)}), 90.0, provider="analytic"
+        replace(pair, **{gear: replace(modified_gear, modification=proud)}),
+        90.0,
+        provider="analytic",
     )
     assert mesh.mesh_cycles == 48
     plain = loaded_contact(pair, 90.0, provider="analytic")
     change = mesh.transmission_error - np.tile(plain.transmission_error, 48)
-    turns = 48 // one.teeth
+    turns = 48 // modified_gear.teeth
     # Only while that tooth is in contact, over two or three mesh cycles in each of its turns.
     touched = np.abs(change.reshape(48, 64)).max(axis=1) > 1e-7
-    assert touched.reshape(turns, one.teeth).sum(axis=1).tolist() in ([2] * turns, [3] * turns)
+    assert touched.reshape(turns, modified_gear.teeth).sum(axis=1).tolist() in (
+        [2] * turns,
+        [3] * turns,
+    )
     assert change.max() < 1e-9
     assert change.min() < -3e-6
     cycle = int(np.argmin(change)) // 64
-    here = slice(64 * cycle, 64 * (cycle + 1))
-    assert mesh.load_share[here].max() >= plain.load_share.max()
+    cycle_slice = slice(64 * cycle, 64 * (cycle + 1))
+    assert mesh.load_share[cycle_slice].max() >= plain.load_share.max()
 
 
 def test_run_out_lifts_the_whole_mesh_once_a_turn():
@@ -195,10 +206,10 @@ def test_crowning_and_misalignment_move_the_load_over_the_face():
     assert np.all(np.diff(over_face) <= 0.0) or np.all(np.diff(over_face) >= 0.0)
     assert over_face.max() > 1.5 * over_face.min()
     # Slices of a gear without lead modification change nothing.
-    whole, cut = (
+    uncut, cut = (
         loaded_contact(pair, 90.0, provider="analytic", slices=slices) for slices in (1, 7)
     )
-    assert cut.transmission_error == pytest.approx(whole.transmission_error, rel=1e-10)
+    assert cut.transmission_error == pytest.approx(uncut.transmission_error, rel=1e-10)
 
 
 def test_a_film_in_series_adds_its_compliance_to_each_pair():
@@ -240,10 +251,10 @@ def test_root_loads_are_the_force_at_its_lever():
 
 def test_several_torques_are_the_single_ones_in_any_order():
     pair = pair_of()
-    many = loaded_contact(pair, [200.0, 50.0], provider="analytic")
-    one = loaded_contact(pair, 50.0, provider="analytic")
-    assert many.transmission_error[1] == pytest.approx(one.transmission_error, rel=1e-11)
-    assert many.transmission_error_harmonics(4).shape == (2, 4)
+    several = loaded_contact(pair, [200.0, 50.0], provider="analytic")
+    single = loaded_contact(pair, 50.0, provider="analytic")
+    assert several.transmission_error[1] == pytest.approx(single.transmission_error, rel=1e-11)
+    assert several.transmission_error_harmonics(4).shape == (2, 4)
 
 
 def test_a_data_set_carries_units(tmp_path):

@@ -31,83 +31,93 @@ def problem(seed: int, *, phases: int = 6, pairs: int = 4, slices: int = 1) -> C
 
 @pytest.mark.parametrize("seed", range(6))
 def test_loads_and_approach_are_those_of_the_plain_solver(seed):
-    given = problem(seed)
+    contact_problem = problem(seed)
     totals = np.array([50.0, 700.0, 9000.0])
-    found = given.at_loads(totals)
-    parts = given.compliance
-    for p in range(given.gaps.shape[0]):
+    solution = contact_problem.at_loads(totals)
+    parts = contact_problem.compliance
+    for p in range(contact_problem.gaps.shape[0]):
         for t, total in enumerate(totals):
             arguments = parts.structure[p], parts.local[p], parts.logarithm
-            approach = plain_approach(*arguments, given.gaps[p], given.widths, total)
-            assert found.approach[t, p] == pytest.approx(approach, rel=1e-10)
-            loads = plain_loads(*arguments, given.gaps[p, 0], found.approach[t, p])
-            assert found.load[t, p, 0] == pytest.approx(loads, abs=1e-9 * loads.max())
+            approach = plain_approach(
+                *arguments, contact_problem.gaps[p], contact_problem.widths, total
+            )
+            assert solution.approach[t, p] == pytest.approx(approach, rel=1e-10)
+            loads = plain_loads(*arguments, contact_problem.gaps[p, 0], solution.approach[t, p])
+            assert solution.load[t, p, 0] == pytest.approx(loads, abs=1e-9 * loads.max())
 
 
 def test_slices_together_carry_the_load():
-    given = problem(1, slices=5, phases=3)
-    found = given.at_loads(np.array([4000.0]))
-    assert np.einsum("s,psn->p", given.widths, found.load[0]) == pytest.approx(4000.0, rel=1e-11)
-    parts = given.compliance
+    contact_problem = problem(1, slices=5, phases=3)
+    solution = contact_problem.at_loads(np.array([4000.0]))
+    assert np.einsum("s,psn->p", contact_problem.widths, solution.load[0]) == pytest.approx(
+        4000.0, rel=1e-11
+    )
+    parts = contact_problem.compliance
     for p in range(3):
         arguments = parts.structure[p], parts.local[p], parts.logarithm
-        approach = plain_approach(*arguments, given.gaps[p], given.widths, 4000.0)
-        assert found.approach[0, p] == pytest.approx(approach, rel=1e-10)
+        approach = plain_approach(
+            *arguments, contact_problem.gaps[p], contact_problem.widths, 4000.0
+        )
+        assert solution.approach[0, p] == pytest.approx(approach, rel=1e-10)
 
 
 def test_no_pair_pulls_and_no_flank_sinks_into_another():
-    given = problem(7, phases=40)
-    found = given.at_loads(np.array([2000.0]))
-    load, parts = found.load[0, :, 0], given.compliance
+    contact_problem = problem(7, phases=40)
+    solution = contact_problem.at_loads(np.array([2000.0]))
+    load, parts = solution.load[0, :, 0], contact_problem.compliance
     assert np.all(load >= 0.0)
     assert 0 < (load == 0.0).sum() < load.size
     pressed = load * (parts.local - parts.logarithm * np.log(np.maximum(load, 1e-300)))
     inner = np.einsum("pij,pj->pi", parts.structure, load) + pressed
-    apart = given.gaps[:, 0] + inner - found.approach[0][:, None]
-    assert np.abs(apart[load > 0.0]).max() < 1e-15
-    assert apart[load == 0.0].min() > -1e-15
+    distance = contact_problem.gaps[:, 0] + inner - solution.approach[0][:, None]
+    assert np.abs(distance[load > 0.0]).max() < 1e-15
+    assert distance[load == 0.0].min() > -1e-15
 
 
 def test_force_at_an_approach_is_the_inverse_and_its_slope_the_tangent():
-    given = problem(3)
+    contact_problem = problem(3)
     totals = np.array([300.0, 1000.0, 5000.0])
-    found = given.at_loads(totals)
-    force, slope = given.at_approach(found.approach)
+    solution = contact_problem.at_loads(totals)
+    force, slope = contact_problem.at_approach(solution.approach)
     assert force == pytest.approx(np.broadcast_to(totals[:, None], force.shape), rel=1e-10)
-    assert slope == pytest.approx(found.tangent, rel=1e-9)
+    assert slope == pytest.approx(solution.tangent, rel=1e-9)
     step = 1e-10
-    above, below = (given.at_approach(found.approach + sign * step)[0] for sign in (1.0, -1.0))
-    assert (above - below) / (2.0 * step) == pytest.approx(found.tangent, rel=1e-4)
-    assert given.tangent_at(found.load[1, :, 0]) == pytest.approx(found.tangent[1], rel=1e-10)
+    above, below = (
+        contact_problem.at_approach(solution.approach + sign * step)[0] for sign in (1.0, -1.0)
+    )
+    assert (above - below) / (2.0 * step) == pytest.approx(solution.tangent, rel=1e-4)
+    assert contact_problem.tangent_at(solution.load[1, :, 0]) == pytest.approx(
+        solution.tangent[1], rel=1e-10
+    )
 
 
 def test_approaches_of_another_number_of_phases_never_reach_a_kernel():
-    given = problem(4)
-    for ask, name in ((given.at_approach, "approach"), (given.pickups, "most")):
+    contact_problem = problem(4)
+    for ask, name in ((contact_problem.at_approach, "approach"), (contact_problem.pickups, "most")):
         for wrong in (np.zeros(2), np.zeros((1, 2)), np.zeros((2, 2, 2))):
             with pytest.raises(InputError, match=rf"{name} has the shape \({wrong.shape[0]},"):
                 ask(wrong)
-    for ask, shape in ((given.at_approach, (1, 6)), (given.pickups, 6)):
+    for ask, shape in ((contact_problem.at_approach, (1, 6)), (contact_problem.pickups, 6)):
         with pytest.raises(InputError, match="= -inf m"):
             ask(np.full(shape, -np.inf))
 
 
 def test_below_the_smallest_gap_there_is_no_force():
-    given = problem(4)
-    force, slope = given.at_approach(given.least_gap[None] - 1e-9)
+    contact_problem = problem(4)
+    force, slope = contact_problem.at_approach(contact_problem.least_gap[None] - 1e-9)
     assert not force.any()
     assert not slope.any()
 
 
 def test_a_pair_begins_to_carry_where_it_is_said():
-    given = problem(5, phases=20)
-    most = given.at_loads(np.array([300.0])).approach[0]
-    begin = given.pickups(most)
+    contact_problem = problem(5, phases=20)
+    most = contact_problem.at_loads(np.array([300.0])).approach[0]
+    begin = contact_problem.pickups(most)
     inside = begin < most[:, None] * (1.0 - 1e-9)
     assert 20 < inside.sum() < inside.size
     for p, i in np.argwhere(inside):
-        parts = given.compliance
-        arguments = parts.structure[p], parts.local[p], parts.logarithm, given.gaps[p, 0]
+        parts = contact_problem.compliance
+        arguments = parts.structure[p], parts.local[p], parts.logarithm, contact_problem.gaps[p, 0]
         later = plain_loads(*arguments, begin[p, i] * (1.0 + 1e-5) + 1e-12)
         earlier = plain_loads(*arguments, begin[p, i] * (1.0 - 1e-5) - 1e-12)
         assert later[i] > 0.0
@@ -115,16 +125,19 @@ def test_a_pair_begins_to_carry_where_it_is_said():
 
 
 def test_stored_energy_is_the_integral_of_the_force():
-    given = problem(8)
-    most = given.at_loads(np.array([4000.0])).approach[0]
+    contact_problem = problem(8)
+    most = contact_problem.at_loads(np.array([4000.0])).approach[0]
     nodes, weights = np.polynomial.legendre.leggauss(400)
     reach = 0.5 * (nodes[:, None] + 1.0) * most
-    work = 0.5 * most * (weights @ given.at_approach(reach)[0])
-    parts, load = given.compliance, given.at_loads(np.array([4000.0])).load[0, :, 0]
+    work = 0.5 * most * (weights @ contact_problem.at_approach(reach)[0])
+    parts, load = (
+        contact_problem.compliance,
+        contact_problem.at_loads(np.array([4000.0])).load[0, :, 0],
+    )
     bent = 0.5 * np.einsum("pi,pij,pj->p", load, parts.structure, load)
     bracket = parts.local - parts.logarithm * np.log(np.maximum(load, 1e-300))
     pressed = 0.5 * load**2 * bracket - 0.25 * parts.logarithm * load**2
-    lifted = (given.gaps[:, 0] * load).sum(axis=1)
+    lifted = (contact_problem.gaps[:, 0] * load).sum(axis=1)
     # Work done on flanks that had a gap to close is done without force: gaps store nothing.
     stored = WIDTH * (bent + pressed.sum(axis=1))
     assert lifted.max() > 0.0
@@ -132,31 +145,33 @@ def test_stored_energy_is_the_integral_of_the_force():
 
 
 def test_a_contact_as_wide_as_the_teeth_is_told():
-    given = problem(9)
+    contact_problem = problem(9)
     with pytest.raises(ComputationError, match="as wide as the teeth are thick"):
-        given.at_loads(np.array([1e12]))
+        contact_problem.at_loads(np.array([1e12]))
 
 
 def test_a_soft_pair_that_is_touched_first_does_not_lead_astray():
     structure = np.diag([1e-4, 1e-10])[None]
     logarithm = 2.0 * 0.91 / (np.pi * 206e9)
     compliance = Compliance(structure, logarithm * np.full((1, 2), 17.0), logarithm)
-    given = ContactProblem(NOWHERE, compliance, np.array([[[0.0, 3e-6]]]), np.array([WIDTH]))
-    found = given.at_loads(np.array([1e-3, 4000.0]))
-    load = found.load[1, 0, 0]
+    contact_problem = ContactProblem(
+        NOWHERE, compliance, np.array([[[0.0, 3e-6]]]), np.array([WIDTH])
+    )
+    solution = contact_problem.at_loads(np.array([1e-3, 4000.0]))
+    load = solution.load[1, 0, 0]
     assert WIDTH * load.sum() == pytest.approx(4000.0, rel=1e-11)
     assert load[1] > 1e4 * load[0] > 0.0
     arguments = structure[0], compliance.local[0], logarithm
-    approach = plain_approach(*arguments, given.gaps[0], given.widths, 4000.0)
-    assert found.approach[1, 0] == pytest.approx(approach, rel=1e-9)
+    approach = plain_approach(*arguments, contact_problem.gaps[0], contact_problem.widths, 4000.0)
+    assert solution.approach[1, 0] == pytest.approx(approach, rel=1e-9)
 
 
 def test_an_approach_far_from_the_first_gap_carries_the_whole_load():
     """There the force of stiff pairs changes by more than rounding within its own limit."""
-    given = problem(3, phases=20_000)
+    contact_problem = problem(3, phases=20_000)
     # A soft film that begins to carry millimetres before the others, and stiff ones.
-    given.compliance.structure[:, 0, 0] += 5e-5
-    given.gaps[:, :, 1:] += np.linspace(1e-5, 7e-3, 20_000)[:, None, None]
-    found = given.at_loads(np.array([100.0, 1900.0]))
-    total = np.einsum("s,tpsn->tp", given.widths, found.load)
+    contact_problem.compliance.structure[:, 0, 0] += 5e-5
+    contact_problem.gaps[:, :, 1:] += np.linspace(1e-5, 7e-3, 20_000)[:, None, None]
+    solution = contact_problem.at_loads(np.array([100.0, 1900.0]))
+    total = np.einsum("s,tpsn->tp", contact_problem.widths, solution.load)
     assert total == pytest.approx(np.array([[100.0], [1900.0]]) * np.ones(20_000), rel=1e-8)

@@ -38,8 +38,8 @@ def test_one_pair_in_contact_is_the_single_pair(fzg, steel):
     pair = fzg()
     path, in_contact = cycle(pair)
     alone = in_contact.sum(axis=1) == 1
-    found = potential_energy_stiffness(pair, steel, path, in_contact, 2660.0)[alone, 0]
-    assert found == pytest.approx(single_pair_stiffness(pair, steel, path[alone, 0], 2660.0))
+    stiffness = potential_energy_stiffness(pair, steel, path, in_contact, 2660.0)[alone, 0]
+    assert stiffness == pytest.approx(single_pair_stiffness(pair, steel, path[alone, 0], 2660.0))
 
 
 def test_equal_gears_are_symmetric_about_the_middle(steel):
@@ -77,9 +77,9 @@ def test_stiffness_at_equal_load_per_width_grows_with_the_width(fzg, steel):
 
 def test_stiffness_at_equal_strain_scales_with_the_modulus(fzg):
     path = np.linspace(0.0115, 0.028, 7)
-    one = single_pair_stiffness(fzg(), Material(206e9), path, 2000.0)
+    stiffness = single_pair_stiffness(fzg(), Material(206e9), path, 2000.0)
     two = single_pair_stiffness(fzg(), Material(412e9), path, 4000.0)
-    assert two == pytest.approx(2.0 * one, rel=1e-12)
+    assert two == pytest.approx(2.0 * stiffness, rel=1e-12)
 
 
 def test_more_load_stiffens_the_contact_slightly(fzg, steel):

@@ -78,11 +78,11 @@ def test_waves_agree_with_radial_elements_that_converge_to_them(steel, waves):
 
 def test_short_waves_are_those_of_a_half_plane(steel):
     waves = 4000
-    found = ring_compliance(INNER, OUTER, steel, waves).waves[-1] * waves / OUTER
+    compliance = ring_compliance(INNER, OUTER, steel, waves).waves[-1] * waves / OUTER
     nu = steel.poissons_ratio
     # Wave of pull and shear on a half plane, plane stress. The surface moves away from a pull.
     half_plane = np.array([[2.0, 1.0 - nu], [1.0 - nu, 2.0]]) / steel.youngs_modulus
-    assert found == pytest.approx(half_plane, rel=2e-3)
+    assert compliance == pytest.approx(half_plane, rel=2e-3)
 
 
 @pytest.mark.parametrize("ratio", [1e-3, 0.5, 0.95, 0.994])
@@ -115,8 +115,8 @@ def test_a_body_that_is_no_ring_is_refused(steel, inner):
 
 @pytest.mark.parametrize("ratio", [0.1, 0.6, 0.97])
 def test_waves_that_do_not_reach_the_bore_are_continued_without_it(steel, ratio, monkeypatch):
-    found = ring_compliance(ratio * OUTER, OUTER, steel, 1500)
+    compliance = ring_compliance(ratio * OUTER, OUTER, steel, 1500)
     module = importlib.import_module("tribodyn.stiffness.teeth.analytic")
     monkeypatch.setattr(module, "_DECAYED", 1e9)
     all_felt = ring_compliance(ratio * OUTER, OUTER, steel, 1500)
-    assert found.waves == pytest.approx(all_felt.waves, rel=2e-10)
+    assert compliance.waves == pytest.approx(all_felt.waves, rel=2e-10)

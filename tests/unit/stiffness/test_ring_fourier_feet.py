@@ -58,12 +58,12 @@ def test_series_is_the_work_summed_over_the_rim(ring, turn):
             u[k] = wave[0, 0] * p[k] + wave[0, 1] * 1j * q[k]
             v[k] = -1j * (wave[1, 0] * p[k] + wave[1, 1] * 1j * q[k])
         moves = np.fft.irfft(u, samples), np.fft.irfft(v, samples)
-        seen = patterns((angle - turn + np.pi) % (2.0 * np.pi) - np.pi)
+        pattern = patterns((angle - turn + np.pi) % (2.0 * np.pi) - np.pi)
         expected[:, loaded] = (
-            (seen[0] @ moves[0] + seen[1] @ moves[1]) * OUTER * 2.0 * np.pi / samples
+            (pattern[0] @ moves[0] + pattern[1] @ moves[1]) * OUTER * 2.0 * np.pi / samples
         )
-    found = foot_compliance(ring, FOOT, turn)
-    assert found == pytest.approx(expected, rel=2e-3, abs=2e-4 * np.abs(expected).max())
+    compliance = foot_compliance(ring, FOOT, turn)
+    assert compliance == pytest.approx(expected, rel=2e-3, abs=2e-4 * np.abs(expected).max())
 
 
 def test_one_foot_sees_what_the_other_does(ring):

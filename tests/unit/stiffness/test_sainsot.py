@@ -12,7 +12,7 @@ from tribodyn.stiffness import sainsot_coefficients, sainsot_compliance, wind_up
 
 def test_coefficients_worked_by_hand():
     theta, h = 0.08, 3.0
-    found = sainsot_coefficients(theta, h * 0.01, 0.01)
+    coefficients = sainsot_coefficients(theta, h * 0.01, 0.01)
     by_hand = (
         -5.574e-5 / theta**2 - 1.9986e-3 * h**2 - 2.3015e-4 * h / theta + 4.7702e-3 / theta
         + 0.0271 * h + 6.8045,
@@ -23,7 +23,7 @@ def test_coefficients_worked_by_hand():
         -6.2042e-5 / theta**2 + 9.0889e-3 * h**2 - 4.0964e-4 * h / theta + 7.8297e-3 / theta
         - 0.1472 * h + 0.6904,
     )  # fmt: skip
-    assert found == pytest.approx(by_hand, rel=1e-12)
+    assert coefficients == pytest.approx(by_hand, rel=1e-12)
 
 
 def test_the_published_extremes_are_reached():
@@ -46,13 +46,13 @@ def test_above_the_fitted_angle_little_changes():
 def test_the_formula_contains_the_wind_up_of_the_body(ratio):
     # Between two bores the foundation must differ by the torsion of the ring between them.
     material, root, width = Material(), 0.05, 0.02
-    found = [
+    compliances = [
         sainsot_compliance(0.35, 0.0, 0.1, root, root / h, width, material) for h in (2.0, ratio)
     ]
     # The load is tangent to the base circle and crosses the tooth axis at the root circle.
     base = root * np.cos(0.35)
     ring = [wind_up_compliance(base, root, root / h, width, material) for h in (2.0, ratio)]
-    assert found[1] - found[0] == pytest.approx(ring[1] - ring[0], rel=0.13)
+    assert compliances[1] - compliances[0] == pytest.approx(ring[1] - ring[0], rel=0.13)
 
 
 @pytest.mark.parametrize(("angle", "ratio"), [(0.1, 1.02), (0.1, 7.5), (0.3, 3.0), (0.005, 3.0)])

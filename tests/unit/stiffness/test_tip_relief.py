@@ -40,9 +40,9 @@ def test_modified_pair_has_what_was_found(best):
         assert gear.modification == FlankModification(
             tip_relief=best.amount, tip_relief_length=best.length
         )
-    found = peaks(best.modified_pair)
-    np.testing.assert_allclose(found, best.peak_to_peak_after, rtol=1e-9)
-    assert found.max() == pytest.approx(best.objective, rel=1e-9)
+    peaks_of_pair = peaks(best.modified_pair)
+    np.testing.assert_allclose(peaks_of_pair, best.peak_to_peak_after, rtol=1e-9)
+    assert peaks_of_pair.max() == pytest.approx(best.objective, rel=1e-9)
 
 
 def test_no_point_of_the_map_is_better(best):
@@ -54,12 +54,12 @@ def test_no_point_of_the_map_is_better(best):
 
 
 def test_brute_force_over_modified_pairs_finds_nothing_better(pair, best):
-    found = [
+    candidates = [
         (peaks(with_tip_relief(pair, amount, length)).max(), amount, length)
         for amount in np.linspace(4e-6, 16e-6, 13)
         for length in np.linspace(3.0e-3, 6.5e-3, 15)
     ]
-    least, amount, length = min(found)
+    least, amount, length = min(candidates)
     assert best.objective <= least * (1.0 + 1e-9)
     assert best.objective == pytest.approx(least, rel=0.1)
     assert best.amount == pytest.approx(amount, abs=1.1e-6)
@@ -73,17 +73,17 @@ def test_search_is_repeatable(pair, best):
 
 def test_one_gear_alone_helps_less_than_both(pair, best):
     for gears, other in (("pinion", "wheel"), ("wheel", "pinion")):
-        found = optimize_tip_relief(pair, TORQUES, gears=gears, **FAST)
-        assert best.objective < found.objective < best.objective_before
-        assert getattr(found.modified_pair, other).modification == FlankModification()
-        assert getattr(found.modified_pair, gears).modification.tip_relief == found.amount
+        optimum = optimize_tip_relief(pair, TORQUES, gears=gears, **FAST)
+        assert best.objective < optimum.objective < best.objective_before
+        assert getattr(optimum.modified_pair, other).modification == FlankModification()
+        assert getattr(optimum.modified_pair, gears).modification.tip_relief == optimum.amount
 
 
 def test_parabolic_relief_takes_more_at_the_tip(pair, best):
-    found = optimize_tip_relief(pair, TORQUES, shape="parabolic", **FAST)
-    assert found.amount > best.amount
-    assert found.modified_pair.wheel.modification.tip_relief_shape == "parabolic"
-    assert peaks(found.modified_pair).max() == pytest.approx(found.objective, rel=1e-9)
+    optimum = optimize_tip_relief(pair, TORQUES, shape="parabolic", **FAST)
+    assert optimum.amount > best.amount
+    assert optimum.modified_pair.wheel.modification.tip_relief_shape == "parabolic"
+    assert peaks(optimum.modified_pair).max() == pytest.approx(optimum.objective, rel=1e-9)
 
 
 def test_weights_choose_the_torque_that_counts(pair):
@@ -97,50 +97,50 @@ def test_weights_choose_the_torque_that_counts(pair):
 
 
 def test_mean_is_the_mean(pair):
-    found = optimize_tip_relief(pair, TORQUES, objective="mean", **FAST)
-    assert found.objective == pytest.approx(found.peak_to_peak_after.mean(), rel=1e-9)
-    assert found.objective_before == pytest.approx(found.peak_to_peak_before.mean(), rel=1e-9)
+    optimum = optimize_tip_relief(pair, TORQUES, objective="mean", **FAST)
+    assert optimum.objective == pytest.approx(optimum.peak_to_peak_after.mean(), rel=1e-9)
+    assert optimum.objective_before == pytest.approx(optimum.peak_to_peak_before.mean(), rel=1e-9)
 
 
 def test_the_error_between_the_phases_is_that_between_them(pair):
     """A coarse phase grid lets the search hide its peaks; the default must not."""
-    found = optimize_tip_relief(pair, TORQUES, provider="analytic", grid=(9, 7))
-    assert found.phase.size == 512
-    fine = loaded_contact(found.modified_pair, TORQUES, provider="analytic", phases=4096)
+    optimum = optimize_tip_relief(pair, TORQUES, provider="analytic", grid=(9, 7))
+    assert optimum.phase.size == 512
+    fine = loaded_contact(optimum.modified_pair, TORQUES, provider="analytic", phases=4096)
     peak = fine.peak_to_peak_transmission_error.max()
-    assert peak == pytest.approx(found.objective, rel=0.03)
+    assert peak == pytest.approx(optimum.objective, rel=0.03)
 
 
 def test_two_torques_are_a_range(pair):
-    found = optimize_tip_relief(pair, (120.0, 60.0), **FAST)
-    assert found.torque.tolist() == [60.0, 75.0, 90.0, 105.0, 120.0]
+    optimum = optimize_tip_relief(pair, (120.0, 60.0), **FAST)
+    assert optimum.torque.tolist() == [60.0, 75.0, 90.0, 105.0, 120.0]
 
 
 def test_relief_that_was_there_is_replaced_and_all_else_kept(pair, best):
-    given = with_tip_relief(pair, 25e-6, 2e-3)
-    found = optimize_tip_relief(given, TORQUES, **FAST)
-    assert (found.amount, found.length) == (best.amount, best.length)
-    np.testing.assert_allclose(found.peak_to_peak_before, peaks(given), rtol=1e-9)
-    np.testing.assert_allclose(found.map_objective[0], best.objective_before, rtol=1e-12)
+    modified = with_tip_relief(pair, 25e-6, 2e-3)
+    optimum = optimize_tip_relief(modified, TORQUES, **FAST)
+    assert (optimum.amount, optimum.length) == (best.amount, best.length)
+    np.testing.assert_allclose(optimum.peak_to_peak_before, peaks(modified), rtol=1e-9)
+    np.testing.assert_allclose(optimum.map_objective[0], best.objective_before, rtol=1e-12)
 
 
 def test_other_modifications_are_kept(fzg):
     crowned = fzg(pinion_modification=FlankModification(crowning=4e-6, root_relief=3e-6))
-    found = optimize_tip_relief(crowned, 90.0, grid=(4, 3), provider="analytic", phases=16)
-    kept = found.modified_pair.pinion.modification
-    assert (kept.crowning, kept.root_relief) == (4e-6, 3e-6)
-    assert kept.tip_relief == found.amount
-    after = loaded_contact(found.modified_pair, 90.0, provider="analytic", phases=16)
-    assert after.peak_to_peak_transmission_error == pytest.approx(found.objective, rel=1e-9)
+    optimum = optimize_tip_relief(crowned, 90.0, grid=(4, 3), provider="analytic", phases=16)
+    modification = optimum.modified_pair.pinion.modification
+    assert (modification.crowning, modification.root_relief) == (4e-6, 3e-6)
+    assert modification.tip_relief == optimum.amount
+    after = loaded_contact(optimum.modified_pair, 90.0, provider="analytic", phases=16)
+    assert after.peak_to_peak_transmission_error == pytest.approx(optimum.objective, rel=1e-9)
 
 
 def test_models_of_the_literature_are_searched_as_well(pair):
-    found = optimize_tip_relief(
+    optimum = optimize_tip_relief(
         pair, TORQUES, provider="potential-energy", phases=16, grid=(5, 4), amount=(0.0, 20e-6)
     )
-    after = loaded_contact(found.modified_pair, TORQUES, provider="potential-energy", phases=16)
+    after = loaded_contact(optimum.modified_pair, TORQUES, provider="potential-energy", phases=16)
     np.testing.assert_allclose(
-        found.peak_to_peak_after, after.peak_to_peak_transmission_error, rtol=1e-9
+        optimum.peak_to_peak_after, after.peak_to_peak_transmission_error, rtol=1e-9
     )
 
 
@@ -157,7 +157,7 @@ def test_data_set_and_line(best):
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"length": (1e-3, 25e-3)}, "used flank"),
         ({"length": (0.0, 2e-3)}, "used flank"),
@@ -174,8 +174,8 @@ def test_data_set_and_line(best):
         ({"weight": (1.0, -1.0, 1.0)}, "none negative"),
     ],
 )
-def test_what_cannot_be_searched_is_refused(pair, options, told):
-    with pytest.raises(InputError, match=told):
+def test_what_cannot_be_searched_is_refused(pair, options, message):
+    with pytest.raises(InputError, match=message):
         optimize_tip_relief(pair, TORQUES, **{**FAST, **options})
 
 

@@ -45,8 +45,8 @@ def test_seen_from_the_rim_the_bore_hardly_matters(fzg):
     bores = (0.0, 10e-3, 20e-3, 40e-3)
     rims = [total(fzg(wheel_bore_diameter=bore).wheel, "rim").total[1] for bore in bores]
     assert np.ptp(rims) < 0.15 * np.mean(rims)
-    held = [total(fzg(wheel_bore_diameter=bore).wheel).total[1] for bore in bores[1:]]
-    assert held[0] > 1.5 * held[2]
+    compliances = [total(fzg(wheel_bore_diameter=bore).wheel).total[1] for bore in bores[1:]]
+    assert compliances[0] > 1.5 * compliances[2]
 
 
 def test_below_a_seventh_of_the_root_radius_only_the_wind_up_grows(fzg):

@@ -27,19 +27,19 @@ def test_it_is_the_strain_under_a_hertz_contact_integrated_over_the_depth(nu):
     material = Material(poissons_ratio=nu)
     load, half_width, depth = 1.3e5, 8e-5, 4e-3
     exact = strain_of_a_half_space_under_hertz_pressure(load, half_width, depth, material)
-    found = weber_banaschek_compression(load, half_width, depth, material)
-    assert found == pytest.approx(exact, rel=2e-4)
+    compression = weber_banaschek_compression(load, half_width, depth, material)
+    assert compression == pytest.approx(exact, rel=2e-4)
 
 
 def test_it_grows_less_than_in_proportion_to_the_load():
     material = Material()
     load = np.array([1e5, 2e5])
     half_width = hertz_line(load, 8e-3, effective_modulus(material, material)).half_width
-    one, two = weber_banaschek_compression(load, half_width, np.full(2, 4e-3), material)
+    single, two = weber_banaschek_compression(load, half_width, np.full(2, 4e-3), material)
     nu = material.poissons_ratio
     bracket = np.log(2 * 4e-3 / half_width[0]) - nu / (2 * (1 - nu))
     # Twice the load, root two of the width: the logarithm falls by ln(2) / 2.
-    assert two / one == pytest.approx(2.0 * (bracket - 0.5 * np.log(2.0)) / bracket, rel=1e-12)
+    assert two / single == pytest.approx(2.0 * (bracket - 0.5 * np.log(2.0)) / bracket, rel=1e-12)
 
 
 def test_the_thinnest_line_of_contact_is_compressed_by_its_logarithm():

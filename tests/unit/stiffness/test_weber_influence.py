@@ -59,8 +59,8 @@ def test_force_terms_lengthen_the_beam_alike(nu):
 
 
 def test_weber_of_1949_is_near(steel):
-    found = terms(steel)
-    assert found == pytest.approx([5.2, 1.0, 1.4, 1.4 * 0.294], rel=0.15)
+    compliance_terms = terms(steel)
+    assert compliance_terms == pytest.approx([5.2, 1.0, 1.4, 1.4 * 0.294], rel=0.15)
 
 
 def test_structure_scales_with_the_modulus_and_knows_no_neighbours(fzg, steel):

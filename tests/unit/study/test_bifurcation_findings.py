@@ -35,16 +35,16 @@ def diagram(count=10, branches=("up",)):
 
 
 def test_a_quiet_diagram(case):
-    found = Findings(case, diagram())
-    assert found.sentences() == [
+    findings = Findings(case, diagram())
+    assert findings.sentences() == [
         "10 motions: 10 physical",
         "up: period 1 from 1000 rpm to 1900 rpm",
     ]
-    assert found.lead() == "10 values of operation.speed from 1000 rpm to 1900 rpm"
-    head, rows = found.rows()
+    assert findings.lead() == "10 values of operation.speed from 1000 rpm to 1900 rpm"
+    head, rows = findings.rows()
     assert head[0] == "speed [rpm]"
     assert rows[3][:4] == ["1300", "up", "1", "1.03"]
-    assert found.figures()["jumps"] == []
+    assert findings.figures()["jumps"] == []
 
 
 def test_step_limit_names_its_onset_and_what_is_left_with_shorter_steps(case):
@@ -52,15 +52,15 @@ def test_step_limit_names_its_onset_and_what_is_left_with_shorter_steps(case):
     verdict, period = plain.verdict.copy(), plain.period.copy()
     verdict[0, 6:], period[0, 8:] = "step-limited", 0
     number = np.where(np.arange(10) >= 6, 2.75, 2.5)
-    found = Findings(case, replace(plain, verdict=verdict, period=period, step_number=number))
-    told = "\n".join(found.sentences())
-    assert "step-limited from 1600 rpm on: omega_max dt = 2.75 with 512 steps" in told
-    assert "with 1024 steps the motion has period 1" in told
-    assert "from 1800 rpm on" in told
+    findings = Findings(case, replace(plain, verdict=verdict, period=period, step_number=number))
+    text = "\n".join(findings.sentences())
+    assert "step-limited from 1600 rpm on: omega_max dt = 2.75 with 512 steps" in text
+    assert "with 1024 steps the motion has period 1" in text
+    assert "from 1800 rpm on" in text
     # what the step made is no period of the motion
-    assert "up: period 1 from 1000 rpm to 1500 rpm" in told
-    assert "no period" not in told
-    assert found.figures()["step_limited_onset"] == pytest.approx(1600.0 * np.pi / 30.0)
+    assert "up: period 1 from 1000 rpm to 1500 rpm" in text
+    assert "no period" not in text
+    assert findings.figures()["step_limited_onset"] == pytest.approx(1600.0 * np.pi / 30.0)
 
 
 def test_periods_jumps_and_two_motions(case):
@@ -70,18 +70,18 @@ def test_periods_jumps_and_two_motions(case):
     rms[0, 5:] *= 2.0
     rms[1, 3:] *= 2.0
     loss = np.full_like(rms, 0.1)
-    found = Findings(case, replace(plain, period=period, rms=rms, contact_loss_share=loss))
-    told = found.sentences()
-    assert "up: period 2 from 1400 rpm to 1500 rpm" in told
-    assert "up: no period within 16 mesh cycles at 1700 rpm" in told
-    assert "up: the rms jumps between 1400 rpm and 1500 rpm, from 1.04 um to 2.1 um" in told
-    assert "down: the rms jumps between 1200 rpm and 1300 rpm, from 1.02 um to 2.06 um" in told
-    assert "two motions are possible from 1300 rpm to 1400 rpm: up and down differ" in told
-    assert [jump["branch"] for jump in found.figures()["jumps"]] == ["up", "down"]
+    findings = Findings(case, replace(plain, period=period, rms=rms, contact_loss_share=loss))
+    sentences = findings.sentences()
+    assert "up: period 2 from 1400 rpm to 1500 rpm" in sentences
+    assert "up: no period within 16 mesh cycles at 1700 rpm" in sentences
+    assert "up: the rms jumps between 1400 rpm and 1500 rpm, from 1.04 um to 2.1 um" in sentences
+    assert "down: the rms jumps between 1200 rpm and 1300 rpm, from 1.02 um to 2.06 um" in sentences
+    assert "two motions are possible from 1300 rpm to 1400 rpm: up and down differ" in sentences
+    assert [jump["branch"] for jump in findings.figures()["jumps"]] == ["up", "down"]
     rms = plain.rms.copy()
     rms[1, -2:] *= 2.0
-    told = "\n".join(Findings(case, replace(plain, rms=rms)).sentences())
-    assert "up and down differ; the range ends there, and they may go on beyond it" in told
+    sentences = "\n".join(Findings(case, replace(plain, rms=rms)).sentences())
+    assert "up and down differ; the range ends there, and they may go on beyond it" in sentences
 
 
 def test_the_title_of_the_figure_tells_what_matters_most():
@@ -89,8 +89,8 @@ def test_the_title_of_the_figure_tells_what_matters_most():
     rms, period, verdict = plain.rms.copy(), plain.period.copy(), plain.verdict.copy()
 
     def title():
-        made = replace(plain, rms=rms, period=period, verdict=verdict)
-        return made.plot().layout.title.text
+        diagram_ = replace(plain, rms=rms, period=period, verdict=verdict)
+        return diagram_.plot().layout.title.text
 
     assert title() == "Every response has a period of one mesh cycle"
     period[0, 7] = 2
@@ -110,18 +110,18 @@ def test_motions_that_ran_away_are_told(case):
     rms, period, verdict = plain.rms.copy(), plain.period.copy(), plain.verdict.copy()
     rms[0, 6:], period[0, 6:], verdict[0, 6:] = np.nan, 0, "undecided"
     verdict[0, 9] = "step-limited"  # with half the step this one does not
-    made = replace(plain, rms=rms, period=period, verdict=verdict)
-    assert made.ran_away.sum() == 3
-    assert repr(made).endswith("3 undecided, 3 ran away)")
-    assert made.plot().layout.title.text.startswith("3 of 20 responses grow without bound")
-    found = Findings(case, made)
-    told = "\n".join(found.sentences())
-    assert "up: 3 motions grew beyond all bounds from 1600 rpm to 1800 rpm" in told
-    assert "down: period 1 from 1000 rpm to 1900 rpm" in told
-    assert "no period" not in told
-    assert "nan" not in told
-    assert found.figures()["ran_away"] == 3
-    _, rows = found.rows()
+    runaway = replace(plain, rms=rms, period=period, verdict=verdict)
+    assert runaway.ran_away.sum() == 3
+    assert repr(runaway).endswith("3 undecided, 3 ran away)")
+    assert runaway.plot().layout.title.text.startswith("3 of 20 responses grow without bound")
+    findings = Findings(case, runaway)
+    text = "\n".join(findings.sentences())
+    assert "up: 3 motions grew beyond all bounds from 1600 rpm to 1800 rpm" in text
+    assert "down: period 1 from 1000 rpm to 1900 rpm" in text
+    assert "no period" not in text
+    assert "nan" not in text
+    assert findings.figures()["ran_away"] == 3
+    _, rows = findings.rows()
     assert rows[12][:5] == ["1600", "up", "none", "ran away", ""]
     assert Findings(case, plain).figures()["ran_away"] == 0
 
@@ -137,17 +137,17 @@ def test_flanks_in_touch_do_not_jump(case):
     plain = diagram()
     rms, loss = plain.rms.copy(), np.zeros_like(plain.rms)
     rms[0, 5:] *= 2.0  # a resonance between two points
-    found = replace(plain, rms=rms, contact_loss_share=loss)
-    assert Findings(case, found).figures()["jumps"] == []
+    flat = replace(plain, rms=rms, contact_loss_share=loss)
+    assert Findings(case, flat).figures()["jumps"] == []
     loss[0, 5:] = 0.1
-    assert len(Findings(case, found).figures()["jumps"]) == 1
+    assert len(Findings(case, flat).figures()["jumps"]) == 1
 
 
 def test_interrupted_diagram_counts_what_is_there(case):
     plain = diagram()
     finished, verdict = plain.finished.copy(), plain.verdict.copy()
     finished[0, 7:], verdict[0, 5:] = False, ""
-    found = Findings(case, replace(plain, finished=finished, verdict=verdict))
-    assert found.sentences()[0] == "7 motions: 5 physical, 2 not judged"
-    assert len(found.rows()[1]) == 7
-    assert found.figures()["finished"] == 7
+    findings = Findings(case, replace(plain, finished=finished, verdict=verdict))
+    assert findings.sentences()[0] == "7 motions: 5 physical, 2 not judged"
+    assert len(findings.rows()[1]) == 7
+    assert findings.figures()["finished"] == 7

@@ -43,16 +43,16 @@ def test_motion_is_that_of_a_run(case, diagram):
 
 
 def test_steps_are_those_of_the_case_or_enough_to_judge(case):
-    few = bifurcation(case, between=ENDS, points=2, transient=20)
-    given = case.replace({"solver.steps_per_mesh_cycle": 600})
-    assert few.steps.tolist() == [512, 512]
-    assert few.verdicts() == {"physical": 2}
-    found = bifurcation(given, between=ENDS, points=2, transient=20, verdict=False)
-    assert found.steps.tolist() == [600, 600]
+    diagram = bifurcation(case, between=ENDS, points=2, transient=20)
+    case_of_600 = case.replace({"solver.steps_per_mesh_cycle": 600})
+    assert diagram.steps.tolist() == [512, 512]
+    assert diagram.verdicts() == {"physical": 2}
+    diagram_of_600 = bifurcation(case_of_600, between=ENDS, points=2, transient=20, verdict=False)
+    assert diagram_of_600.steps.tolist() == [600, 600]
 
 
 @pytest.mark.parametrize(
-    ("options", "words"),
+    ("options", "message"),
     [
         ({}, "between"),
         ({"between": ENDS, "points": 1}, "points = 1"),
@@ -61,6 +61,6 @@ def test_steps_are_those_of_the_case_or_enough_to_judge(case):
         ({"over": "operation.sped", "between": ENDS}, "sped"),
     ],
 )
-def test_bad_input_is_refused(case, options, words):
-    with pytest.raises(InputError, match=words):
+def test_bad_input_is_refused(case, options, message):
+    with pytest.raises(InputError, match=message):
         bifurcation(case, **options)

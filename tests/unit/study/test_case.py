@@ -211,20 +211,20 @@ def test_the_papers_behind_the_losses_are_cited() -> None:
     plain, windage = cite(case), "Spur-gear-system efficiency"
     for key, (value, paper) in parts.items():
         sump = {"losses.oil_volume": "1.2 l"} if "immersion" in key else {}
-        told = cite(case.replace({key: value, **sump}))
-        assert (paper in told, windage in told) == (True, True)
+        sources = cite(case.replace({key: value, **sump}))
+        assert (paper in sources, windage in sources) == (True, True)
         assert (paper in plain, windage in plain) == (False, False)
         others = [other for _, other in parts.values() if other != paper]
-        assert not any(other in told for other in others)
+        assert not any(other in sources for other in others)
 
 
 def test_ra_becomes_rms_and_is_told(case: Any) -> None:
     ra = {f"gears.{gear}.roughness_ra": "0.4 um" for gear in ("pinion", "wheel")}
     rough = case.replace({"gears.composite_roughness": None, **ra})
     assert rough.composite_roughness == pytest.approx(math.sqrt(2.0) * 0.5e-6)
-    told = {row.key: row for row in assumptions(rough)}
-    assert told["gears.pinion.roughness_rms"].value == "0.5 um"
-    assert "Rq = 1.25 Ra" in told["gears.wheel.roughness_rms"].reason
+    reasons = {row.key: row for row in assumptions(rough)}
+    assert reasons["gears.pinion.roughness_rms"].value == "0.5 um"
+    assert "Rq = 1.25 Ra" in reasons["gears.wheel.roughness_rms"].reason
     again = read_case(rough.to_toml())
     assert again == rough
     assert again.composite_roughness == rough.composite_roughness
@@ -235,9 +235,9 @@ def test_a_line_of_a_written_case_is_toml_when_its_comment_sign_goes(case: Any) 
     assert len(lines) > 40
     for line in lines:
         assert tomllib.loads(line.removeprefix("# "))
-    told = {line.split()[1]: line for line in lines}
-    assert told["inlet_heating"].endswith("belongs to law = ehl, mixed-solved")
-    assert told["nodes"].endswith("belongs to model = newton, multigrid")
+    assumed = {line.split()[1]: line for line in lines}
+    assert assumed["inlet_heating"].endswith("belongs to law = ehl, mixed-solved")
+    assert assumed["nodes"].endswith("belongs to model = newton, multigrid")
 
 
 @pytest.mark.parametrize("distance", [92.5, 95.0, 99.0])
@@ -245,11 +245,11 @@ def test_the_centre_distance_that_is_advised_leaves_the_backlash(distance: float
     text = SOUND.replace("91.5 mm", f"{distance} mm").replace(
         "[dynamics]", '[dynamics]\nbacklash = "0.05 mm"'
     )
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as caught:
         read_case(text)
-    near = re.search(r"Reduce the centre distance to ([\d.]+) mm", str(told.value))
-    assert near is not None
-    pair = read_case(text.replace(f"{distance} mm", f"{near.group(1)} mm"))
+    distance_text = re.search(r"Reduce the centre distance to ([\d.]+) mm", str(caught.value))
+    assert distance_text is not None
+    pair = read_case(text.replace(f"{distance} mm", f"{distance_text.group(1)} mm"))
     assert pair.gear_pair.backlash == pytest.approx(5e-5, abs=2e-6)
 
 
@@ -262,11 +262,11 @@ def test_numbers_in_the_place_of_numbers_make_the_case_that_reading_it_anew_make
     assert all(case._with_numbers(each) is not None for each in changes)
     quick = [case.replace(changes[0]), case.replace(changes[0]).replace(changes[1])]
     monkeypatch.setattr(type(case), "_with_numbers", lambda *_: None)
-    whole = [case.replace(changes[0]), case.replace(changes[0]).replace(changes[1])]
-    for one, other in zip(quick, whole, strict=True):
-        assert one == other
-        assert one.to_toml() == other.to_toml()
-        assert one.user_input == other.user_input
+    reread = [case.replace(changes[0]), case.replace(changes[0]).replace(changes[1])]
+    for direct, other in zip(quick, reread, strict=True):
+        assert direct == other
+        assert direct.to_toml() == other.to_toml()
+        assert direct.user_input == other.user_input
 
 
 @pytest.mark.parametrize("relief", [3.8799123456789e-06, 18e-6, 1e-5 / 3.0])
@@ -289,8 +289,10 @@ def test_an_oil_of_a_data_sheet_stands_in_a_case(case: Any) -> None:
         "lubricant.temperature": "60 degC",
     }
     other = case.replace(sheet)
-    known = case.replace({"lubricant.name": "ISO VG 220", "lubricant.temperature": "60 degC"})
-    oil, library_oil = other.lubricant_properties, known.lubricant_properties
+    oil_of_library = case.replace(
+        {"lubricant.name": "ISO VG 220", "lubricant.temperature": "60 degC"}
+    )
+    oil, library_oil = other.lubricant_properties, oil_of_library.lubricant_properties
     assert oil.dynamic_viscosity == pytest.approx(library_oil.dynamic_viscosity, rel=1e-4)
     assert oil.density == pytest.approx(library_oil.density, rel=1e-12)
     again = read_case(other.to_toml())

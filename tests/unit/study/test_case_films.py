@@ -51,9 +51,9 @@ def test_torque_and_speed_belong_to_the_gear_that_the_case_names(case: Any) -> N
     of_wheel = case.replace(
         {"operation.speed_of": "wheel", "operation.speed": "600 rpm", "operation.torque": 135.0}
     )
-    one, two = td.film_over_operation(case), td.film_over_operation(of_wheel)
-    assert two.pinion_speed == pytest.approx(one.pinion_speed)
-    assert two.central_film == pytest.approx(one.central_film, rel=1e-12)
+    of_pinion_, two = td.film_over_operation(case), td.film_over_operation(of_wheel)
+    assert two.pinion_speed == pytest.approx(of_pinion_.pinion_speed)
+    assert two.central_film == pytest.approx(of_pinion_.central_film, rel=1e-12)
 
 
 def test_a_labelled_data_set_has_units(case: Any) -> None:
@@ -67,7 +67,7 @@ def test_a_labelled_data_set_has_units(case: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "says"),
+    ("value", "says"),
     [
         ({"torque": [-1.0]}, ("argument torque", "torque = -1.0")),
         ({"torque": ["5 kg"]}, ("argument torque", "5 kg")),
@@ -76,9 +76,9 @@ def test_a_labelled_data_set_has_units(case: Any) -> None:
         ({"speed": [[90.0, 95.0]]}, ("argument speed", "number")),
     ],
 )
-def test_faults_name_the_argument(case: Any, given: Any, says: tuple[str, ...]) -> None:
+def test_faults_name_the_argument(case: Any, value: Any, says: tuple[str, ...]) -> None:
     with pytest.raises(td.InputError) as refused:
-        td.film_over_operation(case, **given)
+        td.film_over_operation(case, **value)
     for part in says:
         assert part in str(refused.value)
 
@@ -108,16 +108,16 @@ def test_a_film_below_the_roughness_is_told() -> None:
     mesh.film_ratio = np.array([[1.2], [1.01]])
     assert mesh_cautions(mesh) == ()
     mesh.film_ratio = np.array([[1.2], [0.43]])
-    (told,) = mesh_cautions(mesh)
-    assert told.code == "mixed-lubrication"
-    assert "falls to 0.43" in told.message
+    (caution,) = mesh_cautions(mesh)
+    assert caution.code == "mixed-lubrication"
+    assert "falls to 0.43" in caution.message
     # 1.21 0.43^0.64/(1 + 0.37 0.43^1.26) is 0.625.
-    assert "up to 37% of the load" in told.message
-    assert 'friction.law = "mixed"' in told.message
+    assert "up to 37% of the load" in caution.message
+    assert 'friction.law = "mixed"' in caution.message
     mesh.film_load_share, mesh.asperity_friction_coefficient = np.array([[1.0], [0.8]]), touching
-    (told,) = mesh_cautions(mesh)
-    assert "up to 20% of the load" in told.message
-    assert "friction" not in told.message
+    (caution,) = mesh_cautions(mesh)
+    assert "up to 20% of the load" in caution.message
+    assert "friction" not in caution.message
 
 
 def test_zeros_without_contact_are_no_thin_film() -> None:

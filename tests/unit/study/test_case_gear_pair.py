@@ -51,9 +51,9 @@ def test_backlash_thins_both_teeth(case):
     assert thin.backlash == pytest.approx(0.1e-3, rel=1e-9)
     assert full.backlash == pytest.approx(0.0, abs=1e-12)
     for gear in ("pinion", "wheel"):
-        one, other = getattr(thin, gear), getattr(full, gear)
+        thinned, other = getattr(thin, gear), getattr(full, gear)
         radius = other.base_radius
-        less = other.tooth_thickness(radius) - one.tooth_thickness(radius)
+        less = other.tooth_thickness(radius) - thinned.tooth_thickness(radius)
         assert less == pytest.approx(0.05e-3, rel=1e-6)
 
 

@@ -47,8 +47,8 @@ def test_inertias_far_from_the_solid_are_told(case: Any, key: str, value: str) -
 
 
 def test_inertias_near_the_solid_are_not(case: Any) -> None:
-    near = case.replace({"gears.pinion.mass": "0.7 kg", "gears.wheel.mass": "1.1 kg"})
-    assert "mass-unlikely" not in _codes(near)
+    nearly_solid = case.replace({"gears.pinion.mass": "0.7 kg", "gears.wheel.mass": "1.1 kg"})
+    assert "mass-unlikely" not in _codes(nearly_solid)
 
 
 def test_a_printed_inertia_has_more_room_than_one_of_the_user() -> None:
@@ -79,19 +79,19 @@ def test_contact_loss_is_told_with_its_share(case: Any) -> None:
         result = td.run(case.replace(loose))
     share = result.summary()["contact_loss_share"]
     assert 0.0 < share < 1.0
-    told = next(each.message for each in result.warnings if each.code == "contact-loss")
-    assert f"{share:.3g} of the mesh cycle" in told
+    message = next(each.message for each in result.warnings if each.code == "contact-loss")
+    assert f"{share:.3g} of the mesh cycle" in message
     back = bool((result.response.fine.deflection[:, 0] < -result.half_backlash).any())
-    assert ("the back flanks touch as well" in told) is back
+    assert ("the back flanks touch as well" in message) is back
 
 
 def test_a_speed_too_low_for_any_number_of_steps_names_the_least(case: Any) -> None:
     slow = case.replace({"operation.speed": "0.01 rpm", "solver.steps_per_mesh_cycle": None})
     with pytest.raises(td.InputError, match=r"operation.speed: speed = 0\.01 rpm") as caught:
         td.run(slow)
-    told = re.search(r"least speed that works is ([\d.]+) rpm", str(caught.value))
-    assert told is not None
-    least = float(told.group(1))
+    least_speed = re.search(r"least speed that works is ([\d.]+) rpm", str(caught.value))
+    assert least_speed is not None
+    least = float(least_speed.group(1))
     for speed, works in ((least, True), (0.9 * least, False)):
         changed = slow.replace({"operation.speed": f"{speed} rpm"})
         mesh = mesh_of(changed)

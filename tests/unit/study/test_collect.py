@@ -10,28 +10,28 @@ from tribodyn.errors import collected, warn
 
 
 def test_each_warning_once_in_order() -> None:
-    with collected() as found:
+    with collected() as caught:
         warn("a", "first")
         warn("b", "second")
         warn("a", "first")
-    assert [(w.code, w.message) for w in found] == [("a", "first"), ("b", "second")]
+    assert [(w.code, w.message) for w in caught] == [("a", "first"), ("b", "second")]
 
 
 def test_warnings_survive_an_error() -> None:
-    found = []
+    caught = []
 
     def fail() -> None:
-        nonlocal found
-        with collected() as found:
+        nonlocal caught
+        with collected() as caught:
             warn("a", "first")
             raise ValueError
 
     with pytest.raises(ValueError):
         fail()
-    assert [w.code for w in found] == ["a"]
+    assert [w.code for w in caught] == ["a"]
 
 
 def test_other_warnings_pass() -> None:
-    with pytest.warns(DeprecationWarning, match="old"), collected() as found:
+    with pytest.warns(DeprecationWarning, match="old"), collected() as caught:
         warnings.warn("old", DeprecationWarning, stacklevel=1)
-    assert found == []
+    assert caught == []

@@ -66,11 +66,13 @@ def test_at_the_end_everything_belongs_to_one_load(
     which: str, request: pytest.FixtureRequest
 ) -> None:
     result = request.getfixturevalue(which)
-    mesh, found = result.mesh, _recomputed(result)
-    touch = found["touch"]
-    np.testing.assert_allclose(mesh.friction_coefficient[touch], found["mu"], rtol=1e-12)
-    np.testing.assert_allclose(mesh.minimum_film[touch], found["film"].minimum_film, rtol=1e-12)
-    np.testing.assert_allclose(mesh.hertz_pressure[touch], found["pressure"], rtol=1e-12)
+    mesh, recomputed = result.mesh, _recomputed(result)
+    touch = recomputed["touch"]
+    np.testing.assert_allclose(mesh.friction_coefficient[touch], recomputed["mu"], rtol=1e-12)
+    np.testing.assert_allclose(
+        mesh.minimum_film[touch], recomputed["film"].minimum_film, rtol=1e-12
+    )
+    np.testing.assert_allclose(mesh.hertz_pressure[touch], recomputed["pressure"], rtol=1e-12)
     # the pairs carry the load between them
     carried = mesh.load_per_width.sum(axis=1) * mesh.common_face_width / mesh.total_normal_force
     np.testing.assert_allclose(carried, result.coupling.loading, rtol=1e-9)
@@ -78,9 +80,9 @@ def test_at_the_end_everything_belongs_to_one_load(
 
 
 def test_films_in_series_belong_to_the_same_load(dynamic: Any) -> None:
-    mesh, found = dynamic.mesh, _recomputed(dynamic)
-    touch = found["touch"]
-    film = found["film"].film_stiffness
+    mesh, recomputed = dynamic.mesh, _recomputed(dynamic)
+    touch = recomputed["touch"]
+    film = recomputed["film"].film_stiffness
     np.testing.assert_allclose(mesh.film_stiffness[touch], film, rtol=1e-12)
     series = 1.0 / (1.0 / mesh.tooth_stiffness[touch] + 1.0 / film)
     np.testing.assert_allclose(mesh.stiffness[touch], series, rtol=1e-8)
@@ -103,15 +105,17 @@ def test_balance_of_torques_by_virtual_power(driver: str, balance: str) -> None:
     result = _run(gears__driver=driver, operation__torque_balance=balance,
                   solver__coupling="static", solver__coupling_tolerance=1e-10)  # fmt: skip
     mesh, over = result.mesh, result.coupling.loading
-    held = driver if balance == "drive" else {"pinion": "wheel", "wheel": "pinion"}[driver]
+    balanced = driver if balance == "drive" else {"pinion": "wheel", "wheel": "pinion"}[driver]
     force = over * mesh.total_normal_force
-    own, other = (force * getattr(mesh, f"friction_moment_{gear}") for gear in ("pinion", "wheel"))
+    moment, other = (
+        force * getattr(mesh, f"friction_moment_{gear}") for gear in ("pinion", "wheel")
+    )
     sign = 1.0 if driver == "pinion" else -1.0
-    pinion = sign * force * mesh.base_radius_pinion + own
+    pinion = sign * force * mesh.base_radius_pinion + moment
     wheel = sign * force * mesh.base_radius_wheel + other
     nominal = sign * result.case.pinion_torque
     ratio = result.case.gear_ratio
-    torque = pinion if held == "pinion" else wheel / ratio
+    torque = pinion if balanced == "pinion" else wheel / ratio
     np.testing.assert_allclose(torque, nominal, rtol=1e-9)
     # what one gear gives and the other does not get is the sliding power of the contacts
     lost = mesh.pinion_speed * (pinion - wheel / ratio)
@@ -145,23 +149,25 @@ def test_the_load_of_the_motion_is_the_load_of_the_mesh(dynamic: Any) -> None:
 @pytest.mark.parametrize("kind", ["static", "dynamic"])
 def test_without_film_and_friction_it_is_the_plain_run(kind: str) -> None:
     bare = {"friction__law": "none", "film__model": "none"}
-    plain, found = _run(**bare), _run(**bare, solver__coupling=kind)
+    plain, coupled = _run(**bare), _run(**bare, solver__coupling=kind)
     for name in ("position", "velocity", "contact_force"):
-        np.testing.assert_array_equal(getattr(found.response, name), getattr(plain.response, name))
-    np.testing.assert_array_equal(found.mesh.stiffness, plain.mesh.stiffness)
-    assert found.coupling.film_change.max() == found.coupling.friction_change.max() == 0.0
+        np.testing.assert_array_equal(
+            getattr(coupled.response, name), getattr(plain.response, name)
+        )
+    np.testing.assert_array_equal(coupled.mesh.stiffness, plain.mesh.stiffness)
+    assert coupled.coupling.film_change.max() == coupled.coupling.friction_change.max() == 0.0
     if kind == "static":
-        assert np.all(found.coupling.loading == 1.0)
-        assert found.mesh == plain.mesh
-        assert found.summary() == plain.summary()
+        assert np.all(coupled.coupling.loading == 1.0)
+        assert coupled.mesh == plain.mesh
+        assert coupled.summary() == plain.summary()
 
 
 def test_a_constant_coefficient_on_linear_teeth_moves_no_stiffness() -> None:
     constant = {"friction__law": "constant", "friction__coefficient": 0.08, "film__model": "none"}
-    found = _run(**constant, solver__coupling="dynamic")
+    coupled = _run(**constant, solver__coupling="dynamic")
     plain = _run(**constant)
     for name in ("rms_mesh_force", "mean_friction_power"):
-        assert found.summary()[name] == pytest.approx(plain.summary()[name], rel=1e-12)
+        assert coupled.summary()[name] == pytest.approx(plain.summary()[name], rel=1e-12)
 
 
 def test_friction_that_follows_the_load_is_the_same_motion() -> None:
@@ -180,13 +186,13 @@ def test_friction_that_follows_the_load_is_the_same_motion() -> None:
         law |= {"stiffness__model": "rectangular", "stiffness__pair_stiffness": 2e8,
                 "stiffness__reference": None}  # fmt: skip
         followed = _run(**law, dynamics__friction_load="dynamic").summary()
-        found = _run(**law, solver__coupling="dynamic", solver__coupling_tolerance=1e-9).summary()
+        coupled = _run(**law, solver__coupling="dynamic", solver__coupling_tolerance=1e-9).summary()
         plain = _run(**law).summary()
     assert followed["friction_fit_error"] < 1e-5
     for name in ("mean_friction_power", "rms_friction_force", "rms_mesh_force"):
         assert abs(followed[name] / plain[name] - 1.0) > 1e-4
         # The load is known at the knots of the mesh here, at the steps of the motion there.
-        assert found[name] - plain[name] == pytest.approx(followed[name] - plain[name], rel=1e-3)
+        assert coupled[name] - plain[name] == pytest.approx(followed[name] - plain[name], rel=1e-3)
 
 
 def test_the_contraction_is_that_of_the_derivative(static: Any) -> None:
@@ -231,16 +237,16 @@ def test_what_follows_from_the_mesh_can_be_plugged_in() -> None:
         viscosity = 0.082 / (1.0 + mesh.mean_friction_power / 500.0)
         return changed.replace({"lubricant.dynamic_viscosity": viscosity})
 
-    found = run(case, follow=thinner)
-    viscosity = found.case.lubricant.dynamic_viscosity
+    result = run(case, follow=thinner)
+    viscosity = result.case.lubricant.dynamic_viscosity
     assert viscosity == pytest.approx(
-        0.082 / (1.0 + found.mesh.mean_friction_power / 500.0), rel=1e-8
+        0.082 / (1.0 + result.mesh.mean_friction_power / 500.0), rel=1e-8
     )
     assert 0.3 * 0.082 < viscosity < 0.9 * 0.082
-    change = found.coupling.oil_change
+    change = result.coupling.oil_change
     assert change[0] > 0.1
     assert change[-1] < 1e-9
-    assert found.mesh.mean_friction_power != pytest.approx(td.run(case).mesh.mean_friction_power)
+    assert result.mesh.mean_friction_power != pytest.approx(td.run(case).mesh.mean_friction_power)
 
 
 def test_what_does_not_settle_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -251,16 +257,16 @@ def test_what_does_not_settle_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         return balanced(case, mesh) * (1.0 + 1e-3 * 3.0 ** next(swings))
 
     monkeypatch.setattr(module, "balanced_load", thrown)
-    with pytest.raises(td.ComputationError, match="do not settle") as told:
+    with pytest.raises(td.ComputationError, match="do not settle") as caught:
         _run(solver__coupling="static")
-    (problem,) = told.value.problems
+    (problem,) = caught.value.problems
     assert problem.where == "solver.coupling"
     assert "pass" in problem.what
     assert 'solver.coupling = "none"' in problem.remedy
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         ({"solver.coupling": "both"}, "static"),
         ({"solver.coupling": "dynamic", "dynamics.friction_load": "dynamic"}, "friction follow"),
@@ -268,8 +274,8 @@ def test_what_does_not_settle_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"solver.coupling": "static", "solver.coupling_tolerance": 0.5}, "coupling_tolerance"),
     ],
 )
-def test_wrong_keys_are_refused(changes: dict[str, Any], told: str) -> None:
-    with pytest.raises(td.InputError, match=told):
+def test_wrong_keys_are_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(td.InputError, match=message):
         td.load_case("fzg-roughness").replace(changes)
 
 
@@ -298,12 +304,12 @@ def test_loads_may_differ_from_phase_to_phase() -> None:
     problem = contact_problem(pair, provider="analytic", phase=phase, total_force=2000.0,
                               material=Material(), options={"reference": "rim"})  # fmt: skip
     totals = np.array([500.0, 2000.0, 4000.0])
-    found = problem.at_loads(totals[None, :])
+    loads = problem.at_loads(totals[None, :])
     for place, total in enumerate(totals):
         alone = problem.at_loads(np.array([total]))
-        assert found.approach[0, place] == alone.approach[0, place]
-        np.testing.assert_array_equal(found.load[0, place], alone.load[0, place])
-        assert found.tangent[0, place] == alone.tangent[0, place]
+        assert loads.approach[0, place] == alone.approach[0, place]
+        np.testing.assert_array_equal(loads.load[0, place], alone.load[0, place])
+        assert loads.tangent[0, place] == alone.tangent[0, place]
 
 
 def test_teeth_that_are_solved_together_follow_the_load_too() -> None:

@@ -76,9 +76,9 @@ def test_a_motion_that_does_not_repeat_is_refused(
 
 
 def test_a_graphics_processor_that_is_not_there_is_told_at_its_key(monkeypatch) -> None:
-    there = importlib.util.find_spec
+    find_spec = importlib.util.find_spec
     monkeypatch.setattr(
-        importlib.util, "find_spec", lambda name: None if name == "numba_cuda" else there(name)
+        importlib.util, "find_spec", lambda name: None if name == "numba_cuda" else find_spec(name)
     )
     asking = read_case(TEXT).replace({"solver.backend": "cuda"})
     with pytest.raises(InputError, match=r"solver\.backend: numba-cuda is not installed"):

@@ -141,14 +141,14 @@ def test_where_no_folder_can_be_made_a_run_compiles_alone(monkeypatch: pytest.Mo
     def refuses(*_: object, **__: object) -> None:
         raise FileNotFoundError("No usable temporary directory found")
 
-    asked: list[object] = []
+    calls: list[object] = []
     monkeypatch.setattr(first_use, "TemporaryDirectory", refuses)
-    monkeypatch.setattr(first_use, "in_background", lambda *given: asked.append(given))
+    monkeypatch.setattr(first_use, "in_background", lambda *arguments: calls.append(arguments))
     monkeypatch.setattr(first_use, "_missing_jobs", lambda *_: ["loads"])
     monkeypatch.setattr(first_use, "processors", lambda: 2)
     with first_use.compile_in_parallel(load_case("fzg-roughness")):
-        asked.append("run")
-    assert asked == ["run"]
+        calls.append("run")
+    assert calls == ["run"]
 
 
 @pytest.mark.parametrize("job", [print, os._exit], ids=["done", "lost"])

@@ -70,8 +70,8 @@ def test_all_ramps_carry_the_torque(ran: Any) -> None:
     assert figures["mean_mesh_force"] == pytest.approx(figures["static_mesh_force"], rel=1e-8)
     total = result.response.fine.contact_force.sum(axis=1)
     assert figures["peak_mesh_force"] == pytest.approx(total.max(), rel=1e-6)
-    drawn = next(trace for trace in FIGURES["mesh_force"](result).data if trace.name == "dynamic")
-    assert max(drawn.y) == pytest.approx(total.max(), rel=1e-6)
+    curve = next(trace for trace in FIGURES["mesh_force"](result).data if trace.name == "dynamic")
+    assert max(curve.y) == pytest.approx(total.max(), rel=1e-6)
     data = result.to_xarray()
     assert data["mesh_force"].attrs["units"] == "N"
     np.testing.assert_array_equal(data["mesh_force"], data["contact_force"].sum("contact"))
@@ -105,16 +105,16 @@ def test_flanks_are_apart_before_the_relieved_ones_touch(ran: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("way", "told"),
+    ("way", "message"),
     [("stiffness", "makes the mesh linear"), ("force-law", "lets the back flanks push at once")],
 )
 def test_without_play_a_pulling_mesh_is_told(
-    monkeypatch: pytest.MonkeyPatch, way: str, told: str
+    monkeypatch: pytest.MonkeyPatch, way: str, message: str
 ) -> None:
     for place in ("assembly", "motion"):
         monkeypatch.setattr(f"tribodyn.study.pipeline.{place}.mesh_law_of", lambda case: way)
     light = _LOOSE | {"dynamics.backlash": 0.0}
     case = read_case(SOUND, "pair.toml").replace(_CHANGES | light)
-    with pytest.warns(td.ModelWarning, match=f"mesh-tension.*backlash 0 {told}"):
+    with pytest.warns(td.ModelWarning, match=f"mesh-tension.*backlash 0 {message}"):
         result = td.run(case)
     assert result.summary()["minimum_mesh_force"] < 0.0

@@ -26,7 +26,7 @@ def case() -> Any:
 
 
 @pytest.fixture(scope="module")
-def found(case: Any) -> Any:
+def experiment(case: Any) -> Any:
     laws = ["constant", "benedict-kelly", "xu-2007", "mixed", "mixed-ehl"]
     return friction_experiment(case, laws=laws, **_FEW)
 
@@ -44,27 +44,30 @@ def found(case: Any) -> Any:
     ],
 )  # fmt: skip
 def test_every_state_is_that_of_a_run_of_its_own(
-    case: Any, found: Any, driver: str, balance: str, friction: str, changes: dict[str, Any]
+    case: Any, experiment: Any, driver: str, balance: str, friction: str, changes: dict[str, Any]
 ) -> None:
     alone = td.run(case.replace(
         {"gears.driver": driver, "operation.torque_balance": balance, **changes}
     )).summary()  # fmt: skip
     place = tuple(
         axis.values.index(value)
-        for axis, value in zip(found.axes, (driver, balance, friction), strict=True)
+        for axis, value in zip(experiment.axes, (driver, balance, friction), strict=True)
     )
     for name in ("rms_mesh_force", "dynamic_transmission_error_harmonic_5",
                  "rms_bearing_force_oloa_pinion", "mean_friction_coefficient"):  # fmt: skip
-        assert found[name][place] == pytest.approx(alone[name], rel=1e-10)
+        assert experiment[name][place] == pytest.approx(alone[name], rel=1e-10)
 
 
 @pytest.mark.slow
 def test_a_solved_film_is_shared_by_all_laws(case: Any) -> None:
     solved = case.replace({"film.model": "newton", "film.positions": 8})
-    found = friction_experiment(solved, laws=["ehl"], roughness=["0.4 um", "0.8 um"])
-    assert [one.name for one in found.rubbing] == ["none", "ehl"]  # no law of roughness
+    experiment = friction_experiment(solved, laws=["ehl"], roughness=["0.4 um", "0.8 um"])
+    assert [rubbing.name for rubbing in experiment.rubbing] == [
+        "none",
+        "ehl",
+    ]  # no law of roughness
     alone = td.run(solved.replace({"friction.law": "ehl", "gears.driver": "wheel"})).summary()
-    assert found["mean_friction_power"][1, 2, 1] == pytest.approx(
+    assert experiment["mean_friction_power"][1, 2, 1] == pytest.approx(
         alone["mean_friction_power"], rel=1e-12
     )
 
@@ -78,54 +81,59 @@ def test_a_law_of_the_film_gets_a_solved_one(case: Any) -> None:
     assert films == ["none", "dowson-higginson"]
 
 
-def test_effects_are_those_of_each_law_at_the_roughness_of_the_case(case: Any, found: Any) -> None:
+def test_effects_are_those_of_each_law_at_the_roughness_of_the_case(
+    case: Any, experiment: Any
+) -> None:
     # 0.325 um is nearer to the 0.53 um of the case than 0.991 um.
-    names = [found.rubbing[k].name for k in found.nearest()]
+    names = [experiment.rubbing[k].name for k in experiment.nearest()]
     assert names[1:] == [f"{law} 0.325 um" for law in ("benedict-kelly", "xu-2007", "mixed",
                                                        "mixed-ehl")]  # fmt: skip
-    rows = {row[0]: row[1:] for row in found.effect_rows()}
+    rows = {row[0]: row[1:] for row in experiment.effect_rows()}
     assert list(rows) == ["none", *names]
-    place = (0, 2, found.index("mixed"))
-    told = [float(word) for word in rows["mixed 0.325 um"]]
-    wanted = [found["mean_friction_coefficient"][place], found["mean_mesh_force"][place]]
-    assert told[:2] == pytest.approx(wanted, rel=1e-3)
-    assert told[6] == pytest.approx(found["rms_bearing_force_oloa_pinion"][place], rel=1e-3)
+    place = (0, 2, experiment.index("mixed"))
+    printed = [float(text) for text in rows["mixed 0.325 um"]]
+    wanted = [experiment["mean_friction_coefficient"][place], experiment["mean_mesh_force"][place]]
+    assert printed[:2] == pytest.approx(wanted, rel=1e-3)
+    assert printed[6] == pytest.approx(experiment["rms_bearing_force_oloa_pinion"][place], rel=1e-3)
 
 
-def test_without_friction_no_setting_differs(found: Any) -> None:
-    plain = found["rms_mesh_force"][:, :, found.index("none")]
+def test_without_friction_no_setting_differs(experiment: Any) -> None:
+    plain = experiment["rms_mesh_force"][:, :, experiment.index("none")]
     for row in plain:  # the torque that is held matters only where friction acts
         assert np.ptp(row) < 1e-9 * row[0]
 
 
-def test_constant_twins_have_the_mean_of_the_mixed_friction(found: Any) -> None:
-    for place, one in enumerate(found.rubbing):
-        if one.as_mixed:
-            mixed = found.index("mixed-ehl", roughness=one.roughness)
-            mu = found["mean_friction_coefficient"]
+def test_constant_twins_have_the_mean_of_the_mixed_friction(experiment: Any) -> None:
+    for place, rubbing in enumerate(experiment.rubbing):
+        if rubbing.as_mixed:
+            mixed = experiment.index("mixed-ehl", roughness=rubbing.roughness)
+            mu = experiment["mean_friction_coefficient"]
             np.testing.assert_allclose(mu[..., place], mu[..., mixed], rtol=1e-12)
 
 
 def test_friction_across_is_in_proportion_at_small_coefficients(case: Any) -> None:
-    found = friction_experiment(case, laws=["constant"], coefficients=[0.002, 0.004])
-    across = found["rms_bearing_force_oloa_pinion"]
+    experiment = friction_experiment(case, laws=["constant"], coefficients=[0.002, 0.004])
+    across = experiment["rms_bearing_force_oloa_pinion"]
     np.testing.assert_allclose(across[..., 2] / across[..., 1], 2.0, rtol=5e-3)
-    effect = found.change("mean_mesh_force")
+    effect = experiment.change("mean_mesh_force")
     np.testing.assert_allclose(effect[..., 2] / effect[..., 1], 2.0, rtol=5e-3)
 
 
-def test_held_torque_bounds_the_mean_force(found: Any) -> None:
+def test_held_torque_bounds_the_mean_force(experiment: Any) -> None:
     # Both torques held: the mean force lies between those of either torque held alone.
-    mean = found["mean_mesh_force"][:, :, 1:]
+    mean = experiment["mean_mesh_force"][:, :, 1:]
     low, high = mean[:, :2].min(axis=1), mean[:, :2].max(axis=1)
     assert np.all((low < mean[:, 2]) & (mean[:, 2] < high))
 
 
-def test_claims_follow_from_the_figures(found: Any) -> None:
-    claims = {claim.case: claim for claim in found.claims}
+def test_claims_follow_from_the_figures(experiment: Any) -> None:
+    claims = {claim.case: claim for claim in experiment.claims}
     rough = claims["fzg-roughness"]
-    ends = [found.index("benedict-kelly", roughness=r * 1e-6) for r in (0.325, 0.991)]
-    peak = found["peak_mesh_force"][..., ends[1]] / found["peak_mesh_force"][..., ends[0]] - 1.0
+    ends = [experiment.index("benedict-kelly", roughness=r * 1e-6) for r in (0.325, 0.991)]
+    peak = (
+        experiment["peak_mesh_force"][..., ends[1]] / experiment["peak_mesh_force"][..., ends[0]]
+        - 1.0
+    )
     np.testing.assert_array_equal(rough.holds, [[True] * 3, [False] * 3])  # (driver, held torque)
     assert not np.any(rough.holds & (peak > 0.0))
     assert f"{100.0 * peak[0, 2]:+.2g} %" in rough.computed
@@ -134,64 +142,66 @@ def test_claims_follow_from_the_figures(found: Any) -> None:
     assert claims["hypoid pair"].verdict == "holds"
 
 
-def _with_figures(found: Any, change: Any) -> Any:
-    points = tuple(dataclasses.replace(p, figures={**p.figures, **change(p)}) for p in found.points)
-    return dataclasses.replace(found, points=points)
+def _with_figures(experiment: Any, change: Any) -> Any:
+    points = tuple(
+        dataclasses.replace(p, figures={**p.figures, **change(p)}) for p in experiment.points
+    )
+    return dataclasses.replace(experiment, points=points)
 
 
-def test_verdicts_turn_with_the_figures(found: Any) -> None:
+def test_verdicts_turn_with_the_figures(experiment: Any) -> None:
     # A fifth harmonic that doubles with friction makes the claim of the rig hold everywhere.
     name = "dynamic_transmission_error_harmonic_5"
     turned = _with_figures(
-        found, lambda p: {name: p.figures[name] * (1.0 if p.values[2] == "none" else 2.0)}
+        experiment, lambda p: {name: p.figures[name] * (1.0 if p.values[2] == "none" else 2.0)}
     )
-    assert {c.case: c.verdict for c in found.claims}["fzg-12dof"] == "fails"
+    assert {c.case: c.verdict for c in experiment.claims}["fzg-12dof"] == "fails"
     claim = {c.case: c for c in turned.claims}["fzg-12dof"]
     assert (claim.verdict, claim.where) == ("holds", "any gear drives and any torque is held")
     # A twin that moves 5 % more than its mixed friction makes that of the hypoid pair fail.
     swing = "peak_to_peak_dynamic_transmission_error"
     turned = _with_figures(
-        found, lambda p: {swing: p.figures[swing] * (1.05 if " as " in p.values[2] else 1.0)}
+        experiment, lambda p: {swing: p.figures[swing] * (1.05 if " as " in p.values[2] else 1.0)}
     )
     assert {c.case: c.verdict for c in turned.claims}["hypoid pair"] == "fails"
 
 
 def test_what_was_not_computed_is_told(case: Any) -> None:
-    found = friction_experiment(case, laws=["xu-2007"], roughness=["0.4 um"])
-    assert {claim.verdict for claim in found.claims} == {"not computed"}
-    assert all(claim.why for claim in found.claims)
+    experiment = friction_experiment(case, laws=["xu-2007"], roughness=["0.4 um"])
+    assert {claim.verdict for claim in experiment.claims} == {"not computed"}
+    assert all(claim.why for claim in experiment.claims)
     with pytest.raises(td.InputError, match="constant"):
-        found.index("constant")
+        experiment.index("constant")
 
 
 @pytest.mark.slow
 def test_an_experiment_that_ended_early_tells_what_it_has(
-    case: Any, found: Any, tmp_path: Any
+    case: Any, experiment: Any, tmp_path: Any
 ) -> None:
     lacks = {}
-    for count in (1, 3, 40, len(found.points)):
-        part = dataclasses.replace(found, points=found.points[:count])
+    for count in (1, 3, 40, len(experiment.points)):
+        part = dataclasses.replace(experiment, points=experiment.points[:count])
         part.save(tmp_path / str(count))
         names = ("friction_effect", "friction_claims", "friction_harmonics")
         lacks[count] = [bool(td.plot.FIGURES[name].missing(part)) for name in names]
-        drawn = [name for name, lack in zip(names, lacks[count], strict=True) if not lack]
-        assert all(part.plot(name).layout.title.text for name in drawn)
+        drawable = [name for name, lack in zip(names, lacks[count], strict=True) if not lack]
+        assert all(part.plot(name).layout.title.text for name in drawable)
     assert lacks[1] == [True, True, True]
     assert lacks[3] == [False, True, True]  # drive torque held, as it is not in the case
-    assert lacks[len(found.points)] == [False, False, False]
+    assert lacks[len(experiment.points)] == [False, False, False]
 
 
 def test_a_roughness_beyond_a_law_fails_alone(case: Any) -> None:
-    found = friction_experiment(case, laws=["benedict-kelly", "xu-2007"],
-                                roughness=["0.4 um", "1.2 um"])  # fmt: skip
-    bad = found.index("benedict-kelly", roughness=1.2e-6)
-    assert all(text for text in found.failed[..., bad].flat)
-    good = found.index("xu-2007", roughness=1.2e-6)
-    assert np.isfinite(found["rms_mesh_force"][..., good]).all()
+    experiment = friction_experiment(case, laws=["benedict-kelly", "xu-2007"],
+                                     roughness=["0.4 um", "1.2 um"])  # fmt: skip
+    bad = experiment.index("benedict-kelly", roughness=1.2e-6)
+    assert all(text for text in experiment.failed[..., bad].flat)
+    good = experiment.index("xu-2007", roughness=1.2e-6)
+    assert np.isfinite(experiment["rms_mesh_force"][..., good]).all()
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"laws": ["xu-2008"]}, "xu-2007"),
         ({"roughness": "0.4 um"}, "list"),
@@ -201,34 +211,34 @@ def test_a_roughness_beyond_a_law_fails_alone(case: Any) -> None:
         ({"laws": ["constant"], "coefficients": [math.nan]}, "coefficient"),
     ],
 )
-def test_wrong_arguments_are_refused(case: Any, options: dict[str, Any], told: str) -> None:
+def test_wrong_arguments_are_refused(case: Any, options: dict[str, Any], message: str) -> None:
     if "coefficients" in options:
-        found = friction_experiment(case, **options)
-        assert told in found.failed[0, 0, 1]
+        experiment = friction_experiment(case, **options)
+        assert message in experiment.failed[0, 0, 1]
         return
-    with pytest.raises(td.InputError, match=told):
+    with pytest.raises(td.InputError, match=message):
         friction_experiment(case, **options)
 
 
 @pytest.mark.slow
-def test_it_is_stored_and_goes_on(found: Any, case: Any, tmp_path: Any) -> None:
+def test_it_is_stored_and_goes_on(experiment: Any, case: Any, tmp_path: Any) -> None:
     import xarray
 
-    place = found.save(tmp_path / "friction")
+    place = experiment.save(tmp_path / "friction")
     data = xarray.open_dataset(place / "sweep.nc")
-    assert data["rms_mesh_force"].shape == found.shape
-    assert list(data["claim_verdict"].values) == [claim.verdict for claim in found.claims]
+    assert data["rms_mesh_force"].shape == experiment.shape
+    assert list(data["claim_verdict"].values) == [claim.verdict for claim in experiment.claims]
     assert data["composite_roughness"].units == "m"
     rows = (place / "sweep.csv").read_text().splitlines()
-    assert len(rows) == 1 + len(found.points)
+    assert len(rows) == 1 + len(experiment.points)
     report = (place / "report.html").read_text()
-    assert found.claims[3].why.split(";")[0] in report
-    asked: list[Any] = []
+    assert experiment.claims[3].why.split(";")[0] in report
+    requests: list[Any] = []
     options = {"laws": ["xu-2007"], "roughness": ["0.4 um"]}
     with Checkpoints(tmp_path / "m") as members:
-        whole = friction_experiment(case, **options, checkpoints=members)
+        complete = friction_experiment(case, **options, checkpoints=members)
     with Checkpoints(tmp_path / "m") as members, pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sweeps, "prepare_run", lambda *a, **k: asked.append(a))
+        patch.setattr(sweeps, "prepare_run", lambda *a, **k: requests.append(a))
         again = friction_experiment(case, **options, checkpoints=members)
-    assert not asked
-    assert again.to_csv() == whole.to_csv()
+    assert not requests
+    assert again.to_csv() == complete.to_csv()

@@ -29,8 +29,8 @@ def test_a_constant_coefficient_changes_nothing():
     compared = [name for name in figures if name.endswith("_nominal_friction")]
     assert len(compared) == 5
     for name in compared:
-        own = figures[name.removesuffix("_nominal_friction")]
-        assert own == pytest.approx(figures[name], rel=1e-6)
+        nominal = figures[name.removesuffix("_nominal_friction")]
+        assert nominal == pytest.approx(figures[name], rel=1e-6)
 
 
 @pytest.mark.parametrize("model", ["spur-6dof", "torsional", "fzg-12dof"])
@@ -51,11 +51,14 @@ def test_the_torque_that_friction_takes_is_the_power_that_it_loses(model):
 
 def test_the_comparison_is_the_run_with_nominal_friction():
     law = {"friction__law": "xu-2007"}
-    both, nominal = _run(**law, dynamics__friction_load="dynamic").summary(), _run(**law).summary()
+    dynamic, nominal = (
+        _run(**law, dynamics__friction_load="dynamic").summary(),
+        _run(**law).summary(),
+    )
     for name in ("rms_mesh_force", "rms_friction_force", "mean_friction_power"):
-        assert both[f"{name}_nominal_friction"] == pytest.approx(nominal[name], rel=1e-9)
+        assert dynamic[f"{name}_nominal_friction"] == pytest.approx(nominal[name], rel=1e-9)
         assert f"{name}_nominal_friction" not in nominal
-    assert both["friction_fit_error"] < 5e-3
+    assert dynamic["friction_fit_error"] < 5e-3
 
 
 def test_loads_beyond_those_known_are_told():
@@ -85,7 +88,7 @@ def test_light_loads_that_have_no_film_are_left_out(monkeypatch):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         nominal = plain(case)
-        whole = tooth_contact.load_friction_of(case, nominal)
+        friction_of_all = tooth_contact.load_friction_of(case, nominal)
 
         def mesh_of(case, *, load):
             if load in refused:
@@ -94,11 +97,11 @@ def test_light_loads_that_have_no_film_are_left_out(monkeypatch):
 
         monkeypatch.setattr(tooth_contact, "mesh_of", mesh_of)
         refused.append(0.12)
-        found = tooth_contact.load_friction_of(case, nominal)
+        friction = tooth_contact.load_friction_of(case, nominal)
         refused.append(2.05)
         with pytest.raises(ComputationError):
             tooth_contact.load_friction_of(case, nominal)
     force = 1.2 * nominal.total_normal_force
-    assert found.value("friction_sum", 0.3, force) == pytest.approx(
-        whole.value("friction_sum", 0.3, force), rel=1e-3
+    assert friction.value("friction_sum", 0.3, force) == pytest.approx(
+        friction_of_all.value("friction_sum", 0.3, force), rel=1e-3
     )

@@ -34,9 +34,9 @@ def _balance(case: Any) -> Any:
         calls.append(point.lubricant.temperature)
         return point, mesh_of(point), None
 
-    found, _, _, heat = balanced(case, mesh_at)
+    summary, _, _, heat = balanced(case, mesh_at)
     assert calls == heat.temperature.tolist()
-    return found, heat
+    return summary, heat
 
 
 @pytest.mark.parametrize("around", ["-10 degC", "20 degC"])
@@ -45,16 +45,16 @@ def test_what_is_lost_is_given_off(around: str) -> None:
         with pytest.raises(ComputationError, match="start at 10 degC"):
             _balance(_case(lubricant__ambient_temperature=around))
         return
-    found, heat = _balance(_case(losses__wheel__seal_diameter="30 mm"))
-    lost = td.loss_map(found, torque=found.operation.torque, speed=found.operation.speed)
-    rise = found.lubricant.temperature - 293.15
+    summary, heat = _balance(_case(losses__wheel__seal_diameter="30 mm"))
+    lost = td.loss_map(summary, torque=summary.operation.torque, speed=summary.operation.speed)
+    rise = summary.lubricant.temperature - 293.15
     assert float(lost.total[0, 0]) == pytest.approx(4.0 * rise, rel=1e-6)
     assert lost.seal[0, 0] > 0.0
     assert float(lost.gear[0, 0]) < 4.0 * rise  # the seal heats too
     assert heat.power_loss[-1] == pytest.approx(heat.dissipated[-1], rel=1e-6)
     # not a thing of chance: a tenth of a degree further it no longer holds
-    off = found.replace({"lubricant.temperature": found.lubricant.temperature + 0.1})
-    lost = td.loss_map(off, torque=found.operation.torque, speed=found.operation.speed)
+    off = summary.replace({"lubricant.temperature": summary.lubricant.temperature + 0.1})
+    lost = td.loss_map(off, torque=summary.operation.torque, speed=summary.operation.speed)
     assert float(lost.total[0, 0]) != pytest.approx(4.0 * (rise + 0.1), rel=1e-4)
 
 
@@ -75,19 +75,19 @@ def test_where_it_begins_does_not_matter() -> None:
 
 
 def test_without_losses_it_is_as_warm_as_the_surroundings() -> None:
-    found, heat = _balance(_case(friction__law="none"))
-    assert found.lubricant.temperature == 293.15
+    summary, heat = _balance(_case(friction__law="none"))
+    assert summary.lubricant.temperature == 293.15
     assert heat.power_loss[-1] == 0.0
 
 
 def test_a_balance_beyond_what_is_known_of_the_oil_is_told() -> None:
     with pytest.raises(ComputationError) as caught:
         _balance(_case("0.5 W/K"))
-    told = str(caught.value)
-    for words in ("130 degC", "lubricant.heat_transfer", "the loss is", "Set more than"):
-        assert words in told
+    message = str(caught.value)
+    for part in ("130 degC", "lubricant.heat_transfer", "the loss is", "Set more than"):
+        assert part in message
     # what it says would do does
-    enough = float(told.partition("Set more than ")[2].partition(" W/K")[0])
+    enough = float(message.partition("Set more than ")[2].partition(" W/K")[0])
     assert _balance(_case(f"{1.02 * enough} W/K"))[0].lubricant.temperature < 403.15
 
 
@@ -131,7 +131,7 @@ def test_a_run_ends_at_the_balance_with_and_without_coupling(law: str, local: bo
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         ({"lubricant.name": None, "lubricant.dynamic_viscosity": "82 mPa*s",
           "lubricant.density": "880 kg/m^3",
@@ -142,8 +142,8 @@ def test_a_run_ends_at_the_balance_with_and_without_coupling(law: str, local: bo
         ({"lubricant.heat_transfer": "0 W/K"}, "heat_transfer"),
     ],
 )  # fmt: skip
-def test_wrong_keys_are_refused(changes: dict[str, Any], told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_wrong_keys_are_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
         _case().replace(changes)
 
 
@@ -156,11 +156,11 @@ def test_wrong_keys_are_refused(changes: dict[str, Any], told: str) -> None:
     ],
 )  # fmt: skip
 def test_any_oil_over_temperature_takes_part_in_the_balance(oil: dict[str, Any]) -> None:
-    found, heat = _balance(_case().replace(oil))
+    summary, heat = _balance(_case().replace(oil))
     assert heat.power_loss[-1] == pytest.approx(heat.dissipated[-1], rel=1e-6)
     if "lubricant.density_at_15" in oil:
         same, _ = _balance(_case())
-        assert found.lubricant.temperature == pytest.approx(same.lubricant.temperature, abs=0.01)
+        assert summary.lubricant.temperature == pytest.approx(same.lubricant.temperature, abs=0.01)
 
 
 def test_range_of_an_oil_is_where_it_can_be_made() -> None:

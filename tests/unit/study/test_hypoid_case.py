@@ -89,7 +89,7 @@ def test_only_the_design_has_to_be_given():
 
 
 @pytest.mark.parametrize(
-    ("changes", "place", "told"),
+    ("changes", "place", "reason"),
     [
         ({"cutter_radius": '"25 mm"'}, "gears.cutter_radius", "limit curvature"),
         ({"offset": '"200 mm"'}, "gears.offset", ""),
@@ -104,18 +104,18 @@ def test_only_the_design_has_to_be_given():
         ({"ease_of": "1"}, "ease_of", 'Did you mean "ease_off"'),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_line(changes, place, told):
+def test_what_cannot_be_is_refused_with_its_line(changes, place, reason):
     message = refused(text(**changes))
     assert message.startswith("my.toml:")
-    assert told in message
-    for word in place.split():
-        assert word.rpartition(".")[2] in message
+    assert reason in message
+    for part in place.split():
+        assert part.rpartition(".")[2] in message
 
 
 def test_papers_are_those_of_what_the_pair_uses():
-    told = cite(built_in())
-    assert "Xu, H." in told
-    assert "Weber" not in told
+    sources = cite(built_in())
+    assert "Xu, H." in sources
+    assert "Weber" not in sources
 
 
 def test_spur_gears_have_no_axes_that_cross():
@@ -127,14 +127,14 @@ def test_spur_gears_have_no_axes_that_cross():
 
 
 def test_figures_of_the_run_are_those_of_the_contact_at_rest(result):
-    figures, rest = result.summary(), result.hypoid_friction
-    loaded = rest.loaded
+    figures, static = result.summary(), result.hypoid_friction
+    loaded = static.loaded
     names = ("mean_mesh_stiffness", "unloaded_transmission_error_peak_to_peak",
              "loaded_transmission_error_peak_to_peak", "minimum_film_ratio",
              "mean_friction_coefficient")  # fmt: skip
     expected = (loaded.mean_mesh_stiffness, np.ptp(loaded.unloaded_transmission_error),
-                np.ptp(loaded.loaded_transmission_error), rest.minimum_film_ratio,
-                rest.mean_friction_coefficient)  # fmt: skip
+                np.ptp(loaded.loaded_transmission_error), static.minimum_film_ratio,
+                static.mean_friction_coefficient)  # fmt: skip
     assert [figures[name] for name in names] == pytest.approx(expected, rel=2e-3)
     assert figures["mean_mesh_stiffness"] == pytest.approx(5.69e8, rel=0.02)
     assert figures["transverse_contact_ratio"] == pytest.approx(
@@ -190,9 +190,9 @@ def test_both_sides_lose_power_and_the_torsional_pair_runs():
 
 
 def test_the_report_draws_gears_contact_and_forces_in_space(result):
-    known = dir(result)
-    assert {"plot_hypoid_pair", "plot_tooth_force", "plot_hypoid_pressure"} <= set(known)
-    assert "plot_gear_pair" not in known
+    names = dir(result)
+    assert {"plot_hypoid_pair", "plot_tooth_force", "plot_hypoid_pressure"} <= set(names)
+    assert "plot_gear_pair" not in names
     blocks = {name: FIGURES[name](result) for name in HYPOID_SECTIONS if "force" in name}
     panels = {trace.name for trace in blocks["tooth_force"].data}
     assert panels == {"x", "y", "z"}

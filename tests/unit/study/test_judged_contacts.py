@@ -76,12 +76,12 @@ def test_curves_have_gaps_where_no_load_is_carried(relieved: Any, name: str) -> 
     carries = table.load_share.T[touching] > 1e-3
     assert 0.3 < carries.mean() < 0.95
     figure = FIGURES[name](table)
-    shown = {"friction": ["friction coefficient", "friction force"],
-             "film": ["in the centre", "at its thinnest", "film ratio"],
-             "lubrication": ["film ratio", "oil film", "asperities"]}[name]  # fmt: skip
-    drawn = [trace for trace in figure.data if trace.name in shown]
-    assert len(drawn) >= 2
-    for trace in drawn:
+    names_of_curves = {"friction": ["friction coefficient", "friction force"],
+                       "film": ["in the centre", "at its thinnest", "film ratio"],
+                       "lubrication": ["film ratio", "oil film", "asperities"]}[name]  # fmt: skip
+    curves = [trace for trace in figure.data if trace.name in names_of_curves]
+    assert len(curves) >= 2
+    for trace in curves:
         assert np.array_equal(np.isfinite(np.asarray(trace.y, dtype=float)), carries), trace.name
     assert "no load" in FIGURES[name].caption_of(table)
     plain, _ = mesh(td.load_case("fzg-roughness").replace({"film.model": "dowson-higginson"}))
@@ -102,11 +102,11 @@ def test_the_advice_of_mixed_lubrication_follows_the_law(law: str, teeth: tuple[
     coefficient = {"friction__coefficient": 0.05} if law == "constant" else {}
     changes = {"gears__pinion__teeth": teeth[0], "gears__wheel__teeth": teeth[1]}
     table = hypoid(friction__law=law, **coefficient, **changes)
-    (told,) = (each.message for each in mesh_cautions(table) if each.code == "mixed-lubrication")
-    assert ('friction.law = "mixed"' in told) == (law == "constant")
-    assert ("so is the friction" in told) == (law == "constant")
-    assert "film stiffness" not in told  # there is none in a formula of the ellipse
-    (share,) = map(float, re.findall(r"up to (\d+)% of the load", told))
+    (advice,) = (each.message for each in mesh_cautions(table) if each.code == "mixed-lubrication")
+    assert ('friction.law = "mixed"' in advice) == (law == "constant")
+    assert ("so is the friction" in advice) == (law == "constant")
+    assert "film stiffness" not in advice  # there is none in a formula of the ellipse
+    (share,) = map(float, re.findall(r"up to (\d+)% of the load", advice))
     assert 20.0 < share < 100.0
 
 

@@ -42,9 +42,9 @@ def _flat(data: dict[str, Any], prefix: str = "") -> set[str]:
 
 
 def test_finds_exactly_the_keys_that_the_toml_reader_finds() -> None:
-    found = key_lines(TEXT)
+    lines = key_lines(TEXT)
     implied = {"gears.wheel"}
-    assert set(found) | implied == _flat(tomllib.loads(TEXT))
+    assert set(lines) | implied == _flat(tomllib.loads(TEXT))
 
 
 @pytest.mark.parametrize(

@@ -41,21 +41,23 @@ SLOW = {"newmark": pytest.mark.slow}  # compiles an engine of its own
     scope="module",
     params=[pytest.param(name, marks=SLOW.get(name, ())) for name in CASES],
 )
-def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
+def saved_and_loaded(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Any:
     result = td.run(_SOUND.replace(CASES[request.param]))
     place = result.save(tmp_path_factory.mktemp("saved") / "out")
     return result, td.load_result(place), place
 
 
-def test_summary_case_and_warnings_are_those_saved(both: Any) -> None:
-    result, loaded, place = both
+def test_summary_case_and_warnings_are_those_saved(saved_and_loaded: Any) -> None:
+    result, loaded, place = saved_and_loaded
     assert loaded.summary() == result.summary() == json.loads((place / "summary.json").read_text())
     assert loaded.case == result.case
     assert list(map(str, loaded.warnings)) == list(map(str, result.warnings))
 
 
-def test_the_summary_computed_anew_is_the_one_saved(both: Any) -> None:
-    result, loaded, _ = both
+def test_the_summary_computed_anew_is_the_one_saved(saved_and_loaded: Any) -> None:
+    result, loaded, _ = saved_and_loaded
     del vars(loaded)["_summary"]
     again = loaded.summary()
     for name, value in result.summary().items():
@@ -63,20 +65,20 @@ def test_the_summary_computed_anew_is_the_one_saved(both: Any) -> None:
             assert again[name] == pytest.approx(value, rel=1e-12, abs=1e-15), name
 
 
-def test_every_figure_is_drawn_from_equal_numbers(both: Any) -> None:
-    result, loaded, _ = both
+def test_every_figure_is_drawn_from_equal_numbers(saved_and_loaded: Any) -> None:
+    result, loaded, _ = saved_and_loaded
     assert figures_of(loaded) == figures_of(result)
     for name in figures_of(result):
         if not td.plot.FIGURES[name].missing(result):
-            drawn, again = (getattr(each, f"plot_{name}")() for each in (result, loaded))
-            for one, other in zip(drawn.data, again.data, strict=True):
-                if one.y is not None and np.asarray(one.y).dtype.kind == "f":
-                    scale = float(np.nanmax(np.abs(one.y), initial=0.0))
-                    np.testing.assert_allclose(other.y, one.y, rtol=1e-12, atol=1e-12 * scale)
+            figure, again = (getattr(each, f"plot_{name}")() for each in (result, loaded))
+            for trace, other in zip(figure.data, again.data, strict=True):
+                if trace.y is not None and np.asarray(trace.y).dtype.kind == "f":
+                    scale = float(np.nanmax(np.abs(trace.y), initial=0.0))
+                    np.testing.assert_allclose(other.y, trace.y, rtol=1e-12, atol=1e-12 * scale)
 
 
-def test_what_is_drawn_is_saved_with_units(both: Any) -> None:
-    result, _, place = both
+def test_what_is_drawn_is_saved_with_units(saved_and_loaded: Any) -> None:
+    result, _, place = saved_and_loaded
     with xarray.open_dataset(place / "response.nc", engine="h5netcdf") as data:
         force = np.asarray(result.response.contact_force).sum(axis=1)
         assert np.array_equal(data["mesh_force"], force)
@@ -91,8 +93,8 @@ def test_what_is_drawn_is_saved_with_units(both: Any) -> None:
         assert units["pinion_theta"] == "rad/s"
         if "order" in data.sizes:
             harmonic = float(data["dynamic_transmission_error_spectrum"].sel(order=1.0))
-            told = result.summary()["dynamic_transmission_error_harmonic_1"]
-            assert harmonic == pytest.approx(told, rel=1e-12)
+            value = result.summary()["dynamic_transmission_error_harmonic_1"]
+            assert harmonic == pytest.approx(value, rel=1e-12)
         if "pinion_y" in result.response.names:
             bearing = data["bearing_force_loa_pinion"]
             assert bearing.attrs["units"] == "N"
@@ -129,8 +131,8 @@ def test_a_long_run_is_stored_by_its_last_mesh_cycles(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     result = td.run(_SOUND.replace({"solver.method": "transient", "solver.cycles": 40}))
-    whole = sum(v.nbytes for v in result.to_xarray().variables.values() if "time" in v.dims)
-    monkeypatch.setattr(response_series, "LARGEST", whole // 4)
+    full_size = sum(v.nbytes for v in result.to_xarray().variables.values() if "time" in v.dims)
+    monkeypatch.setattr(response_series, "LARGEST", full_size // 4)
     place = result.save(tmp_path / "out")
     loaded = td.load_result(place)
     assert loaded.response.periods == 10
@@ -144,12 +146,12 @@ def test_a_very_long_run_keeps_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
     from tribodyn.study.pipeline import motion
 
     case = _SOUND.replace({"solver.method": "transient", "solver.cycles": 70})
-    whole = td.run(case)
+    full = td.run(case)
     monkeypatch.setattr(motion, "_MOST_ROWS", 256 * 12)
-    kept = td.run(case)
-    assert "transient-kept" in [warning.code for warning in kept.warnings]
-    np.testing.assert_array_equal(kept.response.position, whole.response.position[-12 * 256 :])
-    assert kept.response.time[0] == pytest.approx(58 / kept.response.mesh_frequency)
+    shortened = td.run(case)
+    assert "transient-kept" in [warning.code for warning in shortened.warnings]
+    np.testing.assert_array_equal(shortened.response.position, full.response.position[-12 * 256 :])
+    assert shortened.response.time[0] == pytest.approx(58 / shortened.response.mesh_frequency)
 
 
 def _broken(saved: Path, place: Path, name: str) -> Path:

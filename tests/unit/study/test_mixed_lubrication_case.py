@@ -83,8 +83,10 @@ def test_a_normal_gear_has_friction_between_film_and_gear_tests(mesh: MeshTable)
     assert np.all((share > 0.8) & (share < 1.0))
     assert set(regime[mesh.in_contact]) == {1.0}
     assert np.isnan(regime[~mesh.in_contact]).all()
-    (told,) = (found for found in mesh_cautions(mesh) if found.code == "mixed-lubrication")
-    assert "and so is the friction" not in told.message
+    (mixed_caution,) = (
+        caution for caution in mesh_cautions(mesh) if caution.code == "mixed-lubrication"
+    )
+    assert "and so is the friction" not in mixed_caution.message
 
 
 def test_columns_of_mixed_lubrication_are_kept(mesh: MeshTable, tmp_path: Path) -> None:
@@ -135,28 +137,28 @@ def test_map_of_the_regimes(tmp_path: Path) -> None:
 
 
 def test_profile_gives_height_slope_and_summits(tmp_path: Path) -> None:
-    given = profile(tmp_path, wavy(0.5))
+    path = profile(tmp_path, wavy(0.5))
     with pytest.warns(td.ModelWarning, match="xu-2007"):
-        found = mesh_of(case_of(tmp_path, roughness_profile=given))
+        mesh = mesh_of(case_of(tmp_path, roughness_profile=path))
     flanks = td.ehl.Asperities.from_profiles(td.ehl.RoughnessProfile.read(tmp_path / "flank.csv"))
     # Both flanks of 0.5 um; their straight line is taken away.
     assert flanks.rms_height == pytest.approx(0.7071e-6, rel=5e-3)
     share, _ = td.ehl.balanced_load_share(
-        np.asarray(found.central_film)[found.in_contact],
-        found.hertz_pressure[found.in_contact],
+        np.asarray(mesh.central_film)[mesh.in_contact],
+        mesh.hertz_pressure[mesh.in_contact],
         2.0 / (2.0 * (1.0 - 0.3**2) / 206e9),
         flanks,
     )
-    assert np.asarray(found.film_load_share)[found.in_contact] == pytest.approx(share, rel=1e-9)
+    assert np.asarray(mesh.film_load_share)[mesh.in_contact] == pytest.approx(share, rel=1e-9)
 
 
 def test_profile_of_another_height_is_told(tmp_path: Path) -> None:
-    given = profile(tmp_path, wavy(0.3))
+    path = profile(tmp_path, wavy(0.3))
     with pytest.warns(td.ModelWarning) as caught:
-        mesh_of(case_of(tmp_path, roughness_profile=given))
-    (told,) = (str(each.message) for each in caught if "roughness-differs" in str(each.message))
-    assert "composite rms roughness of 0.4227 um" in told
-    assert 'roughness_rms = "0.2989 um"' in told
+        mesh_of(case_of(tmp_path, roughness_profile=path))
+    (message,) = (str(each.message) for each in caught if "roughness-differs" in str(each.message))
+    assert "composite rms roughness of 0.4227 um" in message
+    assert 'roughness_rms = "0.2989 um"' in message
 
 
 @pytest.mark.parametrize(
@@ -201,11 +203,11 @@ def test_check_refuses_a_law_for_its_film_only_where_there_is_none(
 def test_smooth_flanks_have_no_asperities(tmp_path: Path) -> None:
     smooth = {f"gears.{gear}.roughness_ra": "0 um" for gear in ("pinion", "wheel")}
     with pytest.warns(td.ModelWarning, match="xu-2007"):
-        found = mesh_of(case_of(tmp_path).replace(smooth))
-    assert found.film_ratio is None
-    assert found.lubrication_regime is None
-    assert np.all(np.asarray(found.film_load_share)[found.in_contact] == 1.0)
-    assert found.mean_asperity_friction_coefficient == 0.0
+        mesh = mesh_of(case_of(tmp_path).replace(smooth))
+    assert mesh.film_ratio is None
+    assert mesh.lubrication_regime is None
+    assert np.all(np.asarray(mesh.film_load_share)[mesh.in_contact] == 1.0)
+    assert mesh.mean_asperity_friction_coefficient == 0.0
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
@@ -216,23 +218,23 @@ def test_friction_force_of_the_motion_is_that_of_film_and_asperities(
     case = case_of(tmp_path).replace({"dynamics.friction_load": load})
     result = td.run(case)
     fine = result.response.fine
-    found, force = signals(result, fine), mesh_force(fine)
+    computed, force = signals(result, fine), mesh_force(fine)
     names = ("friction_force", "film_friction_force", "asperity_friction_force")
-    whole, film, metal = (found[name][0] for name in names)
-    np.testing.assert_allclose(film + metal, whole, atol=1e-12 * np.abs(whole).max())
+    total, film, metal = (computed[name][0] for name in names)
+    np.testing.assert_allclose(film + metal, total, atol=1e-12 * np.abs(total).max())
     # Pair by pair, as the law itself has it: nothing of it comes from the sum of both.
     mesh, phase = result.mesh, one_sided_phase(fine)
     pairs = mesh.sliding_direction * mesh.asperity_friction_coefficient * mesh.load_share
     wanted = PhaseFunction(mesh.grid, pairs)(phase).sum(axis=1) * force
-    apart = np.abs(metal - wanted).max() / np.abs(metal).max()
+    deviation = np.abs(metal - wanted).max() / np.abs(metal).max()
     if load == "nominal":
-        assert apart < 1e-9
+        assert deviation < 1e-9
         directions = np.zeros((*mesh.path.shape, 6))
         directions[:, :, 0] = mesh.sliding_direction
         table = dataclasses.replace(mesh, friction_direction=directions)
         np.testing.assert_allclose(table.asperity_friction_sum, mesh.asperity_friction_sum)
     else:  # the share of the asperities grows with the momentary load, by the whole law
-        assert 1e-3 < apart < 0.2
+        assert 1e-3 < deviation < 0.2
         heavy = mesh_of(case, load=1.3)
         name, places = "asperity_friction_sum", np.linspace(0.003, 0.993, 200)
         value = result.friction.value(name, places, np.full(200, heavy.total_normal_force))

@@ -129,8 +129,8 @@ def test_values_are_replaced_and_taken_back() -> None:
     assert case.gears.pinion.modification is None
     assert relieved != case
     assert relieved.replace({PINION: None, WHEEL: None}) == case
-    one = relieved.replace({f"{WHEEL}.tip_relief": None})
-    assert one.gear_pair.wheel.modification == FlankModification()
+    changed = relieved.replace({f"{WHEEL}.tip_relief": None})
+    assert changed.gear_pair.wheel.modification == FlankModification()
     again = relieved.replace({f"{PINION}.tip_relief": 5e-6})
     assert again.gear_pair.pinion.modification.tip_relief == pytest.approx(5e-6)
 
@@ -152,8 +152,8 @@ def test_a_written_case_reads_back() -> None:
 def test_default_length_is_shown_where_it_holds() -> None:
     case = read_case(with_pinion('tip_relief = "10 um"'), "pair.toml")
     length = default_relief_length(case.gear_pair)
-    shown = f'# tip_relief_length = "{1e3 * length:.10g} mm"'
-    assert shown in case.to_toml()
+    line = f'# tip_relief_length = "{1e3 * length:.10g} mm"'
+    assert line in case.to_toml()
     assert f"{1e3 * length:.10g} mm" in repr(case)
     figures = geometry(case)
     assert figures["tip_relief_pinion"] == pytest.approx(10e-6)

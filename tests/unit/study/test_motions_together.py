@@ -41,22 +41,24 @@ def test_figures_are_those_of_single_runs(
     lost = []
     for case, point in zip(cases, together, strict=True):
         with quiet():
-            one, many = computed(case), point.result()
-        alone, beside = one.summary(), many.summary()
+            single_run, grouped_run = computed(case), point.result()
+        alone, grouped = single_run.summary(), grouped_run.summary()
         lost.append(alone["contact_loss_share"])
-        assert list(beside) == list(alone)
-        assert [each.code for each in many.warnings] == [each.code for each in one.warnings]
+        assert list(grouped) == list(alone)
+        assert [each.code for each in grouped_run.warnings] == [
+            each.code for each in single_run.warnings
+        ]
         for name in alone.keys() - _ROUNDED:
             exact = 1e-6 if name in _SMALL else 1e-9
-            assert beside[name] == pytest.approx(alone[name], rel=exact, abs=1e-300), name
-        assert beside["steady_state_error"] < 1e-10
+            assert grouped[name] == pytest.approx(alone[name], rel=exact, abs=1e-300), name
+        assert grouped["steady_state_error"] < 1e-10
         for name in ("position", "velocity", "acceleration", "contact_force"):
-            values = getattr(one.response, name)
-            error = np.abs(getattr(many.response, name) - values).max(axis=0)
+            values = getattr(single_run.response, name)
+            error = np.abs(getattr(grouped_run.response, name) - values).max(axis=0)
             assert np.all(error <= 1e-9 * np.abs(values).max(axis=0)), name
-        assert many.response.cycles_used == one.response.cycles_used
-        assert many.response.floquet_multipliers == pytest.approx(
-            one.response.floquet_multipliers, abs=1e-8
+        assert grouped_run.response.cycles_used == single_run.response.cycles_used
+        assert grouped_run.response.floquet_multipliers == pytest.approx(
+            single_run.response.floquet_multipliers, abs=1e-8
         )
     assert lost[-1] > 0.0 == max(lost[:-1])
 
@@ -84,9 +86,9 @@ def test_slow_points_whose_map_has_more_rounding_are_found_together() -> None:
     responses = [point.response for point in points if point.response is not None]
     assert len(responses) == len(points)
     assert all(each.converged and each.error < 1e-9 for each in responses)
-    beside = points[1].result().summary()
+    grouped = points[1].result().summary()
     for name in alone.keys() - _ROUNDED - _SMALL:
-        assert beside[name] == pytest.approx(alone[name], rel=1e-9, abs=1e-300), name
+        assert grouped[name] == pytest.approx(alone[name], rel=1e-9, abs=1e-300), name
 
 
 @pytest.mark.parametrize("count", [2, 8, 9])
@@ -95,16 +97,16 @@ def test_motions_of_systems_alike_march_as_alone(cases: list[td.Case], count: in
     frequencies = np.array([point.mesh.mesh_frequency for point in points])
     group = SystemBatch([point.system for point in points], frequencies, 1024)
     state, every = group.coordinates.expand(group.start()), np.arange(count)
-    given = 1.0 / frequencies, group.full_steps.program.constant_load
+    arguments = 1.0 / frequencies, group.full_steps.program.constant_load
     alone = SystemBatch([points[1].system], frequencies[1:2], 1024)
     load = alone.full_steps.program.constant_load
     exact = dict(alone.full_steps.march(1.0 / frequencies[1:2], load, state[1:2], np.arange(1)))[0]
     most = np.abs(exact).max(axis=0)
-    motions = dict(group.full_steps.march(*given, state, every))
+    motions = dict(group.full_steps.march(*arguments, state, every))
     assert motions.keys() == set(every.tolist())
     assert np.all(np.abs(motions[1] - exact) <= 1e-12 * most)
-    assert dict(group.full_steps.march(*given, state, every[1:2])).keys() == {1}
+    assert dict(group.full_steps.march(*arguments, state, every[1:2])).keys() == {1}
     state[0] = np.inf
-    beside = dict(group.full_steps.march(*given, state, every))
-    assert np.isnan(beside[0]).all()
-    assert all(np.array_equal(beside[number], motions[number]) for number in every[1:])
+    grouped = dict(group.full_steps.march(*arguments, state, every))
+    assert np.isnan(grouped[0]).all()
+    assert all(np.array_equal(grouped[number], motions[number]) for number in every[1:])

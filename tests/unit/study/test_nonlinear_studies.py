@@ -78,9 +78,9 @@ def test_starts_of_a_mesh_plane_give_a_free_rotation_no_momentum() -> None:
     system = System(mass, np.zeros((2, 2)), np.diag([0.0, 1e-6]), [1.0, -1.5], [mesh])
     compiled = compile_for(system, 0.2, 64)
     plane = start_plane(compiled, 0.2, MESH_PLANE)
-    rest = np.array([0.4, -0.2, 0.1, 0.3])
+    position = np.array([0.4, -0.2, 0.1, 0.3])
     axes = np.array([-0.3, 0.2, 0.9]), np.array([-1.0, 2.0])
-    starts = plane.starts(axes, rest)
+    starts = plane.starts(axes, position)
     grid = [[x, y] for x in axes[0] for y in axes[1]]
     assert plane.section(starts) == pytest.approx(np.array(grid), abs=1e-12)
     along, slope = np.array([1.0, -1.5]), np.array([0.2 * np.pi, 0.0])
@@ -89,8 +89,8 @@ def test_starts_of_a_mesh_plane_give_a_free_rotation_no_momentum() -> None:
     assert plane.section(starts)[:, 1] == pytest.approx(rate, abs=1e-8)
     # The free motion across the contact in the metric of the mass has no part in the change.
     free = np.array([1.5, 1.0])
-    assert (starts[:, 2:] - rest[2:]) @ mass @ free == pytest.approx(np.zeros(6), abs=1e-8)
-    assert (starts[:, :2] - rest[:2]) @ mass @ free == pytest.approx(np.zeros(6), abs=1e-8)
+    assert (starts[:, 2:] - position[2:]) @ mass @ free == pytest.approx(np.zeros(6), abs=1e-8)
+    assert (starts[:, :2] - position[:2]) @ mass @ free == pytest.approx(np.zeros(6), abs=1e-8)
 
 
 def test_a_branch_of_a_case_ends_at_a_single_run(case: Any) -> None:

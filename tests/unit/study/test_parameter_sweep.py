@@ -61,18 +61,18 @@ def test_data_set_has_units_and_reasons(grid):
 
 def test_a_value_that_fails_is_told_and_the_others_go_on(case):
     over = {"friction.law": ["none", "constant"], "operation.torque": [50.0, 90.0]}
-    found = td.sweep(case, over)
-    assert (found.failed == "").tolist() == [[True, True], [False, False]]
-    assert "coefficient is missing" in found.failed[1, 0]
-    assert np.isnan(found[FIGURE][1]).all()
-    assert np.isfinite(found[FIGURE][0]).all()
-    assert ", 2 failed)" in repr(found)
-    rows = list(csv.DictReader(io.StringIO(found.to_csv())))
+    result = td.sweep(case, over)
+    assert (result.failed == "").tolist() == [[True, True], [False, False]]
+    assert "coefficient is missing" in result.failed[1, 0]
+    assert np.isnan(result[FIGURE][1]).all()
+    assert np.isfinite(result[FIGURE][0]).all()
+    assert ", 2 failed)" in repr(result)
+    rows = list(csv.DictReader(io.StringIO(result.to_csv())))
     assert rows[2][f"{FIGURE} [N]"] == ""
     assert "coefficient is missing" in rows[2]["failed"]
-    names = [trace.name for trace in found.plot().data]
+    names = [trace.name for trace in result.plot().data]
     assert names.count("failed") == 2
-    assert found.plot().data[1].text[0] == found.failed[1, 0]
+    assert result.plot().data[1].text[0] == result.failed[1, 0]
 
 
 def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
@@ -81,29 +81,29 @@ def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
     prepare_run, figures = module.prepare_run, module._figures
     ready = [threading.Event(), threading.Event()]
 
-    def third_is_interrupted(changed, **known):
+    def third_is_interrupted(changed, **options):
         speed = round(changed.operation.speed * 30.0 / np.pi)
         if speed == 1250:
             assert all(event.wait(300.0) for event in ready)
             raise KeyboardInterrupt
-        return prepare_run(changed, **known)
+        return prepare_run(changed, **options)
 
-    def told(point):
-        found = figures(point)
+    def signalled_figures(point):
+        result = figures(point)
         place = round((point.case.operation.speed * 30.0 / np.pi - 1000.0) / 125.0)
         if place < 2:
             # The point counts as finished a moment after this.
             threading.Timer(0.2, ready[place].set).start()
-        return found
+        return result
 
     monkeypatch.setattr(module, "prepare_run", third_is_interrupted)
-    monkeypatch.setattr(module, "_figures", told)
-    found = td.sweep(case, between=("1000 rpm", "1500 rpm"), points=5, partial=True)
-    assert not found.complete
-    assert repr(found).endswith("2 of 5 done)")
-    assert np.isfinite(found[FIGURE]).tolist() == [True, True, False, False, False]
-    assert found.failed[2].startswith("not computed")
-    found.save(tmp_path / "part")
+    monkeypatch.setattr(module, "_figures", signalled_figures)
+    result = td.sweep(case, between=("1000 rpm", "1500 rpm"), points=5, partial=True)
+    assert not result.complete
+    assert repr(result).endswith("2 of 5 done)")
+    assert np.isfinite(result[FIGURE]).tolist() == [True, True, False, False, False]
+    assert result.failed[2].startswith("not computed")
+    result.save(tmp_path / "part")
     assert len((tmp_path / "part" / "sweep.csv").read_text().splitlines()) == 3
     assert "2 of 5" in (tmp_path / "part" / "report.html").read_text()
     with pytest.raises(KeyboardInterrupt):
@@ -167,7 +167,7 @@ def test_an_unknown_figure_names_the_nearest(grid):
 
 
 @pytest.mark.parametrize(
-    ("over", "words"),
+    ("over", "message"),
     [
         ({}, "nothing varies"),
         ({"operation.sped": [1.0, 2.0]}, r"sped.*Did you mean \"speed\""),
@@ -183,11 +183,11 @@ def test_an_unknown_figure_names_the_nearest(grid):
         ({"operation.torque": ["50 N*m", "1e20 N*m"]}, "Allowed"),
     ],
 )
-def test_bad_input_is_refused_before_anything_runs(case, over, words, monkeypatch):
+def test_bad_input_is_refused_before_anything_runs(case, over, message, monkeypatch):
     monkeypatch.setattr(
         "tribodyn.study.studies.sweep.prepare_run", lambda *_, **__: pytest.fail("it ran")
     )
-    with pytest.raises(InputError, match=words):
+    with pytest.raises(InputError, match=message):
         td.sweep(case, over)
 
 

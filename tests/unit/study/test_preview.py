@@ -41,18 +41,18 @@ def test_the_rig_of_the_standard_has_its_pitch_line_velocity() -> None:
         {"operation.speed_of": "pinion", "operation.speed": "2170 rpm"}
     )
     assert operating_figures(wheel)["pitch_line_velocity"] == pytest.approx(8.3, abs=0.03)
-    found = operating_figures(case)
-    power = found["tangential_force"] * found["pitch_line_velocity"]
-    assert power == pytest.approx(found["input_power"], rel=1e-12)
+    figures = operating_figures(case)
+    power = figures["tangential_force"] * figures["pitch_line_velocity"]
+    assert power == pytest.approx(figures["input_power"], rel=1e-12)
 
 
 def test_the_oil_is_told_at_its_temperature() -> None:
     # ISO VG 150 has 150 mm^2/s at 40 degC
     case = _sound().replace({"lubricant.name": "ISO VG 150", "lubricant.temperature": "40 degC"})
-    found = operating_figures(case)
-    kinematic = found["oil_viscosity"] / found["oil_density"]
+    figures = operating_figures(case)
+    kinematic = figures["oil_viscosity"] / figures["oil_density"]
     assert kinematic == pytest.approx(150e-6, rel=0.02)
-    assert found["oil_temperature"] == pytest.approx(313.15)
+    assert figures["oil_temperature"] == pytest.approx(313.15)
 
 
 def test_two_inertias_on_one_spring_meet_the_mesh_where_they_must() -> None:

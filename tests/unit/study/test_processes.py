@@ -35,7 +35,7 @@ pool.each(lambda item: time.sleep(0.1), pickle.dumps(time.sleep), [1000.0] * 200
 """
 
 
-def _gone(process: int) -> bool:
+def _has_ended(process: int) -> bool:
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -49,49 +49,49 @@ def test_no_helper_outlives_who_began_it(name: str) -> None:
     with subprocess.Popen([sys.executable, "-c", _SCRIPT], stdout=subprocess.PIPE) as process:
         helper = int(process.stdout.readline())
         time.sleep(0.1)
-        assert not _gone(helper)
+        assert not _has_ended(helper)
         process.send_signal(getattr(signal, name))
         process.wait(timeout=20.0)
     for _ in range(2000):
-        if _gone(helper):
+        if _has_ended(helper):
             break
         time.sleep(0.01)
-    assert _gone(helper)
+    assert _has_ended(helper)
 
 
-def _each(abroad: object, items: list[object], here: object) -> list[object]:
+def _each(abroad: object, items: list[object], work: object) -> list[object]:
     """What becomes of items of which a helper takes all but one, where it can."""
-    found: dict[int, object] = {}
+    results: dict[int, object] = {}
     done = threading.Event()
 
     def keep(number: int, value: object) -> None:
-        found[number] = value
-        if len(found) == len(items) - 1:
+        results[number] = value
+        if len(results) == len(items) - 1:
             done.set()
 
     def waiting(item: object) -> object:
         done.wait(timeout=60.0)
-        return here(item)
+        return work(item)
 
     pool = Helpers(1)
     try:
         pool.each(waiting, pickle.dumps(abroad), items, keep)
     finally:
         pool.end()
-    return [found[number] for number in range(len(items))]
+    return [results[number] for number in range(len(items))]
 
 
 def test_points_of_a_sweep_are_the_same_in_another_process() -> None:
     case = td.load_case("fzg-roughness").replace(
         {"film.model": "none", "solver.steps_per_mesh_cycle": 512}
     )
-    asked = partial(studied._pending_at, case, ("operation.speed", "operation.torque"))
+    study = partial(studied._pending_at, case, ("operation.speed", "operation.torque"))
     # The second is refused, with its reason.
     places = [[(100.0, 50.0)], [(1e-6, 90.0)], [(200.0, 70.0), (200.0, 90.0)]]
-    here = partial(studied._points, asked)
-    found = _each(pickle.loads(studied._pickled(asked)), places, here)
-    assert found == [here(place) for place in places]
-    assert [bool(point.failed) for points in found for point in points] == [0, 1, 0, 0]
+    work = partial(studied._points, study)
+    results = _each(pickle.loads(studied._pickled(study)), places, work)
+    assert results == [work(place) for place in places]
+    assert [bool(point.failed) for points in results for point in points] == [0, 1, 0, 0]
 
 
 def test_helpers_begin_no_threads_for_matrices(monkeypatch) -> None:
@@ -104,17 +104,17 @@ def test_helpers_begin_no_threads_for_matrices(monkeypatch) -> None:
 @pytest.mark.parametrize("first", ["1", "__import__('os')._exit(3)"])
 def test_what_a_lost_helper_left_is_computed_here(first: str) -> None:
     pool = Helpers(1)
-    items, found = [first, "__import__('os')._exit(3)", "22"], dict[int, int]()
+    items, results = [first, "__import__('os')._exit(3)", "22"], dict[int, int]()
 
-    def here(item: str) -> int:
+    def work(item: str) -> int:
         pool._helpers[0]._child.wait(timeout=60.0)
         return len(item)
 
     try:
         for _ in range(2):  # It stays away.
-            pool.each(here, pickle.dumps(eval), items, found.__setitem__)
-            assert found == {number: len(item) for number, item in enumerate(items)}
-            found.clear()
+            pool.each(work, pickle.dumps(eval), items, results.__setitem__)
+            assert results == {number: len(item) for number, item in enumerate(items)}
+            results.clear()
     finally:
         pool.end()
 
@@ -126,13 +126,13 @@ def test_an_error_here_ends_all() -> None:
 
 def test_a_law_that_a_script_registers_stays_in_its_process() -> None:
     case = td.load_case("fzg-roughness")
-    asked = partial(studied._pending_at, case, ("operation.speed",))
+    study = partial(studied._pending_at, case, ("operation.speed",))
     assert known_elsewhere()
-    assert studied._pickled(asked)
+    assert studied._pickled(study)
     with as_before():
         LAWS.define("of-a-script", source="a script")(lambda contact: contact.load_per_width)
         assert not known_elsewhere()
-        assert not studied._pickled(asked)
+        assert not studied._pickled(study)
     with as_before():
         VARIANTS.register("of-a-script")(0.01)  # a number, which has no module
         assert not known_elsewhere()

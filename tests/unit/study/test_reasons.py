@@ -33,8 +33,8 @@ MARK = re.compile(r'^("[\w.]+") = \{ value = (.*), reason = (".*") \}$', re.MULT
 
 def reason_of(case: Any, key: str) -> str:
     """What is said of a value wherever a reader looks for it."""
-    told = [row.reason for row in assumptions(case) if row.key == key and row.kind == "assumed"]
-    return " ".join([*told, case.assumed.get(key, "")])
+    reasons = [row.reason for row in assumptions(case) if row.key == key and row.kind == "assumed"]
+    return " ".join([*reasons, case.assumed.get(key, "")])
 
 
 def old_form(text: str) -> str:
@@ -181,10 +181,10 @@ def test_no_mutated_value_keeps_its_reason(name: str, way: str, tmp_path: Path) 
         assert reason_of(changed, key).strip() == ""
         assert provenance(changed)[key] == "given"
         assert not re.search(rf'^"{key}" = .*{re.escape(reason)}', changed.to_toml(), re.MULTILINE)
-        told = cite(changed)
-        assert f"Values of the case: {case.origin}" not in told
-        assert f"Based on: {case.origin}" in told
-        assert key in told
+        sources = cite(changed)
+        assert f"Values of the case: {case.origin}" not in sources
+        assert f"Based on: {case.origin}" in sources
+        assert key in sources
     assert done >= 0.75 * len(case.assumed)
 
 
@@ -201,8 +201,8 @@ def test_all_of_it_holds_on_the_command_line(
     monkeypatch.chdir(tmp_path)
     assert call(["check", "fzg-roughness"]) == 0
     assert "20 values are assumed" in capsys.readouterr().err
-    words = ["--set", f"{WIDTH}=30 mm", "--set", "gears.wheel.face_width=30 mm"]
-    assert call(["check", "fzg-roughness", *words]) == 0
+    arguments = ["--set", f"{WIDTH}=30 mm", "--set", "gears.wheel.face_width=30 mm"]
+    assert call(["check", "fzg-roughness", *arguments]) == 0
     by_set = capsys.readouterr().err
     assert "18 values are assumed" in by_set
     assert call(["new", "my.toml", "--from", "fzg-roughness"]) == 0
@@ -215,33 +215,33 @@ def test_all_of_it_holds_on_the_command_line(
     out = capsys.readouterr()
     assert "20 mm wide" not in out.out + out.err
     assert isinstance(json.loads(out.out), dict)
-    told = cite(td.load_case("my.toml"))
-    assert "Values of the case" not in told
-    assert f"2 values of the case differ: {WIDTH}, gears.wheel.face_width" in told
+    sources = cite(td.load_case("my.toml"))
+    assert "Values of the case" not in sources
+    assert f"2 values of the case differ: {WIDTH}, gears.wheel.face_width" in sources
     assert r"gears.pinion.face\_width" in cite(td.load_case("my.toml"), "bibtex")
 
 
 def test_result_and_report_say_nothing_of_the_old_value(tmp_path: Path) -> None:
     case = td.load_case("fzg-stiffness")
     old = case.assumed["friction.coefficient"]
-    for value, told in ((None, True), (0.1, False)):
+    for value, cited in ((None, True), (0.1, False)):
         changes = {} if value is None else {"friction.coefficient": value}
         result = td.run(case.replace(changes | {"solver.steps_per_mesh_cycle": 256}))
         page = html.unescape(render_report(result))
         reasons = [row.reason for row in result.assumptions]
-        assert (old in reasons) is told
-        assert (old in page) is told
+        assert (old in reasons) is cited
+        assert (old in page) is cited
         assert "Values of the case:" not in page + result.cite()  # the steps are not its own
         assert "solver.steps_per_mesh_cycle" in result.cite()
-        assert ("friction.coefficient" in result.cite()) is not told
+        assert ("friction.coefficient" in result.cite()) is not cited
     result.save(tmp_path / "kept")
     assert td.load_case(tmp_path / "kept" / "case.toml") == result.case
 
 
 def test_the_table_of_a_sweep_gives_no_reason_for_what_it_varies(tmp_path: Path) -> None:
     case = td.load_case("fzg-stiffness").replace({"solver.steps_per_mesh_cycle": 256})
-    found = td.sweep(case, {"friction.coefficient": [0.1, 0.119]})
-    page = write_sweep_report(found, tmp_path / "report.html").read_text(encoding="utf-8")
+    result = td.sweep(case, {"friction.coefficient": [0.1, 0.119]})
+    page = write_sweep_report(result, tmp_path / "report.html").read_text(encoding="utf-8")
     table = page[page.index('id="assumptions"') : page.index("</section>", page.index('id="assu'))]
     old = case.assumed["friction.coefficient"]
     assert html.escape(old, quote=False) not in table
@@ -260,9 +260,9 @@ def test_replace_by_another_table_drops_the_reasons_of_the_old() -> None:
 
 def test_back_to_the_old_value_is_the_old_source_again() -> None:
     case = td.load_case("fzg-roughness")
-    there = case.replace({WIDTH: "30 mm"})
-    assert changed_keys(there) == (WIDTH,)
-    back = there.replace({WIDTH: "20 mm"})
+    changed = case.replace({WIDTH: "30 mm"})
+    assert changed_keys(changed) == (WIDTH,)
+    back = changed.replace({WIDTH: "20 mm"})
     assert changed_keys(back) == ()
     assert provenance(back)[WIDTH] == "given"  # by who wrote it anew
     assert "Values of the case" in cite(back)
@@ -281,9 +281,9 @@ def test_keywords_take_a_reason_with_or_without_its_value() -> None:
     plain = td.Case(**tables, assumed={WIDTH: "a guess"})
     assert plain.assumed == {WIDTH: "a guess"}
     assert plain.replace({WIDTH: 0.03}).assumed == {}
-    for value, kept in ((0.02, True), ("2 cm", True), (0.021, False)):
+    for value, retained in ((0.02, True), ("2 cm", True), (0.021, False)):
         record = {WIDTH: {"value": value, "reason": "a guess"}}
-        assert (WIDTH in td.Case(**tables, assumed=record).assumed) is kept
+        assert (WIDTH in td.Case(**tables, assumed=record).assumed) is retained
 
 
 def test_a_reason_of_ones_own_stands() -> None:
@@ -297,8 +297,8 @@ def test_a_reason_of_ones_own_stands() -> None:
 
 def test_a_removed_mark_changes_no_value() -> None:
     text = td.load_case("fzg-roughness").to_toml()
-    kept = [line for line in text.splitlines() if not line.startswith(f'"{WIDTH}" = {{')]
-    case = read_case("\n".join(kept))
+    lines = [line for line in text.splitlines() if not line.startswith(f'"{WIDTH}" = {{')]
+    case = read_case("\n".join(lines))
     assert provenance(case)[WIDTH] == "given"
     assert changed_keys(case) == ()
 
@@ -320,12 +320,12 @@ def test_a_mass_of_another_gear_is_told() -> None:
     code = "mass-of-other-gear"
     assert code not in [warning.code for warning in case_cautions(case)]
     wide = read_case(edited(case.to_toml(), WIDTH, 'face_width = "30 mm"'))
-    told = [str(warning) for warning in case_cautions(wide) if warning.code == code]
-    assert len(told) == 2
+    texts = [str(warning) for warning in case_cautions(wide) if warning.code == code]
+    assert len(texts) == 2
     solid = wide.replace({"gears.pinion.moment_of_inertia": None, "gears.pinion.mass": None})
     assert code not in [warning.code for warning in case_cautions(solid)]
-    assert "pinion: moment_of_inertia = 407 kg*mm^2" in told[1]
-    assert f"before {WIDTH} changed" in told[1]
+    assert "pinion: moment_of_inertia = 407 kg*mm^2" in texts[1]
+    assert f"before {WIDTH} changed" in texts[1]
 
 
 def test_a_reason_tells_that_its_ground_has_changed() -> None:
@@ -346,7 +346,7 @@ def test_a_base_of_another_origin_reads_back_equal(origin: str, of_file: bool) -
 
 
 @pytest.mark.parametrize(
-    ("line", "words"),
+    ("line", "message"),
     [
         ('"gears.pinion.face_widht" = { value = "20 mm", reason = "x" }', "no key"),
         (f'"{WIDTH}" = {{ value = "20 s", reason = "x" }}', "wrong kind of quantity"),
@@ -355,11 +355,11 @@ def test_a_base_of_another_origin_reads_back_equal(origin: str, of_file: bool) -
         ('[based_on]\n"gears.module" = "3 mm"', "no key"),
     ],
 )
-def test_faults_of_a_record_are_told_with_their_line(line: str, words: str) -> None:
+def test_faults_of_a_record_are_told_with_their_line(line: str, message: str) -> None:
     text = Path(case_files()["fzg-stiffness"]).read_text(encoding="utf-8") + line + "\n"
-    with pytest.raises(InputError, match=words) as told:
+    with pytest.raises(InputError, match=message) as caught:
         read_case(text, "my.toml")
-    assert f"my.toml:{text.count(chr(10))}" in str(told.value)
+    assert f"my.toml:{text.count(chr(10))}" in str(caught.value)
 
 
 def test_a_file_of_before_names_what_its_user_changed(tmp_path: Path) -> None:
@@ -379,6 +379,6 @@ def test_only_options_of_the_chosen_law_are_listed(law: str) -> None:
     options = {"friction.law": law, "friction.coefficient": 0.05 if law == "constant" else None}
     case = td.load_case("fzg-roughness").replace({"friction.variant": None, **options})
     listed = {each.key for each in assumptions(case) if each.key.startswith("friction.")}
-    own = {f"friction.{name}" for name in case.friction.chosen.options}
-    assert listed - {"friction.law"} <= own
+    option_keys = {f"friction.{name}" for name in case.friction.chosen.options}
+    assert listed - {"friction.law"} <= option_keys
     assert ("friction.summit_density" in listed) == (law == "mixed")

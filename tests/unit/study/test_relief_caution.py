@@ -10,7 +10,7 @@ from tribodyn.study.pipeline.cautions import mesh_cautions
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 
-def _told(**relief):
+def _relief_warning(**relief):
     changes = {f"gears.{key.replace('__', '.')}.tip_relief": value for key, value in relief.items()}
     case = td.load_case("fzg-roughness").replace(
         {"stiffness.model": "weber", "friction.law": "none", "stiffness.reference": "rim"} | changes
@@ -18,18 +18,18 @@ def _told(**relief):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", td.ModelWarning)
         mesh = mesh_of(case)
-    found = [each.message for each in mesh_cautions(mesh) if each.code == "relief-large"]
-    return found[0] if found else "", mesh
+    messages = [each.message for each in mesh_cautions(mesh) if each.code == "relief-large"]
+    return messages[0] if messages else "", mesh
 
 
 @pytest.mark.parametrize("modified", [{}, {"pinion__modification": "20 um"}])
 def test_usual_relief_is_not_told(modified):
-    assert not _told(**modified)[0]
+    assert not _relief_warning(**modified)[0]
 
 
 def test_far_too_large_relief_leaves_one_pair():
     """With tips taken off on both gears one pair carries at any phase."""
-    text, mesh = _told(pinion__modification="300 um", wheel__modification="300 um")
+    text, mesh = _relief_warning(pinion__modification="300 um", wheel__modification="300 um")
     assert "tip_relief = 300 um" in text
     pairs = float(mesh.grid.mean((mesh.load_share > 0.0).sum(axis=1).astype(float)))
     assert float(text.split(": ")[1].split(" tooth pairs")[0]) == pytest.approx(pairs, rel=0.01)
@@ -47,7 +47,7 @@ def test_far_too_large_relief_leaves_one_pair():
 def test_check_tells_a_relief_and_a_load_that_no_gear_stands(change, code, capsys):
     with pytest.raises(SystemExit, match="0"):
         main(["check", "fzg-roughness", "--set", change])
-    told = capsys.readouterr().err
-    assert [each for each in ("relief-large", "hertz-pressure") if f"[{each}]" in told] == (
+    error = capsys.readouterr().err
+    assert [each for each in ("relief-large", "hertz-pressure") if f"[{each}]" in error] == (
         [code] if code else []
     )

@@ -239,9 +239,9 @@ def test_faults_found_while_running_name_their_key(old: str, new: str, place: st
     case = read_case(SOUND.replace(old, new), "pair.toml")
     if place.startswith("replace"):
         case = case.replace({"gears.composite_roughness": "1.2 um"})
-    for asked in (rehearse, td.run):
+    for study in (rehearse, td.run):
         with pytest.raises(td.InputError) as caught:
-            asked(case)
+            study(case)
         assert str(caught.value).startswith(place)
 
 

@@ -18,35 +18,37 @@ def results():
 
 
 def test_the_table_holds_what_differs_and_nothing_else(results) -> None:
-    found = td.compare_results(*results, names=("20", "40"))
-    assert found.values == {"operation.torque": (20.0, 40.0)}
-    one, other = (each.summary() for each in results)
-    told = found.to_dataframe()
-    assert list(told.index) == ["20", "40"]
+    comparison = td.compare_results(*results, names=("20", "40"))
+    assert comparison.values == {"operation.torque": (20.0, 40.0)}
+    first, other = (each.summary() for each in results)
+    table = comparison.to_dataframe()
+    assert list(table.index) == ["20", "40"]
     # The static force is in proportion to the torque; the geometry does not know of it.
-    assert told["static_mesh_force"]["40"] == pytest.approx(2 * told["static_mesh_force"]["20"])
-    assert "transverse_contact_ratio" not in told
-    for name in told:
-        assert told[name]["20"] == one[name]
-        assert told[name]["40"] == other[name]
-    assert all(one[n] == pytest.approx(other[n], rel=1e-9) for n in one.keys() - found.figures)
-    assert "+100 %" in found._repr_html_()
-    assert "operation.torque" in found._repr_html_()
+    assert table["static_mesh_force"]["40"] == pytest.approx(2 * table["static_mesh_force"]["20"])
+    assert "transverse_contact_ratio" not in table
+    for name in table:
+        assert table[name]["20"] == first[name]
+        assert table[name]["40"] == other[name]
+    assert all(
+        first[n] == pytest.approx(other[n], rel=1e-9) for n in first.keys() - comparison.figures
+    )
+    assert "+100 %" in comparison._repr_html_()
+    assert "operation.torque" in comparison._repr_html_()
 
 
 def test_curves_are_those_of_each_result(results) -> None:
     figure = td.compare_results(*results).plot()
-    drawn = [trace for trace in figure.data if trace.name.startswith("2: ")]
+    traces = [trace for trace in figure.data if trace.name.startswith("2: ")]
     alone = results[1].plot_transmission_error().data[0]
-    np.testing.assert_array_equal(drawn[0].y, alone.y)
-    np.testing.assert_array_equal(drawn[1].y, results[1].plot_mesh_force().data[0].y)
+    np.testing.assert_array_equal(traces[0].y, alone.y)
+    np.testing.assert_array_equal(traces[1].y, results[1].plot_mesh_force().data[0].y)
     assert figure.layout.title.text == "Changed: operation.torque"
 
 
 def test_equal_results_differ_in_nothing(results) -> None:
-    found = td.compare_results(results[0], results[0], names="ab")
-    assert not found.values
-    assert not found.figures
+    comparison = td.compare_results(results[0], results[0], names="ab")
+    assert not comparison.values
+    assert not comparison.figures
 
 
 def test_wrong_input_is_refused(results) -> None:

@@ -29,35 +29,35 @@ def _plain_case() -> Any:
 
 def _dying(monkeypatch: pytest.MonkeyPatch, after: int) -> list[str]:
     """Let the process die when it keeps one member more."""
-    keep, kept = Checkpoints.keep, []
+    keep, stored = Checkpoints.keep, []
 
     def then_die(self: Checkpoints, name: str, value: Any) -> None:
-        if len(kept) == after:
+        if len(stored) == after:
             raise _KilledError
-        kept.append(name)
+        stored.append(name)
         keep(self, name, value)
 
     monkeypatch.setattr(Checkpoints, "keep", then_die)
-    return kept
+    return stored
 
 
 def test_a_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case = _plain_case()
-    whole = sweep(case, _SPEEDS)
+    full = sweep(case, _SPEEDS)
     with monkeypatch.context() as patch, Checkpoints(tmp_path / "s") as members:
         patch.setattr(grid.os, "cpu_count", lambda: 1)
         _dying(patch, 2)
         with pytest.raises(_KilledError):
             sweep(case, _SPEEDS, checkpoints=members)
-    prepare_run, asked = sweeps.prepare_run, []
+    prepare_run, requests = sweeps.prepare_run, []
     monkeypatch.setattr(
-        sweeps, "prepare_run", lambda *a, **k: asked.append(a) or prepare_run(*a, **k)
+        sweeps, "prepare_run", lambda *a, **k: requests.append(a) or prepare_run(*a, **k)
     )
     with Checkpoints(tmp_path / "s") as members:
-        found = sweep(case, _SPEEDS, checkpoints=members)
-    assert len(asked) == 2
-    assert found == whole
-    assert found.to_csv() == whole.to_csv()
+        result = sweep(case, _SPEEDS, checkpoints=members)
+    assert len(requests) == 2
+    assert result == full
+    assert result.to_csv() == full.to_csv()
 
 
 @pytest.mark.parametrize("direction", ["both", "independent"])
@@ -69,25 +69,25 @@ def test_a_bifurcation_goes_on(
     case = _plain_case()
     options: dict[str, Any] = {"sweep": direction, "transient": 40, "cycles": 8, "keep": 4}
     between = {"operation.speed": ("900 rpm", "3000 rpm"), "operation.torque": (60.0, 120.0)}[over]
-    whole = bifurcation(case, over, between, 6, **options)
+    full = bifurcation(case, over, between, 6, **options)
     for after in (0, 3, 5):
         with monkeypatch.context() as patch, Checkpoints(tmp_path / "b") as members:
             _dying(patch, after)
             with pytest.raises(_KilledError):
                 bifurcation(case, over, between, 6, checkpoints=members, **options)
-    taken, queue = [], Motions.queue
+    computed_parts, queue = [], Motions.queue
     monkeypatch.setattr(
         Motions,
         "queue",
-        lambda self, indices: (taken.append(len(list(indices))), queue(self, indices)),
+        lambda self, indices: (computed_parts.append(len(list(indices))), queue(self, indices)),
     )
     with Checkpoints(tmp_path / "b") as members:
-        found = bifurcation(case, over, between, 6, checkpoints=members, **options)
+        result = bifurcation(case, over, between, 6, checkpoints=members, **options)
         assert len(members) >= 8
     motions = 24 if direction == "both" else 12
     if (over, direction) != ("operation.speed", "both"):  # There stretches are joined, too.
-        assert sum(taken) == motions - len(members)
-    assert found.verdicts() == whole.verdicts()
-    assert found.period.tolist() == whole.period.tolist()
-    assert found.rms == pytest.approx(whole.rms, rel=1e-5)
-    assert found.refined_rms == pytest.approx(whole.refined_rms, rel=1e-5)
+        assert sum(computed_parts) == motions - len(members)
+    assert result.verdicts() == full.verdicts()
+    assert result.period.tolist() == full.period.tolist()
+    assert result.rms == pytest.approx(full.rms, rel=1e-5)
+    assert result.refined_rms == pytest.approx(full.refined_rms, rel=1e-5)

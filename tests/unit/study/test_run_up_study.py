@@ -25,8 +25,8 @@ def test_a_held_speed_is_the_run_at_that_speed(case: tribodyn.Case) -> None:
         warnings.simplefilter("ignore", tribodyn.ModelWarning)
         steady = tribodyn.run(case)
     force = steady.response.fine.contact_force.sum(axis=1)
-    own = run.cycles.contact_force.alternating_rms[-1, 0]
-    assert own == pytest.approx(float(alternating_rms(steady.response.fine, force)), rel=0.03)
+    rms = run.cycles.contact_force.alternating_rms[-1, 0]
+    assert rms == pytest.approx(float(alternating_rms(steady.response.fine, force)), rel=0.03)
     names = run.output_names
     assert {"bearing_force_pinion_y", "bearing_force_wheel_x"} <= set(names)
     # the supports carry the mesh force on average
@@ -52,7 +52,7 @@ def test_friction_and_inertia_follow_the_speed(case: tribodyn.Case) -> None:
 
 
 @pytest.mark.parametrize(
-    ("between", "words"),
+    ("between", "message"),
     [
         (None, "from one speed"),
         (("900 rpm", "400 rpm"), "the lowest"),
@@ -61,6 +61,6 @@ def test_friction_and_inertia_follow_the_speed(case: tribodyn.Case) -> None:
         (("9 rpm", "9 mm"), '^argument between: .*"9 mm".*wrong kind'),
     ],
 )
-def test_bad_ranges_are_refused(case: tribodyn.Case, between: object, words: str) -> None:
-    with pytest.raises(InputError, match=words):
+def test_bad_ranges_are_refused(case: tribodyn.Case, between: object, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         tribodyn.run_up(case, between)  # type: ignore[arg-type]

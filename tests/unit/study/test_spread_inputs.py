@@ -25,13 +25,13 @@ SCALES = {"stiffness_scale": "1 +- 2 %", "friction_scale": "1 +- 5 %"}
 
 @pytest.fixture(scope="module")
 def cycles():
-    drawn = {
+    spread = {
         "friction.coefficient": np.array([0.0692, 0.04]),
         "dynamics.mesh_damping_ratio": np.array([0.04, 0.06]),
         "operation.speed": np.array([CASE.operation.speed, 0.8 * CASE.operation.speed]),
     }
-    lanes = lanes_of(CASE, drawn)
-    return drawn, lanes, steady_cycles(lanes, 64)
+    lanes = lanes_of(CASE, spread)
+    return spread, lanes, steady_cycles(lanes, 64)
 
 
 def test_lanes_share_one_structure(cycles):
@@ -43,19 +43,19 @@ def test_lanes_share_one_structure(cycles):
 
 @pytest.mark.parametrize("lane", [0, 1])
 def test_a_lane_is_the_run_of_its_case(cycles, lane):
-    drawn, _, found = cycles
-    result = td.run(CASE.replace({key: float(values[lane]) for key, values in drawn.items()}))
+    spread, _, bands = cycles
+    result = td.run(CASE.replace({key: float(values[lane]) for key, values in spread.items()}))
     summary = result.summary()
-    mean, rms, _, high = (figure[lane] for figure in found.figures["mesh_force"])
+    mean, rms, _, high = (figure[lane] for figure in bands.figures["mesh_force"])
     assert np.isclose(mean, summary["mean_mesh_force"], rtol=1e-5)
     assert np.isclose(rms, summary["rms_mesh_force"], rtol=1e-5)
     assert np.isclose(high, summary["peak_mesh_force"], rtol=1e-3)
-    swing = found.figures["dynamic_transmission_error"]
-    told = summary["peak_to_peak_dynamic_transmission_error"]
-    assert np.isclose(swing[3][lane] - swing[2][lane], told, rtol=1e-3)
+    swing = bands.figures["dynamic_transmission_error"]
+    value = summary["peak_to_peak_dynamic_transmission_error"]
+    assert np.isclose(swing[3][lane] - swing[2][lane], value, rtol=1e-3)
     phase = result.response.phase
-    force = np.interp(found.phase, phase, result.response.contact_force.sum(axis=1))
-    inner = np.abs(found.signals["mesh_force"][lane] - force) < 1e-2 * force.max()
+    force = np.interp(bands.phase, phase, result.response.contact_force.sum(axis=1))
+    inner = np.abs(bands.signals["mesh_force"][lane] - force) < 1e-2 * force.max()
     assert inner.mean() > 0.95  # but at the events, where neighbours are joined by a line
 
 
@@ -68,17 +68,17 @@ def test_a_torque_is_a_factor_only_where_the_contact_is_the_same():
 
 
 def test_bands_narrow_with_the_number_of_variants(tmp_path):
-    found = td.ensemble(CASE, SCALES, 16, seed=1)
-    band, spread = found.band(), found.spread()
+    ensembles = td.ensemble(CASE, SCALES, 16, seed=1)
+    band, spread = ensembles.band(), ensembles.spread()
     assert np.all(band.low <= band.mean)
     assert np.all(band.high <= spread[1] + 1e-9)
-    lines = found.band(harmonics=5)
-    assert np.allclose(lines.mean, found.spectrum(harmonics=5).mean(axis=0))
-    figure = found.plot()
+    lines = ensembles.band(harmonics=5)
+    assert np.allclose(lines.mean, ensembles.spectrum(harmonics=5).mean(axis=0))
+    figure = ensembles.plot()
     assert {trace.name for trace in figure.data if trace.showlegend is not False} == {
         "95% of the variants", "95% band of the mean", "mean",
     }  # fmt: skip
-    assert td.ensemble(CASE, SCALES, 16, seed=1) == found
+    assert td.ensemble(CASE, SCALES, 16, seed=1) == ensembles
 
 
 def test_rows_over_time_are_those_of_the_transient_run():
@@ -102,8 +102,8 @@ def test_rows_over_time_are_those_of_the_transient_run():
 
 def _cubic(time, signal, at):
     """Signal between its samples, which are coarse for the motion in the bearings."""
-    near = np.argsort(np.abs(time - at))[:4]
-    return np.polyval(np.polyfit(time[near] - at, signal[near], 3), 0.0)
+    nearest = np.argsort(np.abs(time - at))[:4]
+    return np.polyval(np.polyfit(time[nearest] - at, signal[nearest], 3), 0.0)
 
 
 def test_a_table_tells_what_made_it(tmp_path):
@@ -169,8 +169,8 @@ def test_a_case_may_hold_spread_values():
     assert again != LINEAR.replace({error: 1.5e-6})
     settled = case.replace({"operation.torque": "140 N*m"})
     assert list(settled.uncertain) == [error]
-    found = td.ensemble(settled, size=4, seed=2)
-    assert 1e-6 <= found.value.min() < found.value.max() <= 2e-6
+    result = td.ensemble(settled, size=4, seed=2)
+    assert 1e-6 <= result.value.min() < result.value.max() <= 2e-6
     with pytest.raises(InputError, match="wrong kind of quantity"):
         case.replace({"operation.torque": "150 N*m +- 2 mm"})
     with pytest.raises(InputError, match="whole number"):
@@ -180,23 +180,23 @@ def test_a_case_may_hold_spread_values():
 def test_every_figure_of_a_run_takes_bands() -> None:
     """The band is that of the runs themselves; what does not vary has none."""
     spread = {"operation.torque": "80 N*m +- 3 %", "operation.speed": "1400 rpm +- 0.5 %"}
-    found = td.ensemble(LINEAR, spread, 5, seed=1)
-    middle, *variants = found.results
-    torques = found.value[:, 0]
+    result = td.ensemble(LINEAR, spread, 5, seed=1)
+    middle, *variants = result.results
+    torques = result.value[:, 0]
     assert middle.case.operation.torque == np.median(torques)
     assert [each.case.operation.torque for each in variants] == torques.tolist()
-    peaks = found.figures()["peak_mesh_force"]
-    np.testing.assert_allclose(peaks[1:], found.mesh_force.max(axis=1), rtol=2e-3)
-    curve, _, high, low, *_ = found.plot("mesh_force").data
+    peaks = result.figures()["peak_mesh_force"]
+    np.testing.assert_allclose(peaks[1:], result.mesh_force.max(axis=1), rtol=2e-3)
+    curve, _, high, low, *_ = result.plot("mesh_force").data
     assert low.fill == "tonexty"
     assert np.all(low.y <= high.y)
     assert np.mean((low.y <= curve.y) & (curve.y <= high.y)) > 0.9
-    bars = found.plot("spectrum").data[0]
-    harmonics = found.spectrum("dynamic_transmission_error", 3)
+    bars = result.plot("spectrum").data[0]
+    harmonics = result.spectrum("dynamic_transmission_error", 3)
     ends = np.quantile(harmonics, (0.025, 0.975), axis=0) * 1e6
     np.testing.assert_allclose((bars.y + bars.error_y.array)[:3], ends[1], rtol=0.02)
     np.testing.assert_allclose((bars.y - bars.error_y.arrayminus)[:3], ends[0], rtol=0.02)
-    names = [heading for heading, *_ in banded(found, ("gear_pair", "mesh_force", "spectrum"))]
+    names = [heading for heading, *_ in banded(result, ("gear_pair", "mesh_force", "spectrum"))]
     assert names == ["Mesh force", "Spectra"]
     with pytest.raises(InputError, match="stiffness_scale: of no case"):
         td.ensemble(LINEAR, {"stiffness_scale": "1 +- 2 %"}, 3, seed=1).plot("mesh_force")

@@ -22,17 +22,17 @@ def film_case():
 
 
 def test_harris_map_reads_units(case):
-    found = td.harris_map(case, torque=["0.09 kN*m", 60.0], phases=16)
-    np.testing.assert_allclose(found.torque, [60.0, 90.0])
-    one = loaded_contact(case.gear_pair, 90.0, phases=16, **loaded_settings(case))
-    np.testing.assert_allclose(found.transmission_error[1], one.transmission_error, rtol=1e-9)
+    harris = td.harris_map(case, torque=["0.09 kN*m", 60.0], phases=16)
+    np.testing.assert_allclose(harris.torque, [60.0, 90.0])
+    single = loaded_contact(case.gear_pair, 90.0, phases=16, **loaded_settings(case))
+    np.testing.assert_allclose(harris.transmission_error[1], single.transmission_error, rtol=1e-9)
 
 
 def test_map_goes_up_to_twice_the_torque_of_the_case(case):
-    found = td.harris_map(case, phases=16)
-    assert found.torque.size == 20
-    assert found.torque[-1] == pytest.approx(2.0 * case.pinion_torque)
-    assert found.torque[0] == pytest.approx(0.1 * case.pinion_torque)
+    harris = td.harris_map(case, phases=16)
+    assert harris.torque.size == 20
+    assert harris.torque[-1] == pytest.approx(2.0 * case.pinion_torque)
+    assert harris.torque[0] == pytest.approx(0.1 * case.pinion_torque)
 
 
 def test_torques_of_a_driving_wheel_become_those_of_the_pinion(film_case):
@@ -46,68 +46,76 @@ def test_torques_of_a_driving_wheel_become_those_of_the_pinion(film_case):
 
 
 def test_tip_relief_reads_amounts_and_lengths_with_units(case):
-    given = {"amount": ("0 um", "20 um"), "length": ("2 mm", 6e-3), "phases": 16, "grid": (5, 4)}
-    found = td.optimize_tip_relief(case, ("60 N*m", "120 N*m"), **given)
-    np.testing.assert_allclose(found.map_amount, np.linspace(0.0, 20e-6, 5))
-    np.testing.assert_allclose(found.map_length, np.linspace(2e-3, 6e-3, 4))
-    assert (found.torque[0], found.torque[-1]) == (60.0, 120.0)
-    assert found.objective < 0.6 * found.objective_before
+    arguments = {
+        "amount": ("0 um", "20 um"),
+        "length": ("2 mm", 6e-3),
+        "phases": 16,
+        "grid": (5, 4),
+    }
+    optimum = td.optimize_tip_relief(case, ("60 N*m", "120 N*m"), **arguments)
+    np.testing.assert_allclose(optimum.map_amount, np.linspace(0.0, 20e-6, 5))
+    np.testing.assert_allclose(optimum.map_length, np.linspace(2e-3, 6e-3, 4))
+    assert (optimum.torque[0], optimum.torque[-1]) == (60.0, 120.0)
+    assert optimum.objective < 0.6 * optimum.objective_before
     changed = case.replace(
         {
             f"gears.{gear}.modification.{name}": value
             for gear in ("pinion", "wheel")
-            for name, value in (("tip_relief", found.amount), ("tip_relief_length", found.length))
+            for name, value in (
+                ("tip_relief", optimum.amount),
+                ("tip_relief_length", optimum.length),
+            )
         }
     )
-    after = td.harris_map(changed, found.torque, phases=16).peak_to_peak_transmission_error
-    np.testing.assert_allclose(after, found.peak_to_peak_after, rtol=1e-9)
+    after = td.harris_map(changed, optimum.torque, phases=16).peak_to_peak_transmission_error
+    np.testing.assert_allclose(after, optimum.peak_to_peak_after, rtol=1e-9)
 
 
 def test_an_optimal_relief_is_written_as_a_drawing_states_it(case):
     """Four digits, in um and mm; the errors are those of the rounded relief."""
-    found = td.optimize_tip_relief(case, ("60 N*m", "120 N*m"), phases=16, grid=(5, 4))
-    lines = [line.partition("  #")[0] for line in found.case.to_toml().splitlines()]
+    optimum = td.optimize_tip_relief(case, ("60 N*m", "120 N*m"), phases=16, grid=(5, 4))
+    lines = [line.partition("  #")[0] for line in optimum.case.to_toml().splitlines()]
     for name, value, unit in (
-        ("tip_relief", found.amount * 1e6, "um"),
-        ("tip_relief_length", found.length * 1e3, "mm"),
+        ("tip_relief", optimum.amount * 1e6, "um"),
+        ("tip_relief_length", optimum.length * 1e3, "mm"),
     ):
         assert lines.count(f'{name} = "{value:.4g} {unit}"') == 2
         assert float(f"{value:.4g}") == pytest.approx(value, rel=1e-14)
-    after = td.harris_map(found.case, found.torque, phases=16).peak_to_peak_transmission_error
-    np.testing.assert_allclose(after, found.peak_to_peak_after, rtol=1e-9)
-    assert found.objective == pytest.approx(after.max(), rel=1e-9)
+    after = td.harris_map(optimum.case, optimum.torque, phases=16).peak_to_peak_transmission_error
+    np.testing.assert_allclose(after, optimum.peak_to_peak_after, rtol=1e-9)
+    assert optimum.objective == pytest.approx(after.max(), rel=1e-9)
     exact = td.optimize_tip_relief(case, ("60 N*m", "120 N*m"), phases=16, grid=(5, 4), digits=15)
-    assert found.objective == pytest.approx(exact.objective, rel=1e-3)
-    assert exact.amount != found.amount
+    assert optimum.objective == pytest.approx(exact.objective, rel=1e-3)
+    assert exact.amount != optimum.amount
 
 
 def test_a_rounded_relief_stays_on_the_flank(case):
     """The longest relief is the used flank, whose length has more than two digits."""
     longest = td.optimize_tip_relief(case, 90.0, phases=16, grid=(3, 3)).map_length[-1]
     ends = (0.98 * longest, longest)
-    found = td.optimize_tip_relief(
+    optimum = td.optimize_tip_relief(
         case, 90.0, phases=16, grid=(2, 2), length=ends, digits=1, amount=("10 um", "20 um")
     )
-    assert found.length <= longest
+    assert optimum.length <= longest
 
 
 def test_tip_relief_range_is_half_the_torque_of_the_case_to_all_of_it(case):
-    found = td.optimize_tip_relief(case, phases=16, grid=(3, 3))
-    assert found.torque[0] == pytest.approx(0.5 * case.pinion_torque)
-    assert found.torque[-1] == pytest.approx(case.pinion_torque)
+    optimum = td.optimize_tip_relief(case, phases=16, grid=(3, 3))
+    assert optimum.torque[0] == pytest.approx(0.5 * case.pinion_torque)
+    assert optimum.torque[-1] == pytest.approx(case.pinion_torque)
 
 
 def test_comprehensive_stiffness_has_the_kind_of_the_case(film_case):
-    found = td.comprehensive_stiffness(film_case, steps=32)
-    assert found.kind == "tangent"
-    assert found.comprehensive_mesh_stiffness.shape[:2] == (1, 1)
+    stiffness = td.comprehensive_stiffness(film_case, steps=32)
+    assert stiffness.kind == "tangent"
+    assert stiffness.comprehensive_mesh_stiffness.shape[:2] == (1, 1)
     none = film_case.replace({"film.stiffness": "none"})
     again = td.comprehensive_stiffness(none, steps=32)
-    np.testing.assert_array_equal(again.pair_stiffness, found.pair_stiffness)
+    np.testing.assert_array_equal(again.pair_stiffness, stiffness.pair_stiffness)
 
 
 @pytest.mark.parametrize(
-    ("study", "options", "told"),
+    ("study", "options", "message"),
     [
         ("harris_map", {"torque": ["90 mm"]}, "torque"),
         ("harris_map", {"torque": [-1.0]}, "torque"),
@@ -116,8 +124,8 @@ def test_comprehensive_stiffness_has_the_kind_of_the_case(film_case):
         ("comprehensive_stiffness", {"speed": "fast"}, "speed"),
     ],
 )
-def test_faults_name_the_argument(case, study, options, told):
-    with pytest.raises(InputError, match=told):
+def test_faults_name_the_argument(case, study, options, message):
+    with pytest.raises(InputError, match=message):
         getattr(td, study)(case, **options)
 
 

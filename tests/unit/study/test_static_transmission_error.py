@@ -85,13 +85,13 @@ def test_without_load_and_rigid_it_is_that_of_the_tooth_contact(changes: dict[st
 
 
 def test_the_load_counts_over_the_stiffness_alone() -> None:
-    one = mesh(hypoid(operation__torque=50.0), rehearsal=True)
+    mesh_table = mesh(hypoid(operation__torque=50.0), rehearsal=True)
     stiffness = hypoid().gears.line_stiffness
     other = mesh(
         hypoid(operation__torque=800.0, gears__line_stiffness=16.0 * stiffness), rehearsal=True
     )
     assert other.transmission_error_at_rest == pytest.approx(
-        one.transmission_error_at_rest, rel=1e-9
+        mesh_table.transmission_error_at_rest, rel=1e-9
     )
 
 
@@ -152,8 +152,8 @@ def test_summary_figures_and_series_have_the_same_definition(slow_hypoid: Any) -
     )
     series = slow_hypoid.to_xarray()[name].values
     assert float(np.ptp(series)) == pytest.approx(np.ptp(lag), rel=1e-3)
-    drawn = slow_hypoid.plot_static_transmission_error()
-    assert f"{1e6 * np.ptp(lag):.3g}" in drawn.layout.title.text
+    figure = slow_hypoid.plot_static_transmission_error()
+    assert f"{1e6 * np.ptp(lag):.3g}" in figure.layout.title.text
     # Slow gears lag as at rest, but for the part of the torque that friction carries.
     ratio = figures["mean_mesh_force"] / figures["static_mesh_force"]
     assert figures["mean_dynamic_transmission_error"] == pytest.approx(

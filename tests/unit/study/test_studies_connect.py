@@ -57,13 +57,13 @@ def test_the_best_relief_is_a_case_that_does_what_was_promised(case: Any) -> Non
 
 def test_a_speed_sweep_of_a_case_meets_its_single_runs(case: Any) -> None:
     soon = case.replace({"friction.law": "none", "friction.variant": None})
-    found = td.speed_sweep(soon, ("2000 rpm", "2400 rpm"), 3, tables=1)
+    sweep = td.speed_sweep(soon, ("2000 rpm", "2400 rpm"), 3, tables=1)
     run = td.run(soon.replace({"operation.speed": "2200 rpm"}))
-    column = found.signals.index("bearing_force_pinion_y")
+    column = sweep.signals.index("bearing_force_pinion_y")
     figure = run.summary()["rms_bearing_force_loa_pinion"]
-    assert found.rms[0, 1, column] == pytest.approx(figure, rel=1e-4)
-    assert (found.speed * 30 / np.pi).tolist() == pytest.approx([2000.0, 2200.0, 2400.0])
-    title = found.plot().layout.xaxis.title.text
+    assert sweep.rms[0, 1, column] == pytest.approx(figure, rel=1e-4)
+    assert (sweep.speed * 30 / np.pi).tolist() == pytest.approx([2000.0, 2200.0, 2400.0])
+    title = sweep.plot().layout.xaxis.title.text
     assert title == "Speed [rpm]"
 
 
@@ -102,12 +102,19 @@ def test_columns_of_a_sweep_are_chosen(
     tmp_path: Any, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    words = ["sweep", "fzg-roughness", "operation.torque=60,90 N*m", "--set",
-             "stiffness.model=analytic", "--set", "solver.steps_per_mesh_cycle=256"]  # fmt: skip
-    assert call([*words, "--show", "efficiency, minimum_film_ratios"]) == 2
+    arguments = [
+        "sweep",
+        "fzg-roughness",
+        "operation.torque=60,90 N*m",
+        "--set",
+        "stiffness.model=analytic",
+        "--set",
+        "solver.steps_per_mesh_cycle=256",
+    ]
+    assert call([*arguments, "--show", "efficiency, minimum_film_ratios"]) == 2
     assert 'Did you mean "minimum_film_ratio"?' in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
-    assert call([*words, "--show", "efficiency,line_load"]) == 0
+    assert call([*arguments, "--show", "efficiency,line_load"]) == 0
     assert capsys.readouterr().out.splitlines()[1].split() == ["torque", "efficiency", "line_load"]
 
 

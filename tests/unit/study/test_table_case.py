@@ -103,8 +103,8 @@ def test_a_spur_table_that_is_written_and_read_has_the_same_orbit(spur, tmp_path
     spur.mesh.save(path) if name.endswith("nc") else spur.mesh.to_csv(path)
     again = quiet(of_spur(spur, path))
     scale = np.abs(spur.response.position).max(axis=0)
-    apart = np.abs(again.response.position - spur.response.position).max(axis=0)
-    assert np.all(apart <= 1e-9 * scale)
+    difference = np.abs(again.response.position - spur.response.position).max(axis=0)
+    assert np.all(difference <= 1e-9 * scale)
     before, after = spur.summary(), again.summary()
     same = [key for key in after if key not in ("omega_max_dt", "steady_state_error")]
     assert {key: after[key] for key in same} == pytest.approx(
@@ -129,8 +129,8 @@ def test_a_sinusoidal_stiffness_moves_as_the_equation_of_mathieu_says(tmp_path):
     exact = solve_ivp(
         motion, (0.0, at[-1]), [force / MEAN, 0.0], "DOP853", at, rtol=1e-11, atol=1e-16
     )
-    found = result.response.deflection[:, 0]
-    assert found == pytest.approx(exact.y[0], abs=1e-7 * np.ptp(exact.y[0]))
+    deflection = result.response.deflection[:, 0]
+    assert deflection == pytest.approx(exact.y[0], abs=1e-7 * np.ptp(exact.y[0]))
 
 
 def test_an_unloaded_error_displaces_the_compression(tmp_path):
@@ -138,13 +138,13 @@ def test_an_unloaded_error_displaces_the_compression(tmp_path):
     plain = quiet(table_case(written(tmp_path / "k.csv", columns)))
     error = 2e-6 * np.cos(2.0 * np.pi * columns["phase"])
     columns["unloaded_transmission_error [um]"] = 1e6 * error
-    found = quiet(table_case(written(tmp_path / "e.csv", columns)))
+    result = quiet(table_case(written(tmp_path / "e.csv", columns)))
     stated = quiet(
         table_case(tmp_path / "k.csv", **{"dynamics.transmission_error_amplitude": "2 um"})
     )
     name = "peak_to_peak_dynamic_transmission_error"
-    assert found.summary()[name] == pytest.approx(stated.summary()[name], rel=1e-5)
-    assert found.summary()[name] != pytest.approx(plain.summary()[name], rel=1e-2)
+    assert result.summary()[name] == pytest.approx(stated.summary()[name], rel=1e-5)
+    assert result.summary()[name] != pytest.approx(plain.summary()[name], rel=1e-2)
 
 
 def test_a_force_law_gives_its_deflection_at_any_torque(tmp_path):
@@ -175,8 +175,8 @@ def test_directions_of_contacts_may_vary(tmp_path):
     towards = {"pinion_y": 1.0, "pinion_theta": RADII[0], "wheel_y": -1.0, "wheel_theta": -RADII[1]}
     vectors = {f"direction_{name}": np.full(257, value) for name, value in towards.items()}
     plain = quiet(table_case(written(tmp_path / "k.csv", columns)))
-    found = quiet(table_case(written(tmp_path / "h.csv", columns | vectors)))
-    assert found.response.position == pytest.approx(plain.response.position, rel=1e-9, abs=1e-18)
+    result = quiet(table_case(written(tmp_path / "h.csv", columns | vectors)))
+    assert result.response.position == pytest.approx(plain.response.position, rel=1e-9, abs=1e-18)
 
 
 def test_friction_of_each_contact_acts_in_its_direction(tmp_path):
@@ -255,7 +255,7 @@ def broken(name):
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "message"),
     [
         ("no stiffness", "stiffness is missing"),
         ("no phase", "phase is missing"),
@@ -271,10 +271,10 @@ def broken(name):
         ("friction", "sliding_direction is missing"),
     ],
 )
-def test_a_faulty_file_is_refused_with_the_key_of_the_case(tmp_path, name, told):
+def test_a_faulty_file_is_refused_with_the_key_of_the_case(tmp_path, name, message):
     columns, facts, events = broken(name)
     path = written(tmp_path / "bad.csv", columns, facts, events)
-    with pytest.raises(InputError, match=told) as error:
+    with pytest.raises(InputError, match=message) as error:
         table_case(path)
     assert "gears.table" in str(error.value)
 
@@ -290,7 +290,7 @@ def test_what_is_no_file_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"film.model": "moes"}, "film"),
         ({"friction.law": "benedict-kelly"}, "friction"),
@@ -300,9 +300,9 @@ def test_what_is_no_file_is_refused(tmp_path):
         ({"gears.table": None}, "table is missing"),
     ],
 )
-def test_what_a_table_cannot_have_is_refused(tmp_path, change, told):
+def test_what_a_table_cannot_have_is_refused(tmp_path, change, message):
     path = written(tmp_path / "k.csv", sinusoid())
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         table_case(path, **change)
 
 
@@ -314,12 +314,12 @@ def test_a_table_case_is_written_swept_and_reported(tmp_path):
     result = quiet(case)
     target = result.save(tmp_path / "out")
     assert "no gear pair" in (target / "report.html").read_text(encoding="utf-8")
-    kept = MeshTable.load(target / "mesh.nc")
-    assert np.array_equal(kept.mesh_stiffness, result.mesh.mesh_stiffness)
+    stored = MeshTable.load(target / "mesh.nc")
+    assert np.array_equal(stored.mesh_stiffness, result.mesh.mesh_stiffness)
     with pytest.raises(InputError, match="no gear pair"):
         case.gear_pair  # noqa: B018
     with pytest.raises(InputError, match="no gear pair"):
-        kept.gear_pair.driver  # noqa: B018
+        stored.gear_pair.driver  # noqa: B018
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         swept = sweep(case, **SPEEDS)

@@ -28,7 +28,7 @@ def cases() -> list[Any]:
     ]
 
 
-def told(case: Any) -> tuple[dict[str, Any], list[tuple[str, str]]]:
+def figures_and_warnings(case: Any) -> tuple[dict[str, Any], list[tuple[str, str]]]:
     result = td.run(case)
     return result.summary(), [(warning.code, warning.message) for warning in result.warnings]
 
@@ -36,11 +36,14 @@ def told(case: Any) -> tuple[dict[str, Any], list[tuple[str, str]]]:
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 def test_threads_change_neither_figures_nor_warnings(request: pytest.FixtureRequest) -> None:
     ready = cases()
-    alone = [told(case) for case in ready]
-    assert len({codes for _, said in alone for codes in [tuple(code for code, _ in said)]}) >= 4
+    alone = [figures_and_warnings(case) for case in ready]
+    assert (
+        len({codes for _, cautions in alone for codes in [tuple(code for code, _ in cautions)]})
+        >= 4
+    )
     for _ in range(request.config.getoption("--runs") or 2):
         with ThreadPoolExecutor(8) as pool:
-            beside = list(pool.map(told, ready))
-        for (figures, said), (same, also) in zip(alone, beside, strict=True):
-            assert also == said
+            threaded = list(pool.map(figures_and_warnings, ready))
+        for (figures, cautions), (same, also) in zip(alone, threaded, strict=True):
+            assert also == cautions
             assert same == pytest.approx(figures, rel=1e-12, abs=0.0, nan_ok=True)

@@ -11,11 +11,11 @@ from tribodyn.friction import LAWS
 from tribodyn.study.pipeline.run import computed, rehearse
 
 
-def _said(asked, case):
+def _message(study, case):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         try:
-            asked(case)
+            study(case)
         except InputError as error:
             return str(error)
     return ""
@@ -35,9 +35,11 @@ def test_a_rehearsal_says_what_the_run_says(law, roughness):
     case = td.load_case("fzg-roughness").replace(
         {"friction.law": law, "gears.composite_roughness": roughness}
     )
-    said = _said(rehearse, case)
-    assert said == _said(computed, case)
-    assert bool(said) == (roughness == "3.2 um" or (roughness, law) == ("1.2 um", "benedict-kelly"))
+    message = _message(rehearse, case)
+    assert message == _message(computed, case)
+    assert bool(message) == (
+        roughness == "3.2 um" or (roughness, law) == ("1.2 um", "benedict-kelly")
+    )
 
 
 @pytest.mark.parametrize("model", _REFUSED["stiffness.model"])
@@ -49,19 +51,19 @@ def test_models_and_speeds(model, speed):
         if model == "weber"
         else {"stiffness.model": model, "operation.speed": speed}
     )
-    said = _said(rehearse, case)
-    assert bool(said) == (model == "weber" or speed == "0.02 rpm")
-    if said:
-        assert said.split(" ")[0] == _said(computed, case).split(" ")[0]
+    message = _message(rehearse, case)
+    assert bool(message) == (model == "weber" or speed == "0.02 rpm")
+    if message:
+        assert message.split(" ")[0] == _message(computed, case).split(" ")[0]
 
 
 @pytest.mark.parametrize("key", ["roughness_ra", "roughness_rms"])
 def test_a_refused_roughness_is_named_as_it_was_given(key):
-    given = {f"gears.{gear}.{key}": "3 um" for gear in ("pinion", "wheel")}
+    roughness = {f"gears.{gear}.{key}": "3 um" for gear in ("pinion", "wheel")}
     case = td.load_case("fzg-roughness").replace(
-        {"friction.law": "xu-2007", "gears.composite_roughness": None, **given}
+        {"friction.law": "xu-2007", "gears.composite_roughness": None, **roughness}
     )
-    assert f"gears.pinion.{key}: xu-2007" in _said(rehearse, case)
+    assert f"gears.pinion.{key}: xu-2007" in _message(rehearse, case)
 
 
 def test_check_rehearses(tmp_path, capsys):
@@ -85,8 +87,8 @@ def test_a_law_of_a_third_party_is_asked_too():
 
     try:
         case = td.load_case("fzg-roughness").replace({"friction.law": "shy"})
-        assert "too rough for the shy law" in _said(rehearse, case)
-        assert not _said(rehearse, case.replace({"gears.composite_roughness": "0.05 um"}))
+        assert "too rough for the shy law" in _message(rehearse, case)
+        assert not _message(rehearse, case.replace({"gears.composite_roughness": "0.05 um"}))
     finally:
         LAWS._items.pop("shy")
 

@@ -130,8 +130,8 @@ def test_only_so_many_faults_are_told() -> None:
     with pytest.raises(InputError) as caught:
         read_case(f"{keys}\n{SOUND}", "my.toml")
     assert len(caught.value.problems) <= 51
-    many = TribodynError([Problem(f"fault {number}") for number in range(80)])
-    assert str(many.problems[-1]).startswith("30 more problems")
+    error = TribodynError([Problem(f"fault {number}") for number in range(80)])
+    assert str(error.problems[-1]).startswith("30 more problems")
 
 
 def test_a_message_repeats_little_and_no_control_characters() -> None:
@@ -162,14 +162,14 @@ main(sys.argv[1:])
 def test_a_full_disk_is_told_as_json_with_the_place(tmp_path: Path) -> None:
     import json
 
-    words = ["new", "my.toml", "--from", "fzg-roughness", "--json"]
+    arguments = ["new", "my.toml", "--from", "fzg-roughness", "--json"]
     done = subprocess.run(
-        [sys.executable, "-c", _FULL, *words], cwd=tmp_path, capture_output=True, text=True
+        [sys.executable, "-c", _FULL, *arguments], cwd=tmp_path, capture_output=True, text=True
     )
-    told = json.loads(done.stdout)["error"]
-    assert done.returncode == told["exit_code"] == 1
-    assert told["problems"][0]["where"] == "my.toml"
-    assert "no space left" in told["problems"][0]["what"]
+    error = json.loads(done.stdout)["error"]
+    assert done.returncode == error["exit_code"] == 1
+    assert error["problems"][0]["where"] == "my.toml"
+    assert "no space left" in error["problems"][0]["what"]
     assert os.listdir(tmp_path) == []
 
 
@@ -204,9 +204,9 @@ def test_a_file_that_changes_while_its_case_is_computed(tmp_path: Path) -> None:
     mixed = {"friction.law": "mixed", "friction.roughness_profile": str(path)}
     case = load_case("fzg-roughness").replace({"stiffness.model": "iso6336", **mixed})
     assert run(case).case == case
-    with pytest.raises(InputError, match=r"flank\.csv changed while .* Run it again") as told:
+    with pytest.raises(InputError, match=r"flank\.csv changed while .* Run it again") as caught:
         run(case, _Meanwhile(lambda: _profile(path, 0.6)))
-    assert [problem.where for problem in told.value.problems] == ["friction.roughness_profile"]
-    with pytest.raises(InputError, match=r"roughness_profile: .* there is no such file") as told:
+    assert [problem.where for problem in caught.value.problems] == ["friction.roughness_profile"]
+    with pytest.raises(InputError, match=r"roughness_profile: .* there is no such file") as caught:
         run(case, _Meanwhile(path.unlink))
-    assert len(told.value.problems) == 1
+    assert len(caught.value.problems) == 1

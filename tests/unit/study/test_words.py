@@ -31,7 +31,7 @@ _CODE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 def _codes(tree: ast.AST) -> set[str]:
     """First texts of warnings and of pairs of code and message."""
-    found = set()
+    codes = set()
     for node in ast.walk(tree):
         first = None
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("warn", "ModelWarning"):
@@ -39,8 +39,8 @@ def _codes(tree: ast.AST) -> set[str]:
         if isinstance(node, ast.Tuple) and len(node.elts) == 2:
             first = node.elts[0] if isinstance(node.elts[1], ast.JoinedStr) else None
         if isinstance(first, ast.Constant) and _CODE.fullmatch(str(first.value)):
-            found.add(str(first.value))
-    return found
+            codes.add(str(first.value))
+    return codes
 
 
 def test_the_explained_warnings_are_those_that_are_issued() -> None:
@@ -76,29 +76,29 @@ def test_warning_codes_are_explained(capsys: pytest.CaptureFixture[str]) -> None
     assert "nothing to explain" in capsys.readouterr().err
     assert call(["explain", "backlsh"]) == 2
     remedy = capsys.readouterr().err.partition("Did you mean")[2].rstrip("?\n")
-    words = [word.strip() for word in remedy.split(" or ")]
-    assert "backlash" in words
-    assert len(set(words)) == len(words)
+    codes = [code.strip() for code in remedy.split(" or ")]
+    assert "backlash" in codes
+    assert len(set(codes)) == len(codes)
 
 
-def _told(capsys: pytest.CaptureFixture[str], *words: str) -> list[dict[str, Any]]:
-    assert call(["explain", *words, "--json"]) == 0
+def _explain(capsys: pytest.CaptureFixture[str], *terms: str) -> list[dict[str, Any]]:
+    assert call(["explain", *terms, "--json"]) == 0
     return json.loads(capsys.readouterr().out)
 
 
 def test_what_is_explained_exists_and_every_warning_has_a_remedy() -> None:
-    told, keys = explanations(), [key for key, _, _ in case_keys()]
-    known = {*keys, *(key.rpartition(".")[2] for key in keys), *QUANTITIES, *SUMMARY}
-    assert set(told["equations"]) <= known | set(choice_meanings())
-    assert set(told["ranges"]) <= set(choice_meanings())
-    assert set(told["remedies"]) == set(warning_meanings())
-    assert {entry.key for entry in map(find_term, listed_terms()) if entry and entry.key} <= known
+    explained, keys = explanations(), [key for key, _, _ in case_keys()]
+    names = {*keys, *(key.rpartition(".")[2] for key in keys), *QUANTITIES, *SUMMARY}
+    assert set(explained["equations"]) <= names | set(choice_meanings())
+    assert set(explained["ranges"]) <= set(choice_meanings())
+    assert set(explained["remedies"]) == set(warning_meanings())
+    assert {entry.key for entry in map(find_term, listed_terms()) if entry and entry.key} <= names
 
 
 def test_pages_that_are_named_exist() -> None:
     named = {
         *explanations()["pages"].values(),
-        *(said.page for w in listed_terms() if (said := find_term(w))),
+        *(term.page for w in listed_terms() if (term := find_term(w))),
     }
     for name in named:
         file, _, anchor = name.partition("#")
@@ -108,7 +108,7 @@ def test_pages_that_are_named_exist() -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "first"),
+    ("terms", "first"),
     [
         (("lambda",), {"quantity": "film_ratio", "equation": "Lambda = h_min / S"}),
         (("LAMBDA",), {"quantity": "film_ratio"}),
@@ -124,18 +124,18 @@ def test_pages_that_are_named_exist() -> None:
     ],
 )
 def test_what_engineers_ask_for_is_answered_first(
-    words: tuple[str, ...], first: dict[str, str], capsys: pytest.CaptureFixture[str]
+    terms: tuple[str, ...], first: dict[str, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    told = _told(capsys, *words)
-    assert first.items() <= told[0].items()
+    explained = _explain(capsys, *terms)
+    assert first.items() <= explained[0].items()
 
 
 def test_whole_words_come_before_parts_of_words_and_the_screen_stays_short(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    names = [str(next(iter(entry.values()))) for entry in _told(capsys, "pitch")]
-    whole = ["pitch" in re.split(r"[^a-z]", name.lower()) for name in names]
-    assert whole == sorted(whole, reverse=True)
+    names = [str(next(iter(entry.values()))) for entry in _explain(capsys, "pitch")]
+    contain = ["pitch" in re.split(r"[^a-z]", name.lower()) for name in names]
+    assert contain == sorted(contain, reverse=True)
     assert call(["explain", "mesh"]) == 0
     out = capsys.readouterr().out
     assert out.count("page:") == 8

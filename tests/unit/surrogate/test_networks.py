@@ -66,18 +66,18 @@ def test_the_best_weights_of_the_validation_are_kept():
         return Squares(float(w[0] ** 2), w.copy(), np.eye(1))
 
     # The fit goes to 0; the other data want 0.6, and are passed after the second step or so.
-    told = []
+    epochs = []
 
     def validation(w):
-        told.append(float(w[0]))
+        epochs.append(float(w[0]))
         return float((w[0] - 0.6) ** 2)
 
     fit = levenberg_marquardt(
         squares, mean_square, np.ones(1), validation=validation, damping=1.0, patience=3
     )
     assert fit.stopped == "validation"
-    assert fit.weights[0] == min(told, key=lambda w: abs(w - 0.6))
-    assert fit.epochs == told.index(fit.weights[0]) + 3
+    assert fit.weights[0] == min(epochs, key=lambda w: abs(w - 0.6))
+    assert fit.epochs == epochs.index(fit.weights[0]) + 3
 
 
 def test_starts_of_nguyen_and_widrow_spread_over_the_inputs():

@@ -17,9 +17,9 @@ def test_scaling_and_filling_know_the_training_rows_only():
     parts = split_rows(400, seed=7)
     x[parts.test], x[parts.training[:5]] = 1e6, np.nan
     ready = prepare({"x": x, "y": y}, ["x"], ["y"], seed=7)
-    known = x[parts.training[5:]]
-    assert ready.feature_scaling.high[0] == known.max()
-    assert np.allclose(ready.features[parts.training[:5], 0], known.mean())
+    scaled_rows = x[parts.training[5:]]
+    assert ready.feature_scaling.high[0] == scaled_rows.max()
+    assert np.allclose(ready.features[parts.training[:5], 0], scaled_rows.mean())
     assert np.array_equal(ready.split.test, parts.test)
     scaled = ready.feature_scaling.scaled(ready.features)
     assert scaled[parts.training].min() == 0.0

@@ -27,11 +27,11 @@ def test_errors_are_those_of_rows_that_were_not_trained(model):
     assert error.rows == 270
     assert 0.8 * 0.02**2 < error.mean_square < 1.6 * 0.02**2
     assert model.errors["z"].determination > 0.9999
-    held = surrogate.split_rows(900, SMALL.shares, seed=1).test
+    test_rows = surrogate.split_rows(900, SMALL.shares, seed=1).test
     with quiet("surrogate-range"):
-        again = model.predict({name: DATA[name][held] for name in ("a", "b")})
+        again = model.predict({name: DATA[name][test_rows] for name in ("a", "b")})
     assert np.allclose(again["y"], model.predicted[0])
-    assert np.array_equal(model.true[1], DATA["z"][held])
+    assert np.array_equal(model.true[1], DATA["z"][test_rows])
 
 
 def test_the_band_holds_new_values_as_often_as_it_says(model):
@@ -49,12 +49,12 @@ def test_features_come_by_name_in_a_table_or_in_order(model):
 
     a, b = np.array([0.1, 0.2]), np.array([-0.3, 0.4])
     wanted = model.predict({"b": b, "a": a, "unused": 1.0})["z"]
-    for given in (
+    for features in (
         np.stack([a, b], axis=1),
         pandas.DataFrame({"b": b, "a": a}),
         xarray.Dataset({"a": ("row", a), "b": ("row", b)}),
     ):
-        assert np.array_equal(model.predict(given)["z"], wanted)
+        assert np.array_equal(model.predict(features)["z"], wanted)
     assert np.isclose(float(model.predict([0.1, -0.3])["z"]), wanted[0])
     assert model.predict({"a": a[:, None], "b": b})["y"].shape == (2, 2)
 
@@ -87,29 +87,31 @@ def test_a_model_comes_back_as_it_was(model, tmp_path):
 
 def test_the_same_seed_gives_the_same_model(model):
     quick = surrogate.Training(hidden=(3,), activations=("tansig",), epochs=5)
-    one, same, other = (
+    first, same, other = (
         surrogate.train(DATA, **ASK, seed=seed, training=quick) for seed in (2, 2, 3)
     )
-    assert one == same
-    assert not np.array_equal(one.true, other.true)
+    assert first == same
+    assert not np.array_equal(first.true, other.true)
 
 
 def test_the_size_of_the_networks_is_searched():
-    found, search = surrogate.bpnn_pl(DATA, **ASK, seed=1, neurons=(1, 5))
+    model_, search = surrogate.bpnn_pl(DATA, **ASK, seed=1, neurons=(1, 5))
     assert search["y"].shape == (2, 3)
     assert search["y"][0, 1] > 4 * search["y"][1, 1]
-    network, _ = found.networks[0]
+    network, _ = model_.networks[0]
     assert (network.hidden, network.activations) == ((5, 5), ("tansig", "relu"))
-    assert found.errors["y"].determination > 0.99
+    assert model_.errors["y"].determination > 0.99
 
 
 def test_baselines_are_judged_by_the_same_rows():
-    found = surrogate.baselines(DATA, **ASK, seed=1, table_over="a")
+    baselines = surrogate.baselines(DATA, **ASK, seed=1, table_over="a")
     parts = surrogate.split_rows(900, seed=1)
     mean = DATA["y"][parts.training].mean()
-    assert np.isclose(found["mean"]["y"].mean_square, np.mean((DATA["y"][parts.test] - mean) ** 2))
-    assert found["table"]["z"].determination > 0.999
-    assert found["linear"]["z"].determination < 0.97
+    assert np.isclose(
+        baselines["mean"]["y"].mean_square, np.mean((DATA["y"][parts.test] - mean) ** 2)
+    )
+    assert baselines["table"]["z"].determination > 0.999
+    assert baselines["linear"]["z"].determination < 0.97
 
 
 @pytest.mark.slow
@@ -121,13 +123,13 @@ def test_baselines_of_scikit_learn():
         with pytest.raises(InputError, match=r"tribodyn\[learn\]"):
             surrogate.baselines(DATA, **ASK, seed=1, kinds=kinds)
         return
-    found = surrogate.baselines(DATA, **ASK, seed=1, kinds=kinds)
-    assert all(each["z"].determination > 0.99 for each in found.values())
+    baselines = surrogate.baselines(DATA, **ASK, seed=1, kinds=kinds)
+    assert all(each["z"].determination > 0.99 for each in baselines.values())
     # what vibrates within the range of a feature is no noise to either of them
     quick = {"a": DATA["a"], "y": np.sin(15.0 * DATA["a"])}
-    found = surrogate.baselines(quick, features=["a"], targets=["y"], seed=1, kinds=kinds)
-    assert found["gaussian-process"]["y"].determination > 0.999999
-    assert found["boosted-trees"]["y"].determination > 0.99
+    baselines = surrogate.baselines(quick, features=["a"], targets=["y"], seed=1, kinds=kinds)
+    assert baselines["gaussian-process"]["y"].determination > 0.999999
+    assert baselines["boosted-trees"]["y"].determination > 0.99
 
 
 @pytest.mark.parametrize(

@@ -65,12 +65,12 @@ force_scale = "0.05,0.3,1"
     member = built(study.case)
     frequency = study.case.gears.pinion.teeth * data["operation.speed"].values / (2.0 * np.pi)
     over = (("mesh_frequency", frequency), ("force_scale", data["force_scale"].values))
-    found = parameter_map(member.system, over=over)
-    np.testing.assert_array_equal(data["period"], found.period)
-    np.testing.assert_allclose(data["rms"], found.rms, rtol=2e-4)
-    np.testing.assert_allclose(data["contact_loss_share"], found.contact_loss_share, atol=1e-5)
-    words = np.array(VERDICTS)[data["verdict"].values.astype(int)]
-    np.testing.assert_array_equal(words, found.verdict)
+    map_result = parameter_map(member.system, over=over)
+    np.testing.assert_array_equal(data["period"], map_result.period)
+    np.testing.assert_allclose(data["rms"], map_result.rms, rtol=2e-4)
+    np.testing.assert_allclose(data["contact_loss_share"], map_result.contact_loss_share, atol=1e-5)
+    verdicts = np.array(VERDICTS)[data["verdict"].values.astype(int)]
+    np.testing.assert_array_equal(verdicts, map_result.verdict)
     assert float(data["contact_loss_share"].max()) > 0.0
     with alone():
         run_study(study, tmp_path / "alone")
@@ -84,13 +84,13 @@ def test_a_chunk_does_not_depend_on_who_looks_at_its_making() -> None:
     text = 'case = "fzg-roughness"\n[axes]\noperation.speed = "400..900 rpm:3"\n'
     job = Job("summary", read_study(text).case, (), {"operation.speed": [40.0, 60.0, 90.0]})
     part = Part({"rms_mesh_force": np.arange(3.0)}, ["", "failed", ""], [""] * 3)
-    alone, held = job._encoded(part), []
-    sys.setprofile(lambda frame, *_: held.append(frame))
+    alone, encoded = job._encoded(part), []
+    sys.setprofile(lambda frame, *_: encoded.append(frame))
     try:
         watched = job._encoded(part)
     finally:
         sys.setprofile(None)
-    assert held
+    assert encoded
     assert watched == alone
     with xarray.open_dataset(io.BytesIO(alone), engine="h5netcdf") as data:
         assert data["value"].dims == ("member", "figure")

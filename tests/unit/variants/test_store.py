@@ -86,10 +86,10 @@ def test_a_study_grows(tmp_path: Path, speeds: str, torques: str) -> None:
     after = chunks(tmp_path / "s")
     assert before.items() <= after.items()
     run_study(grown, tmp_path / "new")
-    one, other = (open_study(tmp_path / name).load() for name in ("s", "new"))
-    assert dict(one.sizes) == dict(other.sizes)
+    grown_data, other = (open_study(tmp_path / name).load() for name in ("s", "new"))
+    assert dict(grown_data.sizes) == dict(other.sizes)
     for name in ("power", "operation.speed", "operation.torque"):
-        np.testing.assert_allclose(one[name], other[name], rtol=1e-12)
+        np.testing.assert_allclose(grown_data[name], other[name], rtol=1e-12)
     # What was there is there once: each member is stored in one chunk.
     new = grown.layout.count - 30
     assert len(after) == len(before) + -(-new // 4)
@@ -110,7 +110,7 @@ def test_a_study_grows_while_it_is_unfinished_and_never_shrinks(tmp_path: Path) 
 
 
 def test_samples_and_tables_grow_at_their_end(tmp_path: Path) -> None:
-    def drawn(size: int, method: str = "sobol") -> str:
+    def samples(size: int, method: str = "sobol") -> str:
         return f"""
 case = "fzg-roughness"
 chunk = 5
@@ -122,8 +122,8 @@ operation.speed = "600 rpm .. 1500 rpm"
 operation.torque = "60 N*m .. 75 N*m"
 """
 
-    run_study(read_study(drawn(8)), tmp_path / "s")
-    run_study(read_study(drawn(16)), tmp_path / "s")
+    run_study(read_study(samples(8)), tmp_path / "s")
+    run_study(read_study(samples(16)), tmp_path / "s")
     data = open_study(tmp_path / "s")
     assert data["power"].dims == ("member",)
     speed, torque = (data[f"operation.{name}"].values for name in ("speed", "torque"))
@@ -131,9 +131,9 @@ operation.torque = "60 N*m .. 75 N*m"
     assert np.unique(speed).size == 16
     assert speed.min() >= SPEED[0]
     assert speed.max() <= SPEED[-1]
-    run_study(read_study(drawn(8, "latin-hypercube")), tmp_path / "l")
+    run_study(read_study(samples(8, "latin-hypercube")), tmp_path / "l")
     with pytest.raises(InputError, match="the first 8 members are no longer"):
-        run_study(read_study(drawn(16, "latin-hypercube")), tmp_path / "l")
+        run_study(read_study(samples(16, "latin-hypercube")), tmp_path / "l")
 
 
 def test_a_damaged_chunk_is_refused_and_computed_anew(tmp_path: Path) -> None:
@@ -232,19 +232,19 @@ def test_force_replaces_another_study(tmp_path: Path) -> None:
 
 
 def test_a_wrong_path_is_told_in_plain_words() -> None:
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as caught:
         open_study(5)  # type: ignore[arg-type]
-    assert "Directory that run_study or tribodyn study wrote" in str(told.value)
+    assert "Directory that run_study or tribodyn study wrote" in str(caught.value)
 
 
-@pytest.mark.parametrize("given", ["map", "map.toml"])
-def test_the_store_beside_a_study_file_is_named(tmp_path: Path, given: str) -> None:
+@pytest.mark.parametrize("study_path", ["map", "map.toml"])
+def test_the_store_beside_a_study_file_is_named(tmp_path: Path, study_path: str) -> None:
     (tmp_path / "map.toml").write_text("")
     with pytest.raises(InputError, match="the directory that tribodyn study wrote"):
-        open_study(tmp_path / given)
+        open_study(tmp_path / study_path)
     (tmp_path / "map-study").mkdir()
     with pytest.raises(InputError, match=r'Did you mean ".*map-study"\?'):
-        open_study(tmp_path / given)
+        open_study(tmp_path / study_path)
 
 
 def test_what_the_machine_lacks_is_no_fault_of_a_member(

@@ -63,17 +63,17 @@ BROKEN = {
 
 @pytest.mark.parametrize("text", BROKEN, ids=range(len(BROKEN)))
 def test_every_fault_is_told(text: str) -> None:
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as caught:
         read_study(text, "s.toml")
-    message = " ".join(map(str, told.value.problems))
+    message = " ".join(map(str, caught.value.problems))
     assert re.search(BROKEN[text], message), message
     assert len(message) < 6000
-    for problem in told.value.problems:
+    for problem in caught.value.problems:
         assert str(problem.where).startswith("s.toml")
 
 
 @pytest.mark.parametrize(
-    ("table", "told"),
+    ("table", "message"),
     [
         ("", "has no members"),
         ("operation.speed [rpm]\n", "has no members"),
@@ -85,10 +85,10 @@ def test_every_fault_is_told(text: str) -> None:
         ("operation.speed [rpm]\n\x00", "t.csv"),
     ],
 )
-def test_tables_are_read_with_care(tmp_path: Path, table: str, told: str) -> None:
+def test_tables_are_read_with_care(tmp_path: Path, table: str, message: str) -> None:
     (tmp_path / "t.csv").write_text(table)
     (tmp_path / "s.toml").write_text(_CASE + 'table = "t.csv"')
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         load_study(tmp_path / "s.toml")
 
 

@@ -43,16 +43,16 @@ def test_a_cluster_without_workers_is_waited_for(
     distributed = pytest.importorskip("distributed")
     monkeypatch.setattr(run, "_PATIENCE", 0.5)
     nobody = {"n_workers": 0, "threads_per_worker": 1, "dashboard_address": None}
-    with distributed.LocalCluster(**nobody) as cluster, collected() as told:
+    with distributed.LocalCluster(**nobody) as cluster, collected() as messages:
         Timer(2.0, cluster.scale, (1,)).start()
         state = run_study(read_study(_STUDY), tmp_path / "s", scheduler=cluster.scheduler_address)
         assert state.complete
-        assert [warning.code for warning in told] == ["no-workers"]
-        assert f"dask worker {cluster.scheduler_address}" in str(told[0])
+        assert [warning.code for warning in messages] == ["no-workers"]
+        assert f"dask worker {cluster.scheduler_address}" in str(messages[0])
 
 
-def _dask(log: Path, *words: str) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "distributed.cli.dask_scheduler", *words]
+def _dask(log: Path, *arguments: str) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "distributed.cli.dask_scheduler", *arguments]
     with log.open("wb") as sink:
         return subprocess.Popen(command, stdout=sink, stderr=sink)
 
@@ -65,20 +65,25 @@ def test_a_scheduler_that_is_lost_is_told_in_one_line(tmp_path: Path) -> None:
     log = tmp_path / "log"
     scheduler = _dask(log, "--port", "0", "--no-dashboard")
     try:
-        while not (found := re.search(r"Scheduler at: +(\S+)", log.read_text())):
+        while not (address := re.search(r"Scheduler at: +(\S+)", log.read_text())):
             assert scheduler.poll() is None, log.read_text()
-        words = ["study", "s.toml", "--scheduler", found[1].replace("0.0.0.0", "127.0.0.1")]
-        command = [sys.executable, "-m", "tribodyn", *words]
+        command_line = [
+            "study",
+            "s.toml",
+            "--scheduler",
+            address[1].replace("0.0.0.0", "127.0.0.1"),
+        ]
+        command = [sys.executable, "-m", "tribodyn", *command_line]
         study = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
         while not (tmp_path / "s-study" / "members.jsonl").exists():
             assert study.poll() is None
     finally:
         scheduler.kill()
         scheduler.wait()
-    _, told = study.communicate(timeout=120)
+    _, errors = study.communicate(timeout=120)
     assert study.returncode == 1
-    assert len(told.splitlines()) == 1, told
-    assert re.search("the Dask scheduler at .* is lost.*the same command continues", told)
+    assert len(errors.splitlines()) == 1, errors
+    assert re.search("the Dask scheduler at .* is lost.*the same command continues", errors)
 
 
 def test_a_worker_of_another_version_refuses() -> None:
