@@ -66,6 +66,10 @@ class BallBearing(RollingElementBearing):
         return int(self._FILLING * math.pi * self.pitch / self.element_diameter)
 
     @property
+    def _pressure_limit(self) -> float:
+        return 4.2e9
+
+    @property
     def elements(self) -> int:
         """Number of balls."""
         return int(self.balls or 0)

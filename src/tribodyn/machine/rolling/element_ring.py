@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import (
     Argument,
     ComputationError,
     InputError,
     real_numbers,
+    warn,
 )
 from tribodyn.machine.fields import check_number
 from tribodyn.types import Array
@@ -151,7 +151,7 @@ class RollingElementBearing(ABC):
         value = getattr(self, name)
         if value is not None:
             if name in ("balls", "rollers"):
-                object.__setattr__(self, name, require_whole(name, value, 2))
+                self._check_count(name, 2)
             else:
                 check_number(self, name, "m", 0.0, 10.0, above=True)
             return
@@ -168,9 +168,22 @@ class RollingElementBearing(ABC):
         note = f"{name} = {text}, estimated: {basis}"
         object.__setattr__(self, "assumptions", (*self.assumptions, note))
 
+    def _check_count(self, name: str, least: int) -> None:
+        """Make a field a whole number of at least ``least``."""
+        check_number(self, name, "", least, 1000)
+        if not getattr(self, name).is_integer():
+            what, why = f"{name} = {getattr(self, name):g}", "Wanted: a whole number"
+            raise InputError(what, self._where(name), why, "Count them")
+        object.__setattr__(self, name, int(getattr(self, name)))
+
     @abstractmethod
     def _complete(self) -> None:
         """Check and estimate the dimensions of one type."""
+
+    @property
+    @abstractmethod
+    def _pressure_limit(self) -> float:
+        """Static limit of the pressure after ISO 76 (2006) [Pa]."""
 
     @property
     @abstractmethod
@@ -377,6 +390,13 @@ class RollingElementBearing(ABC):
         position = _five("displacement", displacement)
         _, load, stiffness = self.response(position)
         contacts = self._contacts(*self._local(position))
+        if (pressure := float(np.max(contacts[2:]))) > self._pressure_limit:
+            warn(
+                "bearing-pressure",
+                f"the pressure on the rolling elements reaches {1e-6 * pressure:.0f} MPa, above "
+                f"the {1e-6 * self._pressure_limit:.0f} MPa of ISO 76 that dent the raceways: "
+                "choose a larger bearing, or correct the load",
+            )
         return BearingState(position, load, stiffness, self.element_angles, *contacts)
 
 

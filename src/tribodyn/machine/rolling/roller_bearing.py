@@ -15,7 +15,6 @@ from functools import cached_property
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import InputError, require_one_of
 from tribodyn.machine.fields import check_number
 from tribodyn.machine.rolling.element_ring import ElementLaw, RollingElementBearing
@@ -60,9 +59,13 @@ class RollerBearing(RollingElementBearing):
         width = self.width or 0.0
         self._estimate("roller_length", lambda bore, outer: 0.6 * width, "0.6 of the width")
         require_one_of("profile", self.profile, ["none", "logarithmic"])
-        object.__setattr__(self, "laminae", require_whole("laminae", self.laminae, 3))
+        self._check_count("laminae", 3)
         limit = 0.05 * self.element_diameter
         check_number(self, "radial_clearance", "m", -limit, limit)
+
+    @property
+    def _pressure_limit(self) -> float:
+        return 4.0e9
 
     @property
     def elements(self) -> int:

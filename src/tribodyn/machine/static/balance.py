@@ -13,7 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import Argument, ComputationError, InputError, real_numbers, warn
+from tribodyn.errors import (
+    Argument,
+    ComputationError,
+    InputError,
+    collected,
+    real_numbers,
+    warn,
+)
 from tribodyn.machine.bearing import HELD
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
@@ -358,7 +365,7 @@ def _balance(
         meshes[name] = MeshBalance(force, moment, compression, misalignment, stiffness, factor)
         if load[0] < -1e-9 * np.abs(external).max():
             warn(
-                "negative-mesh-force",
+                "mesh-tension",
                 f'mesh "{name}" carries {load[0]:.4g} N: in its loop the other flank would carry '
                 "after the backlash; correct stiffness or errors of the loop",
             )
@@ -368,7 +375,10 @@ def _balance(
         rolling = model.machine.bearings[name].rolling
         if rolling is not None:
             _check_direction(name, rolling, load)
-        state = rolling.state(moved[list(HELD)]) if rolling else None
+        with collected() as warnings:
+            state = rolling.state(moved[list(HELD)]) if rolling else None
+        for warning in warnings:
+            warn(warning.code, f'bearing "{name}": {warning.message}')
         bearings[name] = BearingBalance(moved, load, stiffness, state)
     shafts = {}
     for name, shaft in model.structure.shafts.items():

@@ -278,6 +278,8 @@ def test_missing_dimensions_are_estimated_and_listed():
     [
         ("deep-groove", {"balls": None}, "DeepGrooveBallBearing.balls: balls is missing"),
         ("deep-groove", {"balls": 13}, "space for 11 of 11.5 mm"),
+        ("deep-groove", {"balls": 9.5}, "DeepGrooveBallBearing.balls: balls = 9.5"),
+        ("cylindrical-roller", {"laminae": 1}, "CylindricalRollerBearing.laminae"),
         ("deep-groove", {"inner_groove": 0.49}, "usually 0.515 to 0.53"),
         ("deep-groove", {"radial_clearance": 2e-3}, "radial_clearance = 2 mm"),
         ("deep-groove", {"contact_angle": 0.2}, "angular-contact"),
@@ -295,6 +297,13 @@ def test_messages_name_the_field(kind, changes, text):
     with pytest.raises(InputError) as error:
         ROLLING_BEARINGS[kind](**{**sizes, **changes})
     assert text in str(error.value)
+
+
+def test_pressures_above_the_static_limit_warn():
+    bearing = DeepGrooveBallBearing(**BALLS)
+    high = bearing.displacement([0.0, 30e3, 0.0, 0.0, 0.0])
+    with pytest.warns(ModelWarning, match=r"bearing-pressure.* above the 4200 MPa of ISO 76"):
+        assert bearing.state(high).inner_pressure.max() > 4.2e9
 
 
 def test_loads_that_no_displacement_balances():
