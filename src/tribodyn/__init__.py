@@ -5,7 +5,7 @@
 >>> case.gears.wheel.teeth
 24
 
-Everything is loaded when it is first used: the names below, and the rooms ``gear``, ``contact``,
+Everything is loaded when it is first used: the names below, and the packages ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
 ``machine``, ``analysis``, ``measurement``, ``uncertainty``,
 ``exchange``, ``study``, ``cases``, ``cookbook``, ``variants``, ``plot`` and ``report``.
@@ -89,7 +89,7 @@ __all__ = [
     "warm_up",
 ]
 
-#: Where a public name is at home, if not in ``study``.
+#: Package that defines a public name, if not ``study``.
 _ELSEWHERE = {
     "ComputationError": "errors",
     "InputError": "errors",
@@ -102,7 +102,7 @@ _ELSEWHERE = {
     "warm_up": "cases",
 }
 
-_ROOMS = (
+_PACKAGES = (
     "analysis", "cases", "contact", "cookbook", "dynamics", "ehl", "errors", "exchange",
     "friction", "gear", "losses", "lubricant", "machine", "measurement", "mesh", "nomenclature",
     "plot", "progress", "report", "stiffness", "study", "surrogate", "uncertainty", "units",
@@ -111,8 +111,8 @@ _ROOMS = (
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name or a room when it is first used."""
-    if name in _ROOMS:
+    """Load a public name or a package when it is first used."""
+    if name in _PACKAGES:
         return import_module(f"{__name__}.{name}")
     if name in __all__:
         return getattr(import_module(f"{__name__}.{_ELSEWHERE.get(name, 'study')}"), name)
@@ -120,5 +120,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """Public names and rooms."""
-    return sorted({*__all__, *_ROOMS})
+    """Public names and packages."""
+    return sorted({*__all__, *_PACKAGES})

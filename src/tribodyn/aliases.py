@@ -62,7 +62,7 @@ class Alias:
         self.old, self.new = old, new
 
     def __get__(self, instance: object, owner: type) -> Any:
-        """Warn, and return what the new name stands for."""
+        """Warn, and return the value of the new name."""
         _warn(f"{owner.__name__}.{self.old}", f"{owner.__name__}.{self.new}")
         return getattr(owner if instance is None else instance, self.new)
 

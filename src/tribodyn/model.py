@@ -4,7 +4,7 @@ An :class:`Option` describes one value that a user may set: its meaning, its uni
 its range and why, an example, the argument of the physics that it becomes. The keys of the case
 file are options, and so are the values that a friction law or a film formula takes. A model of a
 third party is one file: a function, decorated with :meth:`Registry.define` and its options. From
-then on a case file can name it, and its options stand in the table of the case that names it.
+then on a case file can name it, and its options are keys of the table of the case that names it.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from tribodyn.study.case.read import named_files, read_case, read_text
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
-#: Characters of a name, case files that are listed, and how deep they are looked for.
+#: Characters of a name, case files that are listed, and how deep the search goes.
 _LONGEST, _LISTED, _DEEP = 120, 200, 3
 #: One part of a name: nothing hidden, no drive, no stream, nothing that shells or browsers read.
 _PART = re.compile(r"[^\W_][\w .+,()=@-]*", re.UNICODE)

@@ -243,7 +243,7 @@ class FrictionLaw(Model):
     needs_film : bool
         Whether the contacts must have their solved ``film``.
     needs_oil : bool
-        Whether it asks for viscosity or roughness; a case then needs both.
+        Whether it needs viscosity or roughness; a case then needs both.
     meaning : str
         One line for whoever chooses a law.
     papers : tuple of str

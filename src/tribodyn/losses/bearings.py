@@ -50,7 +50,7 @@ class RollingBearing:
     width : float [m]
         B.
     static_load_rating : float [N]
-        C_0, which only axial loads of ball bearings ask for; zero where it is not known.
+        C_0, which only axial loads of ball bearings need; zero where it is not known.
     seal : tuple of float
         K_S1, exponent, d_s [mm] and K_S2 [N*mm] of the contact seals; zeros for an open bearing.
     source : str

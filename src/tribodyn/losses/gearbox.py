@@ -332,7 +332,7 @@ def gearbox_losses(
     pinion_speed : float or array (s,) [rad/s]
         Speeds of the pinion.
     lubricant : Lubricant, optional
-        The oil, which bearings, an oil bath and mist ask for; without one there is no mist.
+        The oil, which bearings, an oil bath and mist need; without one there is no mist.
     torque_balance : str
         ``"load"`` where the torque is that of the load; else it is that of the driver.
 

@@ -57,7 +57,7 @@ class PowerLossTable:
     torque : array [N*m]
         Torque of each run.
     torque_loss : array [N*m]
-        Torque that the loss asks for.
+        Torque of the loss.
     gear_loss_factor : float
         H_V of the gears, see :func:`gear_loss_factor`.
     no_load_torque : float [N*m]
@@ -287,7 +287,7 @@ def _column(
 
 
 def _wheel_driven() -> PowerLossTable:
-    """Printed friction coefficients of an FZG rig, as the torque losses that stand for them."""
+    """Printed friction coefficients of an FZG rig, as the torque losses that correspond to them."""
     from tribodyn.gear import spur_pair
 
     with quiet():

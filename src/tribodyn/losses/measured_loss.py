@@ -263,7 +263,7 @@ def _monte_carlo_deviation(
     other: Array,
     draws: tuple[int, int],
 ) -> Array:
-    """Standard deviation of the coefficient when every input is drawn anew."""
+    """Standard deviation of the coefficient when every input is sampled at random."""
     random = np.random.default_rng(draws[1])
 
     def around(value: Any, deviation: Any) -> Array:

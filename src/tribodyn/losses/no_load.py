@@ -1,4 +1,4 @@
-"""Losses that do not ask for the load: seals, churning in an oil bath, windage."""
+"""Losses that do not depend on the load: seals, churning in an oil bath, windage."""
 
 from __future__ import annotations
 

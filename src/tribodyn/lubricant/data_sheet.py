@@ -115,7 +115,7 @@ def from_data_sheet(
     InputError
         If a value is missing or out of range, or the figures contradict each other.
 
-    What is estimated stands in ``assumptions``. Source: ASTM D341, ASTM D2270, ISO/TR 15144-1,
+    ``assumptions`` lists estimated values. Source: ASTM D341, ASTM D2270, ISO/TR 15144-1,
     AGMA 925-A03. Conductivity: Cragoe (1929).
 
     Examples

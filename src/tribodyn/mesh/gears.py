@@ -58,7 +58,7 @@ class NoGears:
             raise AttributeError(name)
         what = "this mesh table has no gear pair"
         why = "Another program made it, and such a table knows contacts, not gears"
-        raise InputError(what, "MeshTable.gear_pair", why, "Ask for what is a column of the table")
+        raise InputError(what, "MeshTable.gear_pair", why, "Use the columns of the table")
 
     def __repr__(self) -> str:
         """One line."""

@@ -129,12 +129,12 @@ def tribological_contact(
 #: Films of the loads given, with the quantities in which they are checked between the positions.
 SolveFilm = Callable[[Array, tuple[int, ...]], FilmAt]
 
-#: The film is solved anew until the load shares move by less than this.
+#: The film is solved again until the load shares move by less than this.
 _TOLERANCE = 1e-6
 #: Where pairs are solved together one may be about to lose its load to its film: there it is this.
 _TOLERANCE_TOGETHER = 1e-5
 #: Part of its share by which that of a film with a distance may move: the square of it is the part
-#: of the distance by which a film that is solved anew would differ, but for rounding.
+#: of the distance by which a film that is solved again would differ, but for rounding.
 _MOVED = 2e-3
 _PASSES = 60
 #: Solutions in which the last change has to halve: else it goes to and fro for ever.

@@ -33,7 +33,7 @@ _POSITIONS = 30
 class FilmOverOperation(Record):
     """Films of one tooth pair from entry to exit, for every torque at every speed.
 
-    Positions stand in the order in which the pair passes them; where the load jumps a position
+    Positions are in the order in which the pair passes them; where the load jumps a position
     occurs twice, with the load before and the load after.
 
     Parameters
@@ -229,7 +229,7 @@ _OF_THE_MESH = ("film_mesh_stiffness", "tooth_mesh_stiffness", "comprehensive_me
 class ComprehensiveStiffness(Record):
     """Stiffness of oil film and teeth; made by :func:`tribodyn.mesh.comprehensive_stiffness`.
 
-    Values of one tooth pair stand in the order in which it passes them from A to E, a place where
+    Values of one tooth pair are in the order in which it passes them from A to E, a place where
     another pair enters or leaves twice; values of the mesh stand over the mesh phase.
 
     Parameters

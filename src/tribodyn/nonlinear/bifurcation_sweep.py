@@ -4,7 +4,7 @@ Such a sweep integrates one motion at a time. Where one system serves all values
 sweep are integrated in one batch and joined where their motions are the same: all stretches
 begin at once, from rest. Then every stretch is entered from the end of the one before, and
 marched again until it meets a motion that is there already; if it never does, the following
-stretch is entered anew.
+stretch is entered again.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class Stretches(Motions):
     def store(self, index: int, state: Array, facts: tuple[int, float, Array, Array]) -> int:
         """Store a motion and continue with the next value of its stretch."""
         self.met[index] = self.joining and self._same(index, facts)
-        if self.joining:  # Only whole stretches can be joined: joints are sought anew.
+        if self.joining:  # Only whole stretches can be joined: joints are searched again.
             self.names = []
         super().store(index, state, facts)
         if self.met[index]:

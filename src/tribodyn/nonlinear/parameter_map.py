@@ -40,7 +40,7 @@ SCALES = (
 )
 #: ``omega_max * dt`` of the steps that are chosen, and the fewest steps per mesh cycle.
 _NUMBER, _FEWEST = 0.5, 64
-#: Steps of the grid on which the fastest motion is looked for.
+#: Steps of the grid on which the fastest motion is searched.
 _LOOK = 64
 #: Certified distance to the motion that repeats, relative to the state, and lanes of one block.
 _NEAR, _WIDTH = 1e-5, 64
@@ -118,7 +118,7 @@ def parameter_map(
     Notes
     -----
     Every motion starts independently: where several exist, the map shows the one that its start
-    leads to. A motion that repeats is judged without integrating it anew: one period with half
+    leads to. A motion that repeats is judged without integrating it again: one period with half
     the step must come back so near that, by the rate at which disturbances die out, the motion of
     half the step lies within 0.5 % of the state. All others are integrated again, from where they
     are.

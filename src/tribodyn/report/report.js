@@ -1,4 +1,4 @@
-// Draws every figure of the report; the data stand in this file, nothing is fetched.
+// Draws every figure of the report; the data are in this file, nothing is fetched.
 const options = {
   responsive: true,
   displaylogo: false,

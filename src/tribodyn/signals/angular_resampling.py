@@ -64,7 +64,7 @@ def refuse_above_half(highest: float, sampling_rate: float, what: str, where: st
             where=where,
             why=f"Sampled with {sampling_rate:.6g} Hz, only frequencies below "
             f"{0.5 * sampling_rate:.6g} Hz can be resolved (Nyquist)",
-            remedy="Sample faster, or ask for less",
+            remedy="Sample faster, or request fewer orders",
         )
 
 

@@ -238,7 +238,7 @@ def sidebands(
             "periods of the modulation",
             where="arguments carrier, modulation and count",
             why="All sidebands must lie above zero, and two periods are needed to separate them",
-            remedy="Ask for fewer sidebands, or record longer",
+            remedy="Request fewer sidebands, or record longer",
         )
     number = np.arange(-count, count + 1)
     frequency = carrier + modulation * number.astype(np.float64)

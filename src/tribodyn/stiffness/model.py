@@ -1,7 +1,7 @@
 """Interface of stiffness models, and the registry that selects them by name.
 
 A model returns the stiffness of each tooth pair over one mesh cycle. All models have the same
-interface, so the mesh table does not know which one it asks.
+interface, so the mesh table does not depend on the model.
 """
 
 from __future__ import annotations

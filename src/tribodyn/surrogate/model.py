@@ -242,7 +242,7 @@ def load(path: str | os.PathLike[str]) -> Surrogate:
         )
     except (KeyError, ValueError) as error:
         what, why = f"{path} contains an incomplete surrogate", f"It lacks {error}"
-        raise InputError(what, Argument("path"), why, "Train it anew") from None
+        raise InputError(what, Argument("path"), why, "Train it again") from None
     return Surrogate(**fields)
 
 

@@ -98,7 +98,7 @@ def sobol_indices(
     from scipy.stats import sobol_indices as indices
 
     if not isinstance(distributions, Mapping) or not distributions:
-        why = "A mapping of names to distributions tells how each input is spread"
+        why = "A mapping of names to distributions defines how each input is spread"
         raise InputError("no input is spread", Argument("distributions"), why, "Give one or more")
     if not callable(function):
         raise InputError("it cannot be called", Argument("function"), "", "Give a function")

@@ -117,7 +117,7 @@ def _column(manifest: Manifest, chunk: str, name: str) -> Any:
     if content is None:
         what = f"{chunk_path(manifest.folder, chunk)} does not match its checksum"
         why = "It was damaged, changed or removed"
-        remedy = "Run the study again, which computes it anew"
+        remedy = "Run the study again, which computes it again"
         raise InputError(what, Argument("path"), why, remedy)
     with h5py.File(io.BytesIO(content)) as file:
         if name in file:

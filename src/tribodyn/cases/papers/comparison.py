@@ -148,7 +148,7 @@ def compare_with_paper(
     Parameters
     ----------
     *names : str
-        Cases that stand for a source, such as ``"fzg-12dof"``; all of them by default.
+        Cases with printed tables, such as ``"fzg-12dof"``; all of them by default.
     partial : bool
         Return the rows that are done when the computation is interrupted with Ctrl-C.
     progress : Progress

@@ -33,7 +33,7 @@ def surrogate(
     Parameters
     ----------
     action : str
-        train computes operating points of a case and learns from them; predict asks a model.
+        train computes operating points of a case and learns from them; predict evaluates a model.
     source : str
         Of train a built-in case or path of a case file; of predict the file of a model.
     values : str

@@ -117,7 +117,7 @@ def steady_state(
 
 
 def _whole_periods(periods: int | str) -> int | None:
-    """Check the number of mesh cycles; None stands for "auto"."""
+    """Check the number of mesh cycles; None means "auto"."""
     if isinstance(periods, str) and periods == "auto":
         return None
     return require_whole("periods", periods, why='"auto", or')

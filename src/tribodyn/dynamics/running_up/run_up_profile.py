@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.errors import InputError, require_positive
 from tribodyn.types import Array
 
-#: Pieces of a straight line that stand for a function of time.
+#: Linear pieces that approximate a function of time.
 _PIECES = 16384
 
 

@@ -38,7 +38,7 @@ def read_start(
 
 
 def read_force(system: System, extra_force: ArrayLike | None) -> Array:
-    """Check an extra force; None stands for zero."""
+    """Check an extra force; None means zero."""
     if extra_force is None:
         return np.zeros(system.size)
     force = real_numbers(Argument("extra_force"), extra_force)

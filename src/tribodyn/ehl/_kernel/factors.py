@@ -1,8 +1,8 @@
 """Factors of a band and of a dense matrix, by elimination with partial pivoting.
 
 A step of a band's elimination needs what the one before has just written. In arrays that would
-have to be stored and read again, one place aside, for which a processor waits longer than it
-reckons. So the solution keeps what it still needs in variables, and is written out for one band.
+have to be stored and read again, one place further on, for which a processor waits longer than it
+computes. So the solution keeps what it still needs in variables, and is written out for one band.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tribodyn.types import Array, Index
 
 #: Half bandwidth, for which :func:`band_solve` is written out.
 HALF_BAND = 7
-#: Numbers in a row: the band with the room of the pivoting, and multipliers of the rows below.
+#: Numbers in a row: the band with the margin for pivoting, and multipliers of the rows below.
 BAND_ROW = 4 * HALF_BAND + 1
 
 

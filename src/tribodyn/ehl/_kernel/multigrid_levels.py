@@ -31,7 +31,7 @@ _WIDTH = LEFT + RIGHT + 1
 #: Steps on the coarsest grid at most, greatest change in a step, and part of the first correction
 #: that ends them.
 _STEPS, _CAP, _ENOUGH = 12, 0.2, 1e-2
-#: Factor by which a step with old factors has to shrink, lest they are made anew.
+#: Factor by which a step with old factors has to shrink, or they are computed again.
 _SHRINK = 0.2
 
 

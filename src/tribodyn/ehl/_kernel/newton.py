@@ -202,7 +202,7 @@ def newton_level(
         P[i] = 0.0
         if torn:
             cavity[i] = 0.0
-    # Typed: a literal would make the compiler translate the callee anew.
+    # Typed: a literal would make the compiler compile the callee again.
     streak, refills, used, status = nb.int64(0), nb.int64(0), nb.int64(0), nb.int64(STALLED)
     moved, fresh, change, step, last_change, flux_error = False, True, 1.0, 1.0, 0.0, 0.0
     for steps in range(limits.steps + 1):

@@ -90,7 +90,7 @@ def _build(digest: str) -> Any:
             contact.load,
             contact.tail,
         )
-        # Typed, or each literal would make the compiler translate the callees anew.
+        # Typed, or each literal would make the compiler compile the callees again.
         m: Any = nb.int64(first)
         level: Any = nb.int64(0)
         free = nb.int64(free)
@@ -155,7 +155,7 @@ def _build_tangent(digest: str) -> Any:
         grid, f, work = make_grid(n, dx), make_fields(n), linear_work(n)
         K, cH, cP = grid.influence, work.by_film, work.by_pressure
         rhs, x = np.zeros(n + 2), np.empty(n + 2)
-        # Typed: a literal would make the compiler translate the callees anew.
+        # Typed: a literal would make the compiler compile the callees again.
         imposed = n > 0
         fill_oil(n, lam, oil, P, H, f)
         fill_tangent(n, dx, 1.0, 0.0, P, H, f, cH, cP)

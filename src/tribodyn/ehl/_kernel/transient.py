@@ -31,7 +31,7 @@ from tribodyn.ehl._kernel.newton import (
 from tribodyn.ehl._kernel.reynolds import oil_state
 from tribodyn.types import Array, Index
 
-# What calls the solver is inlined: every layer of calls would be optimised anew as a whole.
+# What calls the solver is inlined: every layer of calls would be optimised again as a whole.
 
 #: Columns of the table of inputs: load over that of the reference, offset, speed over that of the
 #: reference, reference radius over radius, distances travelled by the two surfaces, factor of

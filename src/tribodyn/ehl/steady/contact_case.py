@@ -96,7 +96,7 @@ def contact_scales(
 _HIGHEST_PRESSURE = 4.05e9
 #: ln(viscosity ratio) at the Hertz pressure beyond which the law of Barus overflows at the spike.
 _GREATEST_GROWTH = 450.0
-#: Load numbers that the solvers were tried on, with room.
+#: Load numbers for which the solvers were tested, with a margin.
 _LOADS = (1e-4, 5e3)
 
 

@@ -59,7 +59,7 @@ class Outcome:
 
 
 class SolvedContact(Protocol):
-    """What stiffness and damping ask of a solution."""
+    """Properties of a solution that stiffness and damping need."""
 
     @property
     def _grid(self) -> DiscreteContact:

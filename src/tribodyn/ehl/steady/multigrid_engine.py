@@ -20,7 +20,7 @@ from tribodyn.errors import InputError
 from tribodyn.interrupt import stoppable
 from tribodyn.types import Array, Index
 
-#: Intervals of the coarsest grid: as chosen here, and the fewest and most that one may ask for.
+#: Intervals of the coarsest grid: as chosen here, and the fewest and most allowed.
 _USUAL, _FEWEST, _MOST = 64, 32, 256
 #: Tolerance of the load, cycles on the last grid, and lines of the record.
 _LOAD, _CYCLES, _LINES = 1e-6, 60, 400

@@ -41,7 +41,7 @@ OPTIONS = {
         symbol="Ra",
         example='"0.3 um"',
         meaning="mean Ra of both flanks",
-        basis="0.564 times the composite rms roughness: Gaussian heights, both flanks alike",
+        basis="0.564 times the composite rms roughness: Gaussian heights, the same on both flanks",
     ),
     "lubricant_factor": number(
         1.0,

@@ -172,7 +172,7 @@ class ContactLines:
         for _ in range(_SEARCH):
             with np.errstate(invalid="ignore"):
                 share = inside_margin / (inside_margin - outside_margin)
-            # Far from any flank there is no room to interpolate; halves keep both ends moving.
+            # Far from any flank interpolation is not possible; halves keep both ends moving.
             share = np.where(np.isfinite(outside_margin) & (share > 0.0), share, 0.5)
             middle = inside + np.clip(share, 0.01, 0.99) * (outside - inside)
             middle_margin = self.margin(rotation, middle)

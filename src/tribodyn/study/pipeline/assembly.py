@@ -53,7 +53,7 @@ def geometry(case: Case) -> dict[str, float]:
 def _of_spur(
     pair: SpurPair, density_pinion: float, density_wheel: float, backlash: float
 ) -> dict[str, float]:
-    """Geometry of a spur pair; a study asks for it under many loads."""
+    """Geometry of a spur pair; a study uses it under many loads."""
     from tribodyn.contact import gear_loss_factor, path_of_contact
 
     values = {

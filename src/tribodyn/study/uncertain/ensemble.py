@@ -151,7 +151,7 @@ class CaseEnsemble(Record):
         count = require_whole("harmonics", harmonics)
         if count >= self.phase.size // 2:
             what, why = f"harmonics = {count}", f"There are {self.phase.size} places in a cycle"
-            raise InputError(what, Argument("harmonics"), why, "Ask for fewer")
+            raise InputError(what, Argument("harmonics"), why, "Request fewer")
         lines = np.fft.rfft(values, axis=1)[:, 1 : count + 1]
         return np.asarray(2.0 * np.abs(lines) / self.phase.size)
 

@@ -71,7 +71,7 @@ def vibration_data(
     interval : float
         Time between two rows [s].
     redraw : bool
-        Over time: draw factors anew for every row, not once for every run.
+        Over time: draw new factors for every row, not once for every run.
     progress : Progress
         Receives the progress of the computation; silent by default.
 
