@@ -66,7 +66,7 @@ def machine(supports: bool) -> System:
 def pair(supports: bool) -> System:
     """The same by the models of a pair."""
     mesh: Any = MESH
-    common = {
+    common: dict[str, Any] = {
         "moment_of_inertia": INERTIA,
         "base_radius": RADII,
         "torque": (TORQUE, TORQUE * TEETH[1] / TEETH[0]),
@@ -74,7 +74,7 @@ def pair(supports: bool) -> System:
     }
     if not supports:
         return torsional(mesh, **common)
-    bearings = {"bearing_stiffness": STIFFNESS, "bearing_damping": DAMPING}
+    bearings: dict[str, Any] = {"bearing_stiffness": STIFFNESS, "bearing_damping": DAMPING}
     return spur6(mesh, mass=MASS, **bearings, **common)
 
 
