@@ -29,6 +29,7 @@ SCRIPTS = (
     "signals_speed",
     "study_speed",
     "hypoid_speed",
+    "geared_rotors",
     "cold_start",
 )
 
