@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import root
 
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.machine import (
@@ -289,6 +290,32 @@ def test_rolling_bearings_balance_the_meshes(clearance):
     # The thrust on the output gear is along +x: more load on the bearing with this direction.
     assert balance.bearings["D"].load[0] > -balance.bearings["C"].load[0] > 0.0
     assert balance.steps < 40
+
+
+def test_a_rigid_shaft_on_two_rolling_bearings_by_another_solver():
+    """Five displacements of the shaft, balanced by SciPy with the loads of the bearings alone."""
+    machine = rolling_stage(radial_clearance=10e-6)
+    machine = replace(machine, shafts={"in": Shaft(), "out": Shaft()})
+    balance = static_balance(machine)
+    push = machine.gear_loads["z1"]
+    push = push + np.cross([0.145, 0, 0], push[:3]) @ np.eye(6)[3:]  # moved to the beginning
+
+    def residual(scaled):
+        x, y, z, turn_y, turn_z = 1e-5 * scaled * [1, 1, 1, 10, 10]
+        left = push[[0, 1, 2, 4, 5]].copy()
+        for name in ("A", "B"):
+            bearing = machine.bearings[name]
+            at = bearing.position
+            load = bearing.rolling.load([x, y + at * turn_z, z - at * turn_y, turn_y, turn_z])
+            left -= np.array([0, 0, 0, -at * load[2], at * load[1]]) + load
+        return left * [1, 1, 1, 10, 10]
+
+    origin = balance.bearings["A"].displacement - 0.02 * np.array(
+        [0, balance.bearings["A"].displacement[5], -balance.bearings["A"].displacement[4], 0, 0, 0]
+    )
+    start = origin[[0, 1, 2, 4, 5]] / 1e-5 / [1, 1, 1, 10, 10]
+    solution = root(residual, 1.05 * start, tol=1e-12)
+    assert solution.x == pytest.approx(start, rel=1e-6, abs=1e-6)
 
 
 def test_clearance_adds_its_half_to_the_displacement():

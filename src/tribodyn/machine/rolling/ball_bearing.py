@@ -122,7 +122,7 @@ class BallBearing(RollingElementBearing):
         lever, height = self._inner_centre
         axial_gap = self._centres[0] + axial + height * tilt
         radial_gap = self._centres[1] + radial - lever * tilt
-        distance = np.hypot(axial_gap, radial_gap)
+        distance = np.maximum(np.hypot(axial_gap, radial_gap), 1e-12)
         return distance, axial_gap, radial_gap, np.maximum(distance - self.centre_distance, 0.0)
 
     def element_law(self, axial: Array, radial: Array, tilt: Array) -> ElementLaw:

@@ -258,6 +258,13 @@ def test_clearance_sets_the_free_contact_angle():
     assert bearing.load([-1.01 * end_play, 0, 0, 0, 0])[0] < 0.0
 
 
+def test_centres_of_curvature_in_one_point_carry_nothing():
+    bearing = DeepGrooveBallBearing(**BALLS)
+    load = bearing.load([0.0, -bearing.centre_distance, 0.0, 0.0, 0.0])  # of the first ball
+    assert np.all(np.isfinite(load))
+    assert load[1] < 0.0
+
+
 def test_missing_dimensions_are_estimated_and_listed():
     bearing = DeepGrooveBallBearing(bore_diameter=45e-3, outer_diameter=85e-3)
     assert (bearing.balls, bearing.pitch_diameter) == (9, 65e-3)  # as a 6209 has
