@@ -11,7 +11,7 @@ from glossary import PAGE, page
 from pages import PAGES, ROOT, anchors, blocks, broken_links
 
 from registries import as_before
-from tribodyn.study.case.section import section_at
+from tribodyn.study import Case
 
 README = (ROOT / "README.md").read_text("utf-8")
 INDEX = (ROOT / "docs" / "index.md").read_text("utf-8")
@@ -37,7 +37,7 @@ def test_readme_has_exactly_the_two_commands() -> None:
 
 def test_the_first_pages_name_all_kinds_of_gears() -> None:
     """Gears of a case are spur gears or hypoid pairs, or the mesh table of another program."""
-    kinds = set(dict(section_at(("gears",)).specs())["kind"].names())
+    kinds = set(dict(Case.fields["gears"].kind.specs())["kind"].names())
     assert kinds == {"spur", "hypoid", "table"}
     scope = next(text for text in README.split("\n\n") if "(docs/scope.md)" in text)
     index = next(line for line in INDEX.splitlines() if "(scope.md)" in line)
