@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,19 +11,28 @@ from tribodyn.app.case_form import field_of
 from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nomenclature import GEARS
-from tribodyn.study.studies.range_syntax import UnreadError, read_list, read_range, read_values
+from tribodyn.study.case.values import FaultError, Plain, read_value
+from tribodyn.study.studies.range_syntax import (
+    UnreadError,
+    read_list,
+    read_range,
+    read_values,
+    toml_value,
+)
 
 if TYPE_CHECKING:
     from tribodyn.progress import Progress
     from tribodyn.study.case.case import Case
 
-#: Values of a study as text, by name.
-Values = Mapping[str, str]
+#: Values of a study by name: numbers and choices checked, others as text; None or empty: default.
+Values = Mapping[str, Any]
 #: What a study shows: ``sentences``, ``tables``, and figures as (heading, figure, caption).
 Shown = dict[str, Any]
 
 #: Ends of the keys of a tip relief.
 _RELIEF = ("", "_length", "_shape")
+#: Kinds of options whose values are checked before the study begins.
+_CHECKED = ("number", "integer", "choice")
 _RANGE = "400..3500 rpm:20, or 50, 150, 300 N*m"
 _ENDS = "400..3500 rpm"
 
@@ -40,13 +49,30 @@ class Study:
     title: str
     meaning: str
     options: Mapping[str, Option]
-    compute: Callable[[Case, Values, Progress, Path], Shown]
+    function: Callable[[Case, Values, Progress, Path], Shown]
+
+    def compute(
+        self, case: Case, texts: Mapping[str, str], progress: Progress, target: Path
+    ) -> Shown:
+        """Check the typed values, compute the study and write its directory."""
+        values: dict[str, Any] = {}
+        problems = []
+        for name, option in self.options.items():
+            values[name] = text = texts.get(name) or default_of(option)
+            if texts.get(name) and option.kind in _CHECKED and not name.endswith("key"):
+                try:
+                    values[name] = read_value(option, name, Plain(toml_value(text)))
+                except FaultError as fault:
+                    problems.append(replace(fault.problem, where=name))
+        if problems:
+            raise InputError(problems)
+        return self.function(case, values, progress, target)
 
 
 def _varied(values: Values) -> Iterator[tuple[str, Any]]:
     for key, name in (("key", "values"), ("second_key", "second_values")):
-        if values.get(key):
-            yield values[key], _read(name, values.get(name, ""), read_values)
+        if values[key]:
+            yield values[key], _read(name, values[name] or "", read_values)
 
 
 def _read(name: str, text: str, read: Callable[[str], Any]) -> Any:
@@ -70,7 +96,7 @@ def _points(case: Case, key: str, text: str) -> list[float] | None:
 
 
 def _operation(case: Case, values: Values) -> list[list[float] | None]:
-    return [_points(case, f"operation.{n}", values.get(n, "")) for n in ("torque", "speed")]
+    return [_points(case, f"operation.{n}", values[n] or "") for n in ("torque", "speed")]
 
 
 def _of(answer: Any, kind: str, case: Case, target: Path) -> Shown:
@@ -105,8 +131,7 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
     from tribodyn.study.studies.bifurcation import Findings, bifurcation
 
     low, high, points = _read("values", values["values"], read_range)
-    cycles = int(values.get("cycles") or 64)
-    options: dict[str, Any] = {"cycles": cycles, "keep": min(48, cycles)}
+    options = {name: values[name] for name in ("sweep", "cycles", "transient")}
     result = bifurcation(
         case,
         values["key"],
@@ -114,8 +139,7 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
         points,
         by="study",
         progress=progress,
-        sweep=values.get("sweep") or "up",
-        transient=int(values.get("transient") or 300),
+        keep=min(48, values["cycles"]),
         **options,
     )
     findings = Findings(case, result)
@@ -146,10 +170,10 @@ def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Sho
     from tribodyn.report.study_report_data import relief_report_data
 
     progress.start("Tip relief")
-    torque = _read("torque", values["torque"], read_list) if values.get("torque") else None
-    answer = relief_report_data(case, torque, values.get("gears") or "both")
+    torque = _read("torque", values["torque"], read_list) if values["torque"] else None
+    answer = relief_report_data(case, torque, values["gears"])
     content = _of(answer, "relief", case, target)
-    gears = [values["gears"]] if values.get("gears") in GEARS else list(GEARS)
+    gears = list(GEARS) if values["gears"] == "both" else [values["gears"]]
     reliefs = [f"gears.{g}.modification.tip_relief{part}" for g in gears for part in _RELIEF]
     changes = answer.best.user_input if answer.best is not None else {}
     return {**content, "relief": {key: changes[key] for key in reliefs if key in changes}}
@@ -159,30 +183,32 @@ def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Sho
     from tribodyn.report.study_report_data import harris_report_data
 
     progress.start("Static transmission error")
-    torque = _read("torque", values["torque"], read_list) if values.get("torque") else None
+    torque = _read("torque", values["torque"], read_list) if values["torque"] else None
     return _of(harris_report_data(case, torque), "harris", case, target)
 
 
 def _modes(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn.report.study_report_data import modes_report_data
 
-    ends = _ends("speeds", values["speeds"]) if values.get("speeds") else None
+    ends = _ends("speeds", values["speeds"]) if values["speeds"] else None
     return _of(modes_report_data(case, ends, progress), "modes", case, target)
 
 
 def _run_up(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn.report.study_report_data import run_up_report_data
 
-    ends, duration = _ends("speeds", values["speeds"]), float(values.get("duration") or 10.0)
-    return _of(run_up_report_data(case, ends, duration, progress=progress), "run-up", case, target)
+    ends = _ends("speeds", values["speeds"])
+    answer = run_up_report_data(case, ends, values["duration"], progress=progress)
+    return _of(answer, "run-up", case, target)
 
 
 def _continuation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn.report.nonlinear_report_data import continuation_report_data
 
-    ends, periods = _ends("ends", values["ends"]), int(values.get("periods") or 1)
-    step = float(values.get("longest_step") or 0.02)
-    answer = continuation_report_data(case, values["key"], ends, periods, step, "study", progress)
+    ends, step = _ends("ends", values["ends"]), values["longest_step"]
+    answer = continuation_report_data(
+        case, values["key"], ends, values["periods"], step, "study", progress
+    )
     return _of(answer, "continuation", case, target)
 
 
@@ -190,36 +216,36 @@ def _basins(case: Case, values: Values, progress: Progress, target: Path) -> Sho
     from tribodyn.report.nonlinear_report_data import basins_report_data
 
     error, rate = (
-        _ends(name, values[name]) if values.get(name) else None
+        _ends(name, values[name]) if values[name] else None
         for name in ("transmission_error", "rate")
     )
-    points = int(values.get("points") or 21)
-    answer = basins_report_data(case, error, rate, points, progress=progress)
+    answer = basins_report_data(case, error, rate, values["points"], progress=progress)
     return _of(answer, "basins", case, target)
 
 
 def _lyapunov(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn.report.nonlinear_report_data import lyapunov_report_data
 
-    cycles, transient = int(values.get("cycles") or 1000), int(values.get("transient") or 300)
-    return _of(lyapunov_report_data(case, cycles, transient, progress), "lyapunov", case, target)
+    answer = lyapunov_report_data(case, values["cycles"], values["transient"], progress)
+    return _of(answer, "lyapunov", case, target)
 
 
 def _sobol(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn.report.nonlinear_report_data import sobol_report_data
 
     pairs = (("key", "tolerance"), ("second_key", "second_tolerance"))
-    spread = {values[key]: values.get(tolerance, "") for key, tolerance in pairs if values.get(key)}
+    spread = {values[key]: values[tolerance] or "" for key, tolerance in pairs if values[key]}
     for key, tolerance in spread.items():
         if not any(sign in tolerance for sign in ("+-", "±", "..")):
-            what, why = (
-                f'"{tolerance}" is no tolerance of {key}',
+            what = f'"{tolerance}" is no tolerance of {key}'
+            why, remedy = (
                 "It is a value with its tolerance",
+                'Write "90 N*m +- 5 %" or "80 .. 100 N*m"',
             )
-            raise InputError(what, "tolerance", why, 'Write "90 N*m +- 5 %" or "80 .. 100 N*m"')
-    figures = values.get("figures", "").replace(",", " ").split()
-    size = int(values.get("size") or 32)
-    answer = sobol_report_data(case.replace(spread, by="study"), figures, size, 0, progress)
+            raise InputError(what, "tolerance", why, remedy)
+    figures = (values["figures"] or "").replace(",", " ").split()
+    spread_case = case.replace(spread, by="study")
+    answer = sobol_report_data(spread_case, figures, values["size"], 0, progress)
     return _of(answer, "sobol", case, target)
 
 

@@ -74,3 +74,17 @@ def test_a_tolerance_that_is_none_is_refused() -> None:
     values = {"key": "operation.torque", "tolerance": "5 %"}
     with pytest.raises(InputError, match=r'"5 %" is no tolerance of operation.torque'):
         STUDIES["sobol"].compute(load_case("fzg-roughness"), values, SILENT, Path())
+
+
+def test_wrong_numbers_of_a_study_are_refused_with_their_limits() -> None:
+    values = {"cycles": "many", "transient": "-3"}
+    with pytest.raises(InputError) as refused:
+        STUDIES["lyapunov"].compute(load_case("fzg-roughness"), values, SILENT, Path())
+    cycles, transient = refused.value.problems
+    assert (cycles.where, transient.where) == ("cycles", "transient")
+    assert '"many"' in cycles.what
+    assert "whole number" in cycles.why
+    assert "100000" in transient.why
+    values = {"key": "operation.speed", "values": "800..900 rpm:2", "sweep": "sideways"}
+    with pytest.raises(InputError, match=r"sideways.*up, down, both, independent"):
+        STUDIES["bifurcation"].compute(load_case("fzg-roughness"), values, SILENT, Path())
