@@ -140,12 +140,12 @@ class Module:
         return list(ast.walk(self.tree))
 
     @cached_property
-    def _functions(self) -> list[Function]:
+    def _all_functions(self) -> list[Function]:
         return list(_functions(self.tree, "", None, nested=False))
 
     def functions(self) -> list[Function]:
         """All functions with their qualified names."""
-        return self._functions
+        return self._all_functions
 
     def classes(self) -> Iterator[ast.ClassDef]:
         """Classes at the top level."""
