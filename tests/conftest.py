@@ -1,4 +1,4 @@
-"""What all tests share: compliances of gears are kept in a folder of the tests, not of the user."""
+"""What all tests share: compliances of gears are cached in a folder of the tests."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.fixture
 def draws(request: pytest.FixtureRequest) -> Callable[[int], Iterator[random.Random]]:
-    """Random sources: as many as asked for with --runs, else a few; each is told by a failure."""
+    """Random sources: the number given by --runs, else a default; a failure prints its number."""
 
     def sources(default: int) -> Iterator[random.Random]:
         count, seed = (

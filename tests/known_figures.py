@@ -1,4 +1,4 @@
-"""What tests read from a figure: one curve, the marks, what stands below it."""
+"""Read one curve, the marks or the caption of a figure."""
 
 from __future__ import annotations
 

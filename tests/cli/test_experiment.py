@@ -1,4 +1,4 @@
-"""The command that judges claims: what it tells and writes, what it refuses, how it is stopped."""
+"""The command that judges claims: what it prints and writes, what it refuses, how it is stopped."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(tmp_path: Path) 
         {tuple(list(row.values())[:3]): row for row in csv.DictReader(text)}
         for text in (first, last)
     )
-    for key, row in before.items():  # the orbits are kept, and measured anew
+    for key, row in before.items():  # the orbits are stored, and measured anew
         for name in ("mean_mesh_force [N]", "peak_mesh_force [N]"):
             assert float(row[name]) == pytest.approx(float(later[key][name]), rel=1e-9)
     assert len(again) == (1 + 12) * 6

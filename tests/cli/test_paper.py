@@ -1,4 +1,4 @@
-"""``tribodyn paper``: printed tables beside what is computed."""
+"""``tribodyn paper``: printed tables compared with computed values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``tribodyn run`` and ``cite``: results appear whole, are kept, and Ctrl-C leaves nothing."""
+"""``tribodyn run`` and ``cite``: whole results, no overwriting, and Ctrl-C leaves nothing."""
 
 from __future__ import annotations
 
@@ -200,7 +200,7 @@ REPORTS.register("Result")(lambda result, path: time.sleep(60))
 """
 
 
-# Says beside itself that the motion is being computed.
+# Creates a file once the motion is being computed.
 _AT_WORK = """
 import pathlib
 from importlib import import_module

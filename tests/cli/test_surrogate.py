@@ -1,4 +1,4 @@
-"""``tribodyn surrogate``: a model from one command, asked by another."""
+"""``tribodyn surrogate``: a model from one command, evaluated by another."""
 
 from __future__ import annotations
 

@@ -181,7 +181,7 @@ def test_a_diagram_goes_over_one_range(capsys: pytest.CaptureFixture[str]) -> No
     assert "a range LOW..HIGH" in capsys.readouterr().err
 
 
-# Says beside itself how far the work is, and makes every part of it slow enough to be met.
+# Writes the progress into a file, and makes every part slow enough to be interrupted.
 _HOOKS = {
     "sweep": """
 import pathlib, time

@@ -30,7 +30,7 @@ def gear_contact(torque: float, rpm: float, **options: Any) -> Any:
     base_radius, width, curvature = 50.7434e-3, 20e-3, 20.9552e-3
     load, speed = torque / (base_radius * width), rpm * math.pi / 30.0 * curvature
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)  # a starved inlet is asked for on purpose
+        warnings.simplefilter("ignore", ModelWarning)  # the inlet is starved on purpose
         return solve_line_contact(load, 8e-3, speed, OIL, 2.2e11, **options)
 
 
@@ -145,7 +145,7 @@ TABLES: dict[str, Callable[[], list[str]]] = {
 
 
 def on_page(name: str, text: str) -> str:
-    """Table of a name as it stands on the page.
+    """Table of a name as printed on the page.
 
     >>> on_page("a", "<!-- a -->\\n| 1 |\\n\\nwords")
     '| 1 |'

@@ -38,7 +38,7 @@ def _laws(names: dict[str, Any]) -> Any:
 
 
 def _printed(names: dict[str, Any]) -> Any:
-    """Printed and computed changes by friction beside each other."""
+    """Printed and computed changes by friction in one chart."""
     import plotly.graph_objects as go
 
     rows = [r for r in names["found"].rows if r["table"] == "Table 3, change by friction"]
@@ -69,7 +69,7 @@ DRAWN: dict[str, Callable[[dict[str, Any]], Any]] = {
     "19": _printed,
     "21": lambda names: names["result"].plot_hypoid_pressure(),
 }
-#: Figure that stands for an example that writes several, instead of the first.
+#: Figure that represents an example that writes several, instead of the first.
 CHOSEN = {"15": "run-up-map", "16": "jump-basins", "18": "power-flow", "20": "learned"}
 
 

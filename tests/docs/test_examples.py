@@ -217,7 +217,7 @@ def mesh_table(text: str) -> None:
 
 
 def losses(text: str) -> None:
-    # the motor brings up all losses; seals lose 7.69e-6 d^2 n; the teeth are alike on both sides
+    # the motor brings up all losses; seals lose 7.69e-6 d^2 n; the teeth are equal on both sides
     parts = ("gear", "bearing_rolling", "bearing_sliding", "seal", "churning", "windage")
     rows = [[figure(text, part, box) for box in (0, 1)] for part in parts]
     assert figure(text, "motor") == pytest.approx(sum(map(sum, rows)), abs=0.1)
@@ -243,7 +243,7 @@ def learning(text: str) -> None:
 
 
 def printed_tables(text: str) -> None:
-    # a mode beside the fifth harmonic and hardly any damping give its printed growth, 4 % do not
+    # a mode near the fifth harmonic and hardly any damping give its printed growth, 4 % do not
     assert figure(text, "fifth harmonic, constant ", 1) == pytest.approx(61.6, rel=0.05)
     assert abs(figure(text, "fifth harmonic, constant, usual damping", 1)) < 1.0
     assert "Table 1: 8 value" in text

@@ -35,7 +35,7 @@ STEEL = Material(210e9, 0.3)
 
 
 class Row(NamedTuple):
-    """One figure beside its reference; the tolerance is relative."""
+    """One figure and its reference; the tolerance is relative."""
 
     what: str
     reference: float
@@ -194,13 +194,13 @@ def rows_of(group: Any) -> list[Row]:
 
 
 def line(row: Row) -> str:
-    """One row as it stands on the page."""
+    """One row as printed on the page."""
     figures = f"{row.reference:.7g} | {row.computed:.7g} | {100.0 * row.deviation:+.2g}"
     return f"| {row.what} | {figures} | {100.0 * row.tolerance:.2g} |"
 
 
 def printed_line(case: str, table: str, rows: list[dict[str, Any]]) -> str:
-    """One printed table as it stands on the page."""
+    """One table as printed on the page."""
     counts = Counter(row["verdict"] for row in rows)
     met = [abs(row["deviation"] or 0.0) for row in rows if row["verdict"] == "value"]
     worst = f"{100.0 * max(met):.2g}" if met else ""

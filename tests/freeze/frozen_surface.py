@@ -33,7 +33,7 @@ _SPECIAL = ("__call__", "__contains__", "__getitem__", "__iter__", "__len__")
 
 
 def surface(names: Mapping[str, Mapping[str, Any]] | None = None) -> dict[str, Any]:
-    """Everything by kind; ``names`` are looked for on the pages beside those that they list."""
+    """Everything by kind; ``names`` are searched on the pages besides those that they list."""
     return {
         "pages": {page: page_names(page, (names or {}).get(page, {})) for page in PAGES},
         "case keys": case_keys(),
@@ -164,7 +164,7 @@ def _wide_terminal() -> Iterator[None]:
 
 
 def _heads(text: str, pattern: str) -> list[str]:
-    """What stands at the beginning of the lines of a help's boxes."""
+    """First words of the lines of a help's boxes."""
     return sorted(re.findall(rf"^│ [* ]{{0,3}}({pattern})(?= |$)", text, re.MULTILINE))
 
 
@@ -204,7 +204,7 @@ def _literals() -> set[str]:
 
 
 def losses(frozen: Any, current: Any, place: str = "") -> list[str]:
-    """Say what of the frozen data is gone or differs; what is new beside it is no loss."""
+    """List what of the frozen data is gone or differs; additions are no loss."""
     if place.endswith(("/constructor", "/parameters")) or "/members/" in place:
         return _parameter_losses(frozen, current, place)
     if isinstance(frozen, dict) and isinstance(current, dict):

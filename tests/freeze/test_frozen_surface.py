@@ -1,4 +1,4 @@
-"""Nothing that users rely on is gone or works differently; what is new beside it is welcome."""
+"""Nothing that users rely on is gone or works differently; additions are welcome."""
 
 from __future__ import annotations
 

@@ -66,15 +66,15 @@ def _assert_same_data(old: xarray.Dataset, new: xarray.Dataset) -> None:
     for name, column in old.variables.items():
         other = new.variables[name]
         assert other.dims == column.dims, name
-        if " or " not in column.attrs.get("units", ""):  # now each coordinate tells its own
+        if " or " not in column.attrs.get("units", ""):  # now each coordinate has its own
             assert other.attrs.get("units") == column.attrs.get("units"), name
         if name == "steady_state_error":  # what is left of the search, not a figure of the motion
             assert np.all(other.values < 1e-9)
-        elif name == "warnings":  # what was told is still told
+        elif name == "warnings":  # earlier warnings still come
             pairs = zip(column.values.flat, other.values.flat, strict=True)
             assert all(set(old.split()) <= set(new.split()) for old, new in pairs)
         elif column.dtype.kind in "fc":
-            if name in _FILMS:  # not told where a pair hardly touches: compared where it is
+            if name in _FILMS:  # missing where a pair hardly touches: compared where it is
                 untold = np.isnan(other.values)
                 assert untold.mean() < 0.2, name
                 column = column.where(~untold)

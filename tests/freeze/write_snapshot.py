@@ -1,6 +1,6 @@
 """Write the snapshot anew and say what changed: ``python tests/freeze/write_snapshot.py``.
 
-Names and figures that are new come in by this. What is gone or differs is told on the way: such a
+Names and figures that are new come in by this. What is gone or differs is printed: such a
 change breaks what users wrote, and belongs into the change log.
 """
 

@@ -1,7 +1,7 @@
 """Write files that later states must still read: ``python tests/freeze/write_stored.py FOLDER``.
 
 ``stored.zip`` holds them as the state that was frozen wrote them. It is not written anew: files of
-a new format come beside it, in an archive of their own.
+a new format are added to it, in an archive of their own.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 
 class HangError(BaseException):
-    """A call took longer than anything of its kind should; nothing that tells errors takes it."""
+    """A call took longer than any of its kind should; no handler of errors catches it."""
 
 
 @contextmanager

@@ -34,7 +34,7 @@ from tribodyn.errors import ModelWarning, TribodynError
 from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
 
-#: What tells faults and the state of a job is called by programs, with texts of their own.
+#: What reports errors and progress is called by programs, with texts of their own.
 NO_PAGES = {"tribodyn.errors", "tribodyn.progress"}
 
 #: Names of types for annotations, and what changes the registries of all that follows.

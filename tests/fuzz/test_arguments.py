@@ -39,7 +39,7 @@ WRONG: list[Any] = [
     types.SimpleNamespace(),
 ]  # fmt: skip
 
-#: What is no value of an annotation that stands alone.
+#: No value of an annotation of a single type.
 _NO_NUMBER = (str, bytes, complex, list, dict, type(None), type)
 NONSENSE = {
     # an array may stand for a number where a function computes with it
@@ -51,7 +51,7 @@ NONSENSE = {
 
 
 def fault(function: Any, sound: dict[str, Any], wrong: dict[str, Any]) -> str:
-    """Say what is wrong with how a call ends; empty if it is told well or the result is finite."""
+    """Return what is wrong with a call; empty after a sound message or a finite result."""
     kinds = {each.name: each.annotation for each in parameters(function)}
     try:
         with quietly(), at_most(PATIENCE):
@@ -69,7 +69,7 @@ def fault(function: Any, sound: dict[str, Any], wrong: dict[str, Any]) -> str:
     for key, value in wrong.items():
         if kinds[key] in NONSENSE and NONSENSE[kinds[key]](value):
             return f"{key} is a {kinds[key]} and took {value!r:.30}"
-    # A function may say that NaN stands for what is not there, as that of the lubrication regime.
+    # A function may document NaN as a missing value, as that of the lubrication regime.
     documented = "NaN" in (function.__doc__ or "")
     return "" if documented or is_finite(result) else "a result that is not finite"
 

@@ -3,7 +3,7 @@
 A steel ball on a glass disc is a point contact, whose film loses oil to its sides: it rises with a
 smaller power of the speed (0.67) than that of a line contact (0.69 to 0.73), and its thickness says
 nothing about a line: it is not compared. What the two share is that the inlet alone, with its
-exponential thickening, makes the film; the power tells that from the other regimes.
+exponential thickening, makes the film; the power distinguishes it from the other regimes.
 
 Data: M. Ploss, tribology, doi:10.5281/zenodo.1117727 (MIT licence), EHD2 rig, ball of 9.525 mm
 radius, 50 N, 31.5 degrees Celsius, pure rolling; seven of its 21 speeds.

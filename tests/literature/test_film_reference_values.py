@@ -1,6 +1,6 @@
 """Solved films against another scheme: its figures (tests/references/film_cases.py) and itself.
 
-Figures of single grids and of the domain of the source (mark ``regression``) are kept so that a
+Figures of single grids and of the domain of the source (mark ``regression``) are stored so that a
 change is seen.
 """
 

@@ -159,7 +159,7 @@ def test_exponential_has_no_friction_without_sliding_and_no_units_left():
 
 
 def test_exponent_of_the_roughness_fits_the_printed_table():
-    # Coefficients at 0.8, 1.6 and 3.2 um at four positions beside the pitch point.
+    # Coefficients at 0.8, 1.6 and 3.2 um at four positions near the pitch point.
     table = [(0.052, 0.112), (0.048, 0.104), (0.041, 0.091), (0.045, 0.099)]
     exponents = [math.log(rough / smooth) / math.log(4.0) for smooth, rough in table]
     exponent = math.log(exponential(0.5, 1e9, 3.2e-6) / exponential(0.5, 1e9, 0.8e-6)) / math.log(
@@ -259,7 +259,7 @@ def test_laws_hand_the_pitch_point_and_the_roughness_to_their_formulas():
     c = contact()
     point = c.pitch
     state = (point.load_per_width, point.sum_velocity, point.equivalent_radius, 0.082)
-    # Two Gaussian flanks alike: rms of one is composite/sqrt(2), and Ra is sqrt(2/pi) of it.
+    # Two equal Gaussian flanks: rms of one is composite/sqrt(2), and Ra is sqrt(2/pi) of it.
     ra = 0.53e-6 / math.sqrt(2.0) * math.sqrt(2.0 / math.pi)
     oil = {"lubricant_factor": 0.8}
     assert LAWS["schlenk"](c, **oil) == pytest.approx([schlenk(*state, ra, 0.8)] * 2)

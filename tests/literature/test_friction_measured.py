@@ -1,4 +1,4 @@
-"""Measured traction and film beside the models, with the deviation that there is.
+"""Compare the models with measured traction and film, and state the deviation.
 
 A steel ball of 9.525 mm radius on a steel disc (traction) or a glass disc (film). The oils are not
 named: viscosity and pressure coefficient are assumed, and so is 20 nm of roughness, so the levels

@@ -224,7 +224,7 @@ def test_missing_wind_up_is_found_out(provider, tolerance):
 
 
 def test_a_pair_thinned_for_backlash_is_another_pair():
-    """Guards the reference itself: thinner teeth would be told from those of the table."""
+    """Guards the reference itself: thinner teeth would differ from those of the table."""
     pair = reference_pair()
     assert pair.pinion.tooth_thinning == 0.0
     assert pair.wheel.tooth_thinning == 0.0

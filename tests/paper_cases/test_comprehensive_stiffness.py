@@ -1,9 +1,9 @@
-"""What the first source document says of film and comprehensive stiffness, each claim by itself.
+"""What the first source document says of film and comprehensive stiffness, claim by claim.
 
 Sections 3.1, 3.2 and 5.1; the wheel of 24 teeth drives. Kinds of film stiffness: ``tangent`` is the
 slope of load over film, ``secant`` and ``seed`` are the two readings of the printed sum, the latter
 with the pressure that it lacks. Torques at 1400 rpm, speeds at 150 N*m, both of the wheel.
-Figures beside a claim (mark ``regression``) are our own, kept so that a change is seen.
+Figures beside a claim (mark ``regression``) are our own, stored so that a change is seen.
 """
 
 from __future__ import annotations
@@ -150,7 +150,7 @@ def test_printed_sum_doubles_with_the_nodes_and_the_secant_does_not():
 
 @pytest.mark.parametrize("kind", ["tangent", "secant"])
 def test_series_on_totals_hardly_differs_from_series_of_each_pair(kind):
-    """The source puts totals in series; pairs carry alike, so that little is lost by it."""
+    """The source puts totals in series; pairs carry equal loads, so that little is lost by it."""
     stiffness = study("torque", kind)
     deviation = stiffness.series_of_totals / stiffness.comprehensive_mesh_stiffness - 1.0
     assert np.all(deviation > -1e-6)

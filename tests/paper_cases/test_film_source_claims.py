@@ -1,8 +1,8 @@
-"""What the first source document says of its films (sections 2.1 and 2.2), each claim by itself.
+"""What the first source document says of its films (sections 2.1 and 2.2), claim by claim.
 
 The wheel of 24 teeth drives; at the pitch point one pair carries the load. Heights of the spike are
 those of 16385 nodes: uniform grids of its own size miss a fifth of it. Where a claim is followed by
-figures (mark ``regression``), these are our own, kept so that a change is seen.
+figures (mark ``regression``), these are our own, stored so that a change is seen.
 """
 
 from __future__ import annotations

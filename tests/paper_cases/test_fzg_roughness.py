@@ -135,7 +135,7 @@ def test_the_force_balances_both_held_torques_with_friction(studied: list[Any]) 
 
 @pytest.mark.regression
 def test_mean_force_falls_since_both_torques_are_held(studied: list[Any]) -> None:
-    # 2580 and 2268 N are of another program for the same equations, which is not at hand.
+    # 2580 and 2268 N are of another program for the same equations, which is not available.
     means = _figures(studied, "mean_mesh_force")
     assert means[0] == pytest.approx(2580.0, rel=2e-3)
     assert means[2] == pytest.approx(2268.0, rel=2e-3)
@@ -151,7 +151,7 @@ def test_transmission_error_falls_and_its_low_harmonics_most(studied: list[Any])
 
 @pytest.mark.regression
 def test_vibration_across_the_line_of_action_tells_roughness(studied: list[Any]) -> None:
-    # The factor of 5.2 across is of another program, which is not at hand; none along.
+    # The factor of 5.2 across is of another program, which is not available; none along.
     across = _figures(studied, "rms_bearing_force_oloa_pinion")
     along = _figures(studied, "rms_bearing_force_loa_pinion")
     assert across[2] / across[0] == pytest.approx(5.2, rel=0.05)

@@ -54,7 +54,7 @@ def test_fourth_order_where_the_contact_damper_makes_the_force_jump():
 
 
 def test_events_not_declared_are_told():
-    """Steps across a jump would fall back to a lower order: the phase of the jump is told."""
+    """Steps across a jump have a lower order: a warning names the phase of the jump."""
     system = reference_system(0.1, events=(0.0,))
     with pytest.raises(InputError, match=r"jumps by .* at the mesh phase 0.32695"):
         simulate(system, MESH_FREQUENCY, 5, (np.zeros(6), np.zeros(6)), steps=2000)
@@ -187,7 +187,7 @@ def test_friction_turns_the_whole_drive_as_its_levers_say():
 
 
 def test_no_force_in_free_flight():
-    """Damping acts only while in contact, unless it is asked for."""
+    """Damping acts only while in contact, unless requested otherwise."""
     for keep, expected in ((False, 0.0), (True, 0.6)):
         contact = Contact([1.0], stiffness=9.0, damping=0.6, gap=1.0, damping_in_gap=keep)
         system = System([[1.0]], [[0.0]], [[0.0]], [0.0], [contact])

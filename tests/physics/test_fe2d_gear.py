@@ -262,7 +262,7 @@ def test_rim_is_the_bore_without_the_wind_up(pair, influences):
 
 
 def test_smaller_bore_winds_up_by_the_closed_form():
-    # All teeth loaded alike: the body turns as a ring in torsion, and the rest stays.
+    # Equal loads on all teeth: the body turns as a ring in torsion, and nothing else changes.
     gear = gear_of(11, 3e-3, 0.3, 10e-3)
     wind_up = [summed(unit_compliances(gear, 0.3, 5, None, radius)) for radius in (4e-3, 2e-3)]
     turns = [

@@ -70,7 +70,7 @@ def test_waviness_is_carried_through_at_the_speed_of_the_surface(
 ) -> None:
     contact = waves[wavelength]
     late, later = (wave_at(contact, smooth, i, wavelength) for i in (-25, -1))
-    # in the frame of the surface the wave stands still: neither phase nor amplitude change
+    # in the frame of the surface the wave is at rest: neither phase nor amplitude change
     assert later == pytest.approx(late, abs=0.03 * abs(later))
     # a peak of the surface is a thin place of the film, more so with less delay in the inlet
     assert later.real < -0.7 * abs(later)

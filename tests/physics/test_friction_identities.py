@@ -111,7 +111,7 @@ XU_SLIPS = {
     "right": {},
     "MPa in the place of GPa": {"pressure": 1e3},
     "sum of the speeds": {"speed": 2.0, "ratio": 0.5},
-    "sum of the speeds, ratio kept": {"speed": 2.0},
+    "sum of the speeds, same ratio": {"speed": 2.0},
     "mm in the place of m": {"radius": 1e3},
     "Pa s in the place of cP": {"viscosity": 1e-3},
     "Ra in the place of rms": {"roughness": 0.8},

@@ -187,7 +187,7 @@ def test_friction_of_the_rectangular_mesh(driver):
     assert len(mesh.event_phases) == 3
     phase = np.linspace(0.0, 1.0, 4000, endpoint=False)
     total = mesh.friction_sum(phase)
-    # both pairs slide alike, or against each other and cancel
+    # both pairs slide in the same direction, or against each other and cancel
     assert set(np.round(total, 12)) <= {-0.1, 0.0, 0.1}
     # the pitch point lies near the root of the pinion: it slides mostly one way
     assert total.mean() == pytest.approx(0.1 * (1.0 - 0.226), abs=0.01)

@@ -59,7 +59,7 @@ def test_which_body_is_the_faster_one_matters():
         return mesh.table(replace(settings, bodies=bodies)).friction_coefficient
 
     equal, nearly = friction(STEEL, STEEL), friction(STEEL, STEEL * (1.0 + 1e-9))
-    assert nearly == pytest.approx(equal, rel=2e-3, abs=1e-5)  # other sliding speeds are asked
+    assert nearly == pytest.approx(equal, rel=2e-3, abs=1e-5)  # other sliding speeds are computed
     soft_pinion, soft_wheel = friction(680.0, STEEL), friction(STEEL, 680.0)
     table = mesh.table(settings)
     for sign, slower, faster in ((1.0, soft_wheel, soft_pinion), (-1.0, soft_pinion, soft_wheel)):

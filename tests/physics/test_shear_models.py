@@ -1,4 +1,4 @@
-"""Shear models beside closed forms, limits and a quadrature of the shear rate over the film."""
+"""Shear models against closed forms, limits and a quadrature of the shear rate over the film."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def oscillator(depth, damping, gap=1.0):
 #: Depth of the stiffness variation, damping, circular mesh frequency and true period.
 PERIODS = {1: (0.2, 0.1, 0.9), 2: (0.2, 0.05, 2.0), 3: (0.4, 0.06, 2.5), 4: (0.6, 0.1, 2.0)}
 
-#: Beside the orbit of three mesh cycles there are stable ones of one and of four.
+#: Besides the orbit of three mesh cycles there are stable ones of one and of four.
 STARTS = {3: ([-0.44], [-1.38])}
 
 

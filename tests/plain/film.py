@@ -4,7 +4,7 @@ Slow, but nothing is hidden: the film is a product with a full matrix, and so is
 compiled solvers are tested against these equations and share none of their code.
 
 Everything is in the units of the dry contact: ``X = x/b``, ``P = p/p_h``, ``H = h R/b^2``. The
-nodes 0 to n divide the domain evenly, and node i stands for the cell of width ``dX`` around it.
+nodes 0 to n divide the domain evenly, and node i represents the cell of width ``dX`` around it.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ _CASES = {
         "dynamics.mesh_law": "tangent",
     },
 }
-#: What tells how near a computation came, not where it arrived [1].
+#: Residuals of a computation rather than its results [1].
 _ERRORS = ("steady_state_error", "step_error")
 
 

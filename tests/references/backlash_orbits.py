@@ -26,7 +26,7 @@ FIRST, LAST = 0.8344, 0.9069
 
 @dataclass(frozen=True)
 class Orbit:
-    """One periodic motion: state at the beginning, and what is asked of it."""
+    """One periodic motion: state at the beginning, and the figures compared."""
 
     start: np.ndarray
     rms: float

@@ -3,7 +3,7 @@
 By the scheme of ``known_films`` (Okamura 1982; Houpert and Hamrock 1986), which shares nothing with
 the discretisation of tribodyn: the first integral of the Reynolds equation on nodes spaced at will.
 Tribodyn gives only the film to begin with. Each figure is shown on two sets of nodes, whose
-difference tells how many of its digits are certain.
+difference shows how many of its digits are certain.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ MOES = {
     "M20 L10 incompressible": (20.0, 10.0, False, 0.100013, 0.07526, 1.0544),
     "M5 L5": (5.0, 5.0, True, 0.301073, 0.243137, 1.1259),
 }
-#: The scheme does not converge to the spike of an oil that cannot be compressed: that case stands
-#: on the two schemes of the solver alone.
+#: The scheme does not converge to the spike of an oil that cannot be compressed: that case rests on
+#: the two schemes of the solver alone.
 KNOWN = ("M20 L10", "M5 L5")
 #: FZG pair of the first source document, wheel of 24 teeth driving at 1400 rpm, pitch point, one
 #: pair in contact, flooded: torque [N*m] -> load [N/m], Hertz pressure [GPa], half width [um],

@@ -47,7 +47,7 @@ def _on_page(module: Module, function: Function) -> bool:
 
 
 def _for_kernels(function: Function) -> bool:
-    """Compiled, or what stands for a compiled function of many arguments."""
+    """Whether a function is compiled, or wraps a compiled function of many arguments."""
     typed = any(re.search(r"\b(overload|register_jitable)", text) for text in function.decorators)
     return function.compiled or typed or function.nested
 

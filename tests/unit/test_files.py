@@ -158,7 +158,7 @@ def test_the_root_directory_is_refused_as_a_result(root: str) -> None:
             write(Path(root))
 
 
-#: Reserves a folder, reports it, and waits until it is told to write the result.
+#: Reserves a folder, reports it, and waits until it may write the result.
 _WRITER = """
 import sys
 from pathlib import Path

@@ -44,7 +44,7 @@ def test_read_as_it_was_written(tmp_path: Path) -> None:
 
 
 def _contents(path: Path) -> dict[str, Any]:
-    """All that HDF5 holds but references, which are told by the dimensions of the variables."""
+    """All that HDF5 holds but references, which follow from the dimensions of the variables."""
 
     def plain(attributes: Any) -> dict[str, Any]:
         named_attributes = {

@@ -144,7 +144,7 @@ def test_refusals_of_zoom_and_peaks():
 
 
 def test_lines_of_the_mains_are_flagged_in_a_recording():
-    """Sines of the mains stand between lines of the spectrum; a mesh line beside them is none."""
+    """Sines of the mains lie between lines of the spectrum; a mesh line near them is not one."""
     rate = 4096.0
     time = np.arange(8192) / rate
     parts = {50.1: 0.5, 119.8: 0.4, 53.7: 0.3, 240.0: 1.0}

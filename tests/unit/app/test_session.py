@@ -127,7 +127,7 @@ def boxes(desk: TabSession) -> dict[str, dict[str, Any]]:
 
 
 def test_a_box_counts_the_values_in_it(desk: TabSession) -> None:
-    """Those of the boxes inside it too; the model that it names stands there by itself."""
+    """Count those of the boxes inside it too; the model that it names is typed there already."""
     before = boxes(desk)
     assert before["gears.pinion.modification"]["values"] == 0
     assert before["operation"]["values"] == len(set(desk.case.user_input) & {*fields(desk)} & {

@@ -1,7 +1,7 @@
 """What a kernel calls has no machine code of its own: the first process computes as all later do.
 
-A function that is compiled by itself as well would be called in place of the kernel's own copy, but
-only by the process that compiled it, and rounds in another way.
+A function that is compiled separately as well would be called in place of the kernel's own copy,
+but only by the process that compiled it, and rounds in another way.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ def test_continuous_functions_are_accepted(name):
 @pytest.mark.parametrize("height", [1.0, -1e-2, 1e-3, -1e-4])
 @pytest.mark.parametrize("place", [0.377, 0.25, 0.9996])
 def test_a_jump_without_an_event_is_refused(height, place):
-    """Refused with its place, whatever it stands on; as an event it is taken."""
+    """An error names its location, whatever the operands; as an event it is accepted."""
     for name, smooth in SMOOTH.items():
 
         def jumping(phase, smooth=smooth):

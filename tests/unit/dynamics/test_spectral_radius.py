@@ -8,7 +8,7 @@ from tribodyn.dynamics.equations import step_limit
 RANDOM = np.random.default_rng(5).standard_normal((4, 9, 6, 6))
 FAMILIES = {
     "random": RANDOM,
-    "all alike": np.broadcast_to(RANDOM[:1, :1], RANDOM.shape),
+    "all equal": np.broadcast_to(RANDOM[:1, :1], RANDOM.shape),
     "of very different size": RANDOM * 10.0 ** np.arange(-120, 120, 30)[:, None, None, None][:4],
     "without an eigenvalue but zero": np.triu(RANDOM, 1),
     "far from normal": np.triu(RANDOM, 1) * 1e6 + RANDOM,

@@ -1,4 +1,4 @@
-"""What is told of an orbit beyond its certified error: the cost of the step, and a lost balance."""
+"""Figures of an orbit besides its certified error: the cost of the step, and a lost balance."""
 
 import warnings
 

@@ -94,7 +94,7 @@ def test_options_are_completed():
 
 
 def test_an_approach_that_rises_with_the_load_is_told():
-    # Beside it, at M 0.6 and 0.8, the distance falls with the load.
+    # On either side, at M 0.6 and 0.8, the distance falls with the load.
     for load, warns in ((0.6, False), (0.7, True), (0.8, False)):
         contact = solve_line_contact_moes(load, 25.0, domain="auto", inlet="flooded", nodes=513)
         with warnings.catch_warnings(record=True) as caught:

@@ -278,7 +278,7 @@ def test_modifications_are_written_for_other_programs(tmp_path: Path) -> None:
     assert stage.gear_1.modification == {}
     assert stage.gear_2.modification == pytest.approx(keys)
     assert case_from_rexs(read_rexs(path)) == case
-    # without the case beside it, and with another depth
+    # without the case in its folder, and with another depth
     path.write_text(text.replace(">0.02<", ">0.03<"), encoding="utf-8")
     model = read_rexs(path)
     assert case_from_rexs(model).gears.wheel.modification.tip_relief == pytest.approx(3e-5)

@@ -114,7 +114,7 @@ def test_conjugate_flanks_have_no_transmission_error():
             contact = tooth_contact(flanks, rotations_per_pitch=6, cells=9)
             assert np.all(contact.angular_transmission_error == 0.0)
             assert contact.contact_ratio > 1.0
-            # The exact flanks, started beside their contact, come to the same rotation.
+            # The exact flanks, started near their contact, come to the same rotation.
             lines = ContactLines(flanks.conjugate)
             rotation = 0.3 * np.array(lines.span())
             ends, _ = lines.ends(rotation)

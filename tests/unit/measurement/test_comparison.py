@@ -1,4 +1,4 @@
-"""Computed and measured motions side by side: what was put in is what is told."""
+"""Compare computed and measured motions: known differences are reported."""
 
 from __future__ import annotations
 

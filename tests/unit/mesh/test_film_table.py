@@ -1,4 +1,4 @@
-"""The table of films: what it answers, whoever asked before, and where it has no answer."""
+"""The table of films: its values do not depend on earlier calls, and where it has none."""
 
 import numpy as np
 import pytest

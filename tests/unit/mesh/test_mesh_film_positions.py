@@ -75,7 +75,7 @@ def test_a_jump_is_kept_between_two_zones(contact):
     values = np.repeat(np.arange(len(places.counts), dtype=float), places.counts)
     age = np.array([places.edges[1] - 1e-6, places.edges[1] + 1e-6])
     assert places.interpolate(values, age, places.zone_of(age)).tolist() == [0.0, 1.0]
-    # the value at the edge itself is that of the zone that is asked for
+    # the value at the edge itself is that of the requested zone
     edge = np.full(2, places.edges[1])
     assert places.interpolate(values, edge, np.array([0, 1])).tolist() == [0.0, 1.0]
 

@@ -98,7 +98,7 @@ def test_a_film_that_does_not_yield_leaves_the_mesh_alone(pair):
     assert np.array_equal(dry.stiffness, bare.stiffness)
     assert np.array_equal(dry.load_share, bare.load_share)
     assert np.array_equal(dry.tooth_stiffness, dry.stiffness)
-    # it is told all the same
+    # the warning comes all the same
     assert np.all(dry.film_stiffness[dry.in_contact] > 1e9)
     assert (dry.film_stiffness_kind, table(pair).film_stiffness_kind) == ("none", "tangent")
     assert bare.film_stiffness is None

@@ -127,7 +127,7 @@ def test_bent_teeth_touch_where_the_loads_are(driver: str) -> None:
         assert abs(place - complex(x, y)) < 2e-6
         for name in ("pinion", "wheel"):
             assert np.abs(mesh.outline[name] - place).min() < 0.03 * 4.5e-3
-    # the driven gear gives way in the direction in which it is driven
+    # the driven gear deflects in the direction in which it is driven
     sense = 1.0 if driver == "pinion" else -1.0
     normal = sense * complex(*np.diff(on_line_of_action(pair, np.array([0.0, 1.0])))[:, 0])
     along = (mesh.shift * normal.conjugate()).real

@@ -40,7 +40,7 @@ TURN = 2.0 * np.pi * 12.5 * TIME
 
 
 def classes() -> Iterator[type[Any]]:
-    """All records of the package, and what stands on a page and has a plot method."""
+    """All records of the package, and all public classes with a plot method."""
     types: dict[type[Any], None] = {}
     for module in pkgutil.walk_packages(tribodyn.__path__, "tribodyn."):
         if module.name.split(".")[1] in ("app", "cli", "__main__"):

@@ -1,4 +1,4 @@
-"""Friction in the loop beside nominal friction, in a report."""
+"""Friction in the loop compared with nominal friction, in a report."""
 
 import re
 

@@ -45,7 +45,7 @@ def test_a_contact_of_larger_radius_is_on_the_clockwise_tooth(fzg):
 
 
 def test_the_side_of_the_larger_radius_gives_way_more(fzg, steel):
-    # The clockwise tooth stands where the load presses the body down, near its line of action.
+    # The clockwise tooth is where the load presses the body down, near its line of action.
     gear = fzg().pinion
     influence = analytic_influence(gear, steel)
     ahead = influence.between(0.014, 0.014 + gear.base_pitch, 1)

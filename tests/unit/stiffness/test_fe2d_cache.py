@@ -1,4 +1,4 @@
-"""Kept compliances: found again, told apart, and never trusted blindly."""
+"""Cached compliances: read again, distinguished by their inputs, and validated."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ def test_loads_add_up_and_turn_with_their_tooth(gear):
     outline, loaded = deformed_gear(gear, STEEL, [(0, 7e-3, 1e5), (1, 9e-3, 5e4)])
     first = deformed_gear(gear, STEEL, [(0, 7e-3, 1e5)])
     second = deformed_gear(gear, STEEL, [(0, 9e-3, 5e4)])
-    # tooth 1 stands clockwise; each alone shows three teeth of the four
+    # tooth 1 is the clockwise one; each alone shows three teeth of the four
     per_tooth = (first[0].shape[1] - 1) // 3
     alone = np.zeros_like(loaded)
     turned_back = turned(second[0], -pitch)

@@ -100,7 +100,7 @@ def test_teeth_that_differ_are_followed_over_the_hunting_period(fzg):
     harris = transmission_error_over_torque(pair, [30.0, 60.0], provider="analytic", phases=16)
     assert harris.mesh_cycles == 48
     assert harris.transmission_error.shape == (2, 48 * 16)
-    # a tooth in two stands on: every second mesh cycle is another one, and the third like the first
+    # every other tooth is offset: the second mesh cycle differs, and the third is like the first
     error = harris.transmission_error[0].reshape(48, 16)
     np.testing.assert_allclose(error[2], error[0], rtol=1e-9)
     assert np.max(np.abs(error[1] - error[0])) > 0.5e-6

@@ -168,7 +168,7 @@ def test_slow_gears_follow_the_loaded_transmission_error():
     mesh = rehearsed(case)
     system = whole_system(case, mesh)
     (contact,) = system.contacts
-    # Nothing but the mesh gives way on the line of action: its force at rest is the torque's.
+    # Nothing but the mesh is compliant on the line of action: its force at rest is the torque's.
     phase = mesh.phase[:-1]
     force = case.pinion_torque / contact.direction(phase)[:, 5]
     pressed = force / contact.stiffness(phase) + contact.error(phase)

@@ -1,4 +1,4 @@
-"""Flank modifications in the case file: keys, files, faults, and the pair that comes of them."""
+"""Flank modifications in the case file: keys, files, errors, and the modified pair."""
 
 from __future__ import annotations
 
@@ -182,7 +182,7 @@ def test_geometry_shows_what_is_given() -> None:
 
 @pytest.fixture
 def saved(tmp_path: Path) -> Saved:
-    """Write a case with a map beside it: ``saved(rows)`` gives the path of the case."""
+    """Write a case with a map in its folder: ``saved(rows)`` gives the path of the case."""
 
     def save(text: str, *lines: str) -> Path:
         folder = tmp_path / "case"

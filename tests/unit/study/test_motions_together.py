@@ -1,4 +1,4 @@
-"""Motions of many operating points that are found side by side are those of single runs."""
+"""Motions of many operating points computed in one batch are those of single runs."""
 
 from __future__ import annotations
 

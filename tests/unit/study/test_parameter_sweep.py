@@ -1,4 +1,4 @@
-"""Sweeps of a case: grids, failures that are kept, interruption, files and figures."""
+"""Sweeps of a case: grids, recorded failures, interruption, files and figures."""
 
 from __future__ import annotations
 

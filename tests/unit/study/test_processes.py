@@ -1,4 +1,4 @@
-"""Processes beside this one: same figures, nothing lost with a helper, none left behind."""
+"""Worker processes: same figures, nothing lost with a helper, none left behind."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ def other_values(spec: Option, value: Any) -> list[Any]:
 
 
 def mutated(case: Any, key: str) -> Any:
-    """The case with another value of one key, or None if it stands alone."""
+    """The case with another value of one key, or None if the change alone is no valid case."""
     for other in other_values(spec_of(case, key), effective(case)[key]):
         try:
             return case.replace({key: other})
@@ -234,8 +234,8 @@ def test_result_and_report_say_nothing_of_the_old_value(tmp_path: Path) -> None:
         assert "Values of the case:" not in page + result.cite()  # the steps are not its own
         assert "solver.steps_per_mesh_cycle" in result.cite()
         assert ("friction.coefficient" in result.cite()) is not cited
-    result.save(tmp_path / "kept")
-    assert td.load_case(tmp_path / "kept" / "case.toml") == result.case
+    result.save(tmp_path / "unchanged")
+    assert td.load_case(tmp_path / "unchanged" / "case.toml") == result.case
 
 
 def test_the_table_of_a_sweep_gives_no_reason_for_what_it_varies(tmp_path: Path) -> None:

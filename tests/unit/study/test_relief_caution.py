@@ -1,4 +1,4 @@
-"""Relief far beyond the deflection of the teeth is told, with the pairs that are left."""
+"""Relief far beyond the deflection of the teeth gives a warning that names the pairs left."""
 
 import warnings
 

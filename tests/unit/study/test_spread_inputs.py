@@ -1,4 +1,4 @@
-"""Variants of a case side by side: each is the run of its own case."""
+"""Variants of a case in one batch: each is the run of its own case."""
 
 from __future__ import annotations
 

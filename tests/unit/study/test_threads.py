@@ -1,4 +1,4 @@
-"""Runs in threads beside each other give the figures and the warnings of runs one by one."""
+"""Runs in parallel threads give the figures and the warnings of runs one by one."""
 
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any

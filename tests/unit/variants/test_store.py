@@ -1,4 +1,4 @@
-"""A study is stored chunk by chunk, goes on where it was left, grows, and tells what it lacks."""
+"""A study is stored chunk by chunk, resumes, grows, and reports what it lacks."""
 
 from __future__ import annotations
 
