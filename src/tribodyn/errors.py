@@ -80,12 +80,12 @@ class Argument:
     name : str
         Its name; a field of an argument follows after a point.
     gear : str
-        ``"pinion"`` or ``"wheel"`` for what each of the two gears has; empty otherwise.
+        Name of the gear for what each of the two gears has; empty otherwise.
 
     Examples
     --------
-    >>> str(Argument("modification.tip_relief", gear="pinion"))
-    'argument pinion_modification.tip_relief'
+    >>> str(Argument("modification.tip_relief", gear="z1"))
+    'argument z1_modification.tip_relief'
     """
 
     name: str

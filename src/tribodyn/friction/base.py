@@ -198,7 +198,7 @@ _REMEDIES = {
     "film": 'Set [film] model = "newton" (or "multigrid"), or choose another friction law',
     "film_thickness": 'Set [film] model, for example "dowson-higginson", or choose another law',
     "oil_density": "Give the density of the oil",
-    "pitch": "Give pitch = pitch_point(pair, pinion_speed, pinion_torque)",
+    "pitch": "Give pitch = pitch_point(pair, speed, torque)",
 }
 
 

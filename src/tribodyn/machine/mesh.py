@@ -50,9 +50,8 @@ class Mesh:
     gap : float or function
         Half the backlash along the line of action [m]; with zero the teeth never separate.
     friction : object, optional
-        With ``friction_sum``, ``friction_moment_pinion`` (first gear) and
-        ``friction_moment_wheel`` (second gear) over the mesh phase, such as
-        ``mesh_table.functions()``.
+        The friction force over the mesh force and its moments on both gears, over the mesh phase:
+        ``mesh_table.functions()``, or an object with the same three functions.
     events : tuple of float
         Mesh phases at which an entry jumps.
     offset : float

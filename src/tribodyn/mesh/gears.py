@@ -14,16 +14,15 @@ from tribodyn.contact.path import pitch_point_age
 from tribodyn.errors import InputError, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
 from tribodyn.mesh.grid import PhaseGrid
+from tribodyn.nomenclature import GEARS
 from tribodyn.types import Array
 
 #: Coordinates of a gear pair: across and along the line of action, and the angle of each gear.
-COORDINATES = tuple(f"{gear}_{way}" for gear in ("pinion", "wheel") for way in ("x", "y", "theta"))
+COORDINATES = tuple(f"{gear}_{way}" for gear in GEARS for way in ("x", "y", "theta"))
 
 #: The same of gears that move in space, each in a frame whose y axis is its own: theta is about y.
 SPATIAL_COORDINATES = tuple(
-    f"{gear}_{way}"
-    for gear in ("pinion", "wheel")
-    for way in ("x", "y", "z", "theta_x", "theta", "theta_z")
+    f"{gear}_{way}" for gear in GEARS for way in ("x", "y", "z", "theta_x", "theta", "theta_z")
 )
 
 
@@ -32,10 +31,10 @@ def coordinates_of(count: int) -> tuple[str, ...]:
     return SPATIAL_COORDINATES if count == len(SPATIAL_COORDINATES) else COORDINATES
 
 
-def plane_direction(driver: str, pinion: float, wheel: float) -> Array:
+def plane_direction(driver: str, first: float, second: float) -> Array:
     """Change of the compression with each of the :data:`COORDINATES`, by both base radii."""
-    sign = 1.0 if driver == "pinion" else -1.0
-    return np.asarray(sign * np.array([0.0, 1.0, pinion, 0.0, -1.0, -wheel]))
+    sign = 1.0 if driver == GEARS[0] else -1.0
+    return np.asarray(sign * np.array([0.0, 1.0, first, 0.0, -1.0, -second]))
 
 
 def column_of(columns: Array, coordinate: str) -> Array:
@@ -78,8 +77,8 @@ class GearData:
     @property
     def direction(self) -> Array:
         """Change of the compression with each of the :data:`COORDINATES` [1 or m]."""
-        radii = self.pair.pinion.base_radius, self.pair.wheel.base_radius
-        return plane_direction(self.pair.driver, *radii)
+        first, second = (gear.base_radius for gear in self.pair.gears.values())
+        return plane_direction(self.pair.driver, first, second)
 
     @cached_property
     def pitch_point_age(self) -> float | None:
@@ -104,7 +103,7 @@ def read_pair(text: str) -> SpurPair:
     values = json.loads(text)
     with quiet():
         # Whoever made the table has seen what there was to say about these gears.
-        for name in ("pinion", "wheel"):
+        for name in GEARS:
             rack = BasicRack(**values[name].pop("rack"))
             modification = _read_modification(values[name].pop("modification", {}))
             values[name] = SpurGear(rack=rack, modification=modification, **values[name])

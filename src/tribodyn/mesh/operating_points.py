@@ -20,6 +20,7 @@ from tribodyn.mesh.gears import Gears
 from tribodyn.mesh.loads import Loads, reported_films, tribological_contact
 from tribodyn.mesh.sharing import Teeth, ToothContact, shared_load_columns
 from tribodyn.mesh.table import MeshTable
+from tribodyn.nomenclature import GEARS
 
 #: A mesh table, and the warnings of its models.
 TableWithWarnings = tuple[MeshTable, list[ModelWarning]]
@@ -65,7 +66,7 @@ def mesh_tables(
 
 
 def _point(pair: Gears, settings: ToothContact, speed: float, torque: float) -> _Point:
-    require_positive("pinion_torque", torque, "N*m")
+    require_positive(f"{GEARS[0]}_torque", torque, "N*m")
     with collected() as warnings:
         cycle, teeth = teeth_under_load(pair, settings, torque, None, None)
     return _Point(speed, torque, cycle, teeth, warnings)

@@ -129,7 +129,7 @@ def relief(
     torque : str
         Torques such as "60 N*m" "120 N*m"; by default from half that of the case to all of it.
     gears : str
-        Which gears are relieved: both, pinion or wheel.
+        Which gears are relieved: both, or the name of one.
     out : Path
         Directory to write; by default that of the case with "-relief". It holds best.toml.
     set_ : list of str

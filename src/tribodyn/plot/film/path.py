@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import Need
+from tribodyn.nomenclature import GEARS
 from tribodyn.plot.gear.path import roll_label
 from tribodyn.plot.mesh.cycle import (
     driving_roll_angle,
@@ -31,8 +32,8 @@ _SPEEDS: Rows = (
     ("entrainment_speed", "entrainment", PINION, "solid"),
 )
 _RADII: Rows = (
-    ("pinion_curvature_radius", "pinion", PINION, "dash"),
-    ("wheel_curvature_radius", "wheel", WHEEL, "dash"),
+    (f"{GEARS[0]}_curvature_radius", GEARS[0], PINION, "dash"),
+    (f"{GEARS[1]}_curvature_radius", GEARS[1], WHEEL, "dash"),
     ("equivalent_radius", "equivalent", TOTAL, "solid"),
 )
 _FILMS: Rows = (

@@ -73,7 +73,7 @@ def _panel(
 
 
 def _gear_panels(result: Result, quantity: str) -> list[Panel]:
-    """Panels with the mesh harmonics of a signal of pinion and wheel."""
+    """Panels with the mesh harmonics of a signal of both gears."""
     if no_translation(result):
         return []
     motion = Motion(result)
@@ -209,5 +209,5 @@ def _no_bearing_harmonics(result: Result) -> str:
 def bearing_spectrum(result: Result) -> Any:
     """Draw the mesh harmonics of the bearing forces."""
     panels = _gear_panels(result, "bearing_force")
-    title = f"Mesh harmonic {_strongest(panels[0])} is the strongest on the pinion's bearing"
+    title = f"Mesh harmonic {_strongest(panels[0])} is the strongest on the {GEARS[0][0]}'s bearing"
     return _harmonic_figure(title, result, panels)

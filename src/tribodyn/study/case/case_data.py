@@ -166,16 +166,19 @@ class CaseData(CaseTables):
         return self.gears.composite_roughness
 
     @property
+    def speed_ratio(self) -> float:
+        """Speed of the pinion over that of the gear whose speed and torque the case gives."""
+        return self.gear_ratio if self.operation.speed_of == "wheel" else 1.0
+
+    @property
     def pinion_speed(self) -> float:
         """Speed of the pinion [rad/s], whichever gear the speed is given for."""
-        of_wheel = self.operation.speed_of == "wheel"
-        return self.operation.speed * (self.gear_ratio if of_wheel else 1.0)
+        return self.operation.speed * self.speed_ratio
 
     @property
     def pinion_torque(self) -> float:
         """Nominal torque on the pinion [N*m], whichever gear the torque is given for."""
-        of_wheel = self.operation.speed_of == "wheel"
-        return self.operation.torque / (self.gear_ratio if of_wheel else 1.0)
+        return self.operation.torque / self.speed_ratio
 
     @property
     def operating_point(self) -> tuple[float, float]:

@@ -102,7 +102,7 @@ class Section:
 
     def __dir__(self) -> list[str]:
         """List keys, methods and properties."""
-        methods = {n for n in dir(type(self)) if not n.startswith("_") and not hasattr(Section, n)}
+        methods = {n for n in {*dir(type(self))} - {*dir(Section)} if not n.startswith("_")}
         return sorted({*methods, *type(self).section_keys().keys})
 
     @classmethod

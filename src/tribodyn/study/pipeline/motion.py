@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, collected, warn
+from tribodyn.nomenclature import GEARS
 from tribodyn.progress import Progress
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.sections import Solver
@@ -246,7 +247,7 @@ def _too_slow(case: Case, needed: float, most: float) -> Problem:
     speed = case.operation.speed
     return Problem(
         f"speed = {rpm(speed)} needs {needed:.3g} steps per mesh cycle",
-        "argument pinion_speed",
+        f"argument {GEARS[0]}_speed",
         f"The structure vibrates so fast within one slow mesh cycle; {most:.0f} steps are the most",
         f"The least speed that works is {rpm(_MARGIN * speed * needed / most)}; slower gears carry "
         "their load statically",

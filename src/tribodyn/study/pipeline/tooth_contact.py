@@ -20,7 +20,7 @@ from tribodyn.study.case.to_models import (
     locate_errors,
     mesh_law_of,
 )
-from tribodyn.study.studies.study_axes import pinion_torques
+from tribodyn.study.studies.study_axes import read_torques
 
 if TYPE_CHECKING:
     from tribodyn.mesh import HypoidFriction, HypoidLoadedContact, MeshFriction, MeshTable
@@ -258,7 +258,7 @@ def loaded_contact(
     """
     from tribodyn.stiffness import loaded_contact as compute
 
-    values = pinion_torques(case, torque)
+    values = read_torques(case, torque)
     single = torque is None or isinstance(torque, int | float | str)
     with locate_errors(case):
         return compute(

@@ -12,7 +12,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.pipeline.preview import gearbox_losses_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
-from tribodyn.study.studies.study_axes import pinion_speeds, pinion_torques
+from tribodyn.study.studies.study_axes import read_speeds, read_torques
 
 if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses, RigPowerFlow
@@ -63,10 +63,10 @@ def loss_map(
     >>> losses.gear_efficiency.round(4).tolist()
     [[0.9889], [0.9841]]
     """
-    torques, speeds = pinion_torques(case, torque), pinion_speeds(case, speed)
+    torques, speeds = read_torques(case, torque), read_speeds(case, speed)
     torques = torques if torque is not None else list(STEPS * torques[0])
     speeds = speeds if speed is not None else list(STEPS * speeds[0])
-    turns = case.gear_ratio if case.operation.speed_of == "wheel" else 1.0
+    turns = case.speed_ratio
     model_warnings: list[ModelWarning] = []
     progress.start("Tooth contact", len(torques) * len(speeds))
     lost = np.empty((len(torques), len(speeds)))

@@ -20,7 +20,7 @@ from tribodyn.study.pipeline.tooth_contact import (
     loaded_settings,
     model_settings,
 )
-from tribodyn.study.studies.study_axes import pinion_speeds, pinion_torques
+from tribodyn.study.studies.study_axes import read_speeds, read_torques
 from tribodyn.units import format_quantity
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     """
     from tribodyn.stiffness import transmission_error_over_torque
 
-    torques = pinion_torques(case, torque)
+    torques = read_torques(case, torque)
     if torque is None:
         torques = list(np.linspace(*_RANGE, _TORQUES) * torques[0])
     if case.hypoid_flanks is not None:
@@ -158,7 +158,7 @@ def optimize_tip_relief(
     """
     from tribodyn.stiffness import optimize_tip_relief as compute
 
-    torques = pinion_torques(case, torque)
+    torques = read_torques(case, torque)
     if torque is None:
         torques = [0.5 * torques[0], torques[0]]
     with locate_errors(case):
@@ -244,8 +244,8 @@ def comprehensive_stiffness(
     with locate_errors(case):
         return compute(
             case.gear_pair,
-            pinion_torque=pinion_torques(case, torque),
-            pinion_speed=pinion_speeds(case, speed),
+            pinion_torque=read_torques(case, torque),
+            pinion_speed=read_speeds(case, speed),
             kind=kind or next((name for name in kinds if name != "none"), "none"),
             steps=steps,
             progress=progress,
@@ -294,8 +294,8 @@ def film_over_operation(
     with locate_errors(case):
         return compute(
             pair,
-            pinion_torque=pinion_torques(case, torque),
-            pinion_speed=pinion_speeds(case, speed),
+            pinion_torque=read_torques(case, torque),
+            pinion_speed=read_speeds(case, speed),
             progress=progress,
             **model_settings(case),
         )

@@ -183,16 +183,11 @@ def operation_values(name: str, values: Any, case: Case) -> list[float]:
         raise InputError(problem) from None
 
 
-def pinion_torques(case: Case, values: Any) -> list[float]:
-    """Read torques on the gear named by ``operation.speed_of`` as those of the pinion."""
-    return [value / _turns(case) for value in operation_values("torque", values, case)]
+def read_torques(case: Case, values: Any) -> list[float]:
+    """Read torques on the gear named by ``operation.speed_of`` as those of the first gear."""
+    return [value / case.speed_ratio for value in operation_values("torque", values, case)]
 
 
-def pinion_speeds(case: Case, values: Any) -> list[float]:
-    """Read speeds of the gear named by ``operation.speed_of`` as those of the pinion."""
-    return [value * _turns(case) for value in operation_values("speed", values, case)]
-
-
-def _turns(case: Case) -> float:
-    """Turns of the pinion for one of the gear that speed and torque refer to."""
-    return case.gear_ratio if case.operation.speed_of == "wheel" else 1.0
+def read_speeds(case: Case, values: Any) -> list[float]:
+    """Read speeds of the gear named by ``operation.speed_of`` as those of the first gear."""
+    return [value * case.speed_ratio for value in operation_values("speed", values, case)]
