@@ -238,10 +238,8 @@ def _sobol(case: Case, values: Values, progress: Progress, target: Path) -> Show
     for key, tolerance in spread.items():
         if not any(sign in tolerance for sign in ("+-", "±", "..")):
             what = f'"{tolerance}" is no tolerance of {key}'
-            why, remedy = (
-                "It is a value with its tolerance",
-                'Write "90 N*m +- 5 %" or "80 .. 100 N*m"',
-            )
+            why = "It is a value with its tolerance"
+            remedy = 'Write "90 N*m +- 5 %" or "80 .. 100 N*m"'
             raise InputError(what, "tolerance", why, remedy)
     figures = (values["figures"] or "").replace(",", " ").split()
     spread_case = case.replace(spread, by="study")

@@ -198,10 +198,8 @@ def _any_of(hints: Iterable[Any], sized: int, strict: bool) -> Wanted:
     description = " or ".join(
         dict.fromkeys(alternative.description for alternative in several if alternative.description)
     )
-    accepted_types, kinds = (
-        frozenset().union(*(alternative.types for alternative in several)),
-        {o.kinds for o in several},
-    )
+    accepted_types = frozenset().union(*(alternative.types for alternative in several))
+    kinds = {o.kinds for o in several}
     numbers = [alternative.numbers for alternative in several if alternative.types & {float, int}]
     return Wanted(
         description, read, accepted_types, numbers[0] if numbers else (1.0, -1.0), "".join(kinds)

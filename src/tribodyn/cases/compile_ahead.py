@@ -101,10 +101,8 @@ def _children(todo: list[str], most: int) -> Iterator[Iterator[dict[str, Any]]]:
         if child.returncode == 0:
             return dict(text.loads(output.splitlines()[-1]))
         why = (errors.strip().splitlines() or [f"exit code {child.returncode}"])[-1]
-        what, remedy = (
-            f"The kernels of {job or 'the time integration'} were not compiled",
-            "Run the case",
-        )
+        what = f"The kernels of {job or 'the time integration'} were not compiled"
+        remedy = "Run the case"
         raise ComputationError(what, "", why, remedy)
 
     pool = ThreadPoolExecutor(most)

@@ -265,16 +265,14 @@ def _failed(error: BaseException, as_json: bool) -> int:
     if isinstance(error, TribodynError):
         code, problems = error.exit_code, list(error.problems)
     elif isinstance(error, KeyboardInterrupt):
-        code, problems = (
-            INTERRUPTED,
-            [
-                Problem(
-                    "interrupted",
-                    remedy="No unfinished file is left",
-                    why="The job was ended from outside",
-                )
-            ],
-        )
+        code = INTERRUPTED
+        problems = [
+            Problem(
+                "interrupted",
+                remedy="No unfinished file is left",
+                why="The job was ended from outside",
+            )
+        ]
     elif isinstance(error, OSError) and error.errno in LOCATION_ERRNOS:
         code, problems = 1, [cannot_write(error.filename or "standard output", error)]
     else:

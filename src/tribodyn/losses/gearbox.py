@@ -203,10 +203,8 @@ class Gearbox:
         """Check that an oil bath has a volume."""
         require_between("oil_volume", self.oil_volume, 0.0, 100.0, "m^3")
         if (self.pinion.immersion or self.wheel.immersion) and not self.oil_volume:
-            why, remedy = (
-                "Churning depends on the oil volume in the sump",
-                "1.2 litres are 1.2e-3 m^3",
-            )
+            why = "Churning depends on the oil volume in the sump"
+            remedy = "1.2 litres are 1.2e-3 m^3"
             raise InputError("oil_volume is missing", Argument("oil_volume"), why, remedy)
 
 
@@ -375,10 +373,8 @@ def gearbox_losses(
     for name, turns in (("pinion", 1.0), ("wheel", 1.0 / pair.ratio)):
         _require_oil(getattr(gearbox, name), lubricant, name)
         for row, column in np.ndindex(shape):
-            turning, force = (
-                turns * float(speed[column]),
-                float(torque[row]) / pair.pinion.base_radius,
-            )
+            turning = turns * float(speed[column])
+            force = float(torque[row]) / pair.pinion.base_radius
             parts = _shaft_losses(getattr(gearbox, name), turning, force, lubricant)
             parts |= _oil_losses(pair, gearbox, name, turning, lubricant)
             for part, power in parts.items():

@@ -291,10 +291,8 @@ def _read_axes(
             f"over {first_name} and {second_name}", where="argument over", why=why, remedy=remedy
         )
     if is_function and first_name in names:
-        what, remedy = (
-            f"{first_name} with a function",
-            "Give a system and a name, or a function alone",
-        )
+        what = f"{first_name} with a function"
+        remedy = "Give a system and a name, or a function alone"
         raise InputError(what, "argument over", "The function takes that value", remedy)
     if is_function and units is None:
         what, why = f"{first_name} without its unit", "Axes show values with their units"

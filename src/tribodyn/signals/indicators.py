@@ -22,10 +22,8 @@ def _on(size: int, signal: Array) -> Array:
     """Signal whose samples are as many as the fine samples, or a multiple of their three a step."""
     count = len(signal) if signal.ndim else 0
     if not count or (count % 3 if size == 3 else count != size):
-        what, wanted = (
-            f"signal has the shape {signal.shape}",
-            "a multiple of 3" if size == 3 else size,
-        )
+        what = f"signal has the shape {signal.shape}"
+        wanted = "a multiple of 3" if size == 3 else size
         why = f"A signal on the fine samples has {wanted} of them along its first axis"
         raise InputError(what, Argument("signal"), why, "Compute it of the motion's fine samples")
     return signal

@@ -189,10 +189,8 @@ def sample(
     (0.05, 0.0082)
     """
     if not isinstance(distributions, Mapping) or not distributions:
-        what, remedy = (
-            "no uncertain quantity is listed",
-            'Write {"friction.coefficient": "0.05 +- 0.83 %"}',
-        )
+        what = "no uncertain quantity is listed"
+        remedy = 'Write {"friction.coefficient": "0.05 +- 0.83 %"}'
         raise InputError(what, Argument("distributions"), "Wanted: a mapping of names", remedy)
     spread = {str(name): distribution(str(name), text) for name, text in distributions.items()}
     count = require_whole("size", size)

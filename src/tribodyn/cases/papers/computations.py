@@ -197,10 +197,8 @@ def _line_contact(
     path = operating_case.gear_pair.pinion.base_radius * math.tan(
         geometry_figures["operating_pressure_angle"]
     )
-    steel, oil = (
-        operating_case.material_properties,
-        operating_case.lubricant_properties or unused_lubricant(),
-    )
+    steel = operating_case.material_properties
+    oil = operating_case.lubricant_properties or unused_lubricant()
     options: dict[str, Any] = {"domain": (-2.5, 1.5), "inlet": "zero"} if source_domain else {}
     with collected():
         film = solve_line_contact(

@@ -123,10 +123,8 @@ def _pairs(texts: list[str] | None) -> tuple[dict[str, str], dict[str, str]]:
         name, sign, value = text.partition("=")
         signal, comma, sensor = value.partition(",")
         if not sign or not name.strip() or not signal.strip() or (comma and not sensor.strip()):
-            what, why = (
-                f'"{text}" names no pair',
-                "Channel and signal are separated by an equals sign",
-            )
+            what = f'"{text}" names no pair'
+            why = "Channel and signal are separated by an equals sign"
             remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g"'
             raise InputError(what, "--channel", why, remedy)
         signals[name.strip()] = signal.strip()

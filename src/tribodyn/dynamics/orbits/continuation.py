@@ -345,10 +345,8 @@ def signal_names(system: System, wanted: Sequence[str] | None) -> tuple[str, ...
         return deflections[:1] or tuple(system.names)
     for name in wanted:
         if name not in (*deflections, *system.names):
-            why, remedy = (
-                f"Known: {', '.join((*deflections, *system.names))}",
-                "Choose one of these",
-            )
+            why = f"Known: {', '.join((*deflections, *system.names))}"
+            remedy = "Choose one of these"
             raise InputError(f'no signal is called "{name}"', "argument signals", why, remedy)
     return tuple(wanted)
 

@@ -168,10 +168,8 @@ def _follow_all(
 def _in_contact(family: SpeedFamily, point: Array, converged: Mask) -> Mask:
     """Mark the speeds with a converged orbit that never leaves the driving flanks."""
     number = np.flatnonzero(converged)
-    periods, no_outputs = (
-        np.ones(number.size, dtype=np.int64),
-        np.zeros((0, 2 * family.system.size)),
-    )
+    periods = np.ones(number.size, dtype=np.int64)
+    no_outputs = np.zeros((0, 2 * family.system.size))
     figures = family.statistics(number, point[number], periods, 1, no_outputs)
     contacts = len(family.system.contacts)
     lost = figures[contacts : 2 * contacts, 4].max(axis=0)

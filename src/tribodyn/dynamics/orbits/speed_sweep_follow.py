@@ -89,10 +89,8 @@ class SpeedFamily:
 
     def split(self, number: Index, y: Array, periods: Index) -> tuple[Array, Array]:
         """States and balancing forces of points that repeat after ``periods`` mesh cycles."""
-        state, extra = (
-            np.empty((len(y), 2 * self.system.size)),
-            np.empty((len(y), self.system.size)),
-        )
+        state = np.empty((len(y), 2 * self.system.size))
+        extra = np.empty((len(y), self.system.size))
         for length in np.unique(periods):
             lanes = np.flatnonzero(periods == length)
             mapping = self.mapping(number[lanes], max(int(length), 1))

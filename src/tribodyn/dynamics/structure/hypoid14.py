@@ -200,10 +200,8 @@ def _inertia(mass: Array, polar: Array, supports: HypoidSupports) -> Array:
 
 def _springs(inertia: Array, supports: HypoidSupports) -> tuple[Array, Array]:
     """Stiffness, and a damper parallel to every spring as a part of the critical value."""
-    radial, axial = (
-        np.asarray(supports.bearing_stiffness),
-        np.asarray(supports.axial_bearing_stiffness),
-    )
+    radial = np.asarray(supports.bearing_stiffness)
+    axial = np.asarray(supports.axial_bearing_stiffness)
     tilting = np.asarray(supports.tilting_stiffness)
     gears = [[r, a, r, t, 0.0, t] for r, a, t in zip(radial, axial, tilting, strict=True)]
     grounded = np.concatenate(([0.0], *gears, [0.0]))

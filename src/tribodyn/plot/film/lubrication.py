@@ -68,10 +68,8 @@ def lubrication(mesh: MeshTable) -> Any:
     """Draw film ratio, load share and the parts of the friction force over the roll angle."""
     path = Path(mesh)
     ratio, share = path.under_load("film_ratio"), path.under_load("film_load_share")
-    low, high = (
-        min(_RATIO_RANGE[0], 0.8 * np.nanmin(ratio)),
-        max(_RATIO_RANGE[1], 1.2 * np.nanmax(ratio)),
-    )
+    low = min(_RATIO_RANGE[0], 0.8 * np.nanmin(ratio))
+    high = max(_RATIO_RANGE[1], 1.2 * np.nanmax(ratio))
     axis = {
         "type": "log",
         "range": [float(np.log10(low)), float(np.log10(high))],

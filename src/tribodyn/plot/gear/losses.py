@@ -47,10 +47,8 @@ def _percent(share: float) -> str:
 def _efficiency(gearbox: GearboxLosses) -> Row:
     """Efficiency over torque and speed, or over the quantity that varies."""
     speed, torque = (displayed(n, getattr(gearbox, f"pinion_{n}")) for n in ("speed", "torque"))
-    speed_label, torque_label = (
-        axis_label("speed", "Speed of the pinion"),
-        axis_label("torque", "Torque on the pinion"),
-    )
+    speed_label = axis_label("speed", "Speed of the pinion")
+    torque_label = axis_label("torque", "Torque on the pinion")
     values = 100.0 * gearbox.efficiency
     if torque.size > 1 and speed.size > 1:
         surface = {

@@ -144,11 +144,9 @@ def bent_mesh(contact: LoadedContact, phase: int, torque: int = 0) -> BentMesh:
     anchor = float(contact.path[phase, np.argmin(np.abs(contact.path[phase] - middle))])
     steps = [round((load.path - anchor) / pair.base_pitch) for load in loads]
     width, centers = pair.common_face_width, {"pinion": 0.0, "wheel": pair.center_distance}
-    outline, moved, angles = (
-        {},
-        {},
-        dict(zip(("pinion", "wheel"), tooth_angles(pair, anchor), strict=True)),
-    )
+    outline = {}
+    moved = {}
+    angles = dict(zip(("pinion", "wheel"), tooth_angles(pair, anchor), strict=True))
     places: dict[str, list[complex]] = {}
     shifts: dict[str, list[complex]] = {}
     for name, sense in (("pinion", 1), ("wheel", -1)):

@@ -133,10 +133,8 @@ class Motion:
         displayed_values, fine = displayed(name, values), self._response.fine
         if not self.periodic:
             last = self._last()
-            early, late = (
-                _extremes(displayed_values[:last]),
-                last + _extremes(displayed_values[last:]),
-            )
+            early = _extremes(displayed_values[:last])
+            late = last + _extremes(displayed_values[last:])
             samples = np.concatenate((early, late))
             return displayed("time", fine.time)[samples], displayed_values[samples]
         samples = _ends(displayed_values)

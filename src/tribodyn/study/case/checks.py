@@ -139,10 +139,8 @@ def _structure_of(inputs: UserInput, kind: Any) -> KeyedProblems:
 def _mesh_table(inputs: UserInput) -> KeyedProblems:
     """Check the keys that a mesh table of another program needs."""
     if "gears.table" not in inputs:
-        why, remedy = (
-            'kind = "table" reads the mesh from a file',
-            'Add table = "mesh.csv" to [gears]',
-        )
+        why = 'kind = "table" reads the mesh from a file'
+        remedy = 'Add table = "mesh.csv" to [gears]'
         yield "gears", Problem("table is missing", "", why, remedy)
     masses = ["moment_of_inertia"]
     if inputs.get("dynamics.model", "spur-6dof") != "torsional":
@@ -200,10 +198,8 @@ def _film_of_friction(
     if law is None or film is None or not law.needs_film:
         return
     if inputs.get("gears.kind") == "hypoid":
-        why, remedy = (
-            "The film of a hypoid pair is computed from a formula",
-            'Choose law = "mixed-ehl"',
-        )
+        why = "The film of a hypoid pair is computed from a formula"
+        remedy = 'Choose law = "mixed-ehl"'
         yield "friction.law", Problem(f'law = "{law.name}" for a hypoid pair', "", why, remedy)
         return
     if not film.method:

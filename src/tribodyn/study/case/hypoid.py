@@ -90,11 +90,9 @@ def solid(flanks: HypoidFlanks, density: float) -> dict[str, tuple[float, float]
     for gear in ("pinion", "wheel"):
         cone = getattr(blank, f"pitch_angle_{gear}")
         outer, inner = (getattr(blank, f"{end}_cone_distance_{gear}") for end in ("outer", "inner"))
-        outer_radius, inner_radius, height = (
-            outer * math.sin(cone),
-            inner * math.sin(cone),
-            (outer - inner) * math.cos(cone),
-        )
+        outer_radius = outer * math.sin(cone)
+        inner_radius = inner * math.sin(cone)
+        height = (outer - inner) * math.cos(cone)
         scale = math.pi * density * height
         mass = scale / 3.0 * (outer_radius**2 + outer_radius * inner_radius + inner_radius**2)
         properties[gear] = (

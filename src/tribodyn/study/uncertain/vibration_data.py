@@ -108,10 +108,8 @@ def vibration_data(
     else:
         if again > 1 and (keys := sorted(set(spread) - set(SCALES))):
             what = f"{', '.join(keys)} cannot change while the gears turn"
-            why, remedy = (
-                "A key is that of a whole run",
-                "Give redraw=False, or spread the factors ",
-            )
+            why = "A key is that of a whole run"
+            remedy = "Give redraw=False, or spread the factors "
             raise InputError(what, Argument("redraw"), why, remedy + ", ".join(SPREAD))
         columns = _over_time(case, lanes, sampled, (rows, float(interval)), progress)
     inputs = {
