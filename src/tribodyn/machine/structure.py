@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError
 from tribodyn.machine.beam import carried_along
@@ -265,6 +266,30 @@ class MachineStructure:
         bearing = self.machine.bearings[name]
         motion = self.at(bearing.shaft, bearing.position)
         return motion if bearing.node is None else motion - self.housing_node(bearing.node)
+
+    def bearing_load(
+        self, name: str, position: ArrayLike, velocity: ArrayLike | None = None
+    ) -> Array:
+        """Force and moment of the shaft on a bearing.
+
+        Parameters
+        ----------
+        name : str
+            Name of the bearing.
+        position, velocity : (..., n) array
+            Motion, such as that of a response [SI]; without a velocity the damping of the bearing
+            is left out.
+
+        Returns
+        -------
+        (..., 6) array
+            ``F_x, F_y, F_z, M_x, M_y, M_z`` [N and N*m].
+        """
+        bearing, motion = self.machine.bearings[name], self.bearing(name)
+        load = np.asarray(position) @ motion.T @ bearing.stiffness_matrix
+        if velocity is not None:
+            load = load + np.asarray(velocity) @ motion.T @ bearing.damping_matrix
+        return np.asarray(load)
 
     def mesh(self, name: str) -> Array:
         """Compression of a mesh per coordinate.

@@ -127,8 +127,8 @@ def campbell(
     Parameters
     ----------
     system : System or function
-        A function takes the speed [rad/s] and returns the system there, for a stiffness that
-        changes with speed.
+        A function takes the speed [rad/s] and returns the system there, for a stiffness or
+        gyroscopic moments that change with speed.
     speed : (s,) array
         Rising speeds of the shaft [rad/s].
     teeth : int
@@ -146,8 +146,8 @@ def campbell(
 
     Notes
     -----
-    Gyroscopic moments are neglected, as in the models. Between two speeds the frequencies of a
-    function are interpolated linearly.
+    Gyroscopic moments of the system count; as they change with speed, give a function of the speed.
+    Between two speeds the frequencies of a function are interpolated linearly.
 
     Examples
     --------
