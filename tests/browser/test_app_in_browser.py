@@ -115,13 +115,13 @@ def test_a_case_is_changed_run_laid_over_and_saved(visit: Visit, folder: Path) -
     assert tribodyn.load_result(folder / "mine-run").case.operation.torque == 120.0
 
 
-def test_a_reload_keeps_the_desk(visit: Visit) -> None:
+def test_a_reload_preserves_the_session(visit: Visit) -> None:
     visit.tab.reload()
     visit.wait("[role=tab]", "Run 2")
     assert visit.tab.input_value("#case-operation-torque") == "120"
 
 
-def test_a_wrong_value_is_told_beside_its_field(visit: Visit) -> None:
+def test_a_wrong_value_is_reported_next_to_its_field(visit: Visit) -> None:
     tab = visit.tab
     tab.click("#tab-pair")
     visit.fill("operation.speed", "15 Hz")
@@ -157,7 +157,7 @@ def test_a_wrong_value_dims_the_figures_and_marks_its_closed_box(visit: Visit) -
     assert tab.locator("#bench .outdated").count() == 0
 
 
-def test_a_message_leaves_by_itself_unless_it_is_about_a_fault(visit: Visit) -> None:
+def test_a_message_disappears_unless_it_is_an_error(visit: Visit) -> None:
     tab = visit.tab
     tab.click("#tab-files")
     tab.fill("#case-name", "again")
@@ -301,7 +301,9 @@ def test_nothing_hangs_over_the_side(visit: Visit, width: int) -> None:
         assert tab.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
 
 
-def test_the_console_is_silent_and_nothing_is_asked_of_others(visit: Visit, served: Page) -> None:
+def test_the_console_is_silent_and_nothing_is_requested_from_outside(
+    visit: Visit, served: Page
+) -> None:
     assert visit.messages == []
     allowed = (f"http://127.0.0.1:{served.port}/", "data:", "blob:")
     assert [url for url in visit.requests if not url.startswith(allowed)] == []

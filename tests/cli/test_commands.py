@@ -121,7 +121,7 @@ def test_check_gives_the_geometry_in_si(capsys: pytest.CaptureFixture[str]) -> N
     assert values["moment_of_inertia_wheel"] == pytest.approx(1168e-6)
 
 
-def test_check_tells_values_with_units_warnings_and_assumptions(
+def test_check_prints_values_with_units_warnings_and_assumptions(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert call(["check", "fzg-roughness"]) == 0
@@ -131,7 +131,7 @@ def test_check_tells_values_with_units_warnings_and_assumptions(
     assert "values are assumed" in captured.err
 
 
-def test_set_changes_a_value_and_names_itself_in_faults(
+def test_set_changes_a_value_and_is_named_in_errors(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert call(["check", "fzg-roughness", "--json", "--set", "gears.driver=wheel"]) == 0
@@ -193,7 +193,7 @@ def test_new_writes_a_case_that_checks(
         (["new"], "tribodyn new my.toml"),
     ],
 )
-def test_wrong_words_name_the_right_ones(
+def test_wrong_arguments_name_the_right_ones(
     arguments: list[str], says: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call(arguments) == 2
@@ -281,7 +281,7 @@ def test_an_option_set_together_with_a_choice_is_never_dropped(
     assert "coefficient = 0.1 does not belong" in capsys.readouterr().err
 
 
-def test_going_back_to_another_choice_and_again_keeps_nothing_of_the_first() -> None:
+def test_options_of_an_earlier_choice_do_not_return() -> None:
     case = tribodyn.load_case("fzg-roughness")
     changed = case.replace({"friction.law": "none"})
     back = changed.replace({"friction.law": "benedict-kelly"})

@@ -30,7 +30,7 @@ def test_figures_lie_between_those_of_the_ends(tmp_path: Path, capsys) -> None:
     assert "line" in (place / "report.html").read_text("utf-8")
 
 
-def test_a_case_without_spread_is_told_how_to_give_one(tmp_path: Path, capsys) -> None:
+def test_a_case_without_spread_is_explained(tmp_path: Path, capsys) -> None:
     assert call(["ensemble", CASE, "--out", str(tmp_path / "none")]) == 2
     error = capsys.readouterr().err
     assert "no value of the case is spread" in error

@@ -60,7 +60,7 @@ def test_claims_and_figures_as_json(tmp_path: Path, capsys: pytest.CaptureFixtur
         (["experiment", "friction", "--set", "operation.torque=3"], "unit"),
     ],
 )
-def test_wrong_words_are_refused_with_the_remedy(
+def test_wrong_arguments_are_refused_with_the_remedy(
     arguments: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
@@ -73,7 +73,7 @@ def test_wrong_words_are_refused_with_the_remedy(
 
 
 @pytest.mark.slow
-def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(tmp_path: Path) -> None:
+def test_ctrl_c_stores_finished_results_and_the_same_command_resumes(tmp_path: Path) -> None:
     heights = ",".join(f"{0.1 * number:.1f}" for number in range(1, 13)) + " um"
     command = [sys.executable, "-m", "tribodyn", "experiment", "friction", "--out", "part",
                "--laws", "xu-2007", "--roughness", heights]  # fmt: skip

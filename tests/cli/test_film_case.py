@@ -59,7 +59,7 @@ def test_a_film_in_series_softens_the_mesh_a_little(capsys: pytest.CaptureFixtur
     )
 
 
-def test_the_film_of_the_roughness_study_is_looked_at_only(
+def test_the_film_of_the_roughness_study_adds_figures_and_changes_none(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     with_film = figures(capsys, "fzg-roughness")
@@ -69,7 +69,7 @@ def test_the_film_of_the_roughness_study_is_looked_at_only(
     assert {name: with_film[name] for name in without} == without
 
 
-def test_a_formula_gives_what_it_has(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_formula_omits_figures_that_it_cannot_give(capsys: pytest.CaptureFixture[str]) -> None:
     output = figures(capsys, "fzg-film", "film.model=moes")
     assert {*NAMED} - set(output) == {"minimum_film_over_path"}
     ideal = figures(
@@ -103,7 +103,7 @@ def test_a_foreign_option_is_refused_on_the_command_line(
     assert "nodes = 257 or nodes = 513" in capsys.readouterr().err
 
 
-def test_a_new_case_file_tells_all_keys_of_the_film(
+def test_a_new_case_file_lists_all_keys_of_the_film(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call(["new", "my.toml", "--from", "fzg-film"]) == 0

@@ -55,7 +55,7 @@ def test_mixed_friction_of_a_case_follows_its_film():
     assert np.all(np.diff(mu[order]) <= 1e-12)  # the thicker the film, the fewer asperities
 
 
-def test_a_law_of_the_film_asks_for_a_film_model():
+def test_a_law_of_the_film_requires_a_film_model():
     case = case_of("mixed-ehl", ehl_friction_coefficient=0.05).replace({"film.model": "none"})
     with pytest.raises(
         InputError, match=r'film_thickness is not known.*model, for example "dowson'
@@ -77,7 +77,7 @@ def test_measured_points_in_a_case_file_have_units():
         case_of("measured", measured_torques=["60", "120 N*m"])
 
 
-def test_options_of_another_law_are_told():
+def test_options_of_another_law_are_refused():
     with pytest.raises(InputError, match="roughness_ra"):
         case_of("xu-2007", roughness_ra="0.3 um")
 

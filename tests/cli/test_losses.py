@@ -22,7 +22,7 @@ def _json_output(capsys: pytest.CaptureFixture[str], *arguments: str) -> Any:
     return json.loads(capsys.readouterr().out)
 
 
-def test_losses_are_told_over_torque_and_speed(
+def test_losses_are_printed_over_torque_and_speed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arguments = (
@@ -57,7 +57,7 @@ def test_losses_are_told_over_torque_and_speed(
     assert "100 N*m" in text
 
 
-def test_teeth_alone_are_told_as_such_and_a_rig_has_its_power_flow(
+def test_losses_of_teeth_alone_are_marked_and_a_rig_has_its_power_flow(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arguments = ("losses", "fzg-roughness", "--torque", "90 N*m", "--speed", "900 rpm", *_SOON)
@@ -87,7 +87,7 @@ def test_teeth_alone_are_told_as_such_and_a_rig_has_its_power_flow(
         (["--set", "losses.seal=30 mm"], "seal = .30 mm.*unknown key"),
     ],
 )
-def test_wrong_words_of_losses(
+def test_wrong_arguments_of_losses_are_reported(
     arguments: list[str], says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     import re
@@ -105,7 +105,7 @@ def _file(
     return str(file)
 
 
-def test_friction_of_a_file_is_told_written_and_drawn(
+def test_friction_of_a_file_is_printed_written_and_plotted(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     factor = td.losses.gear_loss_factor(td.load_case("fzg-roughness").gear_pair)
@@ -145,7 +145,7 @@ def test_friction_of_a_file_is_told_written_and_drawn(
     assert "--force" in capsys.readouterr().err
 
 
-def test_the_printed_table_is_known_by_name(
+def test_the_printed_table_is_available_by_name(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     output = _json_output(
@@ -199,7 +199,7 @@ def test_wrong_measurements_are_explained_with_their_line(
     assert not (tmp_path / "no").exists()
 
 
-def test_negative_friction_is_kept_with_its_verdict(
+def test_negative_friction_is_printed_with_its_verdict(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     head = "speed [rpm]; torque [N*m]; torque_loss [N*m]; other_loss [N*mm]"

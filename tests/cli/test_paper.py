@@ -53,7 +53,9 @@ def test_every_verdict_of_the_rig_is_the_expected_one(comparison: tuple[list[Any
 
 
 @pytest.mark.parametrize("arguments", [[], ["fzg-12dof", "--all"], ["fzg-12-dof"]])
-def test_what_is_no_paper_is_told(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unknown_paper_is_reported(
+    arguments: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
     assert call(["paper", *arguments]) == 2
     assert "There are tables for fzg-12dof" in capsys.readouterr().err
 

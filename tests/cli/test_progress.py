@@ -31,7 +31,7 @@ print(told)
 @pytest.mark.parametrize(
     ("done", "total", "text"), [(31, 60, "31 of 60"), (0, 1, "0 of 1"), (5, None, "")]
 )
-def test_counts_are_told_where_they_are_known(done: int, total: int | None, text: str) -> None:
+def test_progress_text_has_the_total_if_known(done: int, total: int | None, text: str) -> None:
     assert counted(done, total) == text
 
 
@@ -61,7 +61,7 @@ def test_the_bar_draws_them() -> None:
     assert "31 of 60" in caught.get()
 
 
-def test_a_compilation_is_announced_once_and_never_when_it_is_kept(tmp_path: Path) -> None:
+def test_a_compilation_is_announced_once_and_never_when_cached(tmp_path: Path) -> None:
     script = tmp_path / "kernel.py"
     script.write_text(_KERNEL)
     outputs = [
@@ -74,9 +74,7 @@ def test_a_compilation_is_announced_once_and_never_when_it_is_kept(tmp_path: Pat
 
 
 @pytest.mark.parametrize(("transient", "times"), [(40, 0), (40_000, 1)])
-def test_a_diagram_of_many_steps_says_beforehand_how_long_it_takes(
-    transient: int, times: int
-) -> None:
+def test_a_diagram_of_many_steps_estimates_its_time(transient: int, times: int) -> None:
     mass = System([[1.0]], [[0.5]], [[1.0]], [0.0], [])
     with announcing_to((messages := []).append):
         bifurcation(mass, [0.1, 0.2], steps=512, transient=transient, cycles=8, keep=8, signal="q0")

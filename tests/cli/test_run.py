@@ -38,7 +38,7 @@ def test_run_writes_a_result_named_after_the_case(
     assert set(os.listdir(folder / "fzg-roughness")) == set(RESULT_FILES)
 
 
-def test_a_quiet_run_tells_warnings_and_the_report_and_opens_it(
+def test_a_quiet_run_prints_warnings_and_the_report_and_opens_it(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     opened: list[str] = []
@@ -88,7 +88,7 @@ def test_the_saved_case_runs_again_to_the_same_figures(
     capsys.readouterr()
 
 
-def test_force_spares_what_is_no_result(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_force_does_not_touch_other_files(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "fzg-roughness").mkdir()
     (folder / "fzg-roughness" / "thesis.tex").write_text("x")
     assert call(["run", "fzg-roughness", *_FAST, "--force"]) == 2

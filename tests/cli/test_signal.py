@@ -46,7 +46,7 @@ def test_channels_are_listed_with_units_rate_and_duration(
 
 
 @pytest.mark.slow
-def test_figures_are_in_si_and_the_report_stands_alone(
+def test_figures_are_in_si_and_the_report_is_self_contained(
     file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arguments = (file, "--channel", "acc", "--tacho", "pulses", "--teeth", "16/24", "--out",
@@ -80,7 +80,7 @@ def test_teeth_and_speed_come_from_a_case(file: Path, capsys: pytest.CaptureFixt
     assert "mesh harmonic" in facts["speed_source"]
 
 
-def test_what_is_missing_is_named_with_what_it_needs(
+def test_missing_results_are_named_with_the_option_they_need(
     file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call(["signal", str(file), "--channel", "acc"]) == 0

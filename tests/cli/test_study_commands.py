@@ -43,7 +43,9 @@ def test_modes_are_those_of_the_structure(
     assert "rpm at harmonic 1" in text
 
 
-def test_harris_is_told_over_the_torque(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_harris_prints_the_error_over_the_torque(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     arguments = (
         "harris",
         "fzg-roughness",
@@ -88,7 +90,7 @@ def test_the_better_case_of_a_relief_is_better(
 
 
 @pytest.mark.slow
-def test_a_run_up_tells_its_levels(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_up_prints_its_levels(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     output = _json_output(capsys, "run-up", "fzg-roughness", "2900..3000 rpm", "--duration", "0.05",
                           "--out", str(tmp_path / "up"), *_SOON)  # fmt: skip
     assert len(output["speed"]) == len(output["rms_mesh_force"]) > 1
@@ -151,7 +153,7 @@ def test_nonlinear_motions_and_tolerances_of_a_case(
         (["run-up", "fzg-roughness", "-5..3000 rpm"], "above standstill"),
     ],
 )
-def test_wrong_words_are_told(
+def test_wrong_arguments_are_reported(
     arguments: list[str], says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
@@ -182,7 +184,9 @@ def test_two_results_are_compared(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "equal" in capsys.readouterr().out
 
 
-def test_a_result_beside_a_recording(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_result_is_compared_with_a_recording(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """A recording made from the result with half its motion and some noise: all is found again."""
     result = td.run(td.load_case("fzg-roughness").replace({"stiffness.model": "analytic"}))
     result.save(tmp_path / "result")
@@ -217,7 +221,7 @@ def test_a_result_beside_a_recording(tmp_path: Path, capsys: pytest.CaptureFixtu
         assert message in capsys.readouterr().err
 
 
-def test_a_result_beside_a_recording_off_speed(
+def test_a_result_is_compared_with_a_recording_off_speed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """3 % slow and wandering by 1 %, in g, with and without a tachometer on the wheel."""

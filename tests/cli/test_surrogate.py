@@ -17,7 +17,9 @@ _WORDS = ("surrogate", "train", "time-varying-friction", "force_scale=0.8 .. 1.6
           "--set", "stiffness.pair_stiffness=2e8 N/m")  # fmt: skip
 
 
-def test_a_model_is_trained_and_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_model_is_trained_and_evaluated(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "model.nc"
     assert call([*_WORDS, "--out", str(path), "--json"]) == 0
     output = json.loads(capsys.readouterr().out)
@@ -47,7 +49,7 @@ def test_a_model_is_trained_and_asked(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "exists already" in capsys.readouterr().err
 
 
-def test_a_band_that_too_few_points_leave_open_is_told(
+def test_a_band_that_too_few_points_leave_open_is_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "model.nc"

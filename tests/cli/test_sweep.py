@@ -58,7 +58,7 @@ def test_grammar(text: str, values: object) -> None:
         ("a.b=1,,2", "between two commas"),
     ],
 )
-def test_what_cannot_be_read_is_told_with_the_grammar(text: str, why: str) -> None:
+def test_a_wrong_range_is_explained_with_the_grammar(text: str, why: str) -> None:
     with pytest.raises(InputError, match=why) as caught:
         read_ranges([text])
     assert "operation.speed=400..3500 rpm:60" in str(caught.value)
@@ -145,7 +145,7 @@ def test_a_strange_directory_is_not_replaced(
     assert "thesis.tex" in capsys.readouterr().err
 
 
-def test_bifurcation_tells_what_it_found(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bifurcation_prints_its_findings(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     options = ["--sweep", "both", "--transient", "60", "--cycles", "8", *_FAST]
     assert call(["bifurcation", "fzg-roughness", _SPEEDS, *options]) == 0
     captured = capsys.readouterr()
@@ -160,7 +160,7 @@ def test_bifurcation_tells_what_it_found(folder: Path, capsys: pytest.CaptureFix
     assert "<h2>Results</h2>" in page
 
 
-def test_bifurcation_tells_where_the_step_makes_the_motion(
+def test_bifurcation_reports_where_the_step_limits_the_motion(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     over = "stiffness.mean_stiffness=1.3e7..1.7e7 N/mm:3"
@@ -216,7 +216,7 @@ bar.progress_bar = lambda: contextlib.nullcontext(Slow())
 
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["sweep", "bifurcation"])
-def test_ctrl_c_keeps_what_is_done(folder: Path, command: str) -> None:
+def test_ctrl_c_stores_finished_results(folder: Path, command: str) -> None:
     hook = folder.parent / f"{folder.name}-hook"
     hook.mkdir()
     # An interruption while a kernel is compiled ends the command: compile all of them before.

@@ -11,7 +11,7 @@ from tribodyn.errors import ComputationError, InputError
 _ENGINE = "dynamics._engine.marching.march_block"
 
 
-def test_what_one_process_compiled_the_next_one_loads() -> None:
+def test_kernels_compiled_by_one_process_are_loaded_by_the_next() -> None:
     reports = []
     for _ in range(2):
         with _children([""], 1) as results:
@@ -20,7 +20,7 @@ def test_what_one_process_compiled_the_next_one_loads() -> None:
     assert reports[1] == {"compiled": {}, "loaded": [_ENGINE]}
 
 
-def test_a_case_that_fails_is_told() -> None:
+def test_a_case_that_fails_is_reported() -> None:
     with (
         pytest.raises(ComputationError, match="kernels of nowhere"),
         _children(["nowhere"], 1) as results,
@@ -28,7 +28,7 @@ def test_a_case_that_fails_is_told() -> None:
         list(results)
 
 
-def test_what_there_is_not_is_refused_before_anything_compiles() -> None:
+def test_unknown_cases_are_refused_before_anything_compiles() -> None:
     with pytest.raises(InputError, match="nowhere"):
         tribodyn.warm_up("nowhere")
     with pytest.raises(InputError, match="jobs = 0"):

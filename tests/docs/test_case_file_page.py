@@ -27,7 +27,7 @@ _DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.mark.parametrize("page", GENERATED)
-def test_pages_show_what_the_program_writes(page: str) -> None:
+def test_pages_are_those_that_the_program_writes(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
     assert text == written(page), "run: python tests/docs/generated.py"
 

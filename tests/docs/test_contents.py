@@ -8,18 +8,18 @@ ROWS = [row for source in sources().values() for row in source["rows"]]
 COUNTS = {"S0": 51, "S1": 23, "S2": 15, "S3": 18, "S4": 17}
 
 
-def test_every_row_of_every_source_is_there() -> None:
+def test_every_row_of_every_source_is_compared() -> None:
     named = {f"{name}.{number + 1}" for name, count in COUNTS.items() for number in range(count)}
     assert sorted(row["id"] for row in ROWS) == sorted(named)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row["id"])
-def test_what_a_row_names_exists(row: dict[str, object]) -> None:
+def test_tests_and_pages_named_in_a_row_exist(row: dict[str, object]) -> None:
     assert {"tests", "figures", "tables", "reason"} & row.keys()
     assert list(missing(row)) == []
 
 
-def test_what_does_not_exist_is_noticed() -> None:
+def test_references_to_missing_tests_are_detected() -> None:
     row = {
         "tests": ["test_contents.py::test_none"],
         "figures": ["none"],

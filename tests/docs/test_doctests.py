@@ -45,7 +45,7 @@ def test_doctests(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert runner.failures == 0, "".join(complaints)
 
 
-def test_doctests_are_found() -> None:
+def test_doctests_are_collected() -> None:
     assert set(NAMES) > SLOW
     assert len(examples("tribodyn.units")) >= 4
     assert sum(len(examples(name)) for name in NAMES) >= 60

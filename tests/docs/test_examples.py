@@ -309,7 +309,7 @@ def test_example_is_a_script_with_an_optional_folder(tmp_path: Path) -> None:
     assert (tmp_path / "my-report" / "report.html").is_file()
 
 
-def test_every_example_is_known_and_numbered() -> None:
+def test_every_example_is_numbered_and_has_expected_output() -> None:
     names = [path.name for path in EXAMPLES]
     assert names == sorted(EXPECTED)
     assert [int(name[:2]) for name in names] == list(range(1, len(names) + 1))

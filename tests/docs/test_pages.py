@@ -80,7 +80,7 @@ def test_links_lead_somewhere(path: Path) -> None:
     assert broken_links(path, path.read_text("utf-8")) == []
 
 
-def test_broken_links_are_noticed(tmp_path: Path) -> None:
+def test_broken_links_are_detected(tmp_path: Path) -> None:
     page_file = tmp_path / "page.md"
     assert broken_links(page_file, "[x](nowhere.md)")
     assert broken_links(page_file, "# Title\n[x](#other)")

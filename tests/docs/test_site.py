@@ -19,7 +19,7 @@ def test_every_page_of_the_index_is_in_the_contents() -> None:
     assert pages <= set(contents(INDEX).split())
 
 
-def test_every_example_has_a_page_with_its_picture_and_what_it_prints() -> None:
+def test_every_example_has_a_page_with_its_picture_and_output() -> None:
     assert [name for _, name, _ in entries()] == [path.stem for path in EXAMPLES]
     pages = written()
     for path in EXAMPLES:
@@ -28,7 +28,7 @@ def test_every_example_has_a_page_with_its_picture_and_what_it_prints() -> None:
         assert (GALLERY / f"{path.stem}.txt").read_text("utf-8") in page
 
 
-def test_no_picture_is_left_of_an_example_that_is_gone() -> None:
+def test_no_picture_is_left_of_a_removed_example() -> None:
     assert {path.stem for path in GALLERY.iterdir()} == {path.stem for path in EXAMPLES}
 
 

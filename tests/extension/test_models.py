@@ -37,7 +37,7 @@ def test_friction_law_with_options_runs_from_a_case_file(load: Load, tmp_path: P
     )
 
 
-def test_default_and_source_of_an_option_are_told(load: Load, tmp_path: Path) -> None:
+def test_default_and_source_of_an_option_are_reported(load: Load, tmp_path: Path) -> None:
     load("friction_law")
     text = FRICTION.replace('slope = "0.5 s/m"\n', "")
     case = case_of(text, tmp_path)

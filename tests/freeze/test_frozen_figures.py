@@ -22,7 +22,7 @@ def test_figures_of_built_in_cases(case: str, current: dict[str, dict[str, Any]]
     assert set(frozen["warnings"]) <= set(current[case]["warnings"])
 
 
-def test_differences_are_found() -> None:
+def test_differences_are_detected() -> None:
     assert differences("a", {"x": 1.0}, {})
     assert differences("a", {"x": 1.0}, {"x": 1.0 + 2e-9})
     assert not differences("a", {"x": 1.0}, {"x": 1.0 + 5e-10, "y": 2.0})

@@ -40,7 +40,7 @@ def test_nothing_is_gone(kind: str, current: dict[str, Any]) -> None:
         ({"members": {"run": []}}, {"members": {"run": None}}),
     ],
 )
-def test_losses_are_found(frozen: dict[str, Any], current: dict[str, Any]) -> None:
+def test_losses_are_detected(frozen: dict[str, Any], current: dict[str, Any]) -> None:
     assert losses(frozen, current)
     assert not losses(frozen, frozen)
 

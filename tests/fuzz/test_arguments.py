@@ -174,7 +174,7 @@ def documented_film(load_per_width: ArrayLike, effective_modulus: ArrayLike) -> 
     ("1 N/mm", "not texts"), (math.nan, "not NaN"), (True, "Wanted: numbers"),
     ([[1.0], [1.0, 2.0]], "even rows"), (2j, "Give load_per_width in N/m"),
 ])  # fmt: skip
-def test_what_is_wrong_is_told_with_the_unit_of_the_documentation(value, part):
+def test_errors_use_the_unit_of_the_documentation(value, part):
     with pytest.raises(InputError) as refused:
         checked(documented_film)(value, "2 GPa")
     assert part in str(refused.value)
@@ -182,7 +182,7 @@ def test_what_is_wrong_is_told_with_the_unit_of_the_documentation(value, part):
     assert places == ["argument load_per_width", "argument effective_modulus"]
 
 
-def test_what_a_function_stumbles_over_is_told_with_its_cause():
+def test_an_error_inside_a_function_is_reported_with_its_cause():
     names: dict[str, Any] = {}
     exec('def broken(size: float):\n    return size + "x"', names)
     broken = names["broken"]
@@ -204,7 +204,7 @@ def test_what_the_package_itself_calls_is_not_read_again_but_what_its_user_calls
         inside["back"](lambda value: film(value, 2.0))  # a function that the user gave
 
 
-def test_what_a_given_function_raises_is_told_with_its_place():
+def test_an_error_of_a_callback_is_reported_with_its_location():
     def calls(function: Callable[[float], float]) -> float:
         return function(1.0)
 
@@ -223,7 +223,7 @@ def test_what_a_given_function_raises_is_told_with_its_place():
         checked(calls)(lambda: 1.0)
 
 
-def test_what_is_given_by_position_and_by_name_goes_where_it_belongs():
+def test_positional_and_keyword_arguments_reach_their_parameters():
     def several(first: int, *others: float, last: str = "") -> tuple[object, ...]:
         return first, others, last
 

@@ -117,7 +117,7 @@ def _refusal(work: Callable[[], object]) -> str:
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
-def test_check_refuses_what_run_refuses(draws: Draws) -> None:
+def test_check_refuses_the_cases_that_run_refuses(draws: Draws) -> None:
     differ, accepted = [], 0
     for rng in draws(8):
         name, changes = _draw_changes(rng)

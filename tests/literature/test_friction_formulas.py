@@ -105,7 +105,7 @@ def test_discs(disc):
     assert coefficients == pytest.approx(wanted, rel=1e-12)
 
 
-def test_misharin_is_held_where_sliding_stops_and_says_so():
+def test_misharin_is_limited_with_a_warning_where_sliding_stops():
     with pytest.warns(ModelWarning, match="friction coefficient inf, fitted for 0.02 to 0.08"):
         assert misharin(0.0, 2.0, 93e-6) == 0.08
 
@@ -191,7 +191,7 @@ def grid_of_a_power_law():
     return torque.ravel(), speed.ravel(), mu.ravel()
 
 
-def test_outside_of_the_measured_points_their_border_is_held():
+def test_friction_is_constant_outside_of_the_measured_points():
     table = grid_of_a_power_law()
     with pytest.warns(ModelWarning, match=r"800 N\*m at 600 rpm is outside"):
         beyond = measured(800.0, 600.0 * RPM, *table)

@@ -88,7 +88,7 @@ def deviation(coefficient):
         ("mixed", -0.02, -0.063, 0.17),
     ],
 )
-def test_traction_beside_the_formulas(law, first, low, high):
+def test_traction_agrees_with_the_formulas_within_bounds(law, first, low, high):
     with quiet("friction-range"):  # 3.6 GPa and 25 mm/s lie far outside of the regression.
         error = deviation(LAWS[law](traction_contacts()))
     assert error[0] == pytest.approx(first, abs=0.06)
@@ -96,7 +96,7 @@ def test_traction_beside_the_formulas(law, first, low, high):
     assert error[2:].max() == pytest.approx(high, abs=0.02)
 
 
-def test_traction_beside_the_sheared_film():
+def test_traction_agrees_with_the_sheared_film():
     contact = traction_contacts()
     usual = deviation(ehl(contact, eyring_stress=5e6))
     assert usual[0] == pytest.approx(4.9, abs=0.3)  # no pressure softens the first shear
@@ -123,7 +123,7 @@ def test_traction_beside_the_sheared_film():
         ({"eyring_stress": 8.3e6, "limiting_stress_slope": 0.07}, 8.69, -0.035, 0.143),
     ],
 )
-def test_traction_beside_films_that_thin_and_yield(numbers, first, low, high):
+def test_traction_agrees_with_films_that_thin_and_yield(numbers, first, low, high):
     error = deviation(ehl(traction_contacts(), **numbers))
     assert error[0] == pytest.approx(first, abs=0.05)
     assert error[2:].min() == pytest.approx(low, abs=0.01)
@@ -142,7 +142,7 @@ def test_slope_of_the_limit_fitted_at_one_point():
     assert np.all(np.abs(friction[3:] - TRACTION[3:, 1]) < TRACTION[3:, 2])
 
 
-def test_boundary_friction_beside_its_range():
+def test_boundary_friction_outside_its_range_gives_a_warning():
     # 100 mm/s at 100 degrees: film ratio below 1 for 5 mPa s and a worn track; the last hundred
     # points, after a film has built up.
     measured = 0.1237
@@ -160,7 +160,7 @@ def test_boundary_friction_beside_its_range():
         (pan_hamrock_central, 1.013, 0.16),
     ],
 )
-def test_film_beside_the_formulas_of_a_line(formula, mean, spread):
+def test_film_agrees_with_the_formulas_of_a_line_contact(formula, mean, spread):
     speed, film = FILM.T
     modulus = 2.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
     load, _, _ = line_of_a_ball(50.0, modulus)

@@ -203,7 +203,7 @@ def plain_sum(monkeypatch):
 
 @pytest.mark.usefixtures("plain_sum")
 @pytest.mark.parametrize(("provider", "tolerance"), [("fe2d", 0.5), ("analytic", 6.0)])
-def test_plain_sum_of_pairs_is_found_out(provider, tolerance):
+def test_plain_sum_of_pairs_is_detected(provider, tolerance):
     two = deviation(deflections(provider, 0.32424), DEFLECTIONS[0.32424])
     error = deviation(deflections(provider, 0.5206), DEFLECTIONS[0.5206])
     assert np.all(two < -tolerance)
@@ -215,7 +215,7 @@ def test_plain_sum_of_pairs_is_found_out(provider, tolerance):
 
 
 @pytest.mark.parametrize(("provider", "tolerance"), [("fe2d", 1.0), ("analytic", 6.0)])
-def test_missing_wind_up_is_found_out(provider, tolerance):
+def test_missing_wind_up_is_detected(provider, tolerance):
     for roll, expected in DEFLECTIONS.items():
         error = deviation(deflections(provider, roll, reference="rim"), expected)
         assert np.all(error < -tolerance)

@@ -95,7 +95,7 @@ def test_plain_sum_overstates_the_double_zone(pair):
     assert 1.05 < total / coupled < 1.25
 
 
-def test_iso_single_stiffness_lies_within_its_known_band(pair):
+def test_iso_single_stiffness_lies_within_its_published_band(pair):
     # Single stiffness of the standard against finite elements, rim as reference: -12 to +4 %.
     contact = path_of_contact(pair)
     middle = np.array([0.5 * (contact.A + contact.E)])

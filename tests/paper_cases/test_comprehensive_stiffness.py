@@ -84,7 +84,7 @@ def test_comprehensive_stiffness_and_its_maximum_rise_with_torque(kind):
 @pytest.mark.parametrize(
     ("kind", "expected"), [("tangent", 0.0465), ("secant", 0.349), ("seed", 0.0470)]
 )
-def test_how_much_it_rises_depends_on_what_film_stiffness_means(kind, expected):
+def test_rise_depends_on_the_kind_of_film_stiffness(kind, expected):
     assert rise(mean("torque", kind)) == pytest.approx(expected, rel=0.02)
 
 

@@ -140,7 +140,7 @@ def test_speed_matters_more_to_the_film_than_torque():
     assert speed == pytest.approx(0.696, abs=0.01)
 
 
-def test_hertz_pressure_is_what_torque_changes():
+def test_torque_changes_the_hertz_pressure():
     hertz = figures("hertz_pressure", OVER_TORQUE)
     np.testing.assert_allclose(hertz / hertz[0], np.sqrt([1.0, 3.0, 6.0]), rtol=1e-9)
     assert np.ptp(figures("hertz_pressure", OVER_SPEED)) == 0.0

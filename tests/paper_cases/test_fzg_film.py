@@ -48,7 +48,7 @@ def case() -> Any:
 
 
 @pytest.mark.parametrize("key", _GIVEN)
-def test_printed_data_are_given_not_assumed(case: Any, key: str) -> None:
+def test_printed_data_are_marked_as_given(case: Any, key: str) -> None:
     assert dict(case.values())[key] == pytest.approx(_GIVEN[key], rel=1e-12)
     assert provenance(case)[key] == "given"
 

@@ -64,7 +64,7 @@ def _figures(results: list[Any], name: str) -> list[float]:
 
 
 @pytest.mark.parametrize("key", _GIVEN)
-def test_printed_data_are_given_not_assumed(key: str) -> None:
+def test_printed_data_are_marked_as_given(key: str) -> None:
     case = td.load_case("fzg-roughness")
     assert dict(case.values())[key] == pytest.approx(_GIVEN[key], rel=1e-12)
     assert provenance(case)[key] == "given"
@@ -115,7 +115,7 @@ def test_peak_force_falls_because_friction_is_outside_of_its_range(studied: list
     assert -0.02 < capped.summary()["peak_mesh_force"] / smooth - 1.0 < 0.0
 
 
-def test_the_force_balances_both_held_torques_with_friction(studied: list[Any]) -> None:
+def test_the_force_balances_both_constant_torques_with_friction(studied: list[Any]) -> None:
     # No gear gains on the other from cycle to cycle: the force, with its moments of friction,
     # balances both torques in the mean. From the smoothest flanks to 0.12 it hardly changes.
     capped = studied[0].case.replace({"friction.law": "constant", "friction.coefficient": 0.12})
@@ -134,7 +134,7 @@ def test_the_force_balances_both_held_torques_with_friction(studied: list[Any]) 
 
 
 @pytest.mark.regression
-def test_mean_force_falls_since_both_torques_are_held(studied: list[Any]) -> None:
+def test_mean_force_falls_since_both_torques_are_constant(studied: list[Any]) -> None:
     # 2580 and 2268 N are of another program for the same equations, which is not available.
     means = _figures(studied, "mean_mesh_force")
     assert means[0] == pytest.approx(2580.0, rel=2e-3)
@@ -150,7 +150,7 @@ def test_transmission_error_falls_and_its_low_harmonics_most(studied: list[Any])
 
 
 @pytest.mark.regression
-def test_vibration_across_the_line_of_action_tells_roughness(studied: list[Any]) -> None:
+def test_vibration_across_the_line_of_action_depends_on_roughness(studied: list[Any]) -> None:
     # The factor of 5.2 across is of another program, which is not available; none along.
     across = _figures(studied, "rms_bearing_force_oloa_pinion")
     along = _figures(studied, "rms_bearing_force_loa_pinion")

@@ -50,7 +50,7 @@ def test_courses_of_figures() -> None:
 @pytest.mark.parametrize(
     ("limit", "met"), [("", (0, 1, 0)), ("most", (1, 1, 0)), ("least", (0, 1, 1))]
 )
-def test_a_limit_is_met_by_what_is_better(limit: str, met: tuple[int, ...]) -> None:
+def test_a_limit_is_met_by_better_values(limit: str, met: tuple[int, ...]) -> None:
     row = PrintedRow("", "", "", 2.0, "value", "", limit=limit)
     wanted = ["value" if each else NEITHER for each in met]
     assert verdicts([row] * 3, [1.0, 2.01, 3.0]) == wanted

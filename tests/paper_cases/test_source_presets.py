@@ -26,7 +26,7 @@ def results():
 
 
 @pytest.mark.parametrize("name", PRESETS)
-def test_preset_is_bundled_and_says_what_is_assumed(name, results):
+def test_preset_is_bundled_and_lists_its_assumptions(name, results):
     case = results[name].case
     assert td.cases()[name] == case.title
     assert case.origin
@@ -121,7 +121,7 @@ def test_friction_varies_and_vanishes_at_the_pitch_point(results):
 
 
 @pytest.mark.regression
-def test_force_without_friction_is_what_it_was():
+def test_force_without_friction_is_unchanged():
     plain = computed("time-varying-friction", {"friction.law": "none"}).summary()
     assert plain["rms_mesh_force"] == pytest.approx(283.0, abs=2.0)  # our own figure
 

@@ -100,7 +100,7 @@ def test_longer_periods_end_the_transient_early():
 
 
 @pytest.mark.parametrize("kind", ["up", "independent"])
-def test_an_interruption_keeps_what_is_finished(kind):
+def test_an_interruption_preserves_finished_results(kind):
     turns = np.linspace(0.6, 0.95, 600)
     options = {"sweep": kind, "steps": 1024, "transient": 400, "verdict": True}
     diagram = bifurcation(
@@ -169,7 +169,7 @@ def test_two_wells_share_a_symmetric_plane_evenly():
     assert np.array_equal(wells.attractor, 1 - wells.attractor[::-1, ::-1])
 
 
-def test_a_map_is_what_single_motions_are():
+def test_a_map_equals_single_motions():
     system = reference_system(0.1, gap=20e-6)
     beats, forces = [2000.0, 3000.0], [0.6, 1.2]
     parameter_map_ = parameter_map(

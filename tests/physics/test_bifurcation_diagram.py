@@ -53,7 +53,7 @@ def test_all_motions_of_the_hysteresis_are_physical(hysteresis):
     assert hysteresis.largest_exponent[:, 2] == pytest.approx(-0.05, rel=1e-6)
 
 
-def test_independent_lanes_find_what_a_sweep_finds(hysteresis):
+def test_independent_starts_agree_with_a_sweep(hysteresis):
     lanes = bifurcation(
         hysteresis_system(),
         hysteresis.mesh_frequency,
@@ -128,7 +128,7 @@ def test_a_lost_motion_leaves_the_others_alone():
 
 
 @pytest.mark.filterwarnings(r"ignore:\[step-size\]")  # coarse on purpose
-def test_a_coordinate_can_be_looked_at():
+def test_a_diagram_takes_any_coordinate():
     system, options = reference_system(), {"steps": 256, "transient": 20, "cycles": 8, "keep": 8}
     diagram = bifurcation(system, [240.0], signal="pinion_y", **options)
     orbit = steady_state(system, 240.0, steps=256)
@@ -190,7 +190,7 @@ def test_diagram_has_units_and_a_figure(hysteresis):
     assert len(figure.data) == 7
 
 
-def test_figure_greys_what_the_step_made(stiffer):
+def test_figure_greys_step_limited_motions(stiffer):
     figure = stiffer.plot()
     assert (
         figure.layout.title.text == "2 of 4 responses depend on the time step and are not physical"

@@ -90,7 +90,7 @@ def test_unstable_orbit_and_fold_by_another_method(hysteresis):
     assert multipliers_of(TURN * fold.parameter, state)[1] == pytest.approx(1.0, abs=1e-4)
 
 
-def test_branch_begins_on_the_unstable_orbit_that_is_given(hysteresis):
+def test_branch_starts_from_a_supplied_unstable_orbit(hysteresis):
     middle = orbits_at(hysteresis, 0.88 / TURN)[1]
     branch = continuation(
         lambda rate: (hysteresis_system(), rate / TURN),

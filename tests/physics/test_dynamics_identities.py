@@ -53,7 +53,7 @@ def test_fourth_order_where_the_contact_damper_makes_the_force_jump():
     assert _observed_orders(run, [256, 512, 1024]).min() > 3.8
 
 
-def test_events_not_declared_are_told():
+def test_events_not_declared_are_reported():
     """Steps across a jump have a lower order: a warning names the phase of the jump."""
     system = reference_system(0.1, events=(0.0,))
     with pytest.raises(InputError, match=r"jumps by .* at the mesh phase 0.32695"):
@@ -158,7 +158,7 @@ def test_product_of_multipliers_is_the_trace_of_the_damping():
     assert np.prod(motion.floquet_multipliers).real == pytest.approx(shrink, rel=1e-5)
 
 
-def test_momentum_of_a_free_pair_is_kept():
+def test_momentum_of_a_free_pair_is_conserved():
     """Contact and friction forces are equal and opposite: no net force on the two centres."""
     free = System(
         reference_system().mass, np.zeros((6, 6)), np.zeros((6, 6)), np.zeros(6),

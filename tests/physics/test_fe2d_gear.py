@@ -291,7 +291,7 @@ def test_solid_gear_with_its_rim_as_reference():
         fe2d_influence(gear, STEEL, cache=False)
 
 
-def test_held_circle_of_a_solid_gear_enters_by_the_shift_of_the_body_alone():
+def test_fixed_circle_of_a_solid_gear_only_shifts_the_body():
     # A body of infinite extent shifts by (1 + nu)(3 - nu) / (4 pi E) per doubling of the distance.
     gear = gear_of(40, 3e-3, 0.0, 0.0)
     rim = []

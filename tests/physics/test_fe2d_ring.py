@@ -160,7 +160,7 @@ def test_the_harmonics_give_the_ring_assembled_in_full(solved):
 
 
 @pytest.mark.parametrize("sector", [-1, 2])
-def test_displacements_of_a_sector_are_what_weights_see(solved, sector):
+def test_weights_give_the_displacements_of_a_sector(solved, sector):
     _, ring, forces, solution = solved
     moved = ring.displacement(solution, sector)
     assert moved.T @ forces == pytest.approx(

@@ -30,7 +30,7 @@ CASES = [(20.0, 10.0), (5.0, 5.0), (3.0, 12.0)]
 # The closed solutions for rigid bodies.
 
 
-def test_known_constants_of_rigid_bodies():
+def test_constants_of_rigid_bodies_agree_with_literature():
     M = 0.01
     far = rigid_film(M, -1e7)
     assert far.minimum * 16.0 * M**2 / math.pi == pytest.approx(4.89496849, abs=1e-7)
@@ -145,7 +145,7 @@ def test_rolling_traction_balances_the_moment_of_the_pressure(M, L):
 
 
 @pytest.mark.parametrize(("M", "L"), [(1.65, 19.8), (5.0, 20.0), (20.0, 10.0)])
-def test_what_a_flooded_inlet_adds_is_the_wedge_before_the_first_node(M, L):
+def test_a_flooded_inlet_adds_the_wedge_before_the_first_node(M, L):
     from scipy.integrate import quad
 
     solution = solve_line_contact_moes(M, L, domain=(-5.0, 1.8), inlet="flooded", nodes=2049)
@@ -204,7 +204,7 @@ def test_film_outside_a_loaded_contact_is_the_dry_gap():
 
 
 @pytest.mark.parametrize(("M", "L"), [(20.0, 10.0), (5.0, 5.0)])
-def test_known_film_agrees(M, L):
+def test_film_agrees_with_the_reference_scheme(M, L):
     solution = solved(M, L)
     reference = known_film(M, L, wetted(solution), inlet=-4.5)
     assert solution.central_film == pytest.approx(reference.central, rel=3e-4)

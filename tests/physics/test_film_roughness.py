@@ -143,7 +143,7 @@ def test_a_rolling_dent_carries_its_oil(smooth: TransientLineContact) -> None:
     assert abs(X[middle][np.argmax(deeper)]) < 0.15
 
 
-def test_what_the_grid_does_not_resolve_is_told() -> None:
+def test_waves_below_the_grid_resolution_are_reported() -> None:
     with pytest.warns(ModelWarning, match=r"roughness-resolution.*profile\.filtered"):
         solve(
             np.array([0.0, 1e-6]), roughness=(waviness(0.1, 1e-9), None),

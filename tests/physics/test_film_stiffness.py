@@ -130,7 +130,7 @@ def test_printed_sum_is_a_length_that_doubles_with_the_grid() -> None:
 
 
 @pytest.mark.filterwarnings("ignore:\\[starved-inlet\\]:tribodyn.errors.ModelWarning")
-def test_starved_film_that_rises_with_the_load_is_told() -> None:
+def test_starved_film_that_rises_with_the_load_is_reported() -> None:
     solution = solve_line_contact(
         49267.5, RADIUS, SPEED, OIL, MODULUS, nodes=513, domain=(-2.5, 1.5), inlet="zero"
     )

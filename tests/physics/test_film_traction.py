@@ -124,7 +124,7 @@ def test_friction_holds_the_faster_surface_back_and_drives_the_slower():
     assert backward.on_surface_2[0] < 0.0
 
 
-def test_pure_rolling_is_held_back_on_both_surfaces_alike(contact):
+def test_pure_rolling_is_resisted_equally_on_both_surfaces(contact):
     traction = film_traction(contact, 0.0)
     assert traction.sliding[0] == 0.0
     assert traction.on_surface_1[0] == traction.on_surface_2[0] == -traction.rolling[0]

@@ -60,7 +60,7 @@ def test_maximum_is_that_of_the_moving_source():
     assert closed == pytest.approx(exact, rel=0.01)
 
 
-def test_slow_surfaces_are_less_hot_than_the_formula_says():
+def test_slow_surfaces_are_cooler_than_by_the_formula():
     # the stated limit u b/(2 kappa) = 5: heat that flows along the surface is left out
     speed = 5.0 * 2.0 * CONDUCTIVITY / (CAPACITY * HALF_WIDTH)
     exact = max(moving_source(x, speed) for x in np.linspace(0.2, 0.9, 29) * HALF_WIDTH)

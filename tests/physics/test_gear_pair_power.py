@@ -132,7 +132,7 @@ def test_wheel_driving_without_friction_is_the_mirror_image():
     assert motion.position[:, 1].mean() == pytest.approx(-plain.position[:, 1].mean(), rel=1e-4)
 
 
-def test_friction_unloads_the_mesh_in_recess_with_both_torques_held():
+def test_friction_unloads_the_mesh_in_recess_at_constant_torques():
     """Most of FZG-A's path is recess for the pinion driving; with the wheel driving, approach."""
     for driver, sign in (("pinion", -1.0), ("wheel", 1.0)):
         mean = [

@@ -98,7 +98,7 @@ def test_map_of_a_wheel_is_that_of_its_pinion():
     assert standing.total.shape == (8, 8)
 
 
-def test_warnings_of_a_map_are_told_once_with_their_points():
+def test_warnings_of_a_map_are_reported_once_with_their_points():
     case = td.load_case("fzg-roughness")
     with pytest.warns(td.ModelWarning, match=r"friction-range.*holds at \d+ of 4 points") as heard:
         td.loss_map(case, torque=[90.0, 180.0], speed=["100 rpm", "900 rpm"])

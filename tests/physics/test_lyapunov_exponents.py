@@ -135,7 +135,7 @@ def test_gear_pair_has_two_free_exponents_and_the_trace_of_its_damping():
     assert result.divergence == pytest.approx(-rate, rel=1e-12)
 
 
-def test_friction_gives_the_known_multiplier():
+def test_friction_gives_the_published_multiplier():
     result = lyapunov_exponents(reference_system(0.1), 240.0, cycles=40, transient=40)
     assert np.exp(result.vibrating[0] / 240.0) == pytest.approx(0.000949, abs=5e-7)
 

@@ -171,7 +171,7 @@ def test_films_over_operation_leave_them_out_too() -> None:
     assert np.nanmin(films.central_film) == pytest.approx(4e-7, rel=0.2)
 
 
-def test_too_few_places_leave_films_out_and_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_few_positions_leave_films_out_with_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     import tribodyn.mesh.film.film_refinement as refinement
 
     monkeypatch.setattr(refinement, "MOST_ADDED", 40)
@@ -186,7 +186,7 @@ def test_too_few_places_leave_films_out_and_are_told(monkeypatch: pytest.MonkeyP
     assert np.abs(deviations(mesh, places)["film_pressure"]).max() < 0.02
 
 
-def test_flanks_that_relief_keeps_apart_are_carried_by_their_film() -> None:
+def test_flanks_separated_by_relief_are_carried_by_their_film() -> None:
     """A film as thick as the gap carries what keeps it there, at every place of the path."""
     mesh, dry = relieved(), relieved("none")
     separated = mesh.in_contact & (dry.load_share == 0.0)

@@ -105,7 +105,7 @@ def test_more_positions_are_nearer_to_the_knots() -> None:
     assert errors[1] < 0.5 * errors[0]
 
 
-def test_film_columns_solve_every_contact_for_itself() -> None:
+def test_film_columns_solve_every_contact() -> None:
     mesh = table()
     contacts, motion = touching(mesh)
     some = slice(0, 3)
@@ -148,7 +148,7 @@ def test_kinds_of_stiffness_keep_their_order() -> None:
     assert 5e9 < stiffness["tangent"] < 4e10
 
 
-def test_the_printed_sum_doubles_with_the_grid_and_says_so() -> None:
+def test_the_printed_sum_doubles_with_the_grid_and_warns() -> None:
     sums = []
     for nodes in (257, 513):
         with pytest.warns(ModelWarning, match="seed-film-stiffness"):
@@ -179,7 +179,7 @@ def test_a_starved_inlet_thins_the_film_and_more_so_at_light_load() -> None:
     assert 0.05 < loss[1] < loss[0] < 0.6
 
 
-def test_a_film_that_rises_with_the_load_counts_as_rigid_and_is_told() -> None:
+def test_a_film_that_rises_with_the_load_counts_as_rigid_and_is_reported() -> None:
     with pytest.warns(ModelWarning, match=r"film-stiffness.*counts as rigid"):
         mesh = table("wheel drives", pinion_torque=33.0, film_options={"stiffness": "tangent"})
     in_contact = mesh.in_contact
@@ -254,7 +254,7 @@ def test_films_over_operation_are_those_of_each_mesh() -> None:
     assert np.all(np.diff(films.central_film, axis=1) > 0.0)
 
 
-def test_progress_is_told_of_every_position() -> None:
+def test_progress_is_reported_for_every_position() -> None:
     reports: list[tuple[str, int]] = []
 
     class Listener:
@@ -300,7 +300,7 @@ def test_friction_of_the_film_needs_a_solved_film() -> None:
         table(friction_law="ehl", film_model="moes")
 
 
-def test_the_printed_sum_is_shown_once_and_is_no_spring() -> None:
+def test_the_printed_sum_is_plotted_once_and_is_no_spring() -> None:
     with pytest.warns(ModelWarning, match="seed-film-stiffness") as caught:
         mesh = table(film_options={"stiffness": "seed"})
     assert len(caught) == 1
@@ -327,7 +327,7 @@ def test_coupled_pairs_with_tip_contact_need_no_more_positions(kind: str) -> Non
 
 
 @pytest.mark.slow
-def test_a_pair_that_its_relief_keeps_apart_settles() -> None:
+def test_a_pair_separated_by_its_relief_settles() -> None:
     pair = fzg("pinion")
     relief = FlankModification(tip_relief=40e-6)
     relieved = replace(pair, pinion=replace(pair.pinion, modification=relief))

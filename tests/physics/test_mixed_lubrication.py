@@ -267,7 +267,7 @@ def test_regimes_by_the_film_ratio():
         ),
     ],
 )
-def test_what_is_no_roughness_is_explained(make, message):
+def test_an_invalid_roughness_is_explained(make, message):
     with pytest.raises(InputError, match=message):
         make()
 
@@ -278,7 +278,7 @@ def test_a_flat_profile_has_no_asperities():
         Asperities.from_profiles(flat)
 
 
-def test_coefficient_of_the_asperities_outside_of_its_range_is_told():
+def test_coefficient_of_the_asperities_outside_of_its_range_is_reported():
     with pytest.warns(match="boundary_friction_coefficient 0.2, fitted for 0.1 to 0.15"):
         mixed(contact(), boundary_friction_coefficient=0.2)
     with quiet("friction-range"):

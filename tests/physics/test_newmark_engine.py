@@ -118,7 +118,7 @@ def test_third_harmonic_of_the_rig():
     assert computed == pytest.approx(exact, rel=2e-3)
 
 
-def test_friction_that_follows_the_load_keeps_the_order():
+def test_load_dependent_friction_preserves_the_order():
     friction = LoadFriction(
         direction=lambda phase: friction_vector(phase, 1.0),
         coefficients=[0.08, 0.03, -0.01],

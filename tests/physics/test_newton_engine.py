@@ -151,7 +151,7 @@ def test_imposed_approach_returns_the_load_that_was_imposed(contact):
     assert load(grid.H0 - 1e-3, solved.free).load > 1.0005 * grid.load
 
 
-def test_transfer_keeps_the_load_and_a_parabola():
+def test_transfer_preserves_the_load_and_a_parabola():
     n, dx = 64, 0.1
     X = -4.0 + dx * np.arange(n + 1)
     P = np.maximum(1.03 - X, 0.0) ** 2 * (X + 4.0) * 0.02

@@ -78,7 +78,7 @@ def test_both_branches_of_the_hysteresis():
 
 
 @pytest.mark.parametrize(("first", "last", "value"), [(0.80, 0.88, LOW), (0.96, 0.88, HIGH)])
-def test_each_sweep_direction_keeps_its_branch(first, last, value):
+def test_each_sweep_direction_stays_on_its_branch(first, last, value):
     motion = _h1(first)
     for frequency in np.linspace(first, last, 9)[1:]:
         motion = _h1(frequency, _end(motion))

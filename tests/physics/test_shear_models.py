@@ -80,7 +80,7 @@ def test_slow_shear_is_newtonian_and_the_slope_is_that_of_the_stress(name):
     assert np.ravel(model.stress(np.zeros(1), limit[:1], **numbers)).tolist() == [0.0, 0.0]
 
 
-def test_what_a_model_becomes_where_its_numbers_go_to_their_ends(solved):
+def test_limits_of_the_parameters_give_the_limiting_models(solved):
     def sliding(name, **numbers):
         return film_traction(solved, 0.5, shear_model=name, **numbers).sliding
 

@@ -36,7 +36,7 @@ def test_two_motions_between_the_folds_of_the_oscillator_with_backlash() -> None
     assert sweep.to_xarray().rms.dims == ("direction", "mesh_frequency", "signal")
 
 
-def test_linear_orbits_are_those_found_one_by_one() -> None:
+def test_linear_orbits_are_those_of_single_computations() -> None:
     system = replace(reference_system(0.1), balance=[0.0, 0.0, 0.0, 0.0, 0.0, -1.0])
     beats = np.array([240.0, 1500.0, 2900.0, 5800.0])
     sweep = speed_sweep(system, beats, steps=1024)
@@ -66,7 +66,7 @@ def test_unstable_orbits_of_a_linear_system_are_marked() -> None:
     assert wild[-1] == pytest.approx(2.0 + half, abs=0.05)
 
 
-def test_a_motion_that_repeats_every_second_cycle_is_found() -> None:
+def test_a_motion_that_repeats_every_second_cycle_is_detected() -> None:
     # With backlash the instability of the Mathieu oscillator ends in a motion of two cycles
     teeth = Contact([1.0], stiffness=lambda p: 1.0 + 0.5 * np.cos(TURN * p), gap=1.0)
     system = System([[1.0]], [[0.1]], [[0.0]], [0.5], [teeth])

@@ -72,7 +72,7 @@ def test_automatic_periods_find_the_motion_that_marching_ends_in(period):
     assert np.all(distances[1:period] > 1e-2)
 
 
-def test_asked_for_one_cycle_the_unstable_orbit_is_told():
+def test_an_unstable_orbit_of_one_cycle_is_reported():
     system, frequency = case(2)
     with pytest.warns(ModelWarning, match=r'unstable-orbit.*periods = "auto"'):
         orbit = steady_state(system, frequency, steps=STEPS)
@@ -84,7 +84,7 @@ def test_asked_for_one_cycle_the_unstable_orbit_is_told():
     assert product == pytest.approx(np.exp(-0.05 / frequency), rel=1e-6)
 
 
-def test_a_motion_that_never_repeats_is_told():
+def test_a_motion_that_never_repeats_is_reported():
     system = oscillator(0.6, 0.05)
     with pytest.warns(ModelWarning, match="lyapunov_exponents") as caught:
         orbit = steady_state(system, 2.0 / (2.0 * np.pi), steps=STEPS, periods="auto")
@@ -94,7 +94,7 @@ def test_a_motion_that_never_repeats_is_told():
     assert not orbit.stable
 
 
-def test_a_motion_that_nothing_holds_is_told():
+def test_a_motion_that_grows_without_bounds_is_reported():
     with pytest.warns(ModelWarning, match="grows without bounds"):
         steady_state(oscillator(0.6, 0.02), 1.9 / (2 * np.pi), steps=STEPS, periods="auto")
     linear = oscillator(0.6, 0.02, gap=0.0)

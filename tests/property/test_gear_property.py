@@ -109,7 +109,7 @@ def test_play_from_thicknesses_equals_play_from_angles(pair: SpurPair) -> None:
 
 @FEW
 @given(pairs())
-def test_tooth_is_symmetric_and_as_thick_as_its_shift_says(pair: SpurPair) -> None:
+def test_tooth_is_symmetric_and_has_the_thickness_of_its_shift(pair: SpurPair) -> None:
     for gear in (pair.pinion, pair.wheel):
         outline = tooth_outline(gear, 100)
         assert np.array_equal(outline[0], -outline[0][::-1])

@@ -42,7 +42,7 @@ def test_every_point_is_that_of_a_run_of_its_own(changes: dict[str, object]) -> 
         assert point.warned == tuple(warning.code for warning in alone.warnings)
 
 
-def test_what_is_remembered_belongs_to_its_own_gears() -> None:
+def test_cached_values_belong_to_their_gears() -> None:
     case = td.load_case("fzg-roughness")
     usual = td.run(case).summary()
     thicker = td.run(case.replace({"gears.pinion.bore_diameter": "20 mm"})).summary()

@@ -42,7 +42,7 @@ def test_check_can_fail(check: Callable[[Module], list[str]]) -> None:
         "try:\n    x = 1\nexcept BaseException:\n    x = 2\n",
     ],
 )
-def test_each_kind_of_broad_error_is_found(text: str) -> None:
+def test_each_kind_of_broad_error_is_detected(text: str) -> None:
     assert code_checks.broad_errors(read(text))
 
 

@@ -24,7 +24,7 @@ FUNCTIONS = {
 }
 
 
-def test_folders_can_be_looked_over() -> None:
+def test_folders_can_be_listed() -> None:
     crowded = size_checks.crowded_folders([module.path for module in modules()], FOLDERS)
     assert not crowded, "\n".join(crowded)
 
@@ -39,7 +39,7 @@ def test_inner_names_have_short_docstrings() -> None:
     assert len(long) <= LONG_DOCSTRINGS, "\n".join(long)
 
 
-def test_a_new_crowded_folder_and_a_grown_one_are_found() -> None:
+def test_a_new_crowded_folder_and_a_grown_one_are_detected() -> None:
     paths = [f"a/b/{number}.py" for number in range(17)]
     assert size_checks.crowded_folders(paths, {})
     assert not size_checks.crowded_folders(paths, {"a/b": 17})
@@ -47,7 +47,7 @@ def test_a_new_crowded_folder_and_a_grown_one_are_found() -> None:
     assert not size_checks.crowded_folders([*paths[:16], "a/b/__init__.py"], {})
 
 
-def test_a_function_of_many_arguments_is_found() -> None:
+def test_a_function_of_many_arguments_is_detected() -> None:
     text = f"def f({', '.join('abcdefghi')}):\n    return a\n"
     assert size_checks.crowded_functions([read(text)], {})
     assert not size_checks.crowded_functions([read(text)], {"f": 9})
@@ -55,7 +55,7 @@ def test_a_function_of_many_arguments_is_found() -> None:
     assert not size_checks.crowded_functions([read(f"@njit(cache=True)\n{text}")], {})
 
 
-def test_a_long_docstring_off_the_page_is_found() -> None:
+def test_a_long_docstring_off_the_page_is_detected() -> None:
     text = 'def f():\n    """One.\n\n    Two.\n    """\n'
     assert size_checks.long_inner_docstrings(read(text))
     assert not size_checks.long_inner_docstrings(read(text, page='__all__ = ["f"]\n'))

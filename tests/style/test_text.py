@@ -31,21 +31,21 @@ def test_only_known_hosts() -> None:
 
 
 @pytest.mark.parametrize("start", ["home", "work", "tmp", "root"])
-def test_machine_paths_are_found(start: str) -> None:
+def test_machine_paths_are_detected(start: str) -> None:
     assert machine_paths("x", f'open("/{start}/file")')
     assert machine_paths("x", f"see /{start}/file")
     assert not machine_paths("x", f"docs/{start}/file and $HOME/{start}/x")
     assert machine_paths("x", "C:" + chr(92) + "Users")
 
 
-def test_strange_hosts_are_found() -> None:
+def test_unknown_hosts_are_detected() -> None:
     address = "https:" + "//"
     assert strange_hosts("x", address + "mirror.local/simple")
     assert strange_hosts("x", address + "doi.org:8080/x")
     assert not strange_hosts("x", address + "doi.org/10.1/x")
 
 
-def test_files_of_the_repository_are_found() -> None:
+def test_files_of_the_repository_are_listed() -> None:
     names = {name for name, _ in contents()}
     assert {"README.md", "pyproject.toml", ".ci/run", "src/tribodyn/units.py"} <= names
 

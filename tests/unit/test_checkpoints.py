@@ -88,7 +88,7 @@ def test_members_of_a_saved_study_are_cleared_unless_it_was_interrupted(tmp_path
         assert (tmp_path / ".s.members").exists() is not complete
 
 
-def test_nothing_is_kept_without_a_place() -> None:
+def test_nothing_is_stored_without_a_folder() -> None:
     members = Checkpoints().begin(_STUDY)
     members.keep("0", 1.0)
     assert members.get("0") is None

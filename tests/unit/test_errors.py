@@ -111,7 +111,7 @@ def test_warning_carries_code_and_the_place_of_the_caller() -> None:
     assert record.filename == __file__
 
 
-def test_a_place_is_told_as_the_caller_writes_it() -> None:
+def test_a_path_is_reported_as_the_caller_writes_it() -> None:
     assert str(Argument("teeth")) == "argument teeth"
     assert str(Argument("modification.run_out", gear="wheel")) == (
         "argument wheel_modification.run_out"
@@ -152,18 +152,18 @@ def test_whole_numbers_numbers_and_flags_have_one_too(check):
         require_one_of("inlet", "dry", ("flooded", "zero"))
 
 
-def test_a_resonance_is_told_in_the_units_of_engineers():
+def test_a_resonance_is_printed_in_engineering_units():
     met = Resonance(100.0 * math.pi, 1250.0, 2500.0, 2, 3, 0.4, 0.02)
     assert repr(met) == "Resonance(order 2 meets mode 3 of 2500 Hz at 3000 rpm)"
 
 
-def test_what_follows_a_quoted_word_is_told_whole():
+def test_text_after_a_quoted_word_is_not_shortened():
     names = ", ".join(f"figure_{number}" for number in range(60))
     message = str(InputError("no figure", why=f'compute = "summary" gives {names}'))
     assert message.endswith("figure_59.")
 
 
-def test_a_long_value_is_cut_and_told_to_be():
+def test_a_long_value_is_shortened_visibly():
     message = str(InputError(f'name = "{"ab " * 200}"'))
     assert len(message) < 230
     assert message.endswith("...")

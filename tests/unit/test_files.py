@@ -94,7 +94,7 @@ def test_without_exchange_a_failing_rename_brings_the_old_result_back(
     assert os.listdir(tmp_path) == ["r"]
 
 
-def test_what_a_living_process_writes_is_left_alone(tmp_path: Path) -> None:
+def test_files_of_a_running_process_are_left_alone(tmp_path: Path) -> None:
     place = tmp_path / "r"
     with atomic_write(place, folder=True) as partial:
         clear_leftovers(place)
@@ -138,12 +138,12 @@ def test_a_copy_of_the_user_is_no_leftover(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["x" * 300, "a\0b"])
-def test_a_name_that_no_disk_takes_is_told(tmp_path: Path, name: str) -> None:
+def test_an_impossible_file_name_is_reported(tmp_path: Path, name: str) -> None:
     with pytest.raises(InputError, match="cannot write"), atomic_write(tmp_path / name):
         pass
 
 
-def test_a_full_disk_is_told_with_the_place(tmp_path: Path) -> None:
+def test_a_full_disk_is_reported_with_the_path(tmp_path: Path) -> None:
     caught = pytest.raises(ComputationError, match="r: cannot write: no space")
     with caught, atomic_write(tmp_path / "r", folder=True):
         raise OSError(errno.ENOSPC, "no space left on device")

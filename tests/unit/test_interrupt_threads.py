@@ -150,7 +150,7 @@ def test_flags_are_of_the_threads_that_one_call_began():
     assert flags[0][0] is not inner[0][0]
 
 
-def test_what_is_brief_is_computed_where_it_is_asked_for():
+def test_brief_work_stays_in_the_calling_thread():
     threads = in_threads(lambda _: threading.get_ident(), range(3), 1, brief=True)
     assert set(threads) == {threading.get_ident()}
 

@@ -36,7 +36,7 @@ def test_names_keep_the_order_of_registration() -> None:
     assert laws["xu-2007"] == "x"
 
 
-def test_register_returns_what_it_decorates() -> None:
+def test_register_returns_the_decorated_object() -> None:
     def law() -> None: ...
 
     assert Registry("law").register("a")(law) is law

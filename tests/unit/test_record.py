@@ -64,7 +64,7 @@ def test_equality_goes_by_every_field_and_knows_nan() -> None:
     assert level() != 3
 
 
-def test_shown_in_one_line_and_as_a_table() -> None:
+def test_displayed_in_one_line_and_as_a_table() -> None:
     assert repr(level()) == "Level(speed: 2, gear: 2, teeth 24)"
     page = level()._repr_html_()
     assert "<td>rad/s</td>" in page
@@ -95,7 +95,7 @@ class Outer:
     level = level(7.0)
 
 
-def test_a_result_draws_itself_by_the_figure_of_its_class(figure: Drawing) -> None:
+def test_a_result_is_plotted_by_the_figure_of_its_class(figure: Drawing) -> None:
     assert level().plot(scale=2.0) == 6.0
     assert draw(Outer(), "level-of-test") == 7.0
     assert "level-of-test" in figures_of(level())

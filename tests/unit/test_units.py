@@ -98,7 +98,7 @@ def test_an_angle_is_no_pure_number(text: str, unit: str) -> None:
         parse(text, unit)
 
 
-def test_split_keeps_what_was_written() -> None:
+def test_split_preserves_the_spelling() -> None:
     assert split("  -4.5e-3   N·m ") == (-0.0045, "N·m")
     assert split("7") == (7.0, "")
 
@@ -178,7 +178,7 @@ def test_usual_units_do_not_load_pint() -> None:
         ("12,34,5 N", []),
     ],
 )
-def test_what_a_number_with_separators_may_mean(text: str, meant: list[str]) -> None:
+def test_a_number_with_separators_is_read_or_refused(text: str, meant: list[str]) -> None:
     assert readings(text) == meant
     if meant:
         with pytest.raises(UnitProblemError) as caught:

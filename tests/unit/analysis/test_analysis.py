@@ -90,7 +90,7 @@ def test_direction_indicator(motion):
     assert line_of_action_indicator(motion.fine, 0 * wave, wave) == float("inf")
 
 
-def test_what_the_step_cannot_resolve_is_refused(motion):
+def test_harmonics_beyond_the_resolution_are_refused(motion):
     with pytest.raises(InputError, match="resolved up to harmonic"):
         mesh_harmonics(motion, _wave(motion), 100)
     with pytest.raises(InputError, match="one signal"):

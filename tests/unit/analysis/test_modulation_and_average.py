@@ -53,7 +53,7 @@ def test_half_amplitude_at_the_ends_of_the_band():
 
 
 @pytest.mark.parametrize(("depth", "index"), [(0.4, 0.0), (0.0, 0.9), (0.3, 0.5)])
-def test_amplitude_and_phase_modulation_are_told_apart(depth, index):
+def test_amplitude_and_phase_modulation_are_distinguished(depth, index):
     bands = sidebands(modulated(depth, index), RATE, CARRIER, SHAFT, count=7)
     assert bands.amplitude_modulation == pytest.approx(depth, abs=1e-5)
     assert bands.phase_modulation == pytest.approx(index, abs=1e-5)
@@ -115,7 +115,7 @@ def gear(angle):
     return 2.0 * np.cos(TEETH * angle + 0.2) + 0.5 * np.cos(2 * TEETH * angle) + np.cos(angle)
 
 
-def test_average_keeps_what_turns_with_the_shaft():
+def test_average_preserves_signals_synchronous_with_the_shaft():
     other = 0.3 * np.cos(7.37 * TURNING)
     mean = time_synchronous_average(
         gear(TURNING) + other, TIME, teeth=TEETH, rotation=TURNING, mesh_harmonics=3, unit="N"

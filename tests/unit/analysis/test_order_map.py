@@ -104,7 +104,7 @@ def test_coarse_sampling_is_refined():
     assert refined.cut(16).amplitude[1:-1] == pytest.approx(1.0, rel=0.01)
 
 
-def test_resampling_keeps_the_wave():
+def test_resampling_preserves_the_wave():
     resampled = angular_resampling(
         np.cos(7 * ROTATION + 0.2), TIME, ROTATION, samples_per_revolution=64
     )

@@ -78,7 +78,7 @@ def test_same_as_scipy_welch():
     np.testing.assert_allclose(density.amplitude, other, rtol=1e-10)
 
 
-def test_zoom_tells_two_close_lines_apart():
+def test_zoom_separates_two_close_lines():
     zoom = zoom_spectrum(wave(50.0, 2.0) + wave(56.3, 1.0), RATE, 45.0, 60.0, points=1501)
     lower, far = zoom.frequency < 53.0, zoom.frequency > 53.0
     for part, frequency, amplitude in ((lower, 50.0, 2.0), (far, 56.3, 1.0)):
@@ -87,7 +87,7 @@ def test_zoom_tells_two_close_lines_apart():
         assert zoom.amplitude[part][top] == pytest.approx(amplitude, rel=0.005)
 
 
-def test_spectrogram_follows_a_jump_and_keeps_the_mean_square():
+def test_spectrogram_follows_a_jump_and_preserves_the_mean_square():
     signal = np.where(TIME < 0.5, wave(100.0, 1.0), wave(200.0, 3.0))
     spectrogram_ = spectrogram(signal, RATE, block_length=100, unit="m/s^2")
     early, late = spectrogram_.time < 0.4, spectrogram_.time > 0.6
@@ -179,7 +179,7 @@ def test_orders_of_a_shaft_that_turns_as_fast_as_the_mains_are_not_doubted(rotat
         assert "mains" not in repr(peaks)
 
 
-def test_mains_beside_a_shaft_are_still_flagged():
+def test_mains_near_a_shaft_order_are_still_flagged():
     """A two-pole motor with slip: the shaft turns at 49.2 Hz, the mains stand at 50 Hz."""
     for speed in (None, 2.0 * np.pi * 49.2):
         peaks = shaft_at(49.2, mains=0.4).peaks(6, speed=speed)

@@ -59,7 +59,7 @@ def test_a_motion_at_rest_is_physical():
     assert section.verdict == "physical"
 
 
-def test_a_known_motion_is_judged_with_its_system():
+def test_a_motion_has_a_verdict_if_its_system_is_given():
     system = hysteresis_system()
     orbit = steady_state(system, BEAT, start=START)
     assert poincare(orbit).verdict == ""

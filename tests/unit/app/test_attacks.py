@@ -127,7 +127,9 @@ def test_another_host_name_is_refused(user: Browser, host: str) -> None:
         {"Sec-Fetch-Site": "same-site"},
     ],
 )
-def test_another_site_cannot_ask(user: Browser, desk: str, headers: dict[str, str]) -> None:
+def test_requests_of_another_site_are_refused(
+    user: Browser, desk: str, headers: dict[str, str]
+) -> None:
     assert user.ask(desk, "view", "files", headers=headers).status_code == 403
     assert user.get("/", **headers).status_code == 403
 
@@ -138,7 +140,7 @@ def test_a_form_of_another_site_cannot_be_sent_here(user: Browser) -> None:
     assert sent.status_code == 415
 
 
-def test_the_page_cannot_be_framed_and_loads_nothing_from_elsewhere(user: Browser) -> None:
+def test_the_page_cannot_be_framed_and_loads_no_external_files(user: Browser) -> None:
     policy = user.get("/").headers["Content-Security-Policy"]
     assert "frame-ancestors 'none'" in policy
     assert "default-src 'self'" in policy
@@ -197,7 +199,7 @@ BOMBS = {
 
 
 @pytest.mark.parametrize("bomb", BOMBS)
-def test_a_bomb_is_refused_in_words(user: Browser, desk: str, home: Path, bomb: str) -> None:
+def test_a_bomb_is_refused_with_a_message(user: Browser, desk: str, home: Path, bomb: str) -> None:
     (home / "bomb.toml").write_text(BOMBS[bomb])
     message = message_of(user.ask(desk, "open", "file:bomb.toml"))
     assert "bad" in message

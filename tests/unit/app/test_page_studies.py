@@ -35,7 +35,7 @@ _FEW = {
 
 
 @pytest.mark.parametrize("kind", STUDIES)
-def test_every_study_shows_and_saves_what_it_finds(kind: str, tmp_path: Path) -> None:
+def test_every_study_displays_and_saves_its_result(kind: str, tmp_path: Path) -> None:
     case = load_case("fzg-roughness")
     if kind in ("continuation", "basins", "lyapunov"):  # exponents take a single coefficient
         case = case.replace({"stiffness.model": "analytic", "friction.law": "none"})
@@ -48,7 +48,7 @@ def test_every_study_shows_and_saves_what_it_finds(kind: str, tmp_path: Path) ->
     assert any(path.suffix == ".html" for path in (tmp_path / "result").iterdir())
 
 
-def test_a_range_that_is_none_is_told_with_one_that_is() -> None:
+def test_a_wrong_range_is_explained_with_an_example() -> None:
     with pytest.raises(InputError, match=r'"fast".*Write for example "90 N\*m"'):
         STUDIES["harris"].compute(load_case("fzg-roughness"), {"torque": "fast"}, SILENT, Path())
 

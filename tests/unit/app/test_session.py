@@ -46,7 +46,7 @@ def shown_parts(desk: TabSession) -> list[Any]:
 
 
 @pytest.mark.parametrize("name", case_files())
-def test_every_given_value_has_its_field_and_the_pair_is_drawn(desk: TabSession, name: str) -> None:
+def test_every_typed_value_has_its_field_and_the_pair_is_drawn(desk: TabSession, name: str) -> None:
     desk.take(load_case(name), "")
     displayed = fields(desk)
     typed_keys = [

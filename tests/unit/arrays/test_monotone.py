@@ -19,6 +19,6 @@ def test_values_and_slopes_are_those_of_scipy(shape: tuple[int, ...]) -> None:
 
 
 @pytest.mark.parametrize(("x", "y"), [([0.0], [1.0]), ([0, 0], [1, 2]), ([0, 1], [0, np.nan])])
-def test_what_is_no_curve_is_refused(x: list[float], y: list[float]) -> None:
+def test_invalid_curves_are_refused(x: list[float], y: list[float]) -> None:
     with pytest.raises(ValueError, match="two places or more"):
         monotone_cubic(np.array(x), np.array(y))

@@ -62,7 +62,7 @@ def test_whoever_comes_first_compiles_and_the_other_waits_for_it(tmp_path: Path)
     writer.join()
 
 
-def test_what_an_ended_process_left_is_compiled_here(tmp_path: Path) -> None:
+def test_kernels_of_an_ended_process_are_compiled_by_the_waiting_one(tmp_path: Path) -> None:
     kernel = _Kernel(_Cache())
     assert not CacheLock(tmp_path).retry_load("builtins.len a", lambda: None)
     with locked(CacheLock(tmp_path, lambda: False)):

@@ -59,7 +59,7 @@ def test_wrong_values_are_refused(arguments: tuple[float, float, float], name: s
         hertz_line(*arguments)
 
 
-def test_ellipse_of_known_figures():
+def test_ellipse_has_published_dimensions():
     # A = 1/m and B = 16.3/m under 5 kN.
     ellipse = hertz_ellipse(5000.0, 0.5, 0.5 / 16.3, 2.2637e11)
     assert ellipse.first_semi_axis == pytest.approx(3.61194e-3, rel=2e-6)

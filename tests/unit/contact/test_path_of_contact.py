@@ -55,7 +55,7 @@ def contact_of(name: str, driver: str = "pinion", **changes: Any) -> PathOfConta
 
 
 @all_pairs
-def test_samples_are_what_they_are_called(name: str) -> None:
+def test_samples_agree_with_their_names(name: str) -> None:
     contact = contact_of(name)
     first_double = contact.A < contact.C < contact.B
     single = contact.B < contact.C < contact.D

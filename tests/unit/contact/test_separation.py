@@ -91,7 +91,7 @@ def test_reference_values() -> None:
 @pytest.mark.parametrize("driver", ["pinion", "wheel"])
 @pytest.mark.parametrize("name", PAIRS)
 @pytest.mark.parametrize("pitches", [0.02, 0.05, 0.15])
-def test_outlines_meet_where_it_says(name: str, driver: str, pitches: float) -> None:
+def test_outlines_meet_at_the_computed_separation(name: str, driver: str, pitches: float) -> None:
     pair = spur_pair(**PAIRS[name], driver=driver)
     low, high = pair.path_limits
     for path in (low - pitches * pair.base_pitch, high + pitches * pair.base_pitch):
@@ -124,7 +124,9 @@ def test_it_begins_with_zero_slope_as_a_square(name: str) -> None:
         assert gap / off**2 == pytest.approx(np.full(3, gap[1] / off[1] ** 2), rel=0.01)
 
 
-def test_the_corner_keeps_its_curvature_and_the_mate_is_met_above_its_lowest_point() -> None:
+def test_the_tip_corner_contact_has_its_curvature_and_meets_the_mate_above_its_lowest_point() -> (
+    None
+):
     pair = spur_pair(**FZG_A)
     low, high = pair.path_limits
     length, off = pair.line_of_action_length, 0.05 * pair.base_pitch
@@ -157,7 +159,7 @@ def test_driver_does_not_matter() -> None:
         assert np.array_equal(distance, other)
 
 
-def test_equal_gears_are_alike_on_both_ends() -> None:
+def test_equal_gears_are_symmetric_at_both_ends() -> None:
     pair = spur_pair(
         pinion_teeth=25, wheel_teeth=25, normal_module=4e-3,
         normal_pressure_angle=math.radians(20.0), pinion_face_width=20e-3,

@@ -144,7 +144,7 @@ def test_table_meets_the_entries_and_takes_sides_at_events():
         assert row_at(table, phase)[0] == pytest.approx(truth, rel=2e-11)
 
 
-def test_a_table_with_knots_keeps_the_tolerance():
+def test_a_table_with_grid_points_meets_the_tolerance():
     knots = np.linspace(0.0, 1.0, 24)
 
     def polygon(phase):

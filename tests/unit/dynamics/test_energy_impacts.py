@@ -55,7 +55,7 @@ def test_a_pair_of_gears_that_separates():
     assert min(abs(results[0].friction), results[0].dissipated, results[0].parametric) > 0.01
 
 
-def test_two_flanks_that_open_at_one_place_lose_what_one_does():
+def test_two_flanks_that_open_together_lose_energy_as_one_does():
     half = Contact([1.0], stiffness=20.0, damping=0.75, gap=1.0)
     twins = System([[1.0]], [[0.0]], [[0.0]], [-1.0], [half, half])
     single, double = (

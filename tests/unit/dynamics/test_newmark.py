@@ -36,7 +36,7 @@ def march(system, frequency, start, **options):
 
 @pytest.mark.parametrize("system", [FREE, MESHED])
 @pytest.mark.parametrize("number", [0.1, 1.0, 40.0])
-def test_average_acceleration_turns_by_the_known_angle(system, number):
+def test_average_acceleration_turns_by_the_angle_of_its_closed_form(system, number):
     # theta = 2 arctan(omega h / 2): the period is too long by theta's error, the energy constant
     frequency = RATE / (number * STEPS)
     turned = 2.0 * np.arctan(0.5 * number) * STEPS * CYCLES

@@ -11,7 +11,7 @@ from tribodyn.dynamics import steady_state
 from tribodyn.dynamics.orbits.orbit_map import newton_step
 
 
-def test_what_no_step_takes_away_counts():
+def test_newton_step_includes_the_residual_that_no_step_removes():
     # Free flight over a period of 1: the place gains the speed, the speed gains 0.1.
     matrix = np.array([[1.0, 1.0], [0.0, 1.0]])
     step, distance = newton_step(matrix, np.array([0.3, 0.1]))

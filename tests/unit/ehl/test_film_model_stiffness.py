@@ -56,7 +56,7 @@ def test_stiffness_is_in_proportion_to_the_length():
         films("moes", length=0.0)
 
 
-def test_what_a_formula_does_not_know_is_none():
+def test_quantities_missing_in_a_formula_are_none():
     dowson, moes, none = (films(name) for name in ("dowson-higginson", "moes", "none"))
     assert dowson.minimum_film < dowson.central_film
     assert moes.minimum_film is None
@@ -93,7 +93,7 @@ def test_options_are_completed():
     assert FILM_MODELS["moes"].complete({"stiffness": None}) == {"stiffness": "none"}
 
 
-def test_an_approach_that_rises_with_the_load_is_told():
+def test_an_approach_that_rises_with_the_load_is_reported():
     # On either side, at M 0.6 and 0.8, the distance falls with the load.
     for load, warns in ((0.6, False), (0.7, True), (0.8, False)):
         contact = solve_line_contact_moes(load, 25.0, domain="auto", inlet="flooded", nodes=513)

@@ -160,7 +160,7 @@ def test_plain_solution_does_not_depend_on_the_start():
 
 
 @pytest.mark.slow
-def test_plain_solver_says_that_it_fails():
+def test_plain_solver_reports_failure():
     with pytest.raises(ComputationError, match="plain solver stopped"):
         solve_plain(make(128, 20.0, 10.0), flux_tolerance=0.0)
 

@@ -51,20 +51,20 @@ def test_the_estimate_bounds_the_error(draws):
 @pytest.mark.parametrize(
     ("M", "L", "nodes"), [(860.0, 9.0, 513), (860.0, 9.0, 2049), (399.8, 4.16, 513)]
 )
-def test_a_film_that_is_far_off_is_told(M, L, nodes):
+def test_a_film_that_is_far_off_is_reported(M, L, nodes):
     with pytest.warns(ModelWarning, match=r"\[film-resolution\].*Use nodes = \"auto\""):
         coarse = solve_line_contact_moes(M, L, nodes=nodes, **THIN)
     fine = _figures(_solved(M, L, nodes=16385, **THIN))
     assert np.all(np.abs(_figures(coarse) - fine) <= _errors(coarse))
 
 
-def test_nodes_that_were_raised_are_told():
+def test_raised_numbers_of_nodes_are_reported():
     with pytest.warns(ModelWarning, match=r"since 65 nodes gave no solution"):
         raised = solve_line_contact_moes(399.8, 4.16, nodes=65, **THIN)
     assert raised.nodes > 65
 
 
-def test_a_resolved_film_is_not_told():
+def test_a_resolved_film_gives_no_warning():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         solution = solve_line_contact(147802.0, 8e-3, 3.0722, OIL, 2.2e11, nodes=513)
@@ -72,7 +72,7 @@ def test_a_resolved_film_is_not_told():
     assert 0.0 < solution.pressure_error < 0.5 * solution.pressure.max()
 
 
-def test_the_worst_of_many_contacts_is_told():
+def test_the_worst_of_many_contacts_is_reported():
     with pytest.warns(ModelWarning, match=r"film-resolution.* of 2 contacts .*contact \[1\]"):
         films = solve_line_contacts([147802.0, 9e5], 8e-3, [3.0722, 0.02], OIL, 2.2e11, nodes=257)
     assert films.central_film_error[1] > 0.02 * films.central_film[1]
@@ -97,7 +97,7 @@ def test_the_estimate_bounds_the_error_of_a_domain_that_begins_too_near(draws):
 
 
 @pytest.mark.slow
-def test_the_film_of_a_case_tells_too_few_nodes():
+def test_the_film_of_a_case_warns_of_too_few_nodes():
     slow = td.load_case("fzg-film").replace(
         {"film.nodes": 129, "operation.speed": "20 rpm", "film.positions": 8}
     )

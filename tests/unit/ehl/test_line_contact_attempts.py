@@ -34,7 +34,7 @@ def broken(_):
     return Outcome(False, None, 0, (), "it is broken")
 
 
-def test_other_engine_steps_in_and_is_told(monkeypatch):
+def test_fallback_engine_is_used_and_reported(monkeypatch):
     monkeypatch.setitem(ENGINES._items, "multigrid", broken)
     solution = solve_problem(problem(), "multigrid")
     assert solution.method == "newton"
@@ -42,7 +42,7 @@ def test_other_engine_steps_in_and_is_told(monkeypatch):
     assert solution.check.complaint(1e-3) == ""
 
 
-def test_error_tells_all_attempts(monkeypatch):
+def test_error_lists_all_attempts(monkeypatch):
     for name in ("newton", "multigrid"):
         monkeypatch.setitem(ENGINES._items, name, broken)
     stuck = Outcome(False, None, 0, (), "continuation stopped at 0.3 of the way")
@@ -66,7 +66,7 @@ def test_error_tells_all_attempts(monkeypatch):
         (lambda g: replace(g, lam=1.01 * g.lam), "flux error"),
     ],
 )
-def test_wrong_solutions_are_found_out(monkeypatch, spoil, message):
+def test_wrong_solutions_are_detected(monkeypatch, spoil, message):
     right = newton_engine(problem())
     assert verify(right.grid).complaint(1e-3) == ""
     wrong = replace(right, grid=spoil(right.grid))
@@ -78,7 +78,7 @@ def test_wrong_solutions_are_found_out(monkeypatch, spoil, message):
         solve_problem(problem(), "newton")
 
 
-def test_outlet_in_the_wrong_place_is_found_out():
+def test_outlet_in_the_wrong_place_is_detected():
     right = newton_engine(problem())
     early = problem(tail=right.grid.tail)
     k = right.grid.free - 6
@@ -114,7 +114,7 @@ def test_first_grid_resolves_the_inlet():
     assert first_intervals(problem(20.0, 10.0, 1001)) == 125
 
 
-def test_rounding_is_told():
+def test_rounding_is_reported():
     with pytest.raises(ComputationError, match="rounding keeps the flux error"):
         solve_line_contact_moes(
             300, 4, nodes=8193, domain="auto", inlet="flooded", flux_tolerance=1e-11,

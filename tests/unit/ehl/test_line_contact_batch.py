@@ -62,7 +62,7 @@ def test_stiffness_and_solutions_are_optional():
     assert batch.film_stiffness.size == batch.solutions.size == 0
 
 
-def test_rising_films_are_told_once():
+def test_rising_films_are_reported_once():
     with pytest.warns(ModelWarning, match=r"of 2 of 3 contacts, the first of them \[0\]") as caught:
         batch = solve_line_contacts([3e4, 3.5e4, 2e5], 8e-3, 3.0, OIL, 2.2e11, nodes=257)
     assert len(caught) == 1

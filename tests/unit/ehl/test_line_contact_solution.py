@@ -146,7 +146,7 @@ def test_automatic_nodes_say_when_they_do_not_suffice():
     assert solution.nodes == 16385
 
 
-def test_starved_inlet_is_told_once_it_is_si():
+def test_starved_inlet_is_reported_for_si_input():
     with pytest.warns(ModelWarning, match=r"\[starved-inlet\] The oil begins at X = -2.5"):
         starved = solve_line_contact(*CONTACT, domain=(-2.5, 1.5), inlet="zero", nodes=257)
     flooded = solve_line_contact(*CONTACT, nodes=257)
@@ -158,7 +158,7 @@ def test_starved_inlet_is_told_once_it_is_si():
         solve_line_contact_moes(20, 10, nodes=1025)
 
 
-def test_domain_that_cuts_the_outlet_is_told():
+def test_domain_that_cuts_the_outlet_is_reported():
     with pytest.warns(ModelWarning, match="outlet-cut"):
         solve_line_contact(5e3, *CONTACT[1:], domain=(-40.0, 1.5), nodes=257)
 

@@ -69,7 +69,7 @@ def test_share_of_short_waves() -> None:
     assert RoughnessProfile(X, 0.0 * X).short_wave_share(1e-5) == 0.0
 
 
-def test_unresolved_waves_are_told() -> None:
+def test_unresolved_waves_are_reported() -> None:
     profile = RoughnessProfile(X[:-1], sine(1e-4)[:-1], "periodic")
     warn_if_unresolved(profile, 1e-4 / 17.0)
     with pytest.warns(ModelWarning, match="roughness-resolution"):
@@ -87,7 +87,9 @@ def test_unresolved_waves_are_told() -> None:
         (X, X, "repeat", "Known: refuse, periodic, level"),
     ],
 )
-def test_what_is_no_profile(position: object, height: object, beyond: str, message: str) -> None:
+def test_invalid_profiles_are_refused(
+    position: object, height: object, beyond: str, message: str
+) -> None:
     with pytest.raises(InputError, match=message):
         RoughnessProfile(position, height, beyond)  # type: ignore[arg-type]
 

@@ -105,7 +105,7 @@ def test_grid_reaches_further_for_thick_films() -> None:
 
 
 @pytest.mark.filterwarnings("ignore:\\[outlet-cut\\]:tribodyn.errors.ModelWarning")
-def test_a_grid_that_ends_in_the_film_is_told() -> None:
+def test_a_grid_that_ends_in_the_film_is_reported() -> None:
     time = np.linspace(0.0, 2e-4, 9)
     with pytest.warns(ModelWarning, match="transient-outlet"):
         solve(time=time, load_per_width=147802.0 * (0.05 + time / 2e-4), domain=(-8.0, 1.1))

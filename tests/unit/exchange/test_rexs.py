@@ -116,7 +116,7 @@ def attribute(tree: dict[str, Any], number: int, name: str, case: int = 0) -> di
     return next(a for a in part["attributes"] if a["id"] == name)
 
 
-def test_a_spur_stage_becomes_a_case_that_tells_what_was_assumed(tree, tmp_path) -> None:
+def test_a_spur_stage_becomes_a_case_that_lists_its_assumptions(tree, tmp_path) -> None:
     model = read_rexs(stored(tree, tmp_path))
     case = case_from_rexs(model, 20, 3)
     assert (case.gears.pinion.teeth, case.gears.wheel.teeth) == (23, 34)
@@ -142,7 +142,7 @@ def test_the_driver_follows_from_the_sign_of_the_torque(tree, tmp_path) -> None:
     assert [case_from_rexs(model, n, 2).gears.driver for n in (19, 20)] == ["pinion", "pinion"]
 
 
-def test_what_the_file_lacks_is_asked_for(tree, tmp_path) -> None:
+def test_data_missing_in_the_file_are_requested(tree, tmp_path) -> None:
     del tree["model"]["load_spectrum"]
     model = read_rexs(stored(tree, tmp_path))
     with pytest.raises(InputError, match="speed and torque of stage 19 are not known"):
@@ -165,7 +165,7 @@ def test_what_the_file_lacks_is_asked_for(tree, tmp_path) -> None:
         case_from_rexs(model, 19, 7)
 
 
-def test_shifts_that_do_not_fit_the_distance_are_told(tree, tmp_path) -> None:
+def test_shifts_that_do_not_fit_the_distance_are_reported(tree, tmp_path) -> None:
     attribute(tree, 19, "center_distance")["floating_point"] += 0.1
     remarks = read_rexs(stored(tree, tmp_path)).remarks
     assert any("the profile shifts sum up to 0.4628" in remark for remark in remarks)
@@ -253,14 +253,14 @@ def test_a_relief_from_a_diameter_on_is_as_long_as_the_involute_rolls(tmp_path: 
          "is not on the flank"),
     ],
 )  # fmt: skip
-def test_a_form_that_a_case_has_not_is_told_and_left_out(tree, tmp_path, kind, values, message):
+def test_unsupported_forms_are_reported_and_left_out(tree, tmp_path, kind, values, message):
     hang(tree, flanks_of(tree, 15), kind, **values)
     model = read_rexs(stored(tree, tmp_path))
     assert any(kind in remark and message in remark for remark in model.remarks)
     assert case_from_rexs(model, 19).gears.pinion.modification is None
 
 
-def test_flanks_of_different_forms_are_told(tree, tmp_path) -> None:
+def test_flanks_of_different_forms_are_reported(tree, tmp_path) -> None:
     left, _ = flanks_of(tree, 15)
     hang(tree, (left,), "tip_relief", tip_relief_depth=0.02)
     model = read_rexs(stored(tree, tmp_path))
@@ -319,7 +319,7 @@ def test_negative_teeth_are_those_of_a_ring(tree, tmp_path) -> None:
         case_from_rexs(model, 19)
 
 
-def test_what_another_program_changed_is_taken_and_told(tmp_path: Path) -> None:
+def test_changes_by_another_program_are_loaded_and_reported(tmp_path: Path) -> None:
     case = td.load_case("fzg-roughness")
     path = tmp_path / "case.rexs"
     write_rexs(case, path)
@@ -330,7 +330,7 @@ def test_what_another_program_changed_is_taken_and_told(tmp_path: Path) -> None:
     assert model.remarks == ["operation.torque was changed to 120 (SI) by another program"]
 
 
-def test_nothing_is_replaced_unasked(tmp_path: Path) -> None:
+def test_nothing_is_replaced_without_force(tmp_path: Path) -> None:
     case, path = td.load_case("fzg-roughness"), tmp_path / "case.rexs"
     write_rexs(case, path)
     with pytest.raises(InputError, match="exists already"):
@@ -365,7 +365,9 @@ def bomb() -> bytes:
         (b"PK\x03\x04 cut off", "damaged zip"),
     ],
 )  # fmt: skip
-def test_what_is_no_model_is_refused_in_words(content: bytes, message: str, tmp_path: Path) -> None:
+def test_invalid_models_are_refused_with_a_message(
+    content: bytes, message: str, tmp_path: Path
+) -> None:
     path = tmp_path / "model.rexs"
     path.write_bytes(content)
     with pytest.raises(InputError, match=message):

@@ -16,7 +16,7 @@ from tribodyn.exchange import write_tables
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
-def test_tables_and_figures_hold_what_the_result_holds(tmp_path: Path, capsys) -> None:
+def test_tables_and_figures_hold_the_data_of_the_result(tmp_path: Path, capsys) -> None:
     result = td.run("time-varying-friction")
     result.save(tmp_path / "run")
     assert call(["export", str(tmp_path / "run"), "--tables", str(tmp_path / "all")]) == 0

@@ -70,7 +70,7 @@ def test_sign_of_sliding_does_not_matter():
     assert friction(sliding_speed=-1.0) == friction()
 
 
-def test_sliding_speed_is_held_at_its_floor():
+def test_sliding_speed_is_limited_to_its_floor():
     slow = friction(sliding_speed=np.array([0.0, 1e-9, -1e-3, 1e-3]))
     assert np.array_equal(slow, [friction(sliding_speed=1e-3)] * 4)
     assert friction(sliding_speed=0.0, minimum_sliding_speed=0.1) == friction(sliding_speed=0.1)

@@ -83,7 +83,7 @@ def test_each_contact_has_its_own_film():
     assert thin - thick == pytest.approx(5e6 * np.log(1.0 / 0.7) * 2 * HALF_WIDTH / LOAD, rel=0.2)
 
 
-def test_shape_of_the_contacts_is_kept():
+def test_shape_of_the_contacts_is_preserved():
     speed = np.array([[0.1, 0.5], [1.0, 2.0]])
     assert ehl(contact(speed, film=film_state(4))).shape == (2, 2)
 
@@ -237,7 +237,7 @@ def test_number_of_films_and_of_contacts_must_agree():
         ({"effective_modulus": 0.0}, "effective_modulus"),
     ],
 )
-def test_what_is_no_film_is_refused(changes, match):
+def test_invalid_film_states_are_refused(changes, match):
     with pytest.raises(InputError, match=match):
         film_state(1, **changes)
 
@@ -284,6 +284,6 @@ def test_solutions_that_make_no_film_state_are_refused(options, match):
         FilmState.from_solutions(options)
 
 
-def test_isoviscous_film_keeps_its_viscosity():
+def test_isoviscous_film_has_constant_viscosity():
     state = film_state(1, viscosity_law="isoviscous")
     assert np.allclose(np.exp(state.log_viscosity), OIL.dynamic_viscosity, rtol=1e-14)

@@ -139,7 +139,7 @@ def test_options_are_declared():
         LAWS["constant"].options["coefficient"] = 0.1
 
 
-def test_unknown_and_missing_options_are_told_together():
+def test_unknown_and_missing_options_are_reported_together():
     with pytest.raises(InputError) as caught:
         LAWS["constant"](contact(), coeficient=0.1, colour="red")
     message = str(caught.value)
@@ -212,7 +212,7 @@ def test_single_contact_as_numbers():
         ("measured", "pitch", "pitch_point"),
     ],
 )
-def test_a_law_names_what_it_lacks(law, field, remedy):
+def test_a_law_names_its_missing_inputs(law, field, remedy):
     with pytest.raises(InputError, match=f"{field} is not known.*{remedy}"):
         LAWS[law](contact(**{field: None, "film": None}))
 

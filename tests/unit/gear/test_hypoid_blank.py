@@ -231,7 +231,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("change", "place", "reason"), BAD)
-def test_what_cannot_be_made_is_refused_with_a_reason(change, place, reason):
+def test_impossible_blanks_are_refused_with_a_reason(change, place, reason):
     sound = {
         "teeth_pinion": 10, "teeth_wheel": 43, "offset": 31.7e-3,
         "outer_pitch_diameter_wheel": 0.336, "face_width_wheel": 47.7e-3,
@@ -248,7 +248,7 @@ def test_all_faults_come_at_once():
     assert len(caught.value.problems) == 4
 
 
-def test_the_cutters_that_fit_are_told():
+def test_matching_cutters_are_reported():
     with pytest.raises(InputError) as caught:
         hypoid_blank(10, 43, 31.7e-3, 0.336, 0.0477, math.radians(46.0), 10e-3)
     least = float(str(caught.value).partition("from ")[2].split(" mm")[0]) * 1e-3
@@ -265,7 +265,7 @@ def test_it_exports_its_dimensions_with_units():
     assert data.attrs["teeth_wheel"] == 43
 
 
-def test_its_figure_is_to_scale_and_keeps_the_clearance():
+def test_figure_is_to_scale_and_shows_the_clearance():
     figure = h1043().plot()
     heels = [trace for trace in figure.data if "handed" in trace.name]
     assert [trace.name for trace in heels] == ["pinion, left-handed", "wheel, right-handed"]

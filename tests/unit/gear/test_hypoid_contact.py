@@ -125,7 +125,7 @@ def test_conjugate_flanks_have_no_transmission_error():
             assert np.abs(exact.wheel_rotation - rotation).max() < 1e-12
 
 
-def test_lines_end_on_the_flanks_and_are_found_again():
+def test_lines_end_on_the_flanks_and_are_recovered():
     flanks = _eased()
     lines = ContactLines(flanks.conjugate)
     low, high = lines.span()
@@ -144,7 +144,7 @@ def test_lines_end_on_the_flanks_and_are_found_again():
     assert high - 0.004 < touched.max() <= high
 
 
-def test_the_shortest_lines_are_found():
+def test_the_shortest_lines_are_computed():
     # At both ends of the contact lines shrink to a point; those of a hundredth of a millimetre too.
     for flanks in (_eased(), _eased(side="coast", hand_pinion="right")):
         lines = ContactLines(flanks.conjugate)

@@ -184,7 +184,7 @@ def test_a_pair_of_the_other_hand_is_the_mirror_image():
         assert left.conjugate.sense == -right.conjugate.sense
 
 
-def test_the_normal_of_the_eased_pinion_stands_on_its_surface():
+def test_the_normal_of_the_eased_pinion_is_perpendicular_to_its_surface():
     ease = EaseOff(lengthwise_crowning=80e-6, profile_crowning=40e-6, bias=20e-6, tip_relief=20e-6)
     flanks = hypoid_flanks(h1043(), ease_off=ease).conjugate
     parameters = flanks.wheel.parameters(np.array([[-9e-3, -4e-3], [3e-3, 1e-3], [15e-3, 3e-3]]))
@@ -196,7 +196,7 @@ def test_the_normal_of_the_eased_pinion_stands_on_its_surface():
         assert np.abs(np.einsum("ni,ni->n", normal, slope)).max() < 1e-8 * np.abs(slope).max()
 
 
-def test_the_gap_is_what_the_pinion_lacks_along_its_normal():
+def test_the_gap_is_the_distance_along_the_normal_of_the_pinion():
     ease = EaseOff(lengthwise_crowning=30e-6, profile_crowning=8e-6, root_relief=9e-6)
     plain, eased = hypoid_flanks(h1043()), hypoid_flanks(h1043(), ease_off=ease)
     lacking = plain.pinion_position - eased.pinion_position
@@ -238,7 +238,7 @@ def test_the_slope_of_the_gap_is_its_derivative():
         assert slope[:, axis] == pytest.approx(change, rel=1e-6, abs=1e-12)
 
 
-def test_undercut_is_told_and_ends_where_teeth_are_enough():
+def test_undercut_is_reported_up_to_the_least_number_of_teeth():
     # Where the pinion turns back on itself its curvature passes through infinity: the flanks then
     # interfere as well.
     shares = []
@@ -278,7 +278,7 @@ def test_points_and_triangles_are_written(tmp_path, gear):
 
 
 @pytest.mark.filterwarnings("error::RuntimeWarning")
-def test_a_flank_without_a_conjugate_is_refused_and_told_why():
+def test_a_flank_without_a_conjugate_is_refused_with_the_reason():
     blank = hypoid_blank(10, 11, 0.0561, 0.821, 0.0833, 0.643, 0.317, addendum_factor_wheel=0.587)
     refused = []
     for side in SIDES:

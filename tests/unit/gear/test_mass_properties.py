@@ -49,7 +49,7 @@ def test_bore_takes_away_its_cylinder(make_gear: Maker) -> None:
     assert inertia == pytest.approx(0.5 * bore_mass * 15e-3**2, rel=1e-10)
 
 
-def test_given_figures_replace_those_of_the_solid(make_gear: Maker) -> None:
+def test_user_figures_replace_those_of_the_solid(make_gear: Maker) -> None:
     solid = mass_properties(make_gear(), 7800.0)
     heavy = mass_properties(make_gear(mass=3.0), 7800.0)
     assert heavy.mass == 3.0

@@ -20,7 +20,7 @@ def chart(function: Any, **options: Any) -> ProfileMap:
     return ProfileMap(PLACES, FACES, rows, **options)
 
 
-def test_points_are_kept() -> None:
+def test_points_are_stored() -> None:
     rng = np.random.default_rng(1)
     values = 1e-6 * rng.standard_normal((4, 4))
     rows = tuple(tuple(row) for row in values)

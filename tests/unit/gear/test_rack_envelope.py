@@ -110,7 +110,7 @@ def test_fillet_and_involute_meet(case: str) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_fillet_rises_as_its_slope_says(case: str) -> None:
+def test_fillet_is_the_integral_of_its_slope(case: str) -> None:
     curve = form_of(case).trochoid
     angle = np.linspace(curve.pressure_angle, math.pi / 2.0, 7)
     step = 1e-6

@@ -24,7 +24,7 @@ def test_unshifted_pair_runs_at_the_reference_distance(make_pair: Maker) -> None
     assert pair.ratio == 1.5
 
 
-def test_shifted_pair_keeps_the_bottom_clearance_of_the_rack(make_pair: Maker) -> None:
+def test_shifted_pair_has_the_bottom_clearance_of_the_rack(make_pair: Maker) -> None:
     pair = make_pair(pinion_profile_shift_coefficient=0.5, wheel_profile_shift_coefficient=0.4)
     assert pair.tip_shortening_coefficient > 0.05
     clearance = pair.center_distance - pair.pinion.tip_radius - pair.wheel.root_radius

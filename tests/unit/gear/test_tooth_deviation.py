@@ -125,7 +125,7 @@ def test_run_out_repeats_with_the_teeth(make_pair: Maker) -> None:
     )
 
 
-def test_an_eccentric_toothing_touches_early_where_it_stands_proud(make_pair: Maker) -> None:
+def test_an_eccentric_toothing_touches_early_where_it_is_raised(make_pair: Maker) -> None:
     """The axis of the pinion's toothing moved towards the wheel along the line of action."""
     modification = FlankModification(run_out=30e-6)
     pair = make_pair(pinion_modification=modification)

@@ -103,7 +103,7 @@ def test_seals_and_oil_matter_most_under_little_load():
         ),
     ],
 )  # fmt: skip
-def test_what_cannot_be_computed_names_the_shaft(box, oil, message):
+def test_invalid_boxes_are_refused(box, oil, message):
     with pytest.raises(InputError, match=message):
         stage(box, oil=oil)
 

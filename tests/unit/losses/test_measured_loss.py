@@ -87,7 +87,7 @@ def test_repeats_tell_their_scatter():
     assert result.degrees_of_freedom == pytest.approx(freedom)
 
 
-def test_slave_gears_alike_halve_the_friction():
+def test_equal_slave_gears_halve_the_friction():
     result = friction_from_power_loss(table(torque_loss_uncertainty=0.1, gear_sets=2.0))
     assert result.friction_coefficient == pytest.approx(0.5 * MU)
 
@@ -126,7 +126,7 @@ def rows_of(speed, torque, loss, **more):
     return PowerLossTable(np.array(speed) * RPM, torque, loss, H, **more)
 
 
-def test_every_row_without_its_run_without_load_is_told():
+def test_every_row_without_idle_run_is_reported():
     rows = rows_of([400, 400, 800, 1400], [5.0, 150.0, 150.0, 150.0], [1.0, 4.0, 4.0, 4.0],
                    torque_loss_uncertainty=0.1)  # fmt: skip
     with pytest.raises(InputError, match="no run without load at 800 rpm") as caught:
@@ -135,14 +135,14 @@ def test_every_row_without_its_run_without_load_is_told():
     assert "400 rpm" in str(caught.value)
 
 
-def test_loss_below_that_without_load_is_told_with_its_row():
+def test_loss_below_the_idle_loss_is_reported_with_its_row():
     rows = rows_of([400, 400, 400], [5.0, 50.0, 150.0], [2.0, 1.0, 4.0],
                    torque_loss_uncertainty=0.05)  # fmt: skip
     with pytest.raises(InputError, match=r"row 2.*1 N\*m is below the 2 N\*m without load"):
         friction_from_power_loss(rows)
 
 
-def test_negative_friction_is_kept_and_told():
+def test_negative_friction_is_returned_with_a_warning():
     rows = rows_of([400, 400, 400], [5.0, 50.0, 150.0], [1.0, 1.2, 4.0], other_loss=0.5,
                    torque_loss_uncertainty=0.05)  # fmt: skip
     with pytest.warns(ModelWarning, match="friction-from-loss.*row 2 is not positive"):
@@ -184,14 +184,14 @@ def test_csv_with_units_comments_and_other_columns(tmp_path):
     assert friction_from_power_loss(rows).friction_coefficient == pytest.approx([0.05])
 
 
-def test_columns_without_a_unit_are_told(tmp_path):
+def test_columns_without_a_unit_are_reported(tmp_path):
     file = tmp_path / "losses.csv"
     file.write_text("speed\ttorque [N*m]\ttorque_loss\n150\t5\t1\n")
     with pytest.warns(ModelWarning, match=r"SI: speed in rad/s, torque_loss in N\*m"):
         assert read_power_loss_table(file, H).speed == pytest.approx([150.0])
 
 
-def test_more_friction_than_lubricated_teeth_have_is_told_with_its_row():
+def test_implausibly_high_friction_is_reported_with_its_row():
     rows = rows_of([400] * 3, [5.0, 50.0, 150.0], [1.0, 60.0, 4.0], torque_loss_uncertainty=0.05)
     with pytest.warns(ModelWarning, match=r"friction-from-loss.*row 2 \(3\.9.*above 0\.2"):
         result = friction_from_power_loss(rows)

@@ -79,7 +79,7 @@ def test_both_procedures_meet_at_an_index_of_100() -> None:
         (220.0, 18.7e-6, "1 mm.2/s is 1e-6"),
     ],
 )
-def test_what_has_no_index_is_refused(at_40: float, at_100: float, message: str) -> None:
+def test_viscosities_without_index_are_refused(at_40: float, at_100: float, message: str) -> None:
     with pytest.raises(InputError, match=message):
         viscosity_index(at_40, at_100)
 
@@ -123,7 +123,7 @@ def test_any_two_figures_of_a_sheet_give_the_same_oil() -> None:
     assert sheet_points(at_40, at_100, 150.0) == sheet_points(at_40, at_100, None)
 
 
-def test_what_a_sheet_does_not_state_is_estimated_and_said() -> None:
+def test_values_missing_in_a_sheet_are_estimated_and_listed() -> None:
     oil = from_data_sheet(333.15, 892.0, viscosity_at_40=220e-6, viscosity_at_100=18.7e-6)
     estimate = agma_925_coefficient(oil.dynamic_viscosity, "mineral")
     assert oil.pressure_viscosity_coefficient == estimate
@@ -164,7 +164,7 @@ PRINTED = {
 
 
 @pytest.mark.parametrize("name", PRINTED)
-def test_an_oil_known_at_one_temperature_is_unchanged_there(name: str) -> None:
+def test_an_oil_of_one_viscosity_has_it_there(name: str) -> None:
     temperature, *printed = PRINTED[name]
     for oil in (from_library(name), from_library(name, temperature)):
         assert [
@@ -178,7 +178,7 @@ def test_an_oil_known_at_one_temperature_is_unchanged_there(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", PRINTED)
-def test_an_oil_known_at_one_temperature_follows_its_index_to_others(name: str) -> None:
+def test_an_oil_of_one_viscosity_follows_its_index(name: str) -> None:
     """It goes through the printed point, and its slope there is the printed one."""
     temperature = PRINTED[name][0]
     printed = from_library(name)

@@ -63,7 +63,7 @@ def test_80w_is_as_printed():
     assert "temperature-viscosity coefficient" in oil.assumptions[0]
 
 
-def test_75w90_says_how_far_its_two_viscosities_are_apart():
+def test_75w90_states_the_scatter_of_its_two_viscosities():
     oil = from_library("75W90-A", 70 + 273.15)
     assert oil.dynamic_viscosity == 0.0298
     assert oil.density == pytest.approx(870.0 * (1 - 5.8e-4 * 55), abs=0.1)
@@ -159,16 +159,16 @@ def test_iso_grade_has_viscosity_index_95(grade):
 
 
 @pytest.mark.parametrize("celsius", [9.0, 131.0])
-def test_oil_known_once_refuses_a_temperature_far_outside(celsius):
+def test_oil_of_one_viscosity_refuses_a_temperature_far_outside(celsius):
     with pytest.raises(InputError, match=rf'"80W" at {celsius:g} degC.*from 10 to 130 degC'):
         from_library("80W", celsius + 273.15)
 
 
-def test_oil_known_once_accepts_its_own_temperature():
+def test_oil_of_one_viscosity_accepts_its_own_temperature():
     assert from_library("80W", 40 + 273.15) == from_library("80W")
 
 
-def test_oil_known_twice_refuses_a_temperature_far_outside():
+def test_oil_of_two_viscosities_refuses_a_temperature_far_outside():
     with pytest.raises(InputError, match="between 10 and 130 degC"):
         from_library("ISO VG 100", 273.15)
 

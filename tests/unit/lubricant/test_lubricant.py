@@ -17,7 +17,7 @@ def oil():
     return Lubricant(0.082, 880.0, 2.19e-8, name="80W", temperature=313.15, source="a data sheet")
 
 
-def test_properties_are_kept(oil):
+def test_properties_are_stored(oil):
     assert (oil.dynamic_viscosity, oil.density) == (0.082, 880.0)
     assert oil.kinematic_viscosity == pytest.approx(93.18e-6, rel=1e-4)
     assert (oil.name, oil.temperature, oil.source, oil.assumptions) == (

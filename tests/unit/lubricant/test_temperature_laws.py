@@ -28,7 +28,7 @@ def test_walther_is_a_straight_line_in_its_coordinates():
     assert np.diff(ordinates, 2) == pytest.approx([0.0] * 3, abs=1e-12)
 
 
-def test_walther_does_not_depend_on_which_points_of_its_line_are_given():
+def test_walther_does_not_depend_on_the_points_of_its_line():
     others = tuple((t, walther_viscosity(t, POINTS)) for t in (330.0, 350.0))
     assert walther_viscosity(370.0, others) == pytest.approx(
         walther_viscosity(370.0, POINTS), rel=1e-12

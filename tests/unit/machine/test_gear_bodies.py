@@ -56,7 +56,7 @@ def test_steps_and_cones_within_the_face_are_taken_out() -> None:
     assert result.transverse_moment_of_inertia == pytest.approx(transverse, rel=1e-9)
 
 
-def test_given_values_stay_and_a_mass_alone_scales_the_solid() -> None:
+def test_user_values_stay_and_a_mass_alone_scales_the_solid() -> None:
     solid = body(Gear("input", 0.1, 27, WIDTH), [Section(0.3, 0.05)])
     light = body(Gear("input", 0.1, 27, WIDTH, mass=solid.mass / 4), [Section(0.3, 0.05)])
     assert light.moment_of_inertia == pytest.approx(solid.moment_of_inertia / 4, rel=1e-14)

@@ -129,7 +129,7 @@ def test_a_clock_with_whole_turns_is_the_hunting_tooth_period() -> None:
         clock.with_whole_turns("outputs")
 
 
-def test_bearings_carry_by_hand_statics_what_the_meshes_push() -> None:
+def test_bearing_loads_equal_mesh_forces_by_hand_statics() -> None:
     machine = two_stages()
     total = np.zeros(3)
     for shaft in machine.shafts:

@@ -72,7 +72,7 @@ def test_contradicting_ratios_at_rest_are_those_to_the_input() -> None:
     assert "turns at 0.25 times the input by meshes u1 and u2" in broken(change, split_path())
 
 
-def test_axes_of_a_loop_that_do_not_close_say_what_closes_them() -> None:
+def test_axes_of_an_open_loop_state_what_closes_them() -> None:
     message = broken(put("meshes", "l2", center_distance=0.1205), split_path())
     assert "meshes.l2.center_distance: center_distance = 120.5 mm and angle = 60 deg" in message
     assert '"output" 0.5 mm from where meshes u1, l1 and u2 put it' in message
@@ -167,7 +167,7 @@ def test_teeth_of_a_gear_in_two_meshes_are_cut_once() -> None:
     assert Machine(**parts).kinematics.meshes["third"].force == 0.0
 
 
-def test_parts_beside_their_shaft_and_in_one_place() -> None:
+def test_parts_outside_their_shaft_or_in_one_place_are_refused() -> None:
     message = broken(put("bearings", "middle right", position=0.350))
     assert message.startswith(
         "bearings.middle right.position: position = 350 mm is beside the shaft"

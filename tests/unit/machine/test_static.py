@@ -394,7 +394,7 @@ def test_face_load_factor_of_a_linear_gap(helix):
         assert law(low, 0.0)[2][:, k] == pytest.approx(slopes, rel=0.02, abs=1e-5)
 
 
-def test_what_nothing_holds_is_named():
+def test_unrestrained_coordinates_are_named():
     roller = CylindricalRollerBearing(bore_diameter=0.055, outer_diameter=0.1, width=0.021)
     machine = rolling_stage()
     loose = {**machine.bearings, "A": Bearing("in", 0.02, rolling=roller)}

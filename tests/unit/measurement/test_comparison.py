@@ -172,7 +172,7 @@ def test_a_gain_is_not_fitted_to_noise_alone() -> None:
         compare(COMPUTED, with_angle, {"acc": "acceleration"}, gain="fit", angle="angle", teeth=20)
 
 
-def test_a_steady_tachometer_on_a_mesh_that_wanders_is_told_as_smeared() -> None:
+def test_a_steady_tachometer_on_a_mesh_that_wanders_is_reported_as_smeared() -> None:
     recording = wandering(1.0, 0.003)
     steady = Recording(
         {"acc": recording["acc"], "angle": 2.0 * np.pi * MESH / 20.0 * TIME}, RATE,

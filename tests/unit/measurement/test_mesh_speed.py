@@ -112,7 +112,7 @@ def test_lines_beyond_the_tolerance_are_named_and_not_taken() -> None:
     assert mesh_speed(recording(phase_of(1.08)[0], SIZES), RATE, MESH, tolerance=0.1).located
 
 
-def test_errors_are_as_large_as_the_uncertainty_says() -> None:
+def test_errors_agree_with_the_stated_uncertainty() -> None:
     errors = []
     for seed in range(8):
         angle, mean = phase_of(1.01, 0.005, duration=1.0)

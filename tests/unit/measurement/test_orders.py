@@ -182,7 +182,7 @@ def test_track_orders_separates_crossing_orders(run, angle) -> None:
         assert item.plot().layout.title.text
 
 
-def test_known_lines_of_a_made_run_up() -> None:
+def test_lines_of_a_synthetic_run_up() -> None:
     quiet = synthetic_run_up({2: 3.0}, (50.0,), duration=2.0, sample_rate=4000.0)
     np.testing.assert_allclose(quiet["angle"], 50.0 * quiet.time)
     np.testing.assert_allclose(quiet["signal"], 3.0 * np.cos(2.0 * quiet["angle"]))

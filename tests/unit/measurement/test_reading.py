@@ -272,7 +272,7 @@ def test_a_file_that_ends_between_its_datasets_is_refused(tmp_path: Path) -> Non
     assert readable < 9
 
 
-def test_files_with_a_wrong_name_say_what_they_are(tmp_path: Path) -> None:
+def test_files_with_a_wrong_extension_are_recognised(tmp_path: Path) -> None:
     files = written(tmp_path)
     for suffix, path in files.items():
         for other in {*files, ".csv"} - {suffix}:

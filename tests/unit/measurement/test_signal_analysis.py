@@ -60,7 +60,7 @@ def test_mesh_harmonics_are_exact_at_a_wandering_speed_with_a_tachometer(pulses:
 
 
 @pytest.mark.parametrize("error", [-0.03, 0.02])
-def test_the_speed_is_found_by_mesh_lines_where_the_stated_one_is_off(error: float) -> None:
+def test_mesh_lines_correct_a_wrong_stated_speed(error: float) -> None:
     _, angle = shaft()
     noise = 0.3 * np.random.default_rng(1).standard_normal(angle.size)
     run = recording(gears(angle) + noise, angle)
@@ -72,7 +72,7 @@ def test_the_speed_is_found_by_mesh_lines_where_the_stated_one_is_off(error: flo
     assert "mesh harmonics" in analysis.speed.source
 
 
-def test_a_stated_speed_without_teeth_says_that_it_is_not_measured() -> None:
+def test_a_stated_speed_without_teeth_is_marked_as_not_measured() -> None:
     time, angle = shaft(wander=0.0)
     analysis = analyse_signal(recording(gears(angle), angle), "acc", speed=SPEED)
     assert analysis.figures()["order_peak_1_amplitude"] == pytest.approx(4.0, rel=0.01)
@@ -85,7 +85,7 @@ def test_a_stated_speed_without_teeth_says_that_it_is_not_measured() -> None:
     assert analysis.speed.steady
 
 
-def test_without_speed_the_rest_is_computed_and_the_notes_say_what_is_missing() -> None:
+def test_without_speed_the_notes_name_the_missing_results() -> None:
     _, angle = shaft(2.0)
     analysis = analyse_signal(recording(gears(angle), angle), "acc", teeth=TEETH)
     assert analysis.orders is None
@@ -156,7 +156,7 @@ def test_each_gear_has_the_mean_revolution_of_its_own_shaft() -> None:
     ("unit", "factor", "si"),
     [("g", 9.80665, "m/s^2"), ("mm/s", 1e-3, "m/s"), ("mV", 1e-3, "V"), ("EU", 1.0, "EU")],
 )
-def test_units_that_are_known_become_si(unit: str, factor: float, si: str) -> None:
+def test_known_units_become_si(unit: str, factor: float, si: str) -> None:
     _, angle = shaft(1.0)
     analysis = analyse_signal(recording(gears(angle), angle, unit), "acc")
     assert analysis.unit == si
@@ -217,7 +217,7 @@ def test_wrong_input_is_refused(arguments: dict[str, Any], message: str) -> None
 
 
 @pytest.mark.slow
-def test_it_exports_draws_and_reports_itself(tmp_path: Any) -> None:
+def test_result_has_export_plot_and_report(tmp_path: Any) -> None:
     _, angle = shaft(20.0)
     wave = gears(angle) + 0.2 * np.random.default_rng(0).standard_normal(angle.size)
     analysis = analyse_signal(

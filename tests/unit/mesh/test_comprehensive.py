@@ -139,6 +139,6 @@ def test_data_set_and_line(stiffness):
         ({"pinion_speed": [[100.0]]}, "shape"),
     ],
 )
-def test_what_has_no_such_stiffness_is_refused(options, message):
+def test_models_without_this_stiffness_are_refused(options, message):
     with pytest.raises(InputError, match=message):
         study(**options)

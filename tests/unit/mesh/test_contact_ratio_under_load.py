@@ -137,7 +137,7 @@ def test_it_rises_with_the_load_and_falls_with_the_relief():
 
 
 @pytest.mark.parametrize("steps", [16, 64, 1024])
-def test_straight_ends_are_found_between_the_knots(steps):
+def test_straight_ends_are_located_between_the_grid_points(steps):
     """A share that rises and falls as a straight line has its ends where the line is zero."""
     grid = phase_grid((0.0, 0.4), steps)
     share = np.maximum(0.0, 1.0 - np.abs(grid.phase - 0.613) / 0.2037)[:, None]

@@ -26,7 +26,7 @@ def places(count: int) -> tuple[np.ndarray, np.ndarray]:
     return random.uniform(-3.0, 3.0, count), random.uniform(1.1, 2.9, count)
 
 
-def test_what_is_checked_is_met_and_cells_are_fine_only_at_the_bend() -> None:
+def test_checked_tolerance_is_met_and_cells_are_fine_only_at_the_bend() -> None:
     films, at = table(), places(400)
     assert np.abs(films(*at)[0] - surface(*at)[0]).max() < 3.0 * EXACT
     assert films.solved < 2500  # 24 smooth cells have 500 nodes; 0.5 x 0.5 everywhere 3000
@@ -35,7 +35,7 @@ def test_what_is_checked_is_met_and_cells_are_fine_only_at_the_bend() -> None:
     assert coarse.solved < films.solved / 2
 
 
-def test_an_answer_does_not_depend_on_what_was_asked_before() -> None:
+def test_a_value_does_not_depend_on_earlier_calls() -> None:
     log_m, log_l = places(60)
     at_once, one_by_one = table(), table()
     each = [one_by_one(log_m[k : k + 1], log_l[k : k + 1]) for k in range(60)[::-1]]
@@ -45,7 +45,7 @@ def test_an_answer_does_not_depend_on_what_was_asked_before() -> None:
     assert at_once.solved == before
 
 
-def test_without_solutions_it_has_no_answer_and_has_one_beside_them() -> None:
+def test_no_value_without_solutions_and_an_extrapolation_next_to_them() -> None:
     films = table()
     log_l = np.array([3.05, 3.2, 3.35])
     film = films(np.zeros(3), log_l)[0]

@@ -39,7 +39,7 @@ def loaded():
         (0.6e-6, [0.0772, 0.0471, 0.0341]),
     ],
 )
-def test_known_coefficients_of_ten_against_43(loaded, roughness, expected):
+def test_published_coefficients_of_ten_against_43(loaded, roughness, expected):
     frictions = [rubbed(loaded, rpm, roughness) for rpm in (1000.0, 3000.0, 5000.0)]
     assert [each.mean_friction_coefficient for each in frictions] == pytest.approx(
         expected, abs=1.1e-4
@@ -49,7 +49,7 @@ def test_known_coefficients_of_ten_against_43(loaded, roughness, expected):
     assert np.all(np.diff([each.film_load_share for each in frictions], axis=0) >= 0.0)
 
 
-def test_known_film_ratios_and_loads(loaded):
+def test_published_film_ratios_and_loads(loaded):
     for rpm, ratio in ((1000.0, 2.9), (3000.0, 6.2), (5000.0, 8.8)):
         friction = rubbed(loaded, rpm, 0.07e-6)
         force = loaded.cell_force
@@ -123,7 +123,7 @@ def test_film_formulas_of_lines(loaded):
     assert line.film_model == "dowson-higginson"
 
 
-def test_the_table_holds_what_was_computed(loaded, tmp_path):
+def test_the_table_stores_the_computed_friction(loaded, tmp_path):
     friction = rubbed(loaded)
     table = friction.table()
     sums = np.hstack([friction.pinion_friction, friction.wheel_friction])

@@ -49,7 +49,7 @@ def test_of_a_case_it_meets_the_summary_and_the_contact_without_load() -> None:
     assert other.peak_to_peak_transmission_error[0] == pytest.approx(swing[1], rel=1e-9)
 
 
-def test_it_draws_itself_and_the_default_goes_to_twice_the_torque() -> None:
+def test_plot_and_default_range_up_to_twice_the_torque() -> None:
     study = td.harris_map(td.load_case("hypoid-mixed-ehl"), phases=16)
     assert study.torque[[0, -1]] == pytest.approx([50.0, 1000.0])
     figure = study.plot()

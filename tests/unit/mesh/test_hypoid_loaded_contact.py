@@ -34,7 +34,7 @@ def test_moments_of_the_cells_balance_both_torques(side):
         assert loaded.cell_force.min() == 0.0
 
 
-def test_known_figures_of_ten_against_43(loaded):
+def test_published_figures_of_ten_against_43(loaded):
     assert loaded.mean_mesh_stiffness == pytest.approx(5.69e8, rel=2e-3)
     assert loaded.mesh_stiffness.min() == pytest.approx(5.46e8, rel=2e-3)
     assert loaded.grid.mean(loaded.mesh_force) == pytest.approx(18.88e3, rel=1e-3)

@@ -140,7 +140,7 @@ def test_a_film_in_series_with_coupled_pairs(name):
     assert total == pytest.approx(1.0, abs=1e-8)
 
 
-def test_a_pair_that_a_relief_keeps_apart_has_no_load_and_no_pressure():
+def test_a_pair_that_relief_separates_has_no_load_and_no_pressure():
     mesh = table(relieved(pair_of(), tip_relief=80e-6, tip_relief_length=5e-3))
     idle = mesh.in_contact & (mesh.load_share == 0.0)
     assert idle.any()
@@ -149,7 +149,7 @@ def test_a_pair_that_a_relief_keeps_apart_has_no_load_and_no_pressure():
     assert np.all(np.isfinite(mesh.friction_sum))
 
 
-def test_kept_and_read_again(tmp_path):
+def test_stored_and_read_again(tmp_path):
     mesh = table(relieved(pair_of(), tip_relief=10e-6), steps=64)
     mesh.save(tmp_path / "mesh.nc")
     again = MeshTable.load(tmp_path / "mesh.nc")

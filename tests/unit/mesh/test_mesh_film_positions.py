@@ -70,7 +70,7 @@ def test_interpolation_is_exact_for_polynomials_and_on_the_positions(contact):
     assert places.interpolate(jumps, places.age, itself) == pytest.approx(jumps, rel=1e-14)
 
 
-def test_a_jump_is_kept_between_two_zones(contact):
+def test_a_jump_stays_between_two_zones(contact):
     places = path_positions(contact, 30)
     values = np.repeat(np.arange(len(places.counts), dtype=float), places.counts)
     age = np.array([places.edges[1] - 1e-6, places.edges[1] + 1e-6])
@@ -110,7 +110,7 @@ def test_every_knot_of_a_mesh_table_lies_in_the_zone_of_its_segment(contact):
         assert np.all(age[touching] <= edges[zone + 1] + 1e-12)
 
 
-def test_a_contact_that_is_known_is_not_solved_again():
+def test_a_solved_contact_is_not_solved_again():
     radius, speed, load = np.array([8e-3, 9e-3]), np.array([3.0, 3.1]), np.array([1e5, 2e5])
     oil = Lubricant(0.082, 880.0, 2.19e-8)
     pairs = PairsInContact(np.array([0.1, 0.2]), radius, speed, oil, 2.2e11, 0.02)

@@ -70,7 +70,7 @@ def test_shares_follow_the_stiffness_of_teeth_and_film(pair):
     assert mesh.tooth_stiffness == pytest.approx(dry.stiffness, rel=1e-14)
 
 
-def test_the_film_stiffness_is_that_of_the_share_that_was_found(pair):
+def test_the_film_stiffness_is_that_of_the_computed_share(pair):
     mesh = table(pair)
     touching = mesh.in_contact
     films = FILM_MODELS["dowson-higginson"].films(
@@ -118,7 +118,7 @@ def test_secant_and_seed_need_the_solved_film(fzg):
             table(fzg(), kind=kind)
 
 
-def test_a_table_with_its_film_is_kept_and_read(fzg, tmp_path):
+def test_a_table_with_its_film_is_stored_and_read(fzg, tmp_path):
     mesh = table(fzg())
     mesh.save(tmp_path / "mesh.nc")
     again = MeshTable.load(tmp_path / "mesh.nc")
@@ -223,7 +223,7 @@ def test_a_film_that_is_never_the_same_is_refused():
     assert next(films) < 30  # a solved film takes a second each time
 
 
-def test_one_pair_alone_keeps_its_load():
+def test_one_pair_alone_carries_its_full_load():
     stiffness, share = solved(springs(2e8, 0.0), _film(lambda load: np.array([2e8])))
     assert stiffness.tolist() == [[pytest.approx(1e8), 0.0]]
     assert share.tolist() == [[1.0, 0.0]]

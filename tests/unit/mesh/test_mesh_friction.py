@@ -62,7 +62,7 @@ def test_a_constant_coefficient_does_not_follow_the_load():
             np.testing.assert_allclose(value, expected, atol=1e-9 * abs(expected).max())
 
 
-def test_beyond_the_loads_that_were_looked_at_it_stays():
+def test_coefficient_is_constant_beyond_the_table_of_loads():
     friction = _friction()
     last = friction.value("friction_sum", 0.6, 3.0 * friction.load)
     assert friction.value("friction_sum", 0.6, 9.0 * friction.load) == pytest.approx(
@@ -73,7 +73,7 @@ def test_beyond_the_loads_that_were_looked_at_it_stays():
     )
 
 
-def test_it_says_how_well_it_fits():
+def test_fit_reports_its_quality():
     assert "loads to 3 times 2660.4 N, fitted within 0." in repr(_friction())
 
 

@@ -96,7 +96,7 @@ def test_columns_carry_the_units_of_the_nomenclature(mesh):
     assert data.attrs["pinion_torque"] == 90.0
 
 
-def test_an_existing_file_is_kept(mesh, tmp_path):
+def test_an_existing_file_is_not_replaced(mesh, tmp_path):
     path = tmp_path / "mesh.nc"
     path.write_text("mine")
     with pytest.raises(OutputExistsError, match="exists already"):
@@ -115,7 +115,7 @@ def test_a_file_that_is_no_table_is_refused(tmp_path):
             MeshTable.load(path)
 
 
-def test_the_table_draws_itself(mesh):
+def test_the_table_has_its_plot(mesh):
     stiffness, friction = mesh.plot_stiffness(), mesh.plot_friction()
     highest = max(float(np.max(trace.y)) for trace in stiffness.data)
     assert highest == pytest.approx(mesh.mesh_stiffness.max() / 1e6, rel=1e-12)

@@ -56,7 +56,7 @@ def test_loads_add_up(mesh):
     assert mesh.load_per_width == pytest.approx(per_width, rel=1e-14)
 
 
-def test_pairs_deflect_alike(mesh):
+def test_pairs_deflect_equally(mesh):
     deflection = (mesh.normal_force / np.where(mesh.in_contact, mesh.stiffness, 1.0)).max(axis=1)
     assert deflection == pytest.approx(mesh.total_normal_force / mesh.mesh_stiffness, rel=1e-11)
 
@@ -76,7 +76,7 @@ def test_pairs_in_contact_are_those_of_the_path_of_contact(mesh):
     assert mesh.grid.mean(mesh.in_contact.sum(axis=1)) == pytest.approx(contact.contact_ratio)
 
 
-def test_both_sides_of_an_event_are_kept(mesh):
+def test_both_sides_of_an_event_are_stored(mesh):
     for event in mesh.event_phases[1:]:
         left, right = np.flatnonzero(mesh.phase == event)
         assert right == left + 1

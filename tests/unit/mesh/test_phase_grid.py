@@ -75,7 +75,7 @@ def test_phases_are_taken_modulo_one_in_any_shape():
     assert float(function(1.0)) == float(function(0.0))
 
 
-def test_knots_are_met_and_columns_kept_apart():
+def test_grid_values_are_met_and_columns_are_independent():
     grid = phase_grid(EVENTS, 32)
     values = np.stack([np.cos(grid.phase), grid.phase**2], axis=1)
     inner = slice(grid.segments[1].start, grid.segments[1].stop - 1)
@@ -125,7 +125,7 @@ def test_too_few_steps_are_refused():
 
 
 @pytest.mark.parametrize("columns", [1, 3, 30])
-def test_many_phases_are_looked_up_as_each_by_itself(columns):
+def test_many_phases_are_evaluated_like_single_ones(columns):
     grid = phase_grid(EVENTS, 32)
     values = np.sin(np.outer(grid.phase, np.arange(1, columns + 1)))
     onto = np.random.default_rng(4).standard_normal((columns, 5))

@@ -89,7 +89,7 @@ def test_the_ends_of_contact_are_named_by_where_they_lie():
 
 
 @pytest.mark.parametrize("name", ["mesh_stiffness", "load_sharing", "path_of_contact"])
-def test_no_caption_of_relieved_teeth_tells_of_geometry_as_of_load(name):
+def test_captions_of_relieved_teeth_separate_geometry_and_load(name):
     text = caption(table(**relief("30 um", "4 mm")), name)
     assert "Before B and after D" not in text
     assert "whenever" not in text
@@ -123,7 +123,7 @@ def test_both_sides_of_the_limit_are_met():
     assert reduced_ratio_warnings(table(**relief("30 um", "4 mm")))
 
 
-def test_check_reports_what_the_run_reports():
+def test_check_gives_the_warnings_of_the_run():
     """The quick rehearsal of a case has the contact ratio of the run."""
     from tribodyn.study.pipeline.run import rehearse
 

@@ -68,7 +68,7 @@ def frictionless(result: Any) -> Any:
 
 
 @pytest.mark.parametrize("name", list(FIGURES))
-def test_what_a_result_has_not_is_refused(result: Any, name: str) -> None:
+def test_a_figure_without_its_data_is_refused(result: Any, name: str) -> None:
     if name in NAMES:
         return
     with pytest.raises(InputError, match=r"\w"):
@@ -100,7 +100,7 @@ def test_every_axis_has_a_unit(figures: dict[str, go.Figure], name: str) -> None
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_figure_is_finite_and_answers_in_its_title(
+def test_every_figure_is_finite_and_has_its_result_in_the_title(
     figures: dict[str, go.Figure], name: str
 ) -> None:
     figure = figures[name]
@@ -112,7 +112,7 @@ def test_every_figure_is_finite_and_answers_in_its_title(
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_hovering_tells_the_unit(figures: dict[str, go.Figure], name: str) -> None:
+def test_hover_text_has_the_unit(figures: dict[str, go.Figure], name: str) -> None:
     if name == "gear_pair":
         return
     for trace in figures[name].data:
@@ -140,7 +140,7 @@ def test_transmission_error_counts_from_first_contact(
 
 
 @pytest.mark.slow
-def test_quasi_static_error_counts_what_relieved_flanks_leave_open(drawable: Any) -> None:
+def test_quasi_static_error_includes_the_gap_of_relieved_flanks(drawable: Any) -> None:
     relief = {
         f"gears.{gear}.modification.{key}": value
         for gear in ("pinion", "wheel")
@@ -233,7 +233,7 @@ def test_figures_without_meaning_say_why(drawable: Any) -> None:
     assert lack in str(refused.value)
 
 
-def test_no_friction_is_told_instead_of_drawn(drawable: Any) -> None:
+def test_a_message_replaces_the_figure_without_friction(drawable: Any) -> None:
     smooth = frictionless(drawable())
     with pytest.raises(InputError, match=r"friction coefficient is zero.*friction\.law"):
         FIGURES["friction"](smooth)
@@ -282,7 +282,7 @@ def test_titles_of_a_transient_leave_its_first_half_out(drawable: Any, name: str
     assert FIGURES[name](transient).layout.title.text == title
 
 
-def test_a_transient_tells_whether_it_has_settled(drawable: Any) -> None:
+def test_a_transient_reports_whether_it_has_settled(drawable: Any) -> None:
     transient = drawable(periods=60, steady=False)
     assert "has settled: " in caption("mesh_force", transient)
     assert caption("mesh_force", transient).endswith("changes by less than 0.01 %.")

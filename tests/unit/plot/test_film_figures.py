@@ -39,7 +39,7 @@ def test_the_film_ratio_has_a_panel_of_its_own(result: Any) -> None:
     assert len([trace for trace in FIGURES["film"](result).data if trace.yaxis == "y2"]) == 0
 
 
-def test_film_pressure_stands_beside_the_dry_contact(result: Any) -> None:
+def test_film_pressure_is_drawn_with_the_dry_contact(result: Any) -> None:
     figure = FIGURES["film_pressure"](result)
     film, dry = curve(figure, "in the oil film"), curve(figure, "dry contact")
     assert np.asarray(film.y) == pytest.approx(1.1 * np.asarray(dry.y), rel=1e-12)
@@ -48,7 +48,7 @@ def test_film_pressure_stands_beside_the_dry_contact(result: Any) -> None:
     assert "one pair carries during" in caption("film_pressure", result)
 
 
-def test_film_stiffness_stands_against_the_teeth(result: Any) -> None:
+def test_film_stiffness_is_drawn_with_that_of_the_teeth(result: Any) -> None:
     figure = FIGURES["film_stiffness"](result)
     assert figure.layout.yaxis.type == "log"
     film, teeth = curve(figure, "oil film"), curve(figure, "teeth")
@@ -67,7 +67,7 @@ def test_a_film_that_does_not_yield_has_one_panel(result: Any) -> None:
     assert "adds no compliance" in caption("film_stiffness", result)
 
 
-def test_what_a_model_does_not_know_is_told(drawable: Any, result: Any) -> None:
+def test_figures_name_what_the_film_model_lacks(drawable: Any, result: Any) -> None:
     bare = drawable()
     for name in ("film", "film_pressure", "film_stiffness"):
         with pytest.raises(InputError, match=r"No film model was chosen.*newton"):

@@ -66,7 +66,7 @@ def test_curves_are_the_numbers_in_display_units(contact: Any) -> None:
     assert max(share.y) == pytest.approx(1.0)
 
 
-def test_title_tells_the_swing(contact: Any) -> None:
+def test_title_names_the_swing(contact: Any) -> None:
     low, high = 1e6 * contact.peak_to_peak_transmission_error
     title = contact.plot().layout.title.text
     assert f"{low:.2f} µm to {high:.1f} µm" in title
@@ -140,7 +140,7 @@ def test_bent_teeth_touch_where_the_loads_are(driver: str) -> None:
     assert np.abs(turned) / radius * pair.driving.base_radius == pytest.approx(error, rel=0.4)
 
 
-def test_deformation_is_drawn_with_its_factor_and_its_loads(contact: Any) -> None:
+def test_deformation_is_plotted_with_its_factor_and_its_loads(contact: Any) -> None:
     figure = FIGURES["mesh_deformation"]
     assert isinstance(figure, Drawing)
     drawing = figure(contact, phase=0.125, torque=0)
@@ -178,7 +178,7 @@ def test_slider_runs_over_a_mesh_cycle() -> None:
 
 
 @pytest.mark.parametrize("name", [*STUDIES, "comprehensive_stiffness"])
-def test_a_run_has_no_such_figure_and_says_which_call_has(drawable: Any, name: str) -> None:
+def test_a_figure_of_a_study_names_its_call(drawable: Any, name: str) -> None:
     with pytest.raises(InputError, match=r"Call tribodyn\."):
         FIGURES[name](drawable())
 
@@ -274,7 +274,7 @@ def test_tip_relief_map_has_amount_across_and_length_upwards() -> None:
     assert "6.00 µm to 2.00 µm" in figure.layout.title.text
 
 
-def test_an_optimum_at_the_edge_is_told() -> None:
+def test_an_optimum_at_the_edge_is_reported() -> None:
     figure = FIGURES["tip_relief_map"]
     assert isinstance(figure, Drawing)
     assert "widen the range" in figure.caption_of(relief(on_edge=True))
@@ -351,7 +351,7 @@ def test_the_phase_of_a_hunting_pair_counts_all_mesh_cycles() -> None:
 
 
 @pytest.mark.parametrize(("relief", "name"), [(18e-6, "before"), (0.0, "without relief")])
-def test_the_pair_before_a_search_is_called_what_it_is(relief: float, name: str) -> None:
+def test_the_pair_before_a_search_has_the_right_label(relief: float, name: str) -> None:
     """One that has a relief already is not a pair without."""
     pair = loaded(90.0).gear_pair
     wheel = FlankModification(tip_relief=relief)

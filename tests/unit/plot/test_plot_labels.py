@@ -15,7 +15,7 @@ def test_units_are_printed_with_their_signs() -> None:
     assert readable("um") == "µm"
 
 
-def test_words_of_a_label_are_left_alone() -> None:
+def test_only_the_unit_of_a_label_is_rewritten() -> None:
     # "um" occurs in "minimum" and "addendum": only the unit in brackets is rewritten
     assert axis_label("minimum_film") == "Minimum film [µm]"
     assert axis_label("addendum_coefficient") == "Addendum coefficient"
@@ -28,14 +28,14 @@ def test_every_quantity_has_a_label_with_its_display_unit() -> None:
         assert ("[" in label) == bool(quantity.display_unit)
 
 
-def test_own_words_keep_the_unit() -> None:
+def test_a_label_of_the_caller_has_the_unit() -> None:
     assert axis_label("acceleration", "Along the line of action") == (
         "Along the line of action [m/s²]"
     )
     assert axis_label("friction_coefficient", "mu") == "mu"
 
 
-def test_values_are_shown_in_the_display_unit() -> None:
+def test_values_have_the_display_unit() -> None:
     values = displayed("deflection", np.array([[1e-6, -2e-6]]))
     np.testing.assert_allclose(values, [[1.0, -2.0]], rtol=1e-15)
     assert displayed("hertz_pressure", 1.2e9) == pytest.approx(1.2)

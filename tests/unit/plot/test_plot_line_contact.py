@@ -95,7 +95,7 @@ def test_marks_stand_on_the_film(contacts: list[Any]) -> None:
     assert spike.y[0] == pytest.approx(1e-9 * solution.spike_pressure)
 
 
-def test_title_tells_both_films(contacts: list[Any]) -> None:
+def test_title_names_both_films(contacts: list[Any]) -> None:
     title = line_contact(contacts[1]).layout.title.text
     assert title == "The film is 1.02 µm thick in the centre and 0.894 µm at its thinnest"
 
@@ -123,11 +123,11 @@ def test_a_pressure_without_spike_has_no_mark(bare: Any) -> None:
     assert all("spike" not in each.name for each in line_contact(smooth).data)
 
 
-def test_solution_draws_itself(contacts: list[Any]) -> None:
+def test_solution_has_its_plot(contacts: list[Any]) -> None:
     assert contacts[0].plot().to_dict() == line_contact(contacts[0]).to_dict()
 
 
-def test_thinning_keeps_the_curves(contacts: list[Any]) -> None:
+def test_thinning_preserves_the_curves(contacts: list[Any]) -> None:
     fine = solve_line_contact(LOADS[2], 8e-3, 3.0722, OIL, 2.2e11, nodes=4097)
     thin = thinned(fine, 200)
     assert len(thin) <= 200
@@ -212,7 +212,7 @@ def test_animation_is_a_small_file(contacts: list[Any]) -> None:
     assert len(text) < 500_000
 
 
-def test_animation_refuses_what_it_cannot_draw(contacts: list[Any]) -> None:
+def test_animation_refuses_wrong_input(contacts: list[Any]) -> None:
     with pytest.raises(InputError, match="3 contacts and 2 positions"):
         film_along_path(contacts, PATH[:2])
     with pytest.raises(InputError, match="1 contacts and 1 positions"):
@@ -238,7 +238,7 @@ def test_response_over_the_frequency(contacts: list[Any], bare: Any) -> None:
         film_response(bare)
 
 
-def test_response_tells_where_the_stiffness_at_rest_ends() -> None:
+def test_response_states_where_the_static_stiffness_ends() -> None:
     def spring(frequencies: Any, length: float) -> tuple[Any, Any]:
         f = np.asarray(frequencies)
         return length * 1e9 * (1.0 - (f / 1e4) ** 2), length * np.ones_like(f)

@@ -39,7 +39,7 @@ def test_panels_grow_the_figure() -> None:
     assert two.layout.height > 1.5 * single.layout.height
 
 
-def test_a_single_curve_has_no_legend_and_several_have_one_beside_their_panel() -> None:
+def test_a_legend_is_next_to_a_panel_of_several_curves_only() -> None:
     figure = stack("T", "x", [Panel("a", curves(1)), Panel("b", curves(2))]).figure()
     assert [trace.showlegend for trace in figure.data] == [False, True, True]
     assert [trace.legend for trace in figure.data] == ["legend", "legend2", "legend2"]

@@ -66,13 +66,13 @@ def undrawn(kinds: list[type[Any]]) -> list[str]:
     ]
 
 
-def test_every_result_draws_itself() -> None:
+def test_every_result_has_its_plot() -> None:
     kinds = list(classes())
     assert len(kinds) > 55
     assert undrawn(kinds) == []
 
 
-def test_a_result_without_a_figure_would_be_seen() -> None:
+def test_a_result_without_a_figure_would_be_detected() -> None:
     class Lonely(Record):
         pass
 
@@ -127,7 +127,7 @@ def test_harmonics_are_bars_over_the_order() -> None:
     assert list(figure.data[0].y) == [2.0, 5.0, 1.0]
 
 
-def test_sidebands_stand_beside_their_carrier() -> None:
+def test_sidebands_lie_on_both_sides_of_their_carrier() -> None:
     wave = (1.0 + 0.4 * np.cos(TURN)) * 5.0 * np.cos(32 * TURN)
     figure = sidebands(wave, RATE, 400.0, 12.5, count=2, unit="m/s^2").plot()
     assert "amplitude modulation 40.0 %" in figure.layout.title.text
@@ -194,7 +194,7 @@ def test_sobol_indices_are_bars_in_percent_with_the_largest_on_top() -> None:
 
 
 @pytest.mark.parametrize("unit", ["N", ""])
-def test_a_band_is_drawn_about_its_mean(unit: str) -> None:
+def test_a_band_is_plotted_about_its_mean(unit: str) -> None:
     mean = np.array([1.0, 2.0, 3.0])
     figure = Band(mean, mean - 0.5, mean + 1.5, 0.95, 12, True, unit).plot()
     low, high, middle = figure.data

@@ -32,7 +32,7 @@ def test_every_change_is_marked_and_nothing_else(ratio: float) -> None:
 
 
 @RATIOS
-def test_words_name_the_numbers_of_pairs(ratio: float) -> None:
+def test_sentence_names_the_numbers_of_pairs(ratio: float) -> None:
     number_words = ("no", "one", "two", "three", "four")
     counts = {pairs(ratio, age) for age in np.linspace(1e-6, ratio - 1e-6, 997)}
     sentence = sharing_sentence(ratio).lower()

@@ -45,7 +45,7 @@ def test_order_map_over_time_where_the_speed_turns_back(run_up):
     assert strongest_orders(run_up) == [8.0, 1.0]
 
 
-def test_spectrogram_says_where_and_when():
+def test_spectrogram_title_names_frequency_and_time():
     levels = spectrogram(np.where(TIME < 2.0, 0.1, 1.0) * np.cos(2 * np.pi * 250 * TIME), RATE)
     figure = draw_spectrogram(levels)
     assert "Hz after" in figure.layout.title.text

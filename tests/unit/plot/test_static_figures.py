@@ -125,7 +125,7 @@ def test_force_law_goes_through_the_working_load(result: Any) -> None:
     assert np.interp(-0.05 * alone, single.x, single.y) == 0.0
 
 
-def test_perfect_flanks_are_told_instead_of_drawn(result: Any) -> None:
+def test_a_message_replaces_the_figure_of_perfect_flanks(result: Any) -> None:
     with pytest.raises(InputError, match="perfect involutes"):
         FIGURES["flank_modification"](result)
 
@@ -162,7 +162,7 @@ def test_lead_pitch_and_run_out_have_panels_of_their_own() -> None:
     assert max(run_out.x) == pytest.approx(360.0)
 
 
-def test_titles_without_a_gap_tell_what_there_is() -> None:
+def test_titles_without_a_gap_name_the_modification() -> None:
     pitch = FlankModification(cumulative_pitch_deviation=(5e-6,) + (0.0,) * 19)
     figure = flank_modification(pair_with(pinion_modification=pitch))
     assert "5.00 µm" in figure.layout.title.text

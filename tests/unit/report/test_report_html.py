@@ -189,7 +189,7 @@ def test_warnings_are_shown_only_if_there_are_any(drawable: Any, page: str) -> N
     assert "all models were used within their range of validity" not in render_report(result)
 
 
-def test_assumptions_and_case_are_told(drawable: Any, page: str) -> None:
+def test_report_lists_assumptions_and_case(drawable: Any, page: str) -> None:
     result = drawable()
     for assumption in result.assumptions:
         assert assumption.value in page
@@ -214,6 +214,6 @@ def test_report_is_written_whole_or_not_at_all(
     assert [file.name for file in tmp_path.iterdir()] == ["report.html"]
 
 
-def test_a_place_that_cannot_be_written_is_told(drawable: Any, tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_written_is_reported(drawable: Any, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="report"):
         write_report(drawable(), tmp_path / "nowhere" / "report.html")

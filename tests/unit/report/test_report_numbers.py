@@ -34,7 +34,7 @@ from tribodyn.units import parse
         ),
     ],
 )
-def test_names_read_like_words(name: str, label: str) -> None:
+def test_names_become_readable_labels(name: str, label: str) -> None:
     assert in_words(name) == label
 
 
@@ -92,7 +92,7 @@ def test_both_columns_are_the_same_value() -> None:
         assert float(row.si) == value
 
 
-def test_cards_keep_their_order_and_leave_out_what_is_missing() -> None:
+def test_cards_have_a_fixed_order_and_omit_missing_figures() -> None:
     summary = dict.fromkeys(reversed(HEADLINES[:3]), 1.0)
     assert [card.name for card in headlines(summary)] == list(HEADLINES[:3])
     assert set(HEADLINES) <= set(SUMMARY)

@@ -119,7 +119,7 @@ def test_more_waves_and_points_change_little(fzg, steel, monkeypatch):
 
 
 @pytest.mark.parametrize(("teeth", "bore"), [(20, 0.35), (32, 0.5), (60, 0.25)])
-def test_the_ring_is_what_the_foundation_formula_was_fitted_to(steel, teeth, bore):
+def test_the_ring_agrees_with_the_fitted_foundation_formula(steel, teeth, bore):
     gear = standard_gear(teeth, bore)
     ring, formula = (
         analytic_influence(gear, steel, foundation=name) for name in ("ring", "sainsot")
@@ -150,7 +150,7 @@ def test_a_thinner_rim_is_stiffer_in_torsion_and_its_neighbours_matter_less(stee
     assert cross[2] / self_compliance[2] < 0.25 * cross[0] / self_compliance[0]
 
 
-def test_a_gear_without_bore_can_be_seen_from_its_rim(steel):
+def test_a_gear_without_bore_can_be_referred_to_its_rim(steel):
     solid = standard_gear(24, 0.0)
     bored = dataclasses.replace(solid, bore_diameter=2.0 * solid.root_radius / 7.0)
     influence, same = (analytic_influence(gear, steel, reference="rim") for gear in (solid, bored))
@@ -173,7 +173,7 @@ def test_few_teeth_have_few_neighbours(steel, fzg):
         ("nodes", 3, "nodes"),
     ],
 )
-def test_what_it_cannot_use_is_refused(fzg, steel, option, value, message):
+def test_invalid_options_are_refused(fzg, steel, option, value, message):
     with pytest.raises(InputError, match=message):
         analytic_influence(fzg().pinion, steel, **{option: value})
 

@@ -64,7 +64,7 @@ def test_second_time_nothing_is_computed(counted, folder):
     assert [path.suffix for path in files(folder)] == [".npz"]
 
 
-def test_what_does_not_matter_is_not_computed_again(counted):
+def test_unrelated_changes_compute_nothing_again(counted):
     fe2d_influence(gear_of(), STEEL)
     other = Material(youngs_modulus=100e9, density=1.0)
     soft = fe2d_influence(gear_of(face_width=5e-3, mass=1.0), other, reference="rim")
@@ -118,7 +118,7 @@ def test_every_source_that_counts_is_in_the_digest():
         assert all((package / folder / f"{name}.py").is_file() for name in names.split())
 
 
-def test_without_cache_nothing_is_kept(counted, folder):
+def test_without_cache_nothing_is_stored(counted, folder):
     fe2d_influence(gear_of(), STEEL, cache=False)
     fe2d_influence(gear_of(), STEEL, cache=False)
     assert len(counted) == 2
@@ -192,7 +192,7 @@ def test_folder_of_the_platform(monkeypatch, tmp_path):
     assert provider.cache_folder() == tmp_path / "mine"
 
 
-def test_kept_result_is_the_computed_one(folder):
+def test_cached_result_is_the_computed_one(folder):
     coarse = MeshSize(flank=0.15, largest=0.3, growth=2.0, body_growth=0.6, body_ratio=0.4)
     first = fe2d_influence(gear_of(), STEEL, size=coarse)
     cached = fe2d_influence(gear_of(), STEEL, size=coarse)

@@ -142,7 +142,7 @@ def test_data_set_and_line(pair):
         ([90.0], {"phases": 64, "harmonics": 32}, "1 to 31 harmonics"),
     ],
 )
-def test_what_makes_no_map_is_refused(pair, torque, options, message):
+def test_invalid_map_arguments_are_refused(pair, torque, options, message):
     with pytest.raises(InputError, match=message):
         transmission_error_over_torque(pair, torque, provider="analytic", **options)
 

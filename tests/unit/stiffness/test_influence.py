@@ -31,7 +31,7 @@ def test_the_other_side_follows_from_reciprocity():
     assert influence.between(0.012, 0.017, -1) != pytest.approx(influence.between(0.012, 0.017, 1))
 
 
-def test_teeth_further_than_known_do_not_move():
+def test_teeth_beyond_the_stored_neighbours_do_not_move():
     assert table().neighbours == 2
     assert table().between(np.full(3, 0.012), 0.017, -3).tolist() == [0.0, 0.0, 0.0]
 
@@ -60,5 +60,5 @@ def test_unusable_tables_are_refused(change, message):
         GearInfluence(**{**good, "cross_compliance": np.ones((1, 9, 9)), **change})
 
 
-def test_one_line_tells_the_range():
+def test_range_is_described_in_one_line():
     assert repr(table()).startswith("GearInfluence(9 nodes from 10 to 20 mm")

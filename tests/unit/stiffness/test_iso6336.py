@@ -46,7 +46,7 @@ def test_profile_shift_worked_by_hand(fzg, steel):
     assert stiffness == pytest.approx(0.8e9 * 0.975 / q, rel=1e-12)
 
 
-def test_common_gears_lie_where_the_standard_says(steel):
+def test_common_gears_lie_in_the_range_of_the_standard(steel):
     # The standard offers 14 N/(mm um) for a pair and 20 for the mesh where nothing is known.
     rack = BasicRack(dedendum_coefficient=1.2)
     pair = make(24, 36, pinion_rack=rack, wheel_rack=rack)

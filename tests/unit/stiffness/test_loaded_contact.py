@@ -124,7 +124,7 @@ def test_bodies_held_at_the_rim_are_stiffer():
     assert (bore.reference, rim.reference) == ("bore", "rim")
 
 
-def test_tip_relief_takes_load_from_the_end_of_the_path_and_keeps_the_middle():
+def test_tip_relief_unloads_the_ends_of_the_path_only():
     pair = pair_of()
     length = (pair.transverse_contact_ratio - 1.0) * pair.base_pitch
     plain = loaded_contact(pair, 150.0, provider="analytic", phases=256)
@@ -149,7 +149,7 @@ def test_tip_relief_takes_load_from_the_end_of_the_path_and_keeps_the_middle():
 
 
 @pytest.mark.parametrize(("gear", "position"), [("pinion", -8e-6), ("wheel", 8e-6)])
-def test_a_flank_that_stands_proud_takes_load_and_lessens_the_error(gear, position):
+def test_a_raised_flank_takes_load_and_lessens_the_error(gear, position):
     # A driving tooth before its place, or a driven one behind it, meets its mate too early.
     pair = pair_of()
     modified_gear = getattr(pair, gear)
@@ -265,7 +265,7 @@ def test_a_data_set_carries_units(tmp_path):
     data.to_netcdf(tmp_path / "mesh.nc", engine="h5netcdf")
 
 
-def test_what_is_wrong_is_named():
+def test_wrong_arguments_are_named():
     pair = pair_of()
     with pytest.raises(InputError, match="torque"):
         loaded_contact(pair, -5.0, provider="analytic")

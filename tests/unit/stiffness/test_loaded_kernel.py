@@ -109,7 +109,7 @@ def test_below_the_smallest_gap_there_is_no_force():
     assert not slope.any()
 
 
-def test_a_pair_begins_to_carry_where_it_is_said():
+def test_a_pair_begins_to_carry_at_its_stated_gap():
     contact_problem = problem(5, phases=20)
     most = contact_problem.at_loads(np.array([300.0])).approach[0]
     begin = contact_problem.pickups(most)
@@ -144,7 +144,7 @@ def test_stored_energy_is_the_integral_of_the_force():
     assert work == pytest.approx(stored, rel=2e-5)
 
 
-def test_a_contact_as_wide_as_the_teeth_is_told():
+def test_a_contact_as_wide_as_the_teeth_is_reported():
     contact_problem = problem(9)
     with pytest.raises(ComputationError, match="as wide as the teeth are thick"):
         contact_problem.at_loads(np.array([1e12]))

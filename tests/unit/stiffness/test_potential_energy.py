@@ -18,7 +18,7 @@ def cycle(pair, points=50):
     return path_of_contact(pair).pair_paths(phase)
 
 
-def test_every_pair_deflects_alike_under_its_own_share(fzg, steel):
+def test_every_pair_deflects_equally_under_its_share(fzg, steel):
     pair, force = fzg(), 2660.0
     path, in_contact = cycle(pair)
     stiffness = potential_energy_stiffness(pair, steel, path, in_contact, force)

@@ -66,7 +66,7 @@ def test_series_is_the_work_summed_over_the_rim(ring, turn):
     assert compliance == pytest.approx(expected, rel=2e-3, abs=2e-4 * np.abs(expected).max())
 
 
-def test_one_foot_sees_what_the_other_does(ring):
+def test_compliances_ahead_and_behind_are_reciprocal(ring):
     ahead, behind = (foot_compliance(ring, FOOT, turn) for turn in (0.7, -0.7))
     assert ahead == pytest.approx(behind.T, rel=1e-12)
     assert np.abs(ahead - ahead.T).max() > 0.01 * np.abs(ahead).max()

@@ -35,7 +35,7 @@ def test_optimum_halves_the_error_of_this_pair(best):
     assert 3e-3 < best.length < 6e-3
 
 
-def test_modified_pair_has_what_was_found(best):
+def test_modified_pair_has_the_computed_errors(best):
     for gear in (best.modified_pair.pinion, best.modified_pair.wheel):
         assert gear.modification == FlankModification(
             tip_relief=best.amount, tip_relief_length=best.length
@@ -116,7 +116,7 @@ def test_two_torques_are_a_range(pair):
     assert optimum.torque.tolist() == [60.0, 75.0, 90.0, 105.0, 120.0]
 
 
-def test_relief_that_was_there_is_replaced_and_all_else_kept(pair, best):
+def test_earlier_relief_is_replaced_and_all_else_preserved(pair, best):
     modified = with_tip_relief(pair, 25e-6, 2e-3)
     optimum = optimize_tip_relief(modified, TORQUES, **FAST)
     assert (optimum.amount, optimum.length) == (best.amount, best.length)
@@ -124,7 +124,7 @@ def test_relief_that_was_there_is_replaced_and_all_else_kept(pair, best):
     np.testing.assert_allclose(optimum.map_objective[0], best.objective_before, rtol=1e-12)
 
 
-def test_other_modifications_are_kept(fzg):
+def test_other_modifications_are_preserved(fzg):
     crowned = fzg(pinion_modification=FlankModification(crowning=4e-6, root_relief=3e-6))
     optimum = optimize_tip_relief(crowned, 90.0, grid=(4, 3), provider="analytic", phases=16)
     modification = optimum.modified_pair.pinion.modification
@@ -144,7 +144,7 @@ def test_models_of_the_literature_are_searched_as_well(pair):
     )
 
 
-def test_optimum_at_the_edge_is_told(pair, best):
+def test_optimum_at_the_edge_is_reported(pair, best):
     assert not best.on_edge
     assert optimize_tip_relief(pair, TORQUES, amount=(0.0, 3e-6), **FAST).on_edge
 
@@ -174,7 +174,7 @@ def test_data_set_and_line(best):
         ({"weight": (1.0, -1.0, 1.0)}, "none negative"),
     ],
 )
-def test_what_cannot_be_searched_is_refused(pair, options, message):
+def test_impossible_searches_are_refused(pair, options, message):
     with pytest.raises(InputError, match=message):
         optimize_tip_relief(pair, TORQUES, **{**FAST, **options})
 

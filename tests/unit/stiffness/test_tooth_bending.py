@@ -74,6 +74,6 @@ def test_compliance_scales_with_modulus_and_width():
         ((bar()[0], -bar()[1]), 0.035, "half thickness"),
     ],
 )
-def test_what_is_no_beam_is_refused(outline, height, message):
+def test_invalid_beams_are_refused(outline, height, message):
     with pytest.raises(InputError, match=message):
         tooth_bending_compliance(outline, height, 0.0, 0.0, WIDTH, MATERIAL)

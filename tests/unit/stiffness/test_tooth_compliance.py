@@ -41,7 +41,7 @@ def test_the_two_references_differ_by_the_wind_up(fzg):
     assert difference == pytest.approx(np.full(3, ring), rel=1e-9)
 
 
-def test_seen_from_the_rim_the_bore_hardly_matters(fzg):
+def test_referred_to_the_rim_the_bore_hardly_matters(fzg):
     bores = (0.0, 10e-3, 20e-3, 40e-3)
     rims = [total(fzg(wheel_bore_diameter=bore).wheel, "rim").total[1] for bore in bores]
     assert np.ptp(rims) < 0.15 * np.mean(rims)
@@ -56,7 +56,7 @@ def test_below_a_seventh_of_the_root_radius_only_the_wind_up_grows(fzg):
     assert total(smaller).wind_up > 3.9 * total(gear).wind_up
 
 
-def test_no_bore_can_be_held(fzg):
+def test_a_gear_without_bore_is_refused(fzg):
     with pytest.raises(InputError, match=r'bore_diameter, or choose reference = "rim"'):
         total(fzg(wheel_bore_diameter=0.0).wheel)
 

@@ -51,7 +51,7 @@ def test_the_moment_moves_the_foot_sideways_as_on_a_half_plane(nu):
 
 
 @pytest.mark.parametrize("nu", [0.2, 0.3])
-def test_force_terms_lengthen_the_beam_alike(nu):
+def test_force_terms_lengthen_the_beam_equally(nu):
     # Shear and axial compression of a beam of the width of the foot that is longer by one piece.
     _, _, across, along = terms(Material(200e9, nu))
     shear_of_beam = 2.4 / (1.0 - nu)

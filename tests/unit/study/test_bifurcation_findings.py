@@ -47,7 +47,7 @@ def test_a_quiet_diagram(case):
     assert findings.figures()["jumps"] == []
 
 
-def test_step_limit_names_its_onset_and_what_is_left_with_shorter_steps(case):
+def test_step_limit_names_its_onset_and_the_motions_of_shorter_steps(case):
     plain = diagram()
     verdict, period = plain.verdict.copy(), plain.period.copy()
     verdict[0, 6:], period[0, 8:] = "step-limited", 0
@@ -84,7 +84,7 @@ def test_periods_jumps_and_two_motions(case):
     assert "up and down differ; the range ends there, and they may go on beyond it" in sentences
 
 
-def test_the_title_of_the_figure_tells_what_matters_most():
+def test_the_title_of_the_figure_names_the_main_finding():
     plain = diagram(branches=("up", "down"))
     rms, period, verdict = plain.rms.copy(), plain.period.copy(), plain.verdict.copy()
 
@@ -105,7 +105,7 @@ def test_the_title_of_the_figure_tells_what_matters_most():
     assert title() == "10 of 20 responses depend on the time step and are not physical"
 
 
-def test_motions_that_ran_away_are_told(case):
+def test_diverged_motions_are_reported(case):
     plain = diagram(branches=("up", "down"))
     rms, period, verdict = plain.rms.copy(), plain.period.copy(), plain.verdict.copy()
     rms[0, 6:], period[0, 6:], verdict[0, 6:] = np.nan, 0, "undecided"
@@ -143,7 +143,7 @@ def test_flanks_in_touch_do_not_jump(case):
     assert len(Findings(case, flat).figures()["jumps"]) == 1
 
 
-def test_interrupted_diagram_counts_what_is_there(case):
+def test_interrupted_diagram_counts_finished_motions(case):
     plain = diagram()
     finished, verdict = plain.finished.copy(), plain.verdict.copy()
     finished[0, 7:], verdict[0, 5:] = False, ""

@@ -48,7 +48,7 @@ def test_all_faults_come_at_once_in_the_order_of_the_file() -> None:
     assert places == ["3", "9", "18", "29"]
 
 
-def test_impossible_gears_are_told_along_with_faults_elsewhere() -> None:
+def test_impossible_gears_are_reported_along_with_other_errors() -> None:
     text = SOUND.replace('"91.5 mm"', '"80 mm"').replace('"steady"', '"stedy"')
     with pytest.raises(InputError) as caught:
         read_case(text, "pair.toml")
@@ -80,7 +80,7 @@ def test_a_missing_unit_has_one_remedy() -> None:
         ('composite_roughness = "0.53 um"', 'composite_roughnes = "0.53 um"'),
     ],
 )
-def test_what_is_misspelt_is_told_once_and_nothing_seems_to_be_missing(old: str, new: str) -> None:
+def test_a_misspelt_key_is_reported_once_and_not_as_missing(old: str, new: str) -> None:
     with pytest.raises(InputError, match="unknown key") as caught:
         read_case(SOUND.replace(old, new, 1), "pair.toml")
     assert len(caught.value.problems) == 1

@@ -126,7 +126,7 @@ def test_every_line_of_a_written_case_is_commented() -> None:
     assert 'center_distance = "91.5 mm"  # a: distance between the two axes; 0.1 mm' in text
 
 
-def test_a_stale_default_is_told() -> None:
+def test_a_stale_default_is_reported() -> None:
     text = read_case(SOUND, "pair.toml").to_toml()
     assert "mesh_damping_ratio = 0.04" in text
     older = text.replace("mesh_damping_ratio = 0.04", "mesh_damping_ratio = 0.05").replace(
@@ -218,7 +218,7 @@ def test_the_papers_behind_the_losses_are_cited() -> None:
         assert not any(other in sources for other in others)
 
 
-def test_ra_becomes_rms_and_is_told(case: Any) -> None:
+def test_ra_becomes_rms_and_is_listed_as_assumption(case: Any) -> None:
     ra = {f"gears.{gear}.roughness_ra": "0.4 um" for gear in ("pinion", "wheel")}
     rough = case.replace({"gears.composite_roughness": None, **ra})
     assert rough.composite_roughness == pytest.approx(math.sqrt(2.0) * 0.5e-6)
@@ -279,7 +279,7 @@ def test_a_length_is_written_in_its_usual_unit_with_the_digits_that_it_has(relie
     assert read_case(text).gears.pinion.modification.tip_relief == relief
 
 
-def test_an_oil_of_a_data_sheet_stands_in_a_case(case: Any) -> None:
+def test_an_oil_of_a_data_sheet_is_used_in_a_case(case: Any) -> None:
     """Written and read again it is the same; what the sheet does not state is assumed."""
     sheet = {
         "lubricant.name": None,

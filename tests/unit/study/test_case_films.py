@@ -83,12 +83,12 @@ def test_faults_name_the_argument(case: Any, value: Any, says: tuple[str, ...]) 
         assert part in str(refused.value)
 
 
-def test_a_case_without_film_says_so(case: Any) -> None:
+def test_a_case_without_film_is_refused(case: Any) -> None:
     with pytest.raises(td.InputError, match=r'film\.model = "none".*"newton"'):
         td.film_over_operation(case.replace({"film.model": "none"}))
 
 
-def test_a_film_below_the_roughness_is_told() -> None:
+def test_a_film_below_the_roughness_is_reported() -> None:
     steel = np.full((2, 1), 1e9)
     touching = np.ones((2, 1), dtype=bool)
     mesh: Any = SimpleNamespace(
@@ -132,7 +132,7 @@ def test_zeros_without_contact_are_no_thin_film() -> None:
     assert mesh_cautions(mesh) == ()
 
 
-def test_a_starved_inlet_is_told(case: Any) -> None:
+def test_a_starved_inlet_is_reported(case: Any) -> None:
     starved = {"film.model": "newton", "film.inlet": "zero", "film.domain": [-2.5, 1.5]}
     codes = {warning.code: warning.message for warning in case_cautions(case.replace(starved))}
     assert "2.5 Hertzian half widths" in codes["starved-inlet"]

@@ -74,7 +74,7 @@ def test_zero_backlash_is_the_linear_mesh_of_full_teeth(case):
     assert linear.backlash == 0.0
 
 
-def test_check_tells_by_how_much_the_backlash_thins_the_teeth() -> None:
+def test_check_reports_by_how_much_the_backlash_thins_the_teeth() -> None:
     case = td.load_case("fzg-roughness")
     figures = geometry(case)
     thinned = figures["tooth_thinning_pinion"] + figures["tooth_thinning_wheel"]

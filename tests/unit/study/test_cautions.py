@@ -28,7 +28,7 @@ def _codes(case: Any) -> list[str]:
     return [warning.code for warning in case_cautions(case)]
 
 
-def test_a_thin_rim_is_told_where_the_body_counts(case: Any) -> None:
+def test_a_thin_rim_is_reported_where_the_body_counts(case: Any) -> None:
     bores = {"gears.pinion.bore_diameter": 62e-3, "gears.wheel.bore_diameter": 30e-3}
     thin = case.replace({**bores, "stiffness.model": "potential-energy"})
     assert thin.gear_pair.pinion.root_radius - 31e-3 < 4.5e-3
@@ -42,7 +42,7 @@ def test_a_thin_rim_is_told_where_the_body_counts(case: Any) -> None:
     ("key", "value"),
     [("mass", "2.9 kg"), ("mass", "0.19 kg"), ("moment_of_inertia", "407 kg*cm^2")],
 )
-def test_inertias_far_from_the_solid_are_told(case: Any, key: str, value: str) -> None:
+def test_inertias_far_from_the_solid_are_reported(case: Any, key: str, value: str) -> None:
     assert "mass-unlikely" in _codes(case.replace({f"gears.pinion.{key}": value}))
 
 
@@ -61,7 +61,7 @@ def test_a_printed_inertia_has_more_room_than_one_of_the_user() -> None:
     assert "mass-unlikely" in _codes(case.replace({key: "408 kg*mm^2"}))
 
 
-def test_a_pressure_beyond_steel_is_told(case: Any) -> None:
+def test_a_pressure_beyond_the_strength_of_steel_is_reported(case: Any) -> None:
     with pytest.warns(td.ModelWarning, match=r"hertz-pressure.*reaches 3\.\d+ GPa"):
         result = td.run(
             case.replace({"operation.torque": 2000.0, "solver.steps_per_mesh_cycle": 1024})
@@ -69,7 +69,7 @@ def test_a_pressure_beyond_steel_is_told(case: Any) -> None:
     assert result.summary()["maximum_hertz_pressure"] > 3e9
 
 
-def test_contact_loss_is_told_with_its_share(case: Any) -> None:
+def test_contact_loss_is_reported_with_its_share(case: Any) -> None:
     loose = {
         "dynamics.model": "torsional", "dynamics.mesh_damping_ratio": 0.01,
         "operation.torque": 20.0, "dynamics.transmission_error_amplitude": 10e-6,

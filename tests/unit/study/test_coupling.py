@@ -123,7 +123,7 @@ def test_balance_of_torques_by_virtual_power(driver: str, balance: str) -> None:
     np.testing.assert_allclose(lost, sliding, rtol=1e-8, atol=1e-8 * sliding.max())
 
 
-def test_with_both_torques_held_both_gears_accelerate_alike() -> None:
+def test_with_both_torques_constant_both_gears_accelerate_equally() -> None:
     result = _run(solver__coupling="static", solver__coupling_tolerance=1e-10)
     mesh, body = result.mesh, geometry(result.case)
     force, torque = result.coupling.loading * mesh.total_normal_force, result.case.pinion_torque
@@ -210,7 +210,7 @@ def test_the_contraction_is_that_of_the_derivative(static: Any) -> None:
     assert np.all(ratios[1:] < 0.02)
 
 
-def test_both_sides_of_an_event_are_kept(dynamic: Any) -> None:
+def test_both_sides_of_an_event_are_stored(dynamic: Any) -> None:
     mesh, over = dynamic.mesh, dynamic.coupling.loading
     response = dynamic.response
     stiffness = mesh.mesh_stiffness
@@ -225,7 +225,7 @@ def test_both_sides_of_an_event_are_kept(dynamic: Any) -> None:
         )
 
 
-def test_what_follows_from_the_mesh_can_be_plugged_in() -> None:
+def test_a_quantity_of_the_mesh_can_be_replaced() -> None:
     # Oil that is thinner where more power is lost: nu = nu0/(1 + P/500 W).
     case = td.load_case("fzg-roughness").replace(
         {"lubricant.name": None, "lubricant.dynamic_viscosity": 0.082, "lubricant.density": 880.0,
@@ -249,7 +249,7 @@ def test_what_follows_from_the_mesh_can_be_plugged_in() -> None:
     assert result.mesh.mean_friction_power != pytest.approx(td.run(case).mesh.mean_friction_power)
 
 
-def test_what_does_not_settle_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_coupling_that_does_not_settle_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     balanced = module.balanced_load
     swings = iter(range(1000))
 

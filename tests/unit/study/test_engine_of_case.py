@@ -41,7 +41,7 @@ def test_steady_motions_of_all_engines_agree_within_their_order(case: td.Case) -
 
 
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
-def test_transients_of_all_engines_start_alike(case: td.Case) -> None:
+def test_transients_of_all_engines_start_from_the_same_state(case: td.Case) -> None:
     over_time = case.replace(
         {"solver.method": "transient", "solver.cycles": 4, "solver.steps_per_mesh_cycle": 1024}
     )
@@ -75,7 +75,7 @@ def test_a_motion_that_does_not_repeat_is_refused(
         motion_with(case, "newmark")
 
 
-def test_a_graphics_processor_that_is_not_there_is_told_at_its_key(monkeypatch) -> None:
+def test_a_missing_graphics_processor_is_reported_at_its_key(monkeypatch) -> None:
     find_spec = importlib.util.find_spec
     monkeypatch.setattr(
         importlib.util, "find_spec", lambda name: None if name == "numba_cuda" else find_spec(name)

@@ -131,7 +131,7 @@ def test_a_solved_film_takes_its_thickness_off_the_transmission_error(wet):
 
 
 @pytest.mark.slow
-def test_a_table_keeps_teeth_and_film_apart_through_its_file(wet, tmp_path):
+def test_a_table_stores_teeth_and_film_separately(wet, tmp_path):
     wet.mesh.save(tmp_path / "mesh.nc")
     again = td.mesh.MeshTable.load(tmp_path / "mesh.nc")
     assert again.film_offset == wet.mesh.film_offset > 0.0

@@ -108,7 +108,7 @@ def test_flanks_are_apart_before_the_relieved_ones_touch(ran: Any) -> None:
     ("way", "message"),
     [("stiffness", "makes the mesh linear"), ("force-law", "lets the back flanks push at once")],
 )
-def test_without_play_a_pulling_mesh_is_told(
+def test_without_play_a_pulling_mesh_is_reported(
     monkeypatch: pytest.MonkeyPatch, way: str, message: str
 ) -> None:
     for place in ("assembly", "motion"):

@@ -119,7 +119,7 @@ def test_friction_across_is_in_proportion_at_small_coefficients(case: Any) -> No
     np.testing.assert_allclose(effect[..., 2] / effect[..., 1], 2.0, rtol=5e-3)
 
 
-def test_held_torque_bounds_the_mean_force(experiment: Any) -> None:
+def test_constant_torque_bounds_the_mean_force(experiment: Any) -> None:
     # Both torques held: the mean force lies between those of either torque held alone.
     mean = experiment["mean_mesh_force"][:, :, 1:]
     low, high = mean[:, :2].min(axis=1), mean[:, :2].max(axis=1)
@@ -166,7 +166,7 @@ def test_verdicts_turn_with_the_figures(experiment: Any) -> None:
     assert {c.case: c.verdict for c in turned.claims}["hypoid pair"] == "fails"
 
 
-def test_what_was_not_computed_is_told(case: Any) -> None:
+def test_missing_results_are_reported(case: Any) -> None:
     experiment = friction_experiment(case, laws=["xu-2007"], roughness=["0.4 um"])
     assert {claim.verdict for claim in experiment.claims} == {"not computed"}
     assert all(claim.why for claim in experiment.claims)
@@ -175,7 +175,7 @@ def test_what_was_not_computed_is_told(case: Any) -> None:
 
 
 @pytest.mark.slow
-def test_an_experiment_that_ended_early_tells_what_it_has(
+def test_an_experiment_that_ended_early_reports_its_results(
     case: Any, experiment: Any, tmp_path: Any
 ) -> None:
     lacks = {}

@@ -61,7 +61,7 @@ def test_the_comparison_is_the_run_with_nominal_friction():
     assert dynamic["friction_fit_error"] < 5e-3
 
 
-def test_loads_beyond_those_known_are_told():
+def test_loads_beyond_the_table_are_reported():
     friction = SimpleNamespace(load=100.0, limit=3.0)
     response = _run().response
     force = np.zeros_like(response.fine.contact_force)

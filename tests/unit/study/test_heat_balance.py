@@ -40,7 +40,7 @@ def _balance(case: Any) -> Any:
 
 
 @pytest.mark.parametrize("around", ["-10 degC", "20 degC"])
-def test_what_is_lost_is_given_off(around: str) -> None:
+def test_lost_power_equals_heat_given_off(around: str) -> None:
     if around == "-10 degC":
         with pytest.raises(ComputationError, match="start at 10 degC"):
             _balance(_case(lubricant__ambient_temperature=around))
@@ -80,7 +80,7 @@ def test_without_losses_it_is_as_warm_as_the_surroundings() -> None:
     assert heat.power_loss[-1] == 0.0
 
 
-def test_a_balance_beyond_what_is_known_of_the_oil_is_told() -> None:
+def test_a_balance_outside_the_range_of_the_oil_is_reported() -> None:
     with pytest.raises(ComputationError) as caught:
         _balance(_case("0.5 W/K"))
     message = str(caught.value)
@@ -91,7 +91,7 @@ def test_a_balance_beyond_what_is_known_of_the_oil_is_told() -> None:
     assert _balance(_case(f"{1.02 * enough} W/K"))[0].lubricant.temperature < 403.15
 
 
-def test_losses_that_jump_are_told() -> None:
+def test_losses_that_jump_are_reported() -> None:
     case, mesh = _case(), mesh_of(_case())
     lossy, smooth = (_scaled(mesh, factor) for factor in (8.0, 0.01))
 

@@ -67,7 +67,7 @@ def refused(written):
     return str(caught.value)
 
 
-def test_a_written_case_reads_back_and_lists_what_is_assumed(tmp_path):
+def test_a_written_case_reads_back_and_lists_its_assumptions(tmp_path):
     case = built_in()
     (tmp_path / "again.toml").write_text(case.to_toml(), encoding="utf-8")
     assert tribodyn.load_case(tmp_path / "again.toml") == case
@@ -77,7 +77,7 @@ def test_a_written_case_reads_back_and_lists_what_is_assumed(tmp_path):
     assert "gears.offset" not in case.assumed
 
 
-def test_only_the_design_has_to_be_given():
+def test_only_the_design_is_required():
     case = read_case(text(), "my.toml")
     values = geometry(case)
     assert case.dynamics.bearing_damping_ratio == 0.03
@@ -104,7 +104,7 @@ def test_only_the_design_has_to_be_given():
         ({"ease_of": "1"}, "ease_of", 'Did you mean "ease_off"'),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_line(changes, place, reason):
+def test_impossible_values_are_refused_with_their_line(changes, place, reason):
     message = refused(text(**changes))
     assert message.startswith("my.toml:")
     assert reason in message
@@ -112,7 +112,7 @@ def test_what_cannot_be_is_refused_with_its_line(changes, place, reason):
         assert part.rpartition(".")[2] in message
 
 
-def test_papers_are_those_of_what_the_pair_uses():
+def test_papers_are_those_of_the_models_used():
     sources = cite(built_in())
     assert "Xu, H." in sources
     assert "Weber" not in sources

@@ -77,7 +77,7 @@ def test_every_figure_is_drawn_from_equal_numbers(saved_and_loaded: Any) -> None
                     np.testing.assert_allclose(other.y, trace.y, rtol=1e-12, atol=1e-12 * scale)
 
 
-def test_what_is_drawn_is_saved_with_units(saved_and_loaded: Any) -> None:
+def test_plotted_series_are_saved_with_units(saved_and_loaded: Any) -> None:
     result, _, place = saved_and_loaded
     with xarray.open_dataset(place / "response.nc", engine="h5netcdf") as data:
         force = np.asarray(result.response.contact_force).sum(axis=1)
@@ -142,7 +142,7 @@ def test_a_long_run_is_stored_by_its_last_mesh_cycles(
     assert "the last 10 of 40 mesh cycles" in (place / "report.html").read_text()
 
 
-def test_a_very_long_run_keeps_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_very_long_run_stores_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
     from tribodyn.study.pipeline import motion
 
     case = _SOUND.replace({"solver.method": "transient", "solver.cycles": 70})
@@ -183,9 +183,7 @@ def _broken(saved: Path, place: Path, name: str) -> Path:
         ("earlier", "an earlier version wrote it"),
     ],
 )
-def test_what_is_no_whole_result_is_refused(
-    saved: Path, tmp_path: Path, name: str, says: str
-) -> None:
+def test_incomplete_results_are_refused(saved: Path, tmp_path: Path, name: str, says: str) -> None:
     with pytest.raises(td.InputError, match=says) as caught:
         td.load_result(_broken(saved, tmp_path / "broken", name))
     assert all(problem.remedy for problem in caught.value.problems)

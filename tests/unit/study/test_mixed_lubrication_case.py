@@ -89,7 +89,7 @@ def test_a_normal_gear_has_friction_between_film_and_gear_tests(mesh: MeshTable)
     assert "and so is the friction" not in mixed_caution.message
 
 
-def test_columns_of_mixed_lubrication_are_kept(mesh: MeshTable, tmp_path: Path) -> None:
+def test_columns_of_mixed_lubrication_are_stored(mesh: MeshTable, tmp_path: Path) -> None:
     again = MeshTable.load(mesh.save(tmp_path / "mesh.nc"))
     assert again == mesh
     assert "lubrication_regime" in mesh.to_xarray()
@@ -117,7 +117,7 @@ def test_figure_shows_shares_and_parts_of_the_friction(mesh: MeshTable) -> None:
     assert {note.text for note in figure.layout.annotations} >= {"boundary", "mixed", "full film"}
 
 
-def test_figure_without_film_or_roughness_says_what_to_give(tmp_path: Path) -> None:
+def test_figure_without_film_names_the_key(tmp_path: Path) -> None:
     case = case_of(tmp_path).replace({"friction.law": "none", "film.model": "none"})
     with pytest.raises(td.InputError, match=r"no film ratio.*film\.model"):
         mesh_of(case).plot_lubrication()
@@ -152,7 +152,7 @@ def test_profile_gives_height_slope_and_summits(tmp_path: Path) -> None:
     assert np.asarray(mesh.film_load_share)[mesh.in_contact] == pytest.approx(share, rel=1e-9)
 
 
-def test_profile_of_another_height_is_told(tmp_path: Path) -> None:
+def test_profile_of_another_height_is_reported(tmp_path: Path) -> None:
     path = profile(tmp_path, wavy(0.3))
     with pytest.warns(td.ModelWarning) as caught:
         mesh_of(case_of(tmp_path, roughness_profile=path))
@@ -176,7 +176,7 @@ def test_profile_of_another_height_is_told(tmp_path: Path) -> None:
         ({}, "position,height\nmm,um\n" + "".join(f"{i * i},{i}\n" for i in range(9)), "equal"),
     ],
 )
-def test_wrong_asperities_are_told_by_check(
+def test_wrong_asperities_are_reported_by_check(
     tmp_path: Path, friction: dict[str, str], rows: str, says: str
 ) -> None:
     friction = friction or {"roughness_profile": profile(tmp_path, rows)}

@@ -162,7 +162,7 @@ def test_default_length_is_shown_where_it_holds() -> None:
     assert set(figures) <= set(SUMMARY)
 
 
-def test_geometry_shows_what_is_given() -> None:
+def test_geometry_lists_the_modifications() -> None:
     case = td.load_case("fzg-roughness").replace(
         {f"{WHEEL}.crowning": "5 um", f"{WHEEL}.run_out": "20 um", "gears.misalignment": "4 um",
          f"{WHEEL}.cumulative_pitch_deviation": ["1 um", *["0 um"] * 23]}
@@ -206,7 +206,7 @@ mm,mm,um
 """
 
 
-def test_a_map_beside_the_case_is_read(saved: Saved) -> None:
+def test_a_map_in_the_folder_of_the_case_is_read(saved: Saved) -> None:
     pair = td.load_case(saved(MAP)).gear_pair
     pinion, wheel = flank_ranges(pair)
     gap = flank_gap(pair, 19.5e-3, wheel.lowest, np.array([-10e-3, 0.0, 10e-3]))

@@ -73,7 +73,7 @@ def test_a_motion_depends_on_no_other(cases: list[td.Case], together: list[Prepa
     assert alone[0].response == together[1].response
 
 
-def test_slow_points_whose_map_has_more_rounding_are_found_together() -> None:
+def test_slow_points_with_more_rounding_converge_in_one_batch() -> None:
     case = td.load_case("fzg-roughness")
     changed = [
         case.replace({"operation.speed": "400 rpm", "operation.torque": f"{torque} Nm"})
@@ -92,7 +92,9 @@ def test_slow_points_whose_map_has_more_rounding_are_found_together() -> None:
 
 
 @pytest.mark.parametrize("count", [2, 8, 9])
-def test_motions_of_systems_alike_march_as_alone(cases: list[td.Case], count: int) -> None:
+def test_motions_of_systems_in_one_batch_are_those_of_single_runs(
+    cases: list[td.Case], count: int
+) -> None:
     points = [prepare_run(cases[number % 2]) for number in range(count)]
     frequencies = np.array([point.mesh.mesh_frequency for point in points])
     group = SystemBatch([point.system for point in points], frequencies, 1024)

@@ -192,7 +192,7 @@ def test_wrong_input_is_refused(case: Any, compute: Any, message: str) -> None:
         compute(case)
 
 
-def test_a_figure_that_stands_still_is_refused(case: Any) -> None:
+def test_a_constant_figure_is_refused(case: Any) -> None:
     spread = {"operation.torque": "100 N*m +- 2 %", "operation.speed": "1500 rpm +- 2 %"}
     with pytest.raises(ComputationError, match="transverse_contact_ratio does not vary"):
         td.sobol_indices(case, "transverse_contact_ratio", spread, 2, seed=1)

@@ -59,7 +59,7 @@ def test_data_set_has_units_and_reasons(grid):
     assert "thin-tip" in str(data.warnings.values[0, 0])
 
 
-def test_a_value_that_fails_is_told_and_the_others_go_on(case):
+def test_a_failed_value_is_reported_and_the_others_go_on(case):
     over = {"friction.law": ["none", "constant"], "operation.torque": [50.0, 90.0]}
     result = td.sweep(case, over)
     assert (result.failed == "").tolist() == [[True, True], [False, False]]
@@ -75,7 +75,7 @@ def test_a_value_that_fails_is_told_and_the_others_go_on(case):
     assert result.plot().data[1].text[0] == result.failed[1, 0]
 
 
-def test_interruption_keeps_what_is_done(case, monkeypatch, tmp_path):
+def test_interruption_preserves_finished_points(case, monkeypatch, tmp_path):
     import tribodyn.study.studies.sweep as module
 
     prepare_run, figures = module.prepare_run, module._figures
@@ -151,7 +151,7 @@ def test_many_curves_become_a_map(case):
     assert "2 rpm, 2 N·m" in figure.layout.title.text
 
 
-def test_names_that_dimensions_would_take_twice_are_told_apart(case):
+def test_names_shared_with_dimensions_are_distinguished(case):
     over = {"gears.pinion.roughness_rms": [1e-7, 2e-7], "gears.wheel.roughness_rms": [1e-7, 2e-7]}
     axes = read_axes(case, over)
     points = tuple(

@@ -46,7 +46,7 @@ def test_the_rig_of_the_standard_has_its_pitch_line_velocity() -> None:
     assert power == pytest.approx(figures["input_power"], rel=1e-12)
 
 
-def test_the_oil_is_told_at_its_temperature() -> None:
+def test_the_oil_is_reported_at_its_temperature() -> None:
     # ISO VG 150 has 150 mm^2/s at 40 degC
     case = _sound().replace({"lubricant.name": "ISO VG 150", "lubricant.temperature": "40 degC"})
     figures = operating_figures(case)
@@ -124,12 +124,12 @@ def test_stiffness_of_the_standard_by_hand(pair: Any) -> None:
     assert mean == pytest.approx(613.7, abs=0.1)
 
 
-def test_outside_of_the_polynomial_the_standard_says_nothing(pair: Any) -> None:
+def test_outside_of_its_polynomial_the_standard_is_not_used(pair: Any) -> None:
     shifted = pair.replace({"gears.wheel.profile_shift_coefficient": 0.3})
     assert "iso_mesh_stiffness" not in standard_figures(shifted)
 
 
-def test_share_of_the_bodies_is_what_the_rim_leaves_out(pair: Any) -> None:
+def test_share_of_the_bodies_is_the_difference_of_bore_and_rim(pair: Any) -> None:
     share = standard_figures(pair)["gear_body_share"]
     bore, rim = (
         td.loaded_contact(pair.replace({"stiffness.reference": reference}), phases=32)

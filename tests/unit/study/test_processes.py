@@ -102,7 +102,7 @@ def test_helpers_begin_no_threads_for_matrices(monkeypatch) -> None:
 
 
 @pytest.mark.parametrize("first", ["1", "__import__('os')._exit(3)"])
-def test_what_a_lost_helper_left_is_computed_here(first: str) -> None:
+def test_items_of_a_lost_worker_are_computed_by_the_caller(first: str) -> None:
     pool = Helpers(1)
     items, results = [first, "__import__('os')._exit(3)", "22"], dict[int, int]()
 

@@ -99,7 +99,7 @@ def test_an_edited_line_of_a_written_file_is_the_users(kind: str, tmp_path: Path
 
 
 @pytest.mark.parametrize("same", ["20 mm", "0.02 m", "2e4 um", "0.02000000000001 m"])
-def test_the_same_value_in_other_words_keeps_its_reason(same: str) -> None:
+def test_the_same_value_in_another_unit_preserves_its_reason(same: str) -> None:
     text = td.load_case("fzg-roughness").to_toml()
     case = read_case(edited(text, WIDTH, f'face_width = "{same}"'))
     assert provenance(case)[WIDTH].startswith("assumed: FZG type A test gears are 20 mm wide")
@@ -114,7 +114,7 @@ def test_another_value_by_a_thousandth_does_not() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(case_files()))
-def test_what_is_untouched_says_what_it_said(name: str, tmp_path: Path) -> None:
+def test_unchanged_values_preserve_their_reason(name: str, tmp_path: Path) -> None:
     case = td.load_case(name)
     origins = provenance(case)
     assert all(origins[key] == f"assumed: {reason}" for key, reason in case.assumed.items())
@@ -154,7 +154,7 @@ def mutated(case: Any, key: str) -> Any:
 
 @pytest.mark.parametrize("name", sorted(case_files()))
 @pytest.mark.parametrize("way", ["replace", "file", "old file"])
-def test_no_mutated_value_keeps_its_reason(name: str, way: str, tmp_path: Path) -> None:
+def test_every_changed_value_loses_its_reason(name: str, way: str, tmp_path: Path) -> None:
     case = td.load_case(name)
     text = case.to_toml()
     began = text if way == "file" else old_form(text)
@@ -238,7 +238,7 @@ def test_result_and_report_say_nothing_of_the_old_value(tmp_path: Path) -> None:
     assert td.load_case(tmp_path / "unchanged" / "case.toml") == result.case
 
 
-def test_the_table_of_a_sweep_gives_no_reason_for_what_it_varies(tmp_path: Path) -> None:
+def test_the_table_of_a_sweep_gives_no_reason_for_varied_keys(tmp_path: Path) -> None:
     case = td.load_case("fzg-stiffness").replace({"solver.steps_per_mesh_cycle": 256})
     result = td.sweep(case, {"friction.coefficient": [0.1, 0.119]})
     page = write_sweep_report(result, tmp_path / "report.html").read_text(encoding="utf-8")
@@ -286,7 +286,7 @@ def test_keywords_take_a_reason_with_or_without_its_value() -> None:
         assert (WIDTH in td.Case(**tables, assumed=record).assumed) is retained
 
 
-def test_a_reason_of_ones_own_stands() -> None:
+def test_a_reason_of_the_user_is_preserved() -> None:
     text = edited(td.load_case("fzg-roughness").to_toml(), WIDTH, 'face_width = "30 mm"')
     mark = next(line for line in text.splitlines() if line.startswith(f'"{WIDTH}"'))
     case = read_case(text.replace(mark, f'"{WIDTH}" = "measured on the drawing"'))
@@ -303,7 +303,7 @@ def test_a_removed_mark_changes_no_value() -> None:
     assert changed_keys(case) == ()
 
 
-def test_another_origin_stands_for_the_values_in_force() -> None:
+def test_a_new_origin_replaces_the_source_of_the_preset() -> None:
     text = edited(td.load_case("fzg-roughness").to_toml(), WIDTH, 'face_width = "30 mm"')
     line = next(line for line in text.splitlines() if line.startswith("origin = "))
     case = read_case(text.replace(line, 'origin = "Drawing 4711"', 1))
@@ -315,7 +315,7 @@ def test_another_origin_stands_for_the_values_in_force() -> None:
     assert "Study of the flank" not in cite(none)
 
 
-def test_a_mass_of_another_gear_is_told() -> None:
+def test_a_mass_of_another_gear_is_reported() -> None:
     case = td.load_case("fzg-roughness")
     code = "mass-of-other-gear"
     assert code not in [warning.code for warning in case_cautions(case)]
@@ -328,7 +328,7 @@ def test_a_mass_of_another_gear_is_told() -> None:
     assert f"before {WIDTH} changed" in texts[1]
 
 
-def test_a_reason_tells_that_its_ground_has_changed() -> None:
+def test_a_reason_states_that_its_value_has_changed() -> None:
     case = td.load_case("fzg-12dof").replace({WIDTH: "12 mm"})
     reason = "assumed: that of a comparable FZG pair, 20 mm wide; none is printed"
     assert provenance(case)["gears.pinion.mass"] == f"{reason}; stated before {WIDTH} changed"
@@ -355,7 +355,7 @@ def test_a_base_of_another_origin_reads_back_equal(origin: str, of_file: bool) -
         ('[based_on]\n"gears.module" = "3 mm"', "no key"),
     ],
 )
-def test_faults_of_a_record_are_told_with_their_line(line: str, message: str) -> None:
+def test_faults_of_a_record_are_reported_with_their_line(line: str, message: str) -> None:
     text = Path(case_files()["fzg-stiffness"]).read_text(encoding="utf-8") + line + "\n"
     with pytest.raises(InputError, match=message) as caught:
         read_case(text, "my.toml")

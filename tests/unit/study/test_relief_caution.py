@@ -23,7 +23,7 @@ def _relief_warning(**relief):
 
 
 @pytest.mark.parametrize("modified", [{}, {"pinion__modification": "20 um"}])
-def test_usual_relief_is_not_told(modified):
+def test_usual_relief_gives_no_warning(modified):
     assert not _relief_warning(**modified)[0]
 
 
@@ -44,7 +44,7 @@ def test_far_too_large_relief_leaves_one_pair():
         ("operation.torque=91 N*m", ""),
     ],
 )
-def test_check_tells_a_relief_and_a_load_that_no_gear_stands(change, code, capsys):
+def test_check_reports_excessive_relief_and_load(change, code, capsys):
     with pytest.raises(SystemExit, match="0"):
         main(["check", "fzg-roughness", "--set", change])
     error = capsys.readouterr().err

@@ -124,7 +124,7 @@ def test_speed_and_torque_of_the_wheel_are_the_same_operation(case: Any, result:
             assert figures[name] == pytest.approx(value, rel=1e-9)
 
 
-def test_each_warning_is_kept_and_issued_once(case: Any) -> None:
+def test_each_warning_is_recorded_and_issued_once(case: Any) -> None:
     rough = td.load_case("fzg-roughness").replace({"gears.composite_roughness": "0.991 um"})
     with pytest.warns(td.ModelWarning) as issued:
         result = td.run(rough)
@@ -133,7 +133,7 @@ def test_each_warning_is_kept_and_issued_once(case: Any) -> None:
     assert len(set(map(str, result.warnings))) == len(codes) == len(issued)
 
 
-def test_a_pulling_linear_mesh_is_told(case: Any) -> None:
+def test_a_pulling_linear_mesh_is_reported(case: Any) -> None:
     light = {"dynamics.backlash": 0.0, "operation.torque": "1 N*m", "operation.speed": "6000 rpm",
              "dynamics.transmission_error_amplitude": "5 um"}  # fmt: skip
     result = _run(case.replace(light))
@@ -235,7 +235,7 @@ def test_repr_is_one_line(result: Any) -> None:
         ),
     ],
 )
-def test_faults_found_while_running_name_their_key(old: str, new: str, place: str) -> None:
+def test_errors_of_a_run_name_their_key(old: str, new: str, place: str) -> None:
     case = read_case(SOUND.replace(old, new), "pair.toml")
     if place.startswith("replace"):
         case = case.replace({"gears.composite_roughness": "1.2 um"})
@@ -245,7 +245,7 @@ def test_faults_found_while_running_name_their_key(old: str, new: str, place: st
         assert str(caught.value).startswith(place)
 
 
-def test_a_result_says_that_it_is_not_pickled(result: Any) -> None:
+def test_a_result_refuses_to_be_pickled(result: Any) -> None:
     assert pickle.loads(pickle.dumps(result.case)) == result.case
     with pytest.raises(TypeError, match="save"):
         pickle.dumps(result)

@@ -17,7 +17,7 @@ def results():
     return [td.run(case.replace({"operation.torque": t})) for t in ("20 N*m", "40 N*m")]
 
 
-def test_the_table_holds_what_differs_and_nothing_else(results) -> None:
+def test_the_table_holds_the_differences_only(results) -> None:
     comparison = td.compare_results(*results, names=("20", "40"))
     assert comparison.values == {"operation.torque": (20.0, 40.0)}
     first, other = (each.summary() for each in results)

@@ -109,7 +109,7 @@ def test_figures_are_drawn_and_the_report_has_them(result):
 
 
 @pytest.mark.parametrize("law", ["force-law", "tangent"])
-def test_teeth_carry_as_the_case_says(case, law):
+def test_teeth_carry_the_torque_of_the_case(case, law):
     changes = {
         "stiffness.model": "analytic", "dynamics.mesh_law": law, "dynamics.backlash": "0.1 mm",
         "friction.law": "none",

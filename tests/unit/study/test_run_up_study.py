@@ -18,7 +18,7 @@ def case() -> tribodyn.Case:
     return tribodyn.load_case("fzg-roughness")
 
 
-def test_a_held_speed_is_the_run_at_that_speed(case: tribodyn.Case) -> None:
+def test_a_run_up_at_constant_speed_is_the_run_at_that_speed(case: tribodyn.Case) -> None:
     low = case.operation.speed
     run = tribodyn.run_up(case, (low, 1.002 * low), 0.1, tables=1, samples=64)
     with warnings.catch_warnings():

@@ -37,7 +37,7 @@ def test_nothing_remains_of_a_failure(tmp_path: Path, failure: type[BaseExceptio
     assert os.listdir(tmp_path) == []
 
 
-def test_existing_result_is_kept_without_force(tmp_path: Path) -> None:
+def test_existing_result_is_not_replaced_without_force(tmp_path: Path) -> None:
     target = tmp_path / "result"
     target.mkdir()
     _fill(target, "old")
@@ -50,7 +50,7 @@ def test_existing_result_is_kept_without_force(tmp_path: Path) -> None:
     assert os.listdir(tmp_path) == ["result"]
 
 
-def test_a_failed_replacement_keeps_the_old_result(tmp_path: Path) -> None:
+def test_a_failed_replacement_preserves_the_old_result(tmp_path: Path) -> None:
     target = tmp_path / "result"
     target.mkdir()
     _fill(target, "old")
@@ -65,7 +65,7 @@ def test_a_failed_replacement_keeps_the_old_result(tmp_path: Path) -> None:
     assert os.listdir(tmp_path) == ["result"]
 
 
-def test_force_never_replaces_what_is_no_result(tmp_path: Path) -> None:
+def test_force_never_replaces_other_files(tmp_path: Path) -> None:
     other = tmp_path / "photos"
     other.mkdir()
     (other / "holiday.jpg").write_text("x")

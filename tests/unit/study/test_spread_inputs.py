@@ -106,7 +106,7 @@ def _cubic(time, signal, at):
     return np.polyval(np.polyfit(time[nearest] - at, signal[nearest], 3), 0.0)
 
 
-def test_a_table_tells_what_made_it(tmp_path):
+def test_a_table_states_its_provenance(tmp_path):
     with pytest.warns(ModelWarning, match="5.6 mesh cycles lie between two rows"):
         data = td.vibration_data(CASE, seed=3, trajectories=5, samples=4)
     assert data.rows == 20
@@ -152,7 +152,7 @@ def test_operating_points_are_rows():
         (lambda: td.ensemble(CASE, SCALES, 3, seed=1).band("speed"), "signal"),
     ],
 )
-def test_what_cannot_be_spread_is_told(make, match):
+def test_keys_that_cannot_be_spread_are_reported(make, match):
     with pytest.raises(InputError, match=match):
         make()
 

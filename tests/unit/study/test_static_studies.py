@@ -134,7 +134,7 @@ def test_a_case_without_film_has_no_comprehensive_stiffness(case):
         td.comprehensive_stiffness(case.replace({"film.model": "none"}))
 
 
-def test_every_study_draws_itself(case, film_case):
+def test_every_study_has_its_plot(case, film_case):
     torque = ("60 N*m", "120 N*m")
     results = (
         td.harris_map(case, torque, phases=16),

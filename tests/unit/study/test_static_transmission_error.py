@@ -192,7 +192,7 @@ def test_a_prescribed_error_is_a_part_of_it() -> None:
     assert "6.00 µm" in result.plot_static_transmission_error().layout.title.text
 
 
-def test_a_table_of_another_program_keeps_it(tmp_path: Any) -> None:
+def test_a_table_of_another_program_preserves_it(tmp_path: Any) -> None:
     case = hypoid()
     table = mesh(case, rehearsal=True)
     table.to_csv(tmp_path / "mesh.csv")

@@ -44,7 +44,7 @@ class _Cells(html.parser.HTMLParser):
             self.rows[-1][-1] += data
 
 
-def test_the_best_relief_is_a_case_that_does_what_was_promised(case: Any) -> None:
+def test_the_best_relief_is_a_case_with_the_predicted_error(case: Any) -> None:
     best = td.optimize_tip_relief(case, ("60 N*m", "120 N*m"), phases=16, grid=(5, 5))
     assert best.case.gears.pinion.modification.tip_relief == best.amount
     assert best.case.gears.wheel.modification.tip_relief_length == best.length

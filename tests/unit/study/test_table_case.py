@@ -113,7 +113,7 @@ def test_a_spur_table_that_is_written_and_read_has_the_same_orbit(spur, tmp_path
     assert before["rms_friction_force"] > 1.0  # friction goes the same way
 
 
-def test_a_sinusoidal_stiffness_moves_as_the_equation_of_mathieu_says(tmp_path):
+def test_a_sinusoidal_stiffness_obeys_the_equation_of_mathieu(tmp_path):
     result = quiet(table_case(written(tmp_path / "k.csv", sinusoid())))
     mass = math.prod(INERTIA) / (INERTIA[0] * RADII[1] ** 2 + INERTIA[1] * RADII[0] ** 2)
     omega = SPEED * TEETH[0]
@@ -279,7 +279,7 @@ def test_a_faulty_file_is_refused_with_the_key_of_the_case(tmp_path, name, messa
     assert "gears.table" in str(error.value)
 
 
-def test_what_is_no_file_is_refused(tmp_path):
+def test_paths_that_are_no_file_are_refused(tmp_path):
     with pytest.raises(InputError, match="does not exist"):
         table_case(tmp_path / "none.csv")
     with pytest.raises(InputError, match="is not a regular file"):
@@ -300,7 +300,7 @@ def test_what_is_no_file_is_refused(tmp_path):
         ({"gears.table": None}, "table is missing"),
     ],
 )
-def test_what_a_table_cannot_have_is_refused(tmp_path, change, message):
+def test_keys_that_a_table_cannot_have_are_refused(tmp_path, change, message):
     path = written(tmp_path / "k.csv", sinusoid())
     with pytest.raises(InputError, match=message):
         table_case(path, **change)

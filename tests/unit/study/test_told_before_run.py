@@ -31,7 +31,7 @@ _REFUSED = {
 
 @pytest.mark.parametrize("law", _REFUSED["friction.law"])
 @pytest.mark.parametrize("roughness", _REFUSED["gears.composite_roughness"])
-def test_a_rehearsal_says_what_the_run_says(law, roughness):
+def test_a_rehearsal_fails_as_the_run_does(law, roughness):
     case = td.load_case("fzg-roughness").replace(
         {"friction.law": law, "gears.composite_roughness": roughness}
     )
@@ -58,7 +58,7 @@ def test_models_and_speeds(model, speed):
 
 
 @pytest.mark.parametrize("key", ["roughness_ra", "roughness_rms"])
-def test_a_refused_roughness_is_named_as_it_was_given(key):
+def test_a_refused_roughness_is_named_by_its_key(key):
     roughness = {f"gears.{gear}.{key}": "3 um" for gear in ("pinion", "wheel")}
     case = td.load_case("fzg-roughness").replace(
         {"friction.law": "xu-2007", "gears.composite_roughness": None, **roughness}
@@ -76,7 +76,7 @@ def test_check_rehearses(tmp_path, capsys):
     assert "diverges at 1.13 um" in capsys.readouterr().err
 
 
-def test_a_law_of_a_third_party_is_asked_too():
+def test_a_law_of_a_third_party_is_checked_too():
     """One mechanism for all models: the model itself says no."""
 
     @LAWS.define("shy", source="test", meaning="refuses rough flanks", needs_oil=True)

@@ -48,7 +48,7 @@ def test_a_file_too_large_for_a_case(tmp_path: Path) -> None:
         load_case(path)
 
 
-def test_what_is_no_table_is_not_shown(tmp_path: Path) -> None:
+def test_errors_show_no_content_of_foreign_files(tmp_path: Path) -> None:
     secret = tmp_path / "secret.txt"
     secret.write_text("root:x:0:0:topsecret\nuser,topsecret\nthree:topsecret\nfour\n")
     for work in (
@@ -60,7 +60,7 @@ def test_what_is_no_table_is_not_shown(tmp_path: Path) -> None:
         assert "topsecret" not in str(caught.value)
 
 
-def test_a_profile_map_far_from_a_grid_is_told_at_once(tmp_path: Path) -> None:
+def test_a_profile_map_far_from_a_grid_is_refused_at_once(tmp_path: Path) -> None:
     path = tmp_path / "map.csv"
     head = "roll_length,face_position,deviation\nmm,mm,um\n"
     path.write_text(head + "".join(f"{row},{row},0.1\n" for row in range(100_000)))
@@ -125,7 +125,7 @@ def test_from_python_too() -> None:
         case.replace({"friction.coefficient": 10**400})
 
 
-def test_only_so_many_faults_are_told() -> None:
+def test_the_number_of_listed_errors_is_limited() -> None:
     keys = "\n".join(f"key_{number} = 1" for number in range(2000))
     with pytest.raises(InputError) as caught:
         read_case(f"{keys}\n{SOUND}", "my.toml")
@@ -159,7 +159,7 @@ main(sys.argv[1:])
 """
 
 
-def test_a_full_disk_is_told_as_json_with_the_place(tmp_path: Path) -> None:
+def test_a_full_disk_is_reported_as_json_with_the_path(tmp_path: Path) -> None:
     import json
 
     arguments = ["new", "my.toml", "--from", "fzg-roughness", "--json"]

@@ -86,7 +86,7 @@ def _explain(capsys: pytest.CaptureFixture[str], *terms: str) -> list[dict[str, 
     return json.loads(capsys.readouterr().out)
 
 
-def test_what_is_explained_exists_and_every_warning_has_a_remedy() -> None:
+def test_explained_terms_exist_and_every_warning_has_a_remedy() -> None:
     explained, keys = explanations(), [key for key, _, _ in case_keys()]
     names = {*keys, *(key.rpartition(".")[2] for key in keys), *QUANTITIES, *SUMMARY}
     assert set(explained["equations"]) <= names | set(choice_meanings())
@@ -123,14 +123,14 @@ def test_pages_that_are_named_exist() -> None:
         (("hertz",), {"warning": "hertz-pressure"}),
     ],
 )
-def test_what_engineers_ask_for_is_answered_first(
+def test_common_search_terms_give_the_right_entry_first(
     terms: tuple[str, ...], first: dict[str, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     explained = _explain(capsys, *terms)
     assert first.items() <= explained[0].items()
 
 
-def test_whole_words_come_before_parts_of_words_and_the_screen_stays_short(
+def test_complete_words_precede_partial_matches_and_the_list_is_short(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     names = [str(next(iter(entry.values()))) for entry in _explain(capsys, "pitch")]

@@ -58,7 +58,7 @@ def test_a_linear_problem_takes_one_step():
     assert np.allclose(damped.weights, wanted, atol=1e-6)
 
 
-def test_the_best_weights_of_the_validation_are_kept():
+def test_the_best_weights_of_the_validation_are_used():
     def mean_square(w):
         return float(w[0] ** 2)
 

@@ -61,7 +61,7 @@ def test_a_missing_target_is_no_row():
     assert len(ready.targets) == 360
 
 
-def test_a_constant_feature_is_told():
+def test_a_constant_feature_is_reported():
     with pytest.warns(ModelWarning, match="c does not vary"):
         prepare({"x": X, "c": np.ones(400), "y": X}, ["x", "c"], ["y"], seed=1)
 
@@ -82,6 +82,6 @@ def test_a_constant_feature_is_told():
         ({"x": X, "y": X}, ["x"], {"shares": "8:1:1"}, "real"),
     ],
 )
-def test_what_cannot_be_prepared_is_told(data, features, more, match):
+def test_unsuitable_training_data_are_reported(data, features, more, match):
     with pytest.raises(InputError, match=match):
         prepare(data, features, ["y"], seed=1, **more)

@@ -34,7 +34,7 @@ def test_errors_are_those_of_rows_that_were_not_trained(model):
     assert np.array_equal(model.true[1], DATA["z"][test_rows])
 
 
-def test_the_band_holds_new_values_as_often_as_it_says(model):
+def test_band_covers_new_values_at_its_stated_rate(model):
     a, b = RANDOM.uniform(-0.98, 0.98, (2, 4000))
     new = np.sin(3 * a) * b + RANDOM.normal(0.0, 0.02, 4000)
     low, high = model.predict_band({"a": a, "b": b})["y"]
@@ -59,7 +59,7 @@ def test_features_come_by_name_in_a_table_or_in_order(model):
     assert model.predict({"a": a[:, None], "b": b})["y"].shape == (2, 2)
 
 
-def test_beyond_the_training_is_told(model):
+def test_inputs_beyond_the_training_are_reported(model):
     with pytest.warns(ModelWarning, match="1 of 2 rows are outside the training range: b = 3"):
         model.predict({"a": 0.0, "b": [0.0, 3.0]})
 
@@ -142,6 +142,6 @@ def test_baselines_of_scikit_learn():
         ("a", "real"),
     ],
 )
-def test_inputs_that_cannot_be_read_are_told(model, inputs, match):
+def test_inputs_that_cannot_be_read_are_reported(model, inputs, match):
     with pytest.raises(InputError, match=match):
         model.predict(inputs)

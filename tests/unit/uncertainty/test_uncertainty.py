@@ -71,7 +71,7 @@ def test_data_one_value_and_the_cut() -> None:
 
 
 @pytest.mark.parametrize("skew", [False, True])
-def test_the_band_holds_the_mean_as_often_as_it_says(skew: bool) -> None:
+def test_band_covers_the_mean_at_its_stated_rate(skew: bool) -> None:
     random = np.random.default_rng(5)
     trials, repeats = 500, 30
     draw = random.exponential if skew else random.normal
@@ -126,7 +126,7 @@ def test_the_indices_of_ishigami() -> None:
     ["", "0.05 +- ", "0.05 +- 0 %", "0.05 +- -1 %", "2 .. 1", "x", None, True, [], [np.nan],
      "lognormal -1 +- 10 %", "0.05 +- 3 N", object()],
 )  # fmt: skip
-def test_what_is_no_distribution(text: object) -> None:
+def test_invalid_distributions_are_refused(text: object) -> None:
     with pytest.raises(InputError):
         distribution("mu", text)
 

@@ -56,7 +56,7 @@ def test_a_store_gives_every_member_back(tmp_path: Path) -> None:
     same(some, power([75.0])[[7, 2], 0])
 
 
-def test_members_that_fail_are_told_and_the_others_go_on(tmp_path: Path) -> None:
+def test_failed_runs_are_reported_and_the_others_go_on(tmp_path: Path) -> None:
     state = run_study(read_study(grid(torques="70,81,75,90 N*m", chunk=7)), tmp_path / "s")
     assert state.complete
     assert state.failed == 20
@@ -156,7 +156,7 @@ def test_a_damaged_chunk_is_refused_and_computed_anew(tmp_path: Path) -> None:
     assert chunks(place) == good
 
 
-def test_a_full_disk_is_told_and_nothing_finished_is_lost(
+def test_a_full_disk_is_reported_and_nothing_finished_is_lost(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run_study(read_study(grid()), tmp_path / "whole")
@@ -176,7 +176,7 @@ def test_a_full_disk_is_told_and_nothing_finished_is_lost(
     assert chunks(place) == chunks(tmp_path / "whole")
 
 
-def test_a_place_that_cannot_be_written_is_told_and_can_be_read(
+def test_a_folder_that_cannot_be_written_is_reported_and_can_be_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     place = tmp_path / "s"
@@ -231,14 +231,14 @@ def test_force_replaces_another_study(tmp_path: Path) -> None:
     assert "12" in open_study(place).attrs["title"]
 
 
-def test_a_wrong_path_is_told_in_plain_words() -> None:
+def test_a_wrong_path_gives_a_clear_message() -> None:
     with pytest.raises(InputError) as caught:
         open_study(5)  # type: ignore[arg-type]
     assert "Directory that run_study or tribodyn study wrote" in str(caught.value)
 
 
 @pytest.mark.parametrize("study_path", ["map", "map.toml"])
-def test_the_store_beside_a_study_file_is_named(tmp_path: Path, study_path: str) -> None:
+def test_an_error_names_the_store_of_a_study_file(tmp_path: Path, study_path: str) -> None:
     (tmp_path / "map.toml").write_text("")
     with pytest.raises(InputError, match="the directory that tribodyn study wrote"):
         open_study(tmp_path / study_path)
@@ -247,7 +247,7 @@ def test_the_store_beside_a_study_file_is_named(tmp_path: Path, study_path: str)
         open_study(tmp_path / study_path)
 
 
-def test_what_the_machine_lacks_is_no_fault_of_a_member(
+def test_lack_of_memory_is_no_error_of_a_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from tribodyn.variants import compute as computing

@@ -62,7 +62,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("text", BROKEN, ids=range(len(BROKEN)))
-def test_every_fault_is_told(text: str) -> None:
+def test_every_fault_is_reported(text: str) -> None:
     with pytest.raises(InputError) as caught:
         read_study(text, "s.toml")
     message = " ".join(map(str, caught.value.problems))
@@ -92,7 +92,7 @@ def test_tables_are_read_with_care(tmp_path: Path, table: str, message: str) -> 
         load_study(tmp_path / "s.toml")
 
 
-def test_files_are_looked_for_beside_the_study(tmp_path: Path) -> None:
+def test_files_are_searched_in_the_folder_of_the_study(tmp_path: Path) -> None:
     from tribodyn import load_case
 
     (tmp_path / "my.toml").write_text(load_case("fzg-12dof").to_toml())

@@ -28,7 +28,7 @@ def _nobody() -> str:
 
 
 @pytest.mark.parametrize("address", ["", "nonsense", "127.0.0.1:99999", "tcp://:x"])
-def test_a_scheduler_that_does_not_answer_is_told(tmp_path: Path, address: str) -> None:
+def test_a_scheduler_that_does_not_answer_is_reported(tmp_path: Path, address: str) -> None:
     pytest.importorskip("distributed")
     address = address or _nobody()
     with pytest.raises(InputError, match=f"no Dask scheduler answers at {address}.*dask scheduler"):
@@ -58,7 +58,7 @@ def _dask(log: Path, *arguments: str) -> subprocess.Popen[bytes]:
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_is_lost_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_lost_scheduler_is_reported_in_one_line(tmp_path: Path) -> None:
     """Dask writes pages of its own to the screen otherwise."""
     pytest.importorskip("distributed")
     (tmp_path / "s.toml").write_text(_STUDY)
