@@ -14,8 +14,8 @@ from tribodyn.machine.beam import BeamElement, carried_along, part_of
 from tribodyn.machine.shaft import Shaft
 from tribodyn.types import Array
 
-#: Longest element over its greatest diameter.
-_SLENDERNESS = 0.25
+#: Longest element over its greatest diameter, or over the length of a slender shaft.
+_SLENDERNESS, _PART = 0.25, 1.0 / 60.0
 #: Positions closer than this share of the length are one node.
 _SAME = 1e-9
 
@@ -31,7 +31,8 @@ class ShaftMatrices:
     positions : tuple of float
         Positions from its beginning at which nodes are needed, of gears and bearings [m].
     element_length : float, optional
-        Longest element [m]; a quarter of each section's diameter by default.
+        Longest element [m]; by default a quarter of each section's diameter, or a sixtieth of
+        the shaft if that is more.
 
     Raises
     ------
@@ -116,7 +117,7 @@ class ShaftMatrices:
             inner = sorted(p for p in self.positions if begin + same < p < end - same)
             limits = _distinct([begin, *inner, end], same)
             thick = max(section.diameters(0.0)[0], section.diameters(1.0)[0])
-            longest = self.element_length or _SLENDERNESS * thick
+            longest = self.element_length or max(_SLENDERNESS * thick, _PART * self.shaft.length)
             for left, right in pairwise(limits):
                 count = max(int(np.ceil((right - left) / longest - 1e-9)), 1)
                 steps = np.linspace(left, right, count + 1) - begin

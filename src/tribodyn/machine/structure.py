@@ -61,7 +61,8 @@ class MachineStructure:
         Damping of every mode of the structure over its critical value, besides the damping of
         bearings and housing [1].
     element_length : float, optional
-        Longest beam element [m]; a quarter of each section's diameter by default.
+        Longest beam element [m]; by default a quarter of each section's diameter, or a sixtieth of
+        the shaft if that is more.
     reduction : Reduction, optional
         Reduced coordinates; :func:`reduce_structure` supplies them.
 
@@ -155,7 +156,21 @@ class MachineStructure:
             inertia = [*3 * [body.mass], body.moment_of_inertia, across, across]
             motion = self.gear(name)
             total += motion.T @ np.diag(inertia) @ motion
+        self._refuse_massless(np.diag(total))
         return total
+
+    def _refuse_massless(self, inertia: Array) -> None:
+        """Refuse a motion of a rigid shaft whose gears have no inertia."""
+        if self.reduction or np.all(inertia > 0.0):
+            return
+        name = self.names[int(np.argmin(inertia))]
+        shaft = next(s for s in self.shafts if name.startswith(f"{s}_"))
+        raise InputError(
+            f"{name} has no inertia",
+            f"shafts.{shaft}",
+            "A rigid shaft has the masses and moments of inertia of its gears alone",
+            "Give its gears mass and moments of inertia, or the shaft sections",
+        )
 
     @cached_property
     def stiffness(self) -> Array:

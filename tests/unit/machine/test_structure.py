@@ -406,3 +406,20 @@ def test_a_singular_housing_is_named():
         Housing(np.eye(2), free, nodes=nodes)
     with pytest.raises(InputError, match=r"Housing\.mass.*housing_1 has no kinetic energy"):
         Housing(np.diag([1.0, 0.0]), np.eye(2))
+
+
+def test_a_rigid_shaft_without_inertia_is_named():
+    machine = rigid_pair()
+    gears = {**machine.gears, "a": Gear("input", 0.0, 16, 0.02, 0.0, 0.0, 0.0)}
+    light = Machine(
+        machine.shafts, gears, machine.meshes, machine.bearings, operation=machine.operation
+    )
+    with pytest.raises(InputError, match=r"shafts\.input: input_y has no inertia.*gears alone"):
+        system(light)
+
+
+def test_a_slender_shaft_has_sixty_elements():
+    machine = geared_shafts(shafts={"input": sections((300, 6)), "output": sections((300, 60))})
+    structure = MachineStructure(machine)
+    assert len(structure.shafts["input"].nodes) - 1 in range(60, 64)
+    assert len(structure.shafts["output"].nodes) - 1 in range(20, 24)
