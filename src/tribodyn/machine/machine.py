@@ -143,9 +143,10 @@ class Machine:
     def kinematics(self) -> Kinematics:
         """Speeds, torques and power of shafts and meshes."""
         run = self.operation
-        return kinematics(
+        loads = kinematics(
             self.graph, self.gears, self.meshes, (run.input, run.output), (run.speed, run.torque)
         )
+        return Kinematics({name: loads.shafts[name] for name in self.shafts}, loads.meshes)
 
     @cached_property
     def clock(self) -> Clock:

@@ -151,3 +151,19 @@ def test_machines_of_equal_parts_differ_by_their_names_only() -> None:
     machine = pair((20, 30))
     assert repr(machine) == "Machine(2 shafts, 2 gears, 1 mesh, 0 bearings)"
     assert isinstance(machine, Machine)
+
+
+def test_an_idle_loop_is_unloaded_and_follows_the_input() -> None:
+    base = split_path()
+    # the power leaves outside the loop
+    machine = split_path(
+        shafts={**base.shafts, "side": Shaft()},
+        gears={**base.gears, "s1": Gear("input", 0.2, 20, 0.03), "s2": Gear("side", 0.2, 33, 0.03)},
+        meshes={**base.meshes, "out": Mesh(("s1", "s2"), 4e-3, angle=2.0)},
+        operation=Operation("input", "side", speed=100.0, torque=80.0),
+    )
+    loads = machine.kinematics.meshes
+    assert list(machine.kinematics.shafts) == list(machine.shafts)
+    for name, driver in (("u1", "pinion"), ("l1", "pinion"), ("u2", "upper pinion")):
+        assert (loads[name].force, loads[name].driver) == (0.0, driver)
+    assert loads["out"].power == pytest.approx(8000.0)

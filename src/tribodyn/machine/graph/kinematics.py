@@ -18,6 +18,8 @@ from tribodyn.machine.mesh import Mesh
 
 #: Mesh stiffness per face width by which loops share where none is given [Pa].
 _USUAL_STIFFNESS = 14e9
+#: Share of the torque below which a mesh of a loop is unloaded.
+_ROUNDING = 1e-9
 _PHASES = (np.arange(64) + 0.5) / 64
 
 
@@ -249,6 +251,7 @@ def _flows(
         potential = np.zeros(len(shafts))
         potential[1:] = np.linalg.solve(laplacian[1:, 1:], source[1:])
         shared = weight * (incidence.T @ potential)
+        shared[np.abs(shared) < _ROUNDING * abs(torque)] = 0.0
         numbers = dict(zip(graph.edges, shared.tolist(), strict=True))
         flows.update({mesh: (numbers[mesh], True) for mesh in loops})
     return {mesh: flows[mesh] for mesh in graph.edges}
