@@ -45,18 +45,18 @@ class ClosedStructure:
         spring = inverse @ np.asarray(system.stiffness) @ inverse.T + push @ stiffness @ along.T
         damper = inverse @ system.rate_matrix @ inverse.T + push @ damping @ along.T
         elastic, moving = coordinates.elastic, coordinates.moving
-        self._free_rows = coordinates.free.T @ np.hstack((spring @ elastic, damper @ moving))
+        self.free_rows = coordinates.free.T @ np.hstack((spring @ elastic, damper @ moving))
         stored = elastic.T @ spring @ elastic
-        self._root = _energy_root(stored)  # positions in the metric of the elastic energy
-        unscaled = np.linalg.inv(self._root)
-        self._places = elastic @ unscaled
+        self.root = _energy_root(stored)  # positions in the metric of the elastic energy
+        unscaled = np.linalg.inv(self.root)
+        self.places = elastic @ unscaled
         size, count = moving.shape[1], elastic.shape[1]
         self.matrix = np.zeros((count + size, count + size))
-        self.matrix[:count, count:] = self._root @ elastic.T @ moving
-        self.matrix[count:, :count] = -moving.T @ spring @ self._places
+        self.matrix[:count, count:] = self.root @ elastic.T @ moving
+        self.matrix[count:, :count] = -moving.T @ spring @ self.places
         self.matrix[count:, count:] = -moving.T @ damper @ moving
         self.input = np.vstack((np.zeros((count, push.shape[1])), moving.T @ push))
-        self.output = np.hstack((along.T @ self._places, np.zeros((along.shape[1], size))))
+        self.output = np.hstack((along.T @ self.places, np.zeros((along.shape[1], size))))
         self.balance = Balance.of(system, coordinates)
 
     @cached_property
@@ -115,14 +115,14 @@ class ClosedStructure:
 
     def motion(self, omega: Array, force: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Amplitudes (k, n) of positions and velocities under forces (k, s)."""
-        c, count = self.coordinates, self._places.shape[1]
+        c, count = self.coordinates, self.places.shape[1]
         state = self.respond(omega, force, np.eye(len(self.matrix)))
-        elastic, moving = state[:, :count] @ self._places.T, state[:, count:]
+        elastic, moving = state[:, :count] @ self.places.T, state[:, count:]
         per_omega = np.divide(1.0, 1j * omega, where=omega > 0.0, out=np.zeros(omega.size, complex))
         turned = (moving @ c.braked) * per_omega[:, None] @ (c.moving @ c.braked).T
-        positions = state[:, :count] @ np.linalg.inv(self._root).T
+        positions = state[:, :count] @ np.linalg.inv(self.root).T
         pushed = force @ (c.free.T @ self.push).T
-        pushed = pushed - np.hstack((positions, moving)) @ self._free_rows.T
+        pushed = pushed - np.hstack((positions, moving)) @ self.free_rows.T
         free_rate = pushed * per_omega[:, None]
         x = elastic + turned + free_rate * per_omega[:, None] @ c.free.T
         rate = moving @ c.moving.T + free_rate @ c.free.T

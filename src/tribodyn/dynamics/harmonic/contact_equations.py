@@ -13,16 +13,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import PointEvaluator, system_events, unrepeated
-from tribodyn.dynamics.equations.motion import has_gap, sides
+from tribodyn.dynamics.equations.motion import compression, has_gap, sides
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
     evaluate_rows,
     friction_force,
     friction_tangent,
+    lowest_of_each_law,
 )
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
+from tribodyn.dynamics.orbits.coordinates import static_start, structure_coordinates
 from tribodyn.types import Array, Index, Mask
 
 #: Part of a singular value below which a direction depends on others; of an entry that is no jump.
@@ -184,18 +188,30 @@ class ContactEquations:
         return Breaks(step, fraction, total[:, None] * push, tangent)
 
 
-def contact_bases(system: System, nodes: Nodes, inverse: Array) -> tuple[Array, Array]:
-    """Orthonormal bases of compressions (n, r) and forces (n, s) in coordinates of unit mass."""
-    pushes = [nodes.force_direction, nodes.friction_direction, nodes.force[..., None, :]]
+def close_contacts(compiled: Compiled, extra: Array) -> tuple[ClosedStructure, Mask]:
+    """Structure with closed contacts, and those closed at rest; ``extra`` (m, n) forces act too."""
+    system, nodes = compiled.system, compiled.nodes
+    coordinates = structure_coordinates(compiled)
+    inverse = coordinates.inverse
+    pushes = [nodes.force_direction, nodes.friction_direction, nodes.force[..., None, :], extra]
     if system.balance is not None:
-        pushes.append(np.asarray(system.balance)[None, None, None])
+        pushes.append(np.asarray(system.balance)[None])
     along = _basis([nodes.direction, nodes.direction_slope], inverse)
-    return along, _basis(pushes, inverse)
+    push = _basis(pushes, inverse)
+    still = static_start(compiled)[: system.size]
+    clearance = np.einsum("rs,rsj->j", nodes.weight, compression(nodes, still) - nodes.gap)
+    closed = lowest_of_each_law(nodes) | (clearance > 0.0)
+    into_along = _distinct(nodes.direction) @ (inverse.T @ along)
+    into_push = _distinct(nodes.force_direction) @ (inverse.T @ push)
+    means = [
+        outer(into_push, np.where(closed, part, 0.0)[:, 0], into_along)
+        for part in (nodes.stiffness, nodes.damping)
+    ]
+    shifts = [np.tensordot(nodes.weight.sum(axis=1), part, 1) for part in means]
+    return ClosedStructure(system, coordinates, push, along, *shifts), closed
 
 
-def contact_equations(
-    system: System, inverse: Array, bases: tuple[Array, Array], steps: int
-) -> ContactEquations:
+def contact_equations(system: System, structure: ClosedStructure, steps: int) -> ContactEquations:
     """Sample the contacts of a system at ``steps`` equal steps of the clock."""
     every = system_events(system)
     nodes = evaluate_rows(system, PointEvaluator(np.arange(steps) / steps, every))
@@ -204,6 +220,7 @@ def contact_equations(
         evaluate_rows(system, PointEvaluator(points, every, before=side)) for side in (True, False)
     )
     jumping = _jumping(before, after)
+    inverse, bases = structure.coordinates.inverse, (structure.along, structure.push)
     into_along, into_push = (inverse.T @ basis for basis in bases)
 
     def rows(part: Nodes) -> Rows:

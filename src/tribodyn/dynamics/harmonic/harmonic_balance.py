@@ -13,23 +13,21 @@ import numpy as np
 import scipy.fft
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_number, require_whole
+from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
 from tribodyn.dynamics.equations.grid import system_events
-from tribodyn.dynamics.equations.nodes import Nodes, lowest_of_each_law
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
 from tribodyn.dynamics.harmonic.contact_equations import (
     ContactEquations,
-    components,
-    contact_bases,
+    close_contacts,
     contact_equations,
-    outer,
 )
+from tribodyn.dynamics.harmonic.modal_kernel import Trace
+from tribodyn.dynamics.harmonic.modal_march import ModalMotion
 from tribodyn.dynamics.harmonic.newton import Residual, Solution, newton, refined
-from tribodyn.dynamics.harmonic.orbit_response import orbit_response
+from tribodyn.dynamics.harmonic.orbit_response import orbit_response, starting_state
 from tribodyn.dynamics.orbits.coordinates import (
-    OrbitCoordinates,
     orbit_coordinates,
     refuse_disconnected,
     static_start,
@@ -38,7 +36,7 @@ from tribodyn.dynamics.time.response import Response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, require_positive, warn
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, ComplexArray, Mask
 
 #: An orbit whose certified error is above this is not converged.
 TOLERANCE = 1e-8
@@ -48,10 +46,12 @@ _FIRST, _MOST, _ACCURATE = 64, 2**18, 2e-7
 #: Most steps per mesh cycle of the response of an automatic choice.
 _RECORDED = 512
 #: Step error that causes a warning.
-_STEP_LIMIT = 1e-2
+STEP_LIMIT = 1e-2
 #: Damping added at first where Newton's method does not converge, over the critical damping at the
 #: frequency of the fastest mesh, and the factors by which it is reduced.
 _ADDED = (0.3, 0.1, 0.03, 0.01, 0.003)
+#: Newton steps with each of them, and periods that are integrated where this fails too.
+_TRIES, _MARCHED = 12, (3, 6, 12, 24)
 
 
 @dataclass
@@ -59,41 +59,17 @@ class Prepared:
     """A system, ready for harmonic balance at any frequency."""
 
     system: System
-    nodes: Nodes  #: entries on the grid of the events
-    coordinates: OrbitCoordinates
+    structure: ClosedStructure
+    closed: Mask  #: contacts that are closed at rest (contacts,)
     start: Array  #: static equilibrium (n,)
-    bases: tuple[Array, Array]  #: of compressions and of forces
+    grids: dict[int, Compiled]
     samples: dict[int, ContactEquations] = field(default_factory=dict)
-    grids: dict[int, Compiled] = field(default_factory=dict)
-    structure: ClosedStructure | None = None
-    #: Contacts that are closed at rest (contacts,).
-    closed: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))
-
-    def contacts(self, steps: int) -> ContactEquations:
-        """Contacts on a number of equal steps."""
-        if steps not in self.samples:
-            parts = self.system, self.coordinates.inverse, self.bases
-            self.samples[steps] = contact_equations(*parts, steps)
-        return self.samples[steps]
 
     def residual(self, steps: int, frequency: float) -> Residual:
         """Residual on a number of equal steps."""
-        contacts = self.contacts(steps)
-        if self.structure is None:
-            self.structure = self._closed(contacts)
-        return Residual(self.structure, contacts, frequency)
-
-    def _closed(self, contacts: ContactEquations) -> ClosedStructure:
-        rows, nodes = contacts.rows, contacts.rows.nodes
-        still = (self.start @ self.coordinates.lower @ contacts.along)[None]
-        d = components(rows.along, np.repeat(still, contacts.steps, axis=0)) - nodes.error
-        lowest = lowest_of_each_law(self.nodes)
-        self.closed = lowest | (np.mean(d > nodes.gap, axis=0) > 0.5)
-        means = [
-            outer(rows.push, np.where(self.closed, part, 0.0), rows.along).mean(axis=0)
-            for part in (nodes.stiffness, nodes.damping)
-        ]
-        return ClosedStructure(self.system, self.coordinates, *reversed(self.bases), *means)
+        if steps not in self.samples:
+            self.samples[steps] = contact_equations(self.system, self.structure, steps)
+        return Residual(self.structure, self.samples[steps], frequency)
 
     def grid(self, steps: int, frequency: float) -> Compiled:
         """Grid of a response with a number of steps per cycle of the fastest mesh."""
@@ -110,11 +86,10 @@ def prepare(system: System, frequency: float) -> Prepared:
     steps = max(2 * _FIRST, -(-2 * len(system_events(system)) // system.cycles))
     compiled = compile_lanes(system, frequency, steps, any_step=True)
     refuse_disconnected(compiled)
-    coordinates = orbit_coordinates(compiled, frequency)
+    orbit_coordinates(compiled, frequency)  # warns of forces that do not balance
     start = static_start(compiled)[: system.size]
-    bases = contact_bases(system, compiled.nodes, coordinates.inverse)
-    prepared = Prepared(system, compiled.nodes, coordinates, start, bases)
-    prepared.grids[steps] = compiled
+    structure, closed = close_contacts(compiled, np.zeros((0, system.size)))
+    prepared = Prepared(system, structure, closed, start, {steps: compiled})
     _cache[:] = [(weakref.ref(system), prepared), *_cache[:3]]
     return prepared
 
@@ -130,6 +105,7 @@ def harmonic_balance(
     steps: int | None = None,
     start: Response | tuple[ArrayLike, ArrayLike] | None = None,
     tolerance: float = TOLERANCE,
+    stability: bool = False,
     progress: Progress = SILENT,
 ) -> Response:
     """Find the periodic motion of a machine with several meshes on one clock.
@@ -146,6 +122,9 @@ def harmonic_balance(
         Motion or position from which the search starts; the static equilibrium by default.
     tolerance : float
         Largest certified error of a converged motion.
+    stability : bool
+        Integrate disturbances over a period for the Floquet multipliers: all, or the four leading
+        ones where the motion has more than 24 states.
     progress : Progress
         Receives the progress of the search.
 
@@ -153,8 +132,9 @@ def harmonic_balance(
     -------
     Response
         Over one period of the clock, with ``error``, ``step_error`` and ``converged``. A warning
-        is issued when the motion is not converged (``steady-state``) or depends on the steps by
-        more than 1 % of its size (``step-size``). It has no Floquet multipliers.
+        is issued when the motion is not converged (``steady-state``), is not stable
+        (``unstable-orbit``) or depends on the steps by more than 1 % of its size (``step-size``).
+        Floquet multipliers are those that ``stability`` asks for.
 
     Raises
     ------
@@ -165,11 +145,11 @@ def harmonic_balance(
     -----
     Unknowns are the compressions of the contacts over one period on equal steps. The structure
     responds by its receptances at the harmonics of the clock, contacts act in time. Newton's method
-    takes steps by generalized minimal residuals. ``error`` is the size of the last Newton step,
+    takes steps by generalized minimal residuals; where it fails, the motion is integrated over some
+    periods in modal coordinates before the next attempt. ``error`` is the size of the last step,
     ``step_error`` the change of the motion when the steps are halved, or an estimate of it where
     ``steps`` is chosen automatically. With dead zones the start decides which of several motions
-    is found, and it may be unstable: :func:`~tribodyn.dynamics.steady_state` and
-    :func:`~tribodyn.dynamics.simulate` tell.
+    is found, and without ``stability`` it may be an unstable one.
 
     Examples
     --------
@@ -184,16 +164,17 @@ def harmonic_balance(
     require_positive("frequency", frequency, "Hz")
     require_number("tolerance", tolerance)
     require_positive("tolerance", tolerance, "")
+    require_flag("stability", stability)
     count = _FIRST if steps is None else require_whole("steps", steps, 8)
     progress.start("Steady motion", None)
     prepared = prepare(system, frequency)
-    if prepared.coordinates.moving.shape[1] == 0 or not system.contacts:
+    if prepared.structure.coordinates.moving.shape[1] == 0 or not system.contacts:
         what = "no coordinate is moved by a contact"
         remedy = "Add a contact, or use forced_response for a structure alone"
         raise InputError(what, "System.contacts", "Harmonic balance acts at contacts", remedy)
     samples = _fft_length(count * system.cycles)
     residual = prepared.residual(samples, frequency)
-    solution = _solve(residual, _start(prepared, residual, start), tolerance)
+    solution = _solve(prepared, residual, _start(prepared, residual, start), tolerance)
     while True:
         finer = prepared.residual(2 * samples, frequency)
         y = refined(solution.state.y, 2 * samples)
@@ -215,7 +196,35 @@ def harmonic_balance(
     progress.finish()
     fine = count if steps is not None else min(samples // (2 * system.cycles), _RECORDED)
     grid = prepared.grid(max(fine, min(prepared.grids)), frequency)
-    return _finish(grid, residual, solution, tolerance, step_error)
+    multipliers = np.zeros(0, dtype=complex)
+    if stability and solution.error <= tolerance:
+        multipliers = _multipliers(prepared, residual, solution)
+    error = max(solution.error, float(np.finfo(float).eps))
+    facts = {"error": error, "step_error": step_error, "floquet_multipliers": multipliers}
+    converged = bool(np.isfinite(error) and error <= tolerance)
+    if not converged:
+        warn("steady-state", _not_converged(residual, solution, tolerance), stacklevel=2)
+    elif step_error > STEP_LIMIT:
+        warn("step-size", _step_message(residual, step_error), stacklevel=2)
+    return orbit_response(grid, residual, solution.state, converged=converged, **facts)
+
+
+def _multipliers(prepared: Prepared, residual: Residual, solution: Solution) -> ComplexArray:
+    """Floquet multipliers, with a warning of an unstable motion."""
+    grid = prepared.grid(min(prepared.grids), residual.frequency)
+    if prepared.structure.modes is None:
+        return np.zeros(0, dtype=complex)
+    state, torque = starting_state(residual, solution.state)
+    motion = ModalMotion(grid, prepared.structure)
+    multipliers = motion.multipliers(state, residual.frequency, torque)
+    if np.abs(multipliers[:1]).max(initial=0.0) > 1.0:
+        warn(
+            "unstable-orbit",
+            f"the motion is unstable: largest Floquet multiplier {np.abs(multipliers[0]):.6g}, "
+            "limit 1. Try another start, or simulate over time",
+            stacklevel=3,
+        )
+    return multipliers
 
 
 def _fft_length(steps: int) -> int:
@@ -230,7 +239,7 @@ def _start(
 ) -> Array:
     """Motion at the contacts (steps, r) from which the search starts."""
     contacts, size = residual.contacts, prepared.system.size
-    into = prepared.coordinates.lower @ contacts.along
+    into = prepared.structure.coordinates.lower @ contacts.along
     if isinstance(start, Response):
         at = np.arange(contacts.steps) / contacts.steps
         columns = (start.position @ into).T
@@ -247,49 +256,49 @@ def _start(
     return y + residual.correction(state)[0]
 
 
-def _solve(residual: Residual, y: Array, tolerance: float) -> Solution:
-    """Newton's method; with damping that is added and removed again where it fails."""
-    solution = newton(residual, y, 0.01 * tolerance)
-    if solution.error <= tolerance:
-        return solution
+def _solve(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -> Solution:
+    """Newton's method; where it fails with damping that is removed again, then from a march."""
+    best = newton(residual, y, 0.01 * tolerance)
+    if best.error <= tolerance:
+        return best
     contacts = residual.contacts
     critical = contacts.rows.nodes.stiffness.mean(axis=0)
     critical = critical / (np.pi * residual.frequency * contacts.system.cycles)
     point = y
     for part in (*_ADDED, 0.0):
         residual.excess = part * critical
-        trial = newton(residual, point, 0.01 * tolerance)
+        trial = newton(residual, point, 0.01 * tolerance, _TRIES)
         if trial.error < 1e-3:
             point = trial.state.y
     residual.excess = 0.0 * critical
-    return trial if trial.error < solution.error else solution
+    best = min(best, trial, key=lambda solution: solution.error)
+    if best.error <= tolerance or prepared.structure.modes is None:
+        return best
+    grid = prepared.grid(min(prepared.grids), residual.frequency)
+    motion = ModalMotion(grid, prepared.structure)
+    state, torque = starting_state(residual, residual.at(point))
+    for periods in _MARCHED:
+        states, _, trace = motion.advance(state, residual.frequency, periods, torque)
+        state = states[-1]
+        trial = newton(residual, _resampled(grid, trace, contacts.steps), 0.01 * tolerance)
+        best = min(best, trial, key=lambda solution: solution.error)
+        if best.error <= tolerance:
+            break
+    return best
 
 
-def _finish(
-    grid: Compiled, residual: Residual, solution: Solution, tolerance: float, step_error: float
-) -> Response:
-    error = max(solution.error, float(np.finfo(float).eps))
-    converged = bool(np.isfinite(error) and error <= tolerance)
-    if not converged:
-        warn("steady-state", _not_converged(residual, solution, tolerance), stacklevel=3)
-    elif step_error > _STEP_LIMIT:
-        steps = residual.contacts.steps
-        warn(
-            "step-size",
-            f"the motion changes by {100.0 * step_error:.2g} % of its size with half the steps, "
-            f"limit {100.0 * _STEP_LIMIT:g} %: {steps} steps in a period of the clock. Use more "
-            "steps per mesh cycle, or omit steps for an automatic choice",
-            stacklevel=3,
-        )
-    return orbit_response(
-        grid,
-        residual,
-        solution.state,
-        error=error,
-        step_error=step_error,
-        converged=converged,
-        period=1,
-        engine="harmonic-balance",
+def _resampled(grid: Compiled, trace: Trace, steps: int) -> Array:
+    """Motion at the contacts (steps, r) over the last period of a march."""
+    phase, at = grid.nodes.phase[:, 1:].reshape(-1), np.arange(steps) / steps
+    paths = trace.contacts.reshape(phase.size, -1).T
+    return np.stack([np.interp(at, phase, path, period=1.0) for path in paths], axis=1)
+
+
+def _step_message(residual: Residual, step_error: float) -> str:
+    return (
+        f"the motion changes by {100.0 * step_error:.2g} % of its size with half the steps, limit "
+        f"{100.0 * STEP_LIMIT:g} %: {residual.contacts.steps} steps in a period of the clock. Use "
+        "more steps per mesh cycle, or omit steps for an automatic choice"
     )
 
 

@@ -27,7 +27,16 @@ def orbit_response(compiled: Compiled, residual: Residual, state: State, **facts
     q, v = (values.reshape(1, steps, 3, -1) for values in motion)
     ends = np.concatenate((q[0, :, 0], v[0, :, 0]), axis=1)
     states = np.concatenate((ends, ends[:1]))
-    return build_response(compiled, residual.frequency, states, torque, within=(q, v), **facts)
+    facts |= {"period": 1, "engine": "harmonic-balance", "within": (q, v)}
+    return build_response(compiled, residual.frequency, states, torque, **facts)
+
+
+def starting_state(residual: Residual, state: State) -> tuple[Array, Array]:
+    """State of the closed structure (m,) when the clock starts, and the balancing torque (n,)."""
+    structure = residual.structure
+    force, torque = structure.balanced(force_spectrum(state), state.y.mean(axis=0))
+    amplitudes = structure.respond(residual.omega, force, np.eye(len(structure.matrix)))
+    return amplitudes[0].real + 2.0 * amplitudes[1:].real.sum(axis=0), torque
 
 
 def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:

@@ -87,13 +87,18 @@ class OrbitCoordinates:
 
 def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordinates:
     """Reduced coordinates of a system at a mesh frequency."""
-    system, nodes = compiled.system, compiled.nodes
-    used = _used_directions(nodes.direction, nodes.direction_slope)
-    matrices = (np.asarray(getattr(system, name)) for name in ("mass", "stiffness", "damping"))
-    arrays = (*matrices, used)
-    shared = _coordinates_cache.get(arrays, lambda: _coordinates(*arrays))
+    shared = structure_coordinates(compiled)
     _warn_of_unbalanced(compiled, shared.inverse, shared.free)
     return replace(shared, rate=2.0 * np.pi * mesh_frequency)
+
+
+def structure_coordinates(compiled: Compiled) -> OrbitCoordinates:
+    """Reduced coordinates of a system at 1 rad/s."""
+    system, nodes = compiled.system, compiled.nodes
+    used = _used_directions(nodes.direction, nodes.direction_slope)
+    matrices = (np.asarray(getattr(system, name)) for name in ("mass", "stiffness", "rate_matrix"))
+    arrays = (*matrices, used)
+    return _coordinates_cache.get(arrays, lambda: _coordinates(*arrays))
 
 
 #: Coordinates of the last systems at 1 rad/s: a study builds the same structure many times.

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,27 +22,31 @@ from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.nodes import halved_nodes
 from tribodyn.dynamics.equations.program import build_program
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.harmonic_balance import (
+    STEP_LIMIT,
+    TOLERANCE,
+    harmonic_balance,
+)
 from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
 from tribodyn.dynamics.orbits.periods import find_any_orbit, shortest_period
 from tribodyn.dynamics.orbits.search import OrbitPoint, find_orbit, finish_orbit, motion_size
+from tribodyn.dynamics.time.engines import automatic_method
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
-#: An orbit whose certified error is above this is not converged.
-TOLERANCE = 1e-8
-#: Distance to the orbit at half the step, over the size of the orbit, that causes a warning.
-STEP_LIMIT = 1e-2
+#: Steps per mesh cycle of the orbit by time integration.
+_STEPS = 512
 
 
 def steady_state(
     system: System,
     mesh_frequency: float,
     *,
-    steps: int = 512,
+    steps: int = _STEPS,
     periods: int | Literal["auto"] = 1,
     start: tuple[ArrayLike, ArrayLike] | None = None,
     tolerance: float = TOLERANCE,
@@ -56,7 +60,8 @@ def steady_state(
     mesh_frequency : float
         Mesh frequency; of contacts with several cycles, the frequency of the clock [Hz].
     steps : int
-        Steps per mesh cycle of the contact with the most cycles.
+        Steps per mesh cycle, of the contact with the most cycles. Harmonic balance takes 512, the
+        default, as no choice, and as many as the accuracy needs.
     periods : int or "auto"
         Mesh cycles after which the motion repeats. With ``"auto"`` the motion from the start is
         followed, and the stable orbit of up to 8 mesh cycles that it approaches is returned.
@@ -90,6 +95,8 @@ def steady_state(
     returned in ``extra_force``; without it the forces are as prescribed and the mean acceleration
     of the whole drive is left out of the orbit. With dead zones the start decides which of several
     orbits is found. If the search ends on an unstable orbit, it is repeated from a point near it.
+    Orbits of one period of systems with more than 24 coordinates are those of
+    :func:`harmonic_balance`; ``engine`` of the response names the method.
 
     Examples
     --------
@@ -101,6 +108,12 @@ def steady_state(
     count = _whole_periods(periods)
     require_number("mesh_frequency", mesh_frequency)
     require_number("tolerance", tolerance)
+    if count == 1 and automatic_method(system) == "modal":
+        chosen = None if steps == _STEPS else steps
+        options: dict[str, Any] = {"steps": chosen, "start": start, "tolerance": tolerance}
+        return harmonic_balance(
+            system, mesh_frequency, **options, stability=True, progress=progress
+        )
     compiled = compile_for(system, mesh_frequency, steps)
     mapping = OrbitMap(compiled, mesh_frequency, count or 1)
     state = static_start(compiled) if start is None else read_start(system, start)

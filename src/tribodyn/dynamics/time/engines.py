@@ -20,13 +20,16 @@ from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.modal_march import ModalMarcher
 from tribodyn.dynamics.time.newmark import newmark_law, newmark_method
 from tribodyn.errors import InputError, require_one_of
 from tribodyn.model import Model, Registry, choice, number
 from tribodyn.types import Array
 
 #: Methods of time integration.
-Method = Literal["rk4", "dormand-prince", "newmark"]
+Method = Literal["rk4", "dormand-prince", "newmark", "modal"]
+#: Coordinates above which the automatic choice integrates in modal coordinates.
+SMALL = 24
 
 
 class Setting(NamedTuple):
@@ -124,7 +127,7 @@ class AdaptiveMarcher:
 
 
 #: Lanes whose integration continues from call to call.
-Marcher = FixedMarcher | AdaptiveMarcher
+Marcher = FixedMarcher | AdaptiveMarcher | ModalMarcher
 
 
 def _runge_kutta(setting: Setting, backend: Backend | None = None) -> Marcher:
@@ -154,6 +157,14 @@ def _newmark(
     return FixedMarcher(setting, compiled, method)
 
 
+def _modal(setting: Setting) -> Marcher:
+    if not isinstance(setting.systems, System) or setting.parameters is not None:
+        why = "Modal coordinates belong to one system"
+        remedy = 'Use method = "rk4" for an ensemble of systems'
+        raise InputError('method = "modal" with several systems', "argument method", why, remedy)
+    return ModalMarcher(_any_step(setting), setting.frequency, setting.extra_force)
+
+
 def _any_step(setting: Setting) -> Compiled:
     return compile_lanes(
         setting.systems, setting.frequency, setting.steps, setting.parameters, any_step=True
@@ -165,7 +176,18 @@ _BEGIN: Mapping[str, tuple[Callable[..., Marcher], tuple[str, ...]]] = {
     "rk4": (_runge_kutta, ("backend",)),
     "dormand-prince": (_dormand_prince, ("rtol", "atol")),
     "newmark": (_newmark, ("gamma", "beta", "preset")),
+    "modal": (_modal, ()),
 }
+
+
+def automatic_method(system: System) -> Method:
+    """Method for a system: large structures are integrated in modal coordinates."""
+    return "modal" if system.size > SMALL and system.contacts else "rk4"
+
+
+def engine_name(method: str) -> str:
+    """Name of the engine of a method."""
+    return next((name for name in ENGINES if ENGINES[name].method == method), method)
 
 
 def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
@@ -280,6 +302,13 @@ for _engine in (
         },
         "implicit steps of one length, of second order: average acceleration",
         ("newmark",),
+    ),
+    Engine(
+        "modal",
+        "modal",
+        {},
+        "exact steps of every linear mode, of fourth order, for structures of many coordinates",
+        source="exponential collocation with a parabola of the contact forces over each step",
     ),
 ):  # fmt: skip
     ENGINES.register(_engine.name)(_engine)

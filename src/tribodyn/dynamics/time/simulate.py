@@ -10,7 +10,13 @@ from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics._engine.blocks import Backend
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.time.engines import Method, Setting, prepare
+from tribodyn.dynamics.time.engines import (
+    Method,
+    Setting,
+    automatic_method,
+    engine_name,
+    prepare,
+)
 from tribodyn.dynamics.time.response import Response, build_response, later
 from tribodyn.errors import Argument, InputError, real_numbers, require_positive
 from tribodyn.progress import SILENT, Progress
@@ -61,7 +67,7 @@ def simulate(
     extra_force: ArrayLike | None = None,
     recorded_cycles: int | None = None,
     progress: Progress = SILENT,
-    method: Method = "rk4",
+    method: Method | None = None,
     rtol: float | None = None,
     atol: Tolerance | None = None,
     gamma: float | None = None,
@@ -88,8 +94,9 @@ def simulate(
         Number of the last mesh cycles that are recorded; all of them by default.
     progress : Progress
         Receives the progress every 64 cycles.
-    method : "rk4", "dormand-prince" or "newmark"
-        Classical Runge-Kutta steps; adaptive steps of Dormand and Prince; Newmark's scheme.
+    method : "rk4", "dormand-prince", "newmark" or "modal", optional
+        Classical Runge-Kutta steps; adaptive steps of Dormand and Prince; Newmark's scheme; exact
+        steps of every linear mode. "rk4" by default, "modal" above 24 coordinates.
     rtol : float, optional
         For "dormand-prince": error over the largest size so far of each state, 1e-6 by default [-].
     atol : float, (position, velocity) or (2 n,) array, optional
@@ -136,7 +143,8 @@ def simulate(
     frequency = np.array([float(mesh_frequency)])
     setting = Setting(system, frequency, cycles, steps, extra[None, :])
     options = {"rtol": rtol, "atol": atol, "gamma": gamma, "beta": beta, "preset": preset}
-    marcher = prepare(method, setting, **options, backend=backend)
+    chosen = automatic_method(system) if method is None and backend is None else method or "rk4"
+    marcher = prepare(chosen, setting, **options, backend=backend)
     if recorded_cycles is None:
         recorded_cycles = cycles
     skipped = cycles - min(require_whole("recorded_cycles", recorded_cycles), cycles)
@@ -153,6 +161,7 @@ def simulate(
         progress.advance(count)
     progress.finish()
     progress.start("Forces along the motion")
-    response = build_response(marcher.compiled, mesh_frequency, record[:, :, 0], extra)
+    facts = {"engine": engine_name(chosen)}
+    response = build_response(marcher.compiled, mesh_frequency, record[:, :, 0], extra, **facts)
     progress.finish()
     return later(response, skipped / mesh_frequency)
