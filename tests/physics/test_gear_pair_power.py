@@ -21,14 +21,14 @@ class Mesh:
         self.shift = DOUBLE if turn < 0 else 0.0
         self.event_phases = tuple(sorted((jump + self.shift) % 1.0 for jump in jumps))
 
-    def _self_matrix(self, phase):
+    def _mesh_phase(self, phase):
         return (self.turn * (np.asarray(phase) - self.shift)) % 1.0
 
     def stiffness(self, phase):
-        return 2e8 * pairs_in_contact(self._own(phase))
+        return 2e8 * pairs_in_contact(self._mesh_phase(phase))
 
     def _vector(self, phase):
-        return friction_vector(np.atleast_1d(self._own(phase)), self.coefficient)
+        return friction_vector(np.atleast_1d(self._mesh_phase(phase)), self.coefficient)
 
     def friction_sum(self, phase):
         return self._vector(phase)[:, 0]

@@ -16,7 +16,9 @@ import numpy as np
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
+from tribodyn.dynamics.structure.plane_mesh import FRICTION_SUMS, plane_rows
 from tribodyn.errors import InputError, require_one_of
+from tribodyn.nomenclature import GEARS
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -130,10 +132,6 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     return (replace(contact, stiffness=0.0, gap=opening), *carrying)
 
 
-#: Coordinates across the line of action, as the models name them.
-_ACROSS = ("x", "v")
-
-
 def follow_load(system: System, friction: MeshFriction) -> System:
     """Replace the friction of a mesh by friction that follows its dynamic load.
 
@@ -198,18 +196,9 @@ def follow_load(system: System, friction: MeshFriction) -> System:
 
 def _directions(names: tuple[str, ...]) -> dict[str, Array]:
     """Direction of each friction sum of the mesh over the coordinates."""
-    missing = [name for name in ("pinion_theta", "wheel_theta") if name not in names]
+    missing = [name for name in (f"{gear}_theta" for gear in GEARS) if name not in names]
     if missing:
         why = f"Friction acts on the gears, and the coordinates are {', '.join(names)}"
         remedy = "Name the coordinates accordingly, or pass LoadFriction to System"
         raise InputError(f"no coordinate is named {missing[0]}", "argument system", why, remedy)
-    unit = dict(zip(names, np.eye(len(names)), strict=True))
-    nothing = np.zeros(len(names))
-    across = nothing
-    for axis in _ACROSS:
-        across = across + unit.get(f"pinion_{axis}", nothing) - unit.get(f"wheel_{axis}", nothing)
-    return {
-        "friction_sum": across,
-        "friction_moment_pinion": unit["pinion_theta"],
-        "friction_moment_wheel": nothing - unit["wheel_theta"],
-    }
+    return dict(zip(FRICTION_SUMS, plane_rows(names)[1:], strict=True))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.structure.force_law import MeshForce, carried, sum_of
+from tribodyn.dynamics.structure.plane_mesh import friction_direction, plane_rows
 from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.types import Array
 
@@ -56,6 +57,7 @@ def _sign(driver: Driver) -> float:
 
 def gear_contact(
     mesh: MeshFunctions,
+    names: tuple[str, ...],
     *,
     base_radius: Array,
     driver: Driver,
@@ -63,19 +65,12 @@ def gear_contact(
     backlash: float,
     error: Entry,
     damping_in_gap: bool,
-    supports: bool,
 ) -> Contact:
-    """Build the contact of one gear pair."""
+    """Build the contact of one gear pair over the coordinates of its structure."""
     require_between("backlash", backlash, 0.0, np.inf, "m")
-    sign = _sign(driver)
-    radius_pinion, radius_wheel = base_radius
-    direction = np.array([0.0, 1.0, radius_pinion, 0.0, -1.0, -radius_wheel]) * sign
-
-    # Across the line of action, and the moments on pinion and wheel.
-    onto = np.zeros((3, 6))
-    onto[[0, 1, 0, 2], [0, 2, 3, 5]] = 1.0, 1.0, -1.0, -1.0
+    rows, supports = plane_rows(names), len(names) > len(TORSIONAL_NAMES)
     keep = slice(None) if supports else [2, 5]
-    towards: Entry = direction[keep]
+    towards: Entry = _sign(driver) * (rows[0] + base_radius @ rows[2:])
     if (varying := getattr(mesh, "direction", None)) is not None:
         keep = _direction_columns(varying, supports)
         towards = _columns(varying, keep)
@@ -83,7 +78,7 @@ def gear_contact(
     rub: Entry | None = None if of_mesh is None else _columns(of_mesh, keep)
     # In space the friction follows from its direction; the three sums describe a plane.
     if of_mesh is None and keep != [4, 10] and mesh.friction_sum is not None:
-        rub = _rub(mesh, onto[:, keep])
+        rub = friction_direction(mesh, rows[1:])
     return Contact(
         direction=towards,
         stiffness=mesh.stiffness,
@@ -116,16 +111,6 @@ def with_error_of(mesh: object, error: Entry) -> Entry:
 
 def _columns(function: Callable[[Array], Array], keep: slice | list[int]) -> Callable[..., Array]:
     return lambda phase: function(phase)[:, keep]
-
-
-def _rub(mesh: Any, onto: Array) -> Callable[..., Array]:
-    """Friction of a mesh (p, n) from its three sums; a table if all three share their grid."""
-    sums = (mesh.friction_sum, mesh.friction_moment_pinion, mesh.friction_moment_wheel)
-    kind, grid = type(sums[0]), getattr(sums[0], "grid", None)
-    if hasattr(kind, "onto") and all(type(e) is kind and e.grid is grid for e in sums):
-        values = np.stack([each.values for each in sums], axis=-1)
-        return cast("Callable[..., Array]", kind(grid, values, onto))
-    return lambda phase: np.stack([np.asarray(each(phase)) for each in sums], axis=-1) @ onto
 
 
 def torques(torque: Array, driver: Driver) -> Array:
@@ -239,13 +224,13 @@ def spur6(
     balance = balance_direction(torque_balance, driver)
     contact = gear_contact(
         mesh,
+        SPUR6_NAMES,
         base_radius=pair_of("base_radius", base_radius, "m"),
         driver=driver,
         mesh_damping=mesh_damping,
         backlash=backlash,
         error=error,
         damping_in_gap=damping_in_gap,
-        supports=True,
     )
     return System(
         mass=np.diag([m[0], m[0], inertia[0], m[1], m[1], inertia[1]]),
@@ -309,13 +294,13 @@ def torsional(
     inertia = pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2")
     contact = gear_contact(
         mesh,
+        TORSIONAL_NAMES,
         base_radius=pair_of("base_radius", base_radius, "m"),
         driver=driver,
         mesh_damping=mesh_damping,
         backlash=backlash,
         error=error,
         damping_in_gap=damping_in_gap,
-        supports=False,
     )
     return System(
         mass=np.diag(inertia),

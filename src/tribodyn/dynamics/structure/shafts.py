@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.structure.gear_pair import Driver, row_of
+from tribodyn.dynamics.structure.plane_mesh import friction_direction, plane_rows
 from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.types import Array
 
@@ -282,17 +283,6 @@ def _column(names: tuple[str, ...], disc: str, where: str) -> int:
     return names.index(f"{disc}_theta")
 
 
-def _along(names: tuple[str, ...], mesh: GearMesh, radial: Array, turns: Sequence[Any]) -> Any:
-    """Vector over the coordinates: ``radial`` on pinion, minus that on wheel, and both moments."""
-    columns = [np.zeros_like(np.asarray(turns[0], dtype=float)) for _ in names]
-    for disc, sign, turn in zip((mesh.pinion, mesh.wheel), (1.0, -1.0), turns, strict=True):
-        columns[_column(names, disc, "argument meshes")] = sign * np.asarray(turn)
-        for axis, part in zip(("x", "y"), radial, strict=True):
-            if f"{disc}_{axis}" in names:
-                columns[names.index(f"{disc}_{axis}")] = sign * part
-    return np.stack([np.broadcast_to(c, np.shape(turns[0])) for c in columns], axis=-1)
-
-
 def _contact(names: tuple[str, ...], mesh: GearMesh) -> Contact:
     require_between("backlash", mesh.backlash, 0.0, np.inf, "m")
     require_between("lag", mesh.lag, 0.0, 1.0, "")
@@ -301,24 +291,17 @@ def _contact(names: tuple[str, ...], mesh: GearMesh) -> Contact:
         raise InputError(f"cycles = {mesh.cycles}", "GearMesh.cycles", why, remedy)
     require_one_of("GearMesh.driver", mesh.driver, ("pinion", "wheel"))
     radii = row_of("base_radius", mesh.base_radius, 2, "m")
-    along = np.array([np.cos(mesh.line_angle), np.sin(mesh.line_angle)])
-    along[np.abs(along) < 1e-15] = 0.0
-    across = np.array([along[1], -along[0]])
-    sense = 1.0 if mesh.driver == "pinion" else -1.0
-    friction = mesh.friction
-
-    def rub(phase: Array) -> Array:
-        part = np.multiply.outer(across, np.asarray(friction.friction_sum(phase), dtype=float))
-        turns = (friction.friction_moment_pinion(phase), friction.friction_moment_wheel(phase))
-        return np.asarray(_along(names, mesh, part, turns))
-
+    for disc in (mesh.pinion, mesh.wheel):
+        _column(names, disc, "argument meshes")
+    rows = plane_rows(names, (mesh.pinion, mesh.wheel), mesh.line_angle)
+    sense, friction = 1.0 if mesh.driver == "pinion" else -1.0, mesh.friction
     return Contact(
-        direction=sense * _along(names, mesh, along, tuple(radii)),
+        direction=sense * (rows[0] + radii @ rows[2:]),
         stiffness=mesh.stiffness,
         damping=mesh.damping,
         error=mesh.error,
         gap=0.5 * mesh.backlash,
-        friction=None if friction is None else rub,
+        friction=None if friction is None else friction_direction(friction, rows[1:]),
         events=tuple(sorted({0.0, *mesh.events})),
         cycles=mesh.cycles,
         offset=mesh.lag % 1.0,
