@@ -30,16 +30,22 @@ def pytest_configure(config: pytest.Config) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+#: Folders whose files run on one worker, since they share kernels.
+_TOGETHER = ("tests/docs", "tests/unit/dynamics")
 #: Folders whose tests need no compiled kernel, or few.
-_WITHOUT_KERNELS = (
-    "style", "freeze", "unit/gear", "unit/lubricant", "unit/friction", "unit/contact", "unit/plot",
+_WITHOUT_KERNELS = tuple(
+    f"tests/{folder}/"
+    for folder in (
+        "style", "freeze", "unit/gear", "unit/lubricant", "unit/friction", "unit/contact",
+        "unit/plot",
+    )
 )  # fmt: skip
 
 
 def _scope(nodeid: str) -> str:
-    """File of a test; all pages of the documentation are one scope: they share kernels."""
+    """Tests that run one after the other on the same worker: those of a file or of a folder."""
     file = nodeid.split("::", 1)[0]
-    return "tests/docs" if file.startswith("tests/docs/") else file
+    return next((folder for folder in _TOGETHER if file.startswith(f"{folder}/")), file)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -51,14 +57,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if not hasattr(config, "workerinput"):
         return
     slow = Counter(_scope(item.nodeid) for item in items if item.get_closest_marker("slow"))
+    first, second = _TOGETHER
 
     def rank(item: pytest.Item) -> tuple[int, int]:
         scope = _scope(item.nodeid)
-        if scope == "tests/docs":
-            return 0, 0
-        if scope.removeprefix("tests/").startswith(_WITHOUT_KERNELS):
+        if scope.startswith(_WITHOUT_KERNELS):
             return 1, 0
-        return 2, -slow[scope]
+        return {first: 0, second: 2}.get(scope, 3), -slow[scope]
 
     items.sort(key=rank)
 
