@@ -214,13 +214,18 @@ bar.progress_bar = lambda: contextlib.nullcontext(Slow())
 }
 
 
+@pytest.fixture(scope="module")
+def compiled_kernels() -> None:
+    """Compile all kernels: an interruption of the compiler would end the command."""
+    subprocess.run([*_TRIBODYN, "warm-up", "fzg-roughness"], capture_output=True, check=True)
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("compiled_kernels")
 @pytest.mark.parametrize("command", ["sweep", "bifurcation"])
 def test_ctrl_c_stores_finished_results(folder: Path, command: str) -> None:
     hook = folder.parent / f"{folder.name}-hook"
     hook.mkdir()
-    # An interruption while a kernel is compiled ends the command: compile all of them before.
-    subprocess.run([*_TRIBODYN, "warm-up", "fzg-roughness"], capture_output=True, check=True)
     (hook / "sitecustomize.py").write_text(_HOOKS[command])
     over = "operation.speed=1000..2000 rpm:" + ("2000" if command == "sweep" else "60")
     process = subprocess.Popen(
