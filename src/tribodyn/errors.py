@@ -45,7 +45,6 @@ _listeners: ContextVar[tuple[Callable[[ModelWarning], bool], ...]] = ContextVar(
     "listeners", default=()
 )
 
-
 #: Most characters of a value that a message quotes, and of one part of a message.
 _QUOTED, _PART = 200, 4000
 #: Most problems that one error lists.
@@ -157,9 +156,8 @@ class Problem:
     def __str__(self) -> str:
         """Join the parts into one readable paragraph."""
         head = f"{self.where}: {self.what}" if self.where else self.what
-        parts = (part for part in (head, self.why, self.remedy) if part)
-        ends = "?", "..."
-        return " ".join(p if p.endswith(ends) else f"{p.rstrip('.')}." for p in parts)
+        parts = [part for part in (head, self.why, self.remedy) if part]
+        return " ".join(p if p.endswith(("?", "...")) else f"{p.rstrip('.')}." for p in parts)
 
 
 class TribodynError(Exception):
