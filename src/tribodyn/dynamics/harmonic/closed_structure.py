@@ -67,26 +67,33 @@ class ClosedStructure:
             return None
         return values.astype(complex), right.astype(complex), np.linalg.inv(right).astype(complex)
 
-    def respond(self, omega: Array, force: Array, output: Array) -> ComplexArray:
-        """``output`` times the amplitude of the state under forces (k, s) or (k, s, m)."""
-        columns = force[..., None] if force.ndim == 2 else force
-        if self.modes is not None:
-            values, right, left = self.modes
-            modal = (left @ self.input) @ columns / (1j * omega[:, None] - values)[..., None]
-            result = (output @ right) @ modal
-        else:
-            eye, loads = np.eye(len(self.matrix)), self.input @ columns
-            parts = [
-                np.linalg.solve(1j * omega[at, None, None] * eye - self.matrix, loads[at])
-                for at in np.split(np.arange(omega.size), np.arange(_CHUNK, omega.size, _CHUNK))
-            ]
-            result = output @ np.concatenate(parts)
-        return np.asarray(result[..., 0] if force.ndim == 2 else result, dtype=complex)
+    def respond(self, omega: Array, force: ComplexArray) -> ComplexArray:
+        """Amplitudes of the state (k, m) under forces (k, s)."""
+        if self.modes is None:
+            return self._solve(omega, (force @ self.input.T)[..., None])[..., 0]
+        values, right, left = self.modes
+        modal = force @ (left @ self.input).T / (1j * omega[:, None] - values)
+        return np.asarray(modal @ right.T, dtype=complex)
+
+    def _solve(self, omega: Array, loads: ComplexArray) -> ComplexArray:
+        """Amplitudes under loads on the state (k or 1, m, c), without modes."""
+        eye = np.eye(len(self.matrix))
+        loads = np.broadcast_to(loads, (omega.size, *loads.shape[1:]))
+        parts = [
+            np.linalg.solve(1j * omega[at, None, None] * eye - self.matrix, loads[at])
+            for at in np.split(np.arange(omega.size), np.arange(_CHUNK, omega.size, _CHUNK))
+        ]
+        return np.concatenate(parts)
 
     def receptances(self, omega: Array) -> ComplexArray:
         """Motions at the contacts per force there, (k, r, s) [s^2]; the first frequency is zero."""
-        unit = np.broadcast_to(np.eye(self.push.shape[1]), (omega.size, *(2 * self.push.shape[1:])))
-        matrices = self.respond(omega, unit, self.output)
+        if self.modes is None:
+            matrices = self.output @ self._solve(omega, self.input[None].astype(complex))
+        else:
+            values, right, left = self.modes
+            shares = (self.output @ right).T[:, :, None] * (left @ self.input)[:, None, :]
+            flat = (1.0 / (1j * omega[:, None] - values)) @ shares.reshape(values.size, -1)
+            matrices = flat.reshape(omega.size, *shares.shape[1:])
         if self.balance is not None:
             torque, gain = self._balancing()
             still = np.eye(len(gain)) - np.outer(torque, gain)
@@ -94,7 +101,7 @@ class ClosedStructure:
             mean = matrices[0] @ still
             loop = matrices[0] @ np.outer(torque, gain @ self.contact_stiffness)
             matrices[0] = np.linalg.solve(np.eye(len(loop)) - loop, mean)
-        return matrices
+        return np.asarray(matrices, dtype=complex)
 
     def _balancing(self) -> tuple[Array, Array]:
         """Components of the balancing torque for a unit gain, and the gain by forces (s,)."""
@@ -116,7 +123,7 @@ class ClosedStructure:
     def motion(self, omega: Array, force: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Amplitudes (k, n) of positions and velocities under forces (k, s)."""
         c, count = self.coordinates, self.places.shape[1]
-        state = self.respond(omega, force, np.eye(len(self.matrix)))
+        state = self.respond(omega, force)
         elastic, moving = state[:, :count] @ self.places.T, state[:, count:]
         per_omega = np.divide(1.0, 1j * omega, where=omega > 0.0, out=np.zeros(omega.size, complex))
         turned = (moving @ c.braked) * per_omega[:, None] @ (c.moving @ c.braked).T

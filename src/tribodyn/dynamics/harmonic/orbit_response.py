@@ -35,13 +35,16 @@ def starting_state(residual: Residual, state: State) -> tuple[Array, Array]:
     """State of the closed structure (m,) when the clock starts, and the balancing torque (n,)."""
     structure = residual.structure
     force, torque = structure.balanced(force_spectrum(state), state.y.mean(axis=0))
-    amplitudes = structure.respond(residual.omega, force, np.eye(len(structure.matrix)))
+    amplitudes = structure.respond(residual.omega, force)
     return amplitudes[0].real + 2.0 * amplitudes[1:].real.sum(axis=0), torque
 
 
 def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:
     """Fourier series with amplitudes (k, n) of a motion on ``steps`` samples, at any phases."""
-    count = _REFINED * steps
+    # On equal steps all phases are samples of the series.
+    count = 2 * (phase.size // 3)
+    if count < steps or np.abs(phase * count - np.rint(phase * count)).max() > 1e-7:
+        count = _REFINED * steps
     padded = np.zeros((count // 2 + 1, amplitudes.shape[1]), dtype=complex)
     padded[: len(amplitudes)] = amplitudes
     fine = scipy.fft.irfft(padded, count, axis=0, norm="forward")
