@@ -1,4 +1,4 @@
-"""A two-stage machine of 40 coordinates: four gears, three shafts, a housing of masses and springs."""
+"""A two-stage machine of 40 coordinates: four gears on shafts, a housing of masses and springs."""
 
 from __future__ import annotations
 

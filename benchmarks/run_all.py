@@ -16,6 +16,7 @@ SCRIPTS = (
     "steady_state_speed",
     "speed_sweep",
     "steady_state_cycles",
+    "machine_speed",
     "bifurcation_speed",
     "parameter_map",
     "film_speed",

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_whole
-from tribodyn.dynamics.equations.grid import Grid, system_events
+from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.motion import has_gap
-from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count
+from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes
 from tribodyn.dynamics.equations.program import Program, build_program, compile_system
 from tribodyn.dynamics.equations.step_limit import (
     largest_rate,
@@ -77,6 +77,15 @@ class Compiled:
     def each(self, lanes: int) -> tuple[Member, ...]:
         """Members, or the one system as that of all lanes."""
         return self.members or (Member(self.system, self.nodes, np.arange(lanes)),)
+
+
+def sample_system(system: System, steps: int) -> Compiled:
+    """Grid and rows of a system, without a program for lanes and a number of the step."""
+    require_whole("steps", steps)
+    grid = build_grid(system_events(system), int(steps) * system.cycles)
+    none, mask = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
+    program = Program(none, none, np.zeros(0), grid.width, grid.after_event, np.zeros(0), mask)
+    return Compiled(system, grid, evaluate_nodes(system, grid), program, float("nan"))
 
 
 def compile_for(

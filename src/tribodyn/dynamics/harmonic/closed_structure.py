@@ -67,6 +67,12 @@ class ClosedStructure:
             return None
         return values.astype(complex), right.astype(complex), np.linalg.inv(right).astype(complex)
 
+    @cached_property
+    def rate(self) -> float:
+        """Largest rate of the motion [rad/s]."""
+        values = np.linalg.eigvals(self.matrix) if self.modes is None else self.modes[0]
+        return float(np.abs(values).max(initial=0.0))
+
     def respond(self, omega: Array, force: ComplexArray) -> ComplexArray:
         """Amplitudes of the state (k, m) under forces (k, s)."""
         if self.modes is None:

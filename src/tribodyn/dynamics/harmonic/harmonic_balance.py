@@ -14,7 +14,7 @@ import scipy.fft
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_flag, require_number, require_whole
-from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
+from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
@@ -71,10 +71,10 @@ class Prepared:
             self.samples[steps] = contact_equations(self.system, self.structure, steps)
         return Residual(self.structure, self.samples[steps], frequency)
 
-    def grid(self, steps: int, frequency: float) -> Compiled:
+    def grid(self, steps: int) -> Compiled:
         """Grid of a response with a number of steps per cycle of the fastest mesh."""
         if steps not in self.grids:
-            self.grids[steps] = compile_lanes(self.system, frequency, steps, any_step=True)
+            self.grids[steps] = sample_system(self.system, steps)
         return self.grids[steps]
 
 
@@ -84,7 +84,7 @@ def prepare(system: System, frequency: float) -> Prepared:
         if reference() is system:
             return prepared
     steps = max(2 * _FIRST, -(-2 * len(system_events(system)) // system.cycles))
-    compiled = compile_lanes(system, frequency, steps, any_step=True)
+    compiled = sample_system(system, steps)
     refuse_disconnected(compiled)
     orbit_coordinates(compiled, frequency)  # warns of forces that do not balance
     start = static_start(compiled)[: system.size]
@@ -195,7 +195,7 @@ def harmonic_balance(
             break
     progress.finish()
     fine = count if steps is not None else min(samples // (2 * system.cycles), _RECORDED)
-    grid = prepared.grid(max(fine, min(prepared.grids)), frequency)
+    grid = prepared.grid(max(fine, min(prepared.grids)))
     multipliers = np.zeros(0, dtype=complex)
     if stability and solution.error <= tolerance:
         multipliers = _multipliers(prepared, residual, solution)
@@ -211,7 +211,7 @@ def harmonic_balance(
 
 def _multipliers(prepared: Prepared, residual: Residual, solution: Solution) -> ComplexArray:
     """Floquet multipliers, with a warning of an unstable motion."""
-    grid = prepared.grid(min(prepared.grids), residual.frequency)
+    grid = prepared.grid(min(prepared.grids))
     if prepared.structure.modes is None:
         return np.zeros(0, dtype=complex)
     state, torque = starting_state(residual, solution.state)
@@ -274,7 +274,7 @@ def _solve(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -
     best = min(best, trial, key=lambda solution: solution.error)
     if best.error <= tolerance or prepared.structure.modes is None:
         return best
-    grid = prepared.grid(min(prepared.grids), residual.frequency)
+    grid = prepared.grid(min(prepared.grids))
     motion = ModalMotion(grid, prepared.structure)
     state, torque = starting_state(residual, residual.at(point))
     for periods in _MARCHED:

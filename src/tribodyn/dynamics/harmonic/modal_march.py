@@ -8,6 +8,7 @@ moments without an explicit force. Free rotations of the drive follow from integ
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -210,8 +211,10 @@ class ModalMarcher:
     """Integrate lanes of one system in modal coordinates, one after the other."""
 
     def __init__(self, compiled: Compiled, frequency: Array, extra_force: Array) -> None:
-        self.compiled, self.frequency, self.extra_force = compiled, frequency, extra_force
+        self.frequency, self.extra_force = frequency, extra_force
         structure, _ = close_contacts(compiled, extra_force)
+        number = structure.rate * float(compiled.grid.width.max() / frequency.min())
+        self.compiled = replace(compiled, step_number=number)
         self._motion = ModalMotion(compiled, structure)
 
     def march(

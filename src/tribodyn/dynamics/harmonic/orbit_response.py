@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,8 @@ def orbit_response(compiled: Compiled, residual: Residual, state: State, **facts
     q, v = (values.reshape(1, steps, 3, -1) for values in motion)
     ends = np.concatenate((q[0, :, 0], v[0, :, 0]), axis=1)
     states = np.concatenate((ends, ends[:1]))
+    number = structure.rate * float(compiled.grid.width.max()) / residual.frequency
+    compiled = replace(compiled, step_number=number)
     facts |= {"period": 1, "engine": "harmonic-balance", "within": (q, v)}
     return build_response(compiled, residual.frequency, states, torque, **facts)
 

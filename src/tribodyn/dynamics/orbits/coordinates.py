@@ -239,6 +239,9 @@ def balanced_position(system: System, nodes: Nodes, carrying: Array, push: Array
 def _sums(push: Array, weight: Array, along: Array, shift: Array) -> tuple[Array, Array]:
     """Sums of ``weight push along`` (..., n, n) and of ``weight push shift`` (..., n)."""
     lead, size = push.shape[:-4], push.shape[-1]
+    if not lead and unrepeated(push, 2).size == unrepeated(along, 2).size == push[0, 0].size:
+        total, moved = weight.sum(axis=(0, 1)), (weight * shift).sum(axis=(0, 1))
+        return (push[0, 0].T * total) @ along[0, 0], push[0, 0].T @ moved
     flat = np.swapaxes(push.reshape(*lead, -1, size), -1, -2)
     factors = np.stack((weight, weight * shift), axis=-1).reshape(*lead, -1, 2)
     if (constant := unrepeated(along, 1)).size == size:  # a factor of the sum

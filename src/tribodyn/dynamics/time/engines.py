@@ -17,7 +17,7 @@ from tribodyn.dynamics._engine.adaptive_engine import (
 from tribodyn.dynamics._engine.blocks import Backend, Run, march, march_blocks, marching_on
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
-from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
+from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes, sample_system
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.modal_march import ModalMarcher
@@ -162,7 +162,8 @@ def _modal(setting: Setting) -> Marcher:
         why = "Modal coordinates belong to one system"
         remedy = 'Use method = "rk4" for an ensemble of systems'
         raise InputError('method = "modal" with several systems', "argument method", why, remedy)
-    return ModalMarcher(_any_step(setting), setting.frequency, setting.extra_force)
+    compiled = sample_system(setting.systems, setting.steps)
+    return ModalMarcher(compiled, setting.frequency, setting.extra_force)
 
 
 def _any_step(setting: Setting) -> Compiled:

@@ -1,0 +1,131 @@
+"""Steady state of a two-stage machine of 40 coordinates: harmonic balance against integration.
+
+The rivals integrate from the mean position until the motion is within 1e-6 of the periodic one.
+That number of periods is found beforehand. The modal engine and Runge-Kutta run all of them in one
+go; SciPy's DOP853 runs a part of one period at a tolerance that brings 1e-6, and its time is
+multiplied. The last race is a sweep of 300 speeds, each from the motion before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from race import arguments, machine, print_table, race
+from reference_machine import CLOCK, two_stage_machine
+from tribodyn.dynamics import Response, System, harmonic_balance, recommended_steps, simulate
+
+__all__ = ["main"]
+
+_ACCURACY, _STEPS, _SPEEDS = 1e-6, 64, 300
+#: Part of a period that SciPy integrates, and its relative tolerance.
+_PART, _TOLERANCE = 51, 1e-7
+
+
+def _slope(system: System, torque: np.ndarray) -> Callable[[float, np.ndarray], np.ndarray]:
+    """Right-hand side in NumPy, with all constants multiplied beforehand."""
+    size, inverse = system.size, system.inverse_mass
+    directions = np.array([contact.direction for contact in system.contacts])
+    matrix = -np.hstack(system.over_mass)
+    push, load = -inverse @ directions.T, inverse @ (np.asarray(system.force) + torque)
+    contacts, step = system.clocked_contacts, 1e-7
+
+    def slope(time: float, state: np.ndarray) -> np.ndarray:
+        clock = time * CLOCK % 1.0
+        at = clock + np.array([-step, 0.0, step])
+        d, rate = directions @ state[:size], directions @ state[size:]
+        force = np.empty(len(contacts))
+        for j, contact in enumerate(contacts):
+            error = contact.error(at)
+            gap = d[j] - error[1]
+            speed = rate[j] - CLOCK * (error[2] - error[0]) / (2.0 * step)
+            beyond = abs(gap) > contact.gap
+            spring = contact.stiffness(at[1:2])[0] * (gap - np.sign(gap) * contact.gap)
+            force[j] = beyond * (spring + contact.damping * speed)
+        return np.concatenate((state[size:], matrix @ state + push @ force + load))
+
+    return slope
+
+
+def _periods_to_repeat(system: System, orbit: Response) -> int:
+    """Periods of the clock after which compressions are within 1e-6 of the periodic motion."""
+    position, velocity = orbit.position.mean(axis=0), 0.0 * orbit.velocity[0]
+    exact = orbit.deflection[0]
+    for period in range(1, 500):
+        run = simulate(
+            system, CLOCK, 2, (position, velocity), steps=_STEPS, method="modal",
+            extra_force=orbit.extra_force,
+        )  # fmt: skip
+        half = run.time.size // 2
+        position, velocity = run.position[half], run.velocity[half]
+        if np.abs(run.deflection[half] - exact).max() <= _ACCURACY * np.abs(exact).max():
+            return period
+    raise RuntimeError("the motion does not repeat within 500 periods")
+
+
+def _sweep(system: System, count: int) -> float:
+    motion = None
+    for frequency in CLOCK * np.linspace(0.5, 1.5, count):
+        motion = harmonic_balance(system, float(frequency), steps=_STEPS, start=motion)
+    return count
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Run the comparison and print it.
+
+    Parameters
+    ----------
+    words : sequence of str, optional
+        Words of the command line.
+    """
+    quick = arguments(__doc__, words).quick
+    print(f"Two-stage machine: {machine()}\n")
+    system = two_stage_machine()
+    orbit = harmonic_balance(system, CLOCK)
+    start, torque = (orbit.position[0], orbit.velocity[0]), orbit.extra_force
+    periods, fine = _periods_to_repeat(system, orbit), recommended_steps(system, CLOCK)
+    state, slope = np.concatenate(start), _slope(system, torque)
+
+    def balance() -> float:
+        harmonic_balance(two_stage_machine(), CLOCK, steps=_STEPS)
+        return 1.0
+
+    def again() -> float:
+        harmonic_balance(system, CLOCK, steps=_STEPS)
+        return 1.0
+
+    def integration(method: str, steps: int) -> Callable[[], float]:
+        def run() -> float:
+            simulate(system, CLOCK, 1, start, steps=steps, method=method, extra_force=torque)
+            return 1.0 / periods
+
+        return run
+
+    def scipy() -> float:
+        end = 1.0 / (CLOCK * _PART)
+        solve_ivp(slope, (0.0, end), state, "DOP853", rtol=_TOLERANCE, atol=1e-14)
+        return 1.0 / (_PART * periods)
+
+    def sweep() -> float:
+        return _sweep(system, 20 if quick else _SPEEDS)
+
+    contenders = {
+        "harmonic balance, set-up included": balance,
+        "harmonic balance": again,
+        "harmonic balance, per speed of a sweep": sweep,
+        f"modal engine, {periods} periods": integration("modal", _STEPS),
+        f"Runge-Kutta, {periods} periods": integration("rk4", fine),
+        f"SciPy DOP853, {periods} periods": scipy,
+    }
+    times = race(contenders, 1 if quick else 5)
+    rows = [
+        (name, f"{1e3 * one.median:.4g}", f"{times['harmonic balance'].faster_than(one):.3g}")
+        for name, one in times.items()
+    ]
+    print_table(("steady state to 1e-6", "CPU ms", "times harmonic balance"), rows)
+
+
+if __name__ == "__main__":
+    main()
