@@ -13,20 +13,24 @@ from tribodyn.machine.structure import MachineStructure, Reduction
 from tribodyn.types import Array, Index, Mask
 
 #: Shares of the tolerance that omitted modes may use up by estimate, tried in turn.
-_SHARES = (1.0, 0.5, 0.1, 0.0)
+_SHARES = (1.0, 0.5, 0.1, 0.01, 1e-3, 0.0)
+#: Frequency over the limit below which no mode is left out.
+_ALL_BELOW = 1.5
 #: Squared frequencies below this share of the greatest are rounding.
 _RIGID = 1e-12
-#: Lowest limit of a reduction by default [Hz], and mesh harmonics within half of it.
-_LEAST_LIMIT, _HARMONICS = 5000.0, 3
+#: Rounding of a frequency that is zero, over the greatest rate of a coordinate.
+_ROUNDING = 3e-8
+#: Range of the limit of a reduction by default [Hz], and mesh harmonics within half of it.
+_LIMITS, _HARMONICS = (5e3, 5e4), 3
 #: Coordinates beyond which a machine is reduced.
 _LARGE = 120
 
 
 def default_limit(structure: MachineStructure) -> float:
-    """Twice the third harmonic of the fastest mesh, at least 5 kHz [Hz]."""
+    """Twice the third harmonic of the fastest mesh, between 5 and 50 kHz [Hz]."""
     meshes = structure.machine.kinematics.meshes.values()
     fastest = max((mesh.mesh_frequency for mesh in meshes), default=0.0)
-    return max(2.0 * _HARMONICS * fastest, _LEAST_LIMIT)
+    return float(np.clip(2.0 * _HARMONICS * fastest, *_LIMITS))
 
 
 def machine_structure(machine: Machine, *, damping_ratio: float = 0.02) -> MachineStructure:
@@ -74,7 +78,7 @@ def reduce_structure(
         Matrices of the machine.
     limit : float, optional
         Frequency up to which the reduced machine has the natural frequencies of the full one [Hz];
-        twice the third harmonic of the fastest mesh by default, at least 5 kHz.
+        twice the third harmonic of the fastest mesh by default, between 5 and 50 kHz.
     tolerance : float
         Greatest relative error of these frequencies [1].
 
@@ -119,13 +123,15 @@ def reduce_structure(
     require_between("tolerance", tolerance, 1e-9, 1.0, "")
     basis, names, squares = _craig_bampton(structure, _interface(structure))
     full, shapes = _modes(structure, limit)
+    least = _ROUNDING * np.sqrt((np.diag(structure.stiffness) / np.diag(structure.mass)).max())
+    squares[squares <= (_ALL_BELOW * 2.0 * np.pi * limit) ** 2] = np.inf
     omission = _omission(np.asarray(np.linalg.solve(basis, shapes)), squares, full)
     for share in _SHARES:
         columns = _columns(omission, share * tolerance)
         motion = structure.basis @ basis[:, columns]
         reduction = Reduction(tuple(names[i] for i in columns), motion, limit, 0.0)
         reduced = replace(structure, reduction=reduction)
-        error = _error(full, _modes(reduced, np.inf)[0], limit)
+        error = _error(full, _modes(reduced, np.inf)[0], least)
         if error <= tolerance:
             break
     final = replace(structure, reduction=replace(reduction, error=error))
@@ -217,10 +223,10 @@ def _modes(structure: MachineStructure, limit: float) -> tuple[Array, Array]:
     return np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), shapes
 
 
-def _error(full: Array, reduced: Array, limit: float) -> float:
-    """Greatest relative difference of the frequencies that are not zero."""
+def _error(full: Array, reduced: Array, least: float) -> float:
+    """Greatest relative difference of frequencies above the least, below which they are zero."""
     if len(reduced) < len(full):
         return np.inf
-    elastic = full > 1e-6 * limit
+    elastic = full > least
     difference = np.abs(reduced[: len(full)][elastic] / full[elastic] - 1.0)
     return float(difference.max(initial=0.0))

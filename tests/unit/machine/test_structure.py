@@ -423,3 +423,15 @@ def test_a_slender_shaft_has_sixty_elements():
     structure = MachineStructure(machine)
     assert len(structure.shafts["input"].nodes) - 1 in range(60, 64)
     assert len(structure.shafts["output"].nodes) - 1 in range(20, 24)
+
+
+def test_fixed_modes_below_the_limit_are_never_left_out():
+    """A fast mesh has its limit above many modes of the parts between the gears."""
+    slim = {"input": sections((300, 20)), "output": sections((300, 24))}
+    machine = geared_shafts(shafts=slim, operation=Operation("input", "output", 1400.0, 5.0))
+    structure = machine_structure(machine)
+    assert structure.reduction.limit == pytest.approx(6 * 27 * 1400.0 / (2.0 * np.pi))
+    assert structure.reduction.error <= 4e-4
+    assert structure.size < 0.5 * structure.basis.shape[0]
+    # rotation of the drive, whose frequency is rounding, is not taken for an error
+    assert reduce_structure(MachineStructure(machine), 300.0).reduction.error <= 4e-4
