@@ -1,4 +1,4 @@
-"""Who computes: clear words where no cluster answers, and where a worker is another one."""
+"""Messages where no cluster answers, and where a worker has another version."""
 
 from __future__ import annotations
 

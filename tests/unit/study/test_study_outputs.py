@@ -1,4 +1,4 @@
-"""Studies lead on to the next: best cases, frames, coordinates, figures, tables of notebooks."""
+"""Outputs of studies: best cases, data frames, coordinates, figures, tables of notebooks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Teeth and oil film apart: transmission error and stiffness of a film in series."""
+"""Shares of teeth and oil film: transmission error and stiffness of a film in series."""
 
 from __future__ import annotations
 

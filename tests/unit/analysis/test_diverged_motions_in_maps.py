@@ -1,4 +1,4 @@
-"""Diagrams and maps say of a motion that grew beyond all bounds that it did."""
+"""Diagrams and maps mark motions that grew beyond all bounds."""
 
 import numpy as np
 

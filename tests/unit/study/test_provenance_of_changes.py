@@ -1,4 +1,4 @@
-"""A changed value keeps neither reason nor source of the old one, whichever way it is changed."""
+"""A changed value loses the reason and the source of the old one, however it is changed."""
 
 from __future__ import annotations
 
