@@ -29,9 +29,9 @@ guard(__name__)
 class _Catalogue(ModuleType):
     """A module that lists the cases when called, since both go by the same name."""
 
-    def __call__(self) -> dict[str, str]:
+    def __call__(self, *, machines: bool = False) -> dict[str, str]:
         """Names and one-line descriptions of all named cases."""
-        return cases()
+        return cases(machines=machines)
 
 
 sys.modules[__name__].__class__ = _Catalogue

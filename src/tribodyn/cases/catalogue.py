@@ -41,6 +41,12 @@ def case_files() -> dict[str, Path]:
     return paths
 
 
+def machine_files() -> dict[str, Path]:
+    """Files of the built-in machines: gearboxes with shafts, bearings and several meshes."""
+    folder = Path(str(files("tribodyn.cases"))) / "machines"
+    return {path.stem: path for path in sorted(folder.glob("*.toml"), key=_name)}
+
+
 @lru_cache(maxsize=1)
 def _external_cases() -> EntryPoints:
     """Cases of other packages; cached, since searching the installed packages takes a while."""
@@ -51,8 +57,13 @@ def _name(path: Path) -> str:
     return path.stem
 
 
-def cases() -> dict[str, str]:
+def cases(*, machines: bool = False) -> dict[str, str]:
     """Names and one-line descriptions of all named cases.
+
+    Parameters
+    ----------
+    machines : bool
+        Add the built-in machines to the gear pairs.
 
     Returns
     -------
@@ -68,7 +79,7 @@ def cases() -> dict[str, str]:
 
     return {
         name: tomllib.loads(path.read_text(encoding="utf-8")).get("title", "")
-        for name, path in case_files().items()
+        for name, path in {**case_files(), **(machine_files() if machines else {})}.items()
     }
 
 

@@ -5,17 +5,18 @@ from __future__ import annotations
 import difflib
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from tribodyn.cases.catalogue import case_files
+from tribodyn.cases.catalogue import case_files, machine_files
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 
 if TYPE_CHECKING:
-    from tribodyn.study import Case, Result
+    from tribodyn.study import Case
+    from tribodyn.study.machine.case import MachineCase
 
 
-def load_case(name_or_path: str | os.PathLike[str]) -> Case:
+def load_case(name_or_path: str | os.PathLike[str]) -> Any:
     """Load a built-in case or a case file.
 
     Parameters
@@ -23,6 +24,11 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     name_or_path : str or path
         Name from :func:`tribodyn.cases`, or path of a TOML file. A file that has the name of a
         built-in case is reached as ``./name``.
+
+    Returns
+    -------
+    Case or MachineCase
+        A machine, where the file has ``[meshes.NAME]``.
 
     Raises
     ------
@@ -35,10 +41,12 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     90.0
     """
     from tribodyn.cases.catalogue import with_known_reasons
-    from tribodyn.study.case.read import read_case, read_text
+    from tribodyn.study.case.read import read_text
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.read import read_any_case
     from tribodyn.validated_files import file_kind
 
-    paths = case_files()
+    paths = {**case_files(), **machine_files()}
     name = os.fspath(name_or_path)
     path = paths.get(name, Path(name))
     kind = file_kind(path)
@@ -52,8 +60,9 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Case:
     if not kind:
         raise InputError(_not_found(name, path, list(paths)))
     if name in paths:
-        return read_case(read_text(path), path.name)
-    return with_known_reasons(read_case(read_text(path), name))
+        return read_any_case(read_text(path), path.name, path.parent)
+    case = read_any_case(read_text(path), name)
+    return case if isinstance(case, MachineCase) else with_known_reasons(case)
 
 
 def _not_found(name: str, path: Path, names: list[str]) -> Problem:
@@ -67,15 +76,19 @@ def _not_found(name: str, path: Path, names: list[str]) -> Problem:
     return Problem("no built-in case and no file has this name", name, why, remedy)
 
 
-def run(case: Case | str | os.PathLike[str], progress: Progress = SILENT) -> Result:
-    """Compute a case.
+def run(case: Case | MachineCase | str | os.PathLike[str], progress: Progress = SILENT) -> Any:
+    """Compute a case: a gear pair, or a machine of several shafts.
 
     Parameters
     ----------
-    case : Case, str or path
+    case : Case, MachineCase, str or path
         From :func:`tribodyn.load_case`, or what that function takes.
     progress : Progress
         Reports the steps of the run; silent by default.
+
+    Returns
+    -------
+    Result or MachineResult
 
     Raises
     ------
@@ -94,6 +107,10 @@ def run(case: Case | str | os.PathLike[str], progress: Progress = SILENT) -> Res
     >>> result = run("fzg-roughness")  # doctest: +SKIP
     """
     from tribodyn.study import run as compute
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.run import run_machine
 
     ready = load_case(case) if isinstance(case, (str, os.PathLike)) else case
+    if isinstance(ready, MachineCase):
+        return run_machine(ready, progress, stacklevel=3)
     return compute(ready, progress, stacklevel=3)

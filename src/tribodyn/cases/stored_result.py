@@ -190,7 +190,9 @@ def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:
         error=float(attributes["steady_state_error"]),
         step_error=float(attributes.get("step_error", "nan")),
         converged=bool(attributes["converged"]),
-        **{name: int(attributes[name]) for name in ("cycles_used", "search_cycles", "period")},
+        cycles_used=int(attributes["cycles_used"]),
+        search_cycles=int(attributes["search_cycles"]),
+        period=int(attributes["period"]),
         **facts,
     )
     return later(response, float(data["time"].values[0]))

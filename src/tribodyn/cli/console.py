@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ModelWarning, Problem
@@ -49,14 +49,14 @@ def show_warnings(warnings: Iterable[ModelWarning]) -> None:
         tell(f"warning [{warning.code}]: {warning.message}")
 
 
-def figures(values: Mapping[str, float]) -> str:
-    """Lay out summary figures by topic: name, value, meaning."""
-    from tribodyn.study.pipeline.summary import SUMMARY, by_topic
-
-    rows = {n: [n, SUMMARY[n].show(v), SUMMARY[n].meaning] for n, v in values.items()}
-    lines = dict(zip(rows, table(list(rows.values())).splitlines(), strict=True))
-    topics = by_topic(values).items()
-    return "\n".join("\n".join([topic, *(lines[n] for n in names)]) for topic, names in topics)
+def figures(rows: Iterable[Sequence[str]]) -> str:
+    """Lay out summary figures by topic: rows of topic, name, value and meaning."""
+    listed = list(rows)
+    lines = table([row[1:] for row in listed]).splitlines()
+    topics = dict.fromkeys(row[0] for row in listed)
+    for row, line in zip(listed, lines, strict=True):
+        topics[row[0]] = f"{topics[row[0]] or row[0]}\n{line}"
+    return "\n".join(str(text) for text in topics.values())
 
 
 def table(rows: Sequence[Sequence[str]], *, indent: str = "  ") -> str:

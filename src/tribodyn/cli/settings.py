@@ -15,6 +15,7 @@ from tribodyn.study.studies.range_syntax import UnreadError, read_range, read_va
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 
 Output = Path | None
@@ -82,10 +83,22 @@ def read_changes(settings: Sequence[str]) -> dict[str, Any]:
 
 
 def changed_case(name_or_path: str, settings: Sequence[str]) -> Case:
-    """Load a case and change values."""
+    """Load the case of a gear pair and change values."""
+    from tribodyn.study.machine.case import MachineCase
+
+    case = changed_any_case(name_or_path, settings)
+    if isinstance(case, MachineCase):
+        why = "This command computes one pair of gears"
+        remedy = "tribodyn run, check and modes take machines"
+        raise InputError("this is a machine of several shafts", name_or_path, why, remedy)
+    return case
+
+
+def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | MachineCase:
+    """Load the case of a gear pair or of a machine and change values."""
     from tribodyn.cases.load import load_case
 
-    case = load_case(name_or_path)
+    case: Case | MachineCase = load_case(name_or_path)
     changes = read_changes(settings)
     return case.replace(changes, by="--set") if changes else case
 

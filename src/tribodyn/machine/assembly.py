@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import Contact, System
+from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 from tribodyn.machine.machine import Machine
+from tribodyn.machine.plane_law import plane_coordinates, projected
 from tribodyn.machine.reduction import machine_structure
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
@@ -25,9 +27,10 @@ def system(machine: Machine | MachineStructure) -> System:
     Returns
     -------
     System
-        One contact per mesh, in the order of the meshes, with its mesh cycles in a period of
-        ``machine.clock``; gyroscopic moments at the speed of the operation. The torque of the
-        input is that of the operation, the torque of the output keeps the mean speed.
+        The contacts of the meshes in their order, one for each without computed teeth, with their
+        mesh cycles in a period of ``machine.clock``; gyroscopic moments at the speed of the
+        operation. The torque of the input is that of the operation, the torque of the output keeps
+        the mean speed.
 
     Raises
     ------
@@ -49,12 +52,22 @@ def system(machine: Machine | MachineStructure) -> System:
     structure = machine_structure(machine) if isinstance(machine, Machine) else machine
     machine = structure.machine
     gyroscopic = structure.gyroscopic()
+    contacts: list[Contact] = []
+    frictions: list[LoadFriction] = []
+    for name, mesh in machine.meshes.items():
+        if mesh.contacts:
+            law = _in_space(structure, name, len(contacts))
+            contacts += law[0]
+            frictions += law[1]
+        else:
+            contacts.append(_contact(structure, name))
     return System(
         mass=structure.mass,
         damping=structure.damping,
         stiffness=structure.stiffness,
         force=structure.force,
-        contacts=[_contact(structure, name) for name in machine.meshes],
+        contacts=contacts,
+        frictions=frictions,
         names=structure.names,
         balance=structure.balance,
         gyroscopic=gyroscopic if gyroscopic.any() else None,
@@ -74,6 +87,30 @@ def _contact(structure: MachineStructure, name: str) -> Contact:
         cycles=clock.cycles[name],
         offset=mesh.offset,
     )
+
+
+def mesh_contacts(structure: MachineStructure, system: System) -> list[tuple[Contact, ...]]:
+    """Contacts of each mesh in the system of a machine."""
+    counts = [max(len(mesh.contacts), 1) for mesh in structure.machine.meshes.values()]
+    ends = np.cumsum([0, *counts]).tolist()
+    return [tuple(system.contacts[i:j]) for i, j in pairwise(ends)]
+
+
+def _in_space(
+    structure: MachineStructure, name: str, first: int
+) -> tuple[list[Contact], list[LoadFriction]]:
+    """Force law of computed teeth over the coordinates; its contacts are numbered from first."""
+    machine, mesh = structure.machine, structure.machine.meshes[name]
+    drives = machine.kinematics.meshes[name].driver == mesh.gears[0]
+    onto = plane_coordinates(machine.directions[name], first_drives=drives)
+    onto = onto @ np.vstack([structure.gear(gear) for gear in mesh.gears])
+    clock = {"cycles": machine.clock.cycles[name], "offset": mesh.offset}
+    contacts = [projected(contact, onto, **clock) for contact in mesh.contacts]
+    frictions = [
+        projected(friction, onto, contacts=tuple(first + j for j in friction.contacts))
+        for friction in mesh.frictions
+    ]
+    return contacts, frictions
 
 
 def _damping(structure: MachineStructure, name: str) -> Entry:

@@ -50,6 +50,9 @@ class Bearing:
         Damping against tilting [N*m*s/rad].
     damping : (6, 6) or (5, 5) array, optional
         All damping coefficients together.
+    force : (6,) array
+        Force and moment of the shaft on the bearing without a displacement: that of a rolling
+        bearing whose stiffness is taken at its working load [N, N*m].
     rolling : RollingElementBearing, optional
         Rolling bearing, whose stiffness follows from its geometry and load.
     node : str, optional
@@ -80,6 +83,7 @@ class Bearing:
     axial_damping: float = 0.0
     tilting_damping: float | ArrayLike = 0.0
     damping: ArrayLike | None = None
+    force: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     rolling: RollingElementBearing | None = None
     node: str | None = None
 

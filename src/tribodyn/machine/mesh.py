@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
+from tribodyn.dynamics.equations.system import Contact, LoadFriction
 from tribodyn.errors import Argument, InputError, real_numbers
 from tribodyn.machine.fields import check_number, quoted
 
@@ -52,6 +54,11 @@ class Mesh:
     friction : object, optional
         The friction force over the mesh force and its moments on both gears, over the mesh phase:
         ``mesh_table.functions()``, or an object with the same three functions.
+    contacts, frictions : sequence of Contact, of LoadFriction
+        Force law of computed teeth in the plane of the gears, in place of damping, error, gap and
+        friction; ``stiffness`` is then that of the static balance. Coordinates: x across the line
+        of action in the direction of the surface speeds, y along it towards the driven gear, and
+        rotation in the running sense, of the first and of the second gear.
     events : tuple of float
         Mesh phases at which an entry jumps.
     offset : float
@@ -82,6 +89,8 @@ class Mesh:
     error: Entry = 0.0
     gap: Entry = 0.0
     friction: Any = None
+    contacts: Sequence[Contact] = ()
+    frictions: Sequence[LoadFriction] = ()
     events: tuple[float, ...] = (0.0,)
     offset: float = 0.0
 

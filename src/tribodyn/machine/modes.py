@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.dynamics.equations.system import Contact
 from tribodyn.dynamics.linear.natural_modes import natural_modes
-from tribodyn.machine.assembly import system
+from tribodyn.machine.assembly import mesh_contacts, system
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.reduction import machine_structure
@@ -114,9 +114,9 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
             Contact(
                 structure.mesh(name),
                 structure.mesh_stiffness(name),
-                damping=mean_over_phase(contact.damping),
+                damping=sum(mean_over_phase(contact.damping) for contact in contacts),
             )
-            for name, contact in zip(names, nonlinear.contacts, strict=True)
+            for name, contacts in zip(names, mesh_contacts(structure, nonlinear), strict=True)
         ],
         gyroscopic=structure.gyroscopic(speed) if speed else None,
     )

@@ -373,12 +373,15 @@ class MachineStructure:
 
     @cached_property
     def force(self) -> Array:
-        """Torques on the beginning of the input and the end of the output, without losses, (n,)."""
+        """Torques on the input and on the output, without losses, and forces of bearings, (n,)."""
         run, loads = self.machine.operation, self.machine.kinematics.shafts
         sense = -1.0 if run.speed < 0.0 else 1.0
         turning = np.copysign(sense, sense * float(loads[run.output].ratio))
         force = sense * run.torque * self.at(run.input, 0.0)[3]
-        return np.asarray(force - turning * loads[run.output].torque * self.balance)
+        force = force - turning * loads[run.output].torque * self.balance
+        for name, bearing in self.machine.bearings.items():
+            force = force - self.bearing(name).T @ np.asarray(bearing.force)
+        return np.asarray(force)
 
     def _projected(self, matrix: Array) -> Array:
         return np.asarray(self.basis.T @ matrix @ self.basis)

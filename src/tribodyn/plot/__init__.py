@@ -21,6 +21,11 @@ from tribodyn.plot.gear.hypoid_loaded import hypoid_friction, hypoid_load, hypoi
 from tribodyn.plot.gear.hypoid_motion import hypoid_kinematics
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
+from tribodyn.plot.machine.forces import machine_forces
+from tribodyn.plot.machine.modes import machine_campbell, machine_modes
+from tribodyn.plot.machine.orders import machine_orders
+from tribodyn.plot.machine.power import machine_power
+from tribodyn.plot.machine.side_view import machine
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, coupling, harris_map, tip_relief_map
 from tribodyn.plot.mesh.table import (
@@ -122,6 +127,12 @@ __all__ = [
     "lubrication",
     "lubrication_map",
     "lyapunov",
+    "machine",
+    "machine_campbell",
+    "machine_forces",
+    "machine_modes",
+    "machine_orders",
+    "machine_power",
     "mesh_deformation",
     "mesh_force",
     "mesh_stiffness",

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from tribodyn.study import Result
 
 _FOLDER = Path(__file__).parent
+_MODES = (
+    "Linearized about the static load with the mean mesh stiffness. For each mode: the moving "
+    "bodies, the strained springs, and the speed of the {0} at which a mesh harmonic excites it."
+)
 
 
 @lru_cache(maxsize=4)
@@ -49,7 +53,8 @@ def plotly_script() -> Any:
     return Markup(get_plotlyjs())
 
 
-def _figures(blocks: list[Block]) -> Any:
+def embedded_figures(blocks: list[Block]) -> Any:
+    """Figures of a report as one JavaScript object."""
     from markupsafe import Markup
 
     entries = [f'"{block.name}": {block.json}' for block in blocks if not block.missing]
@@ -79,7 +84,7 @@ def render_report(result: Result) -> str:
             rows=table(summary),
             modes=modes_table(result) if "natural_frequency_1" in summary else [],
             modes_head=HEAD,
-            speed_of=result.case.operation.speed_of,
+            modes_text=_MODES.format(result.case.operation.speed_of),
             compared=compared_friction(summary),
             blocks=blocks,
             warnings=[str(warning) for warning in result.warnings],
@@ -87,7 +92,7 @@ def render_report(result: Result) -> str:
             citations=_lines(result.cite()),
             provenance=provenance(result),
             case_text=result.case.to_toml(),
-            figures=_figures(blocks),
+            figures=embedded_figures(blocks),
             style=text_of("report.css"),
             script=text_of("report.js"),
             plotly_js=plotly_script(),

@@ -8,6 +8,7 @@ from importlib.metadata import version as installed
 from typing import Any
 
 from tribodyn.plot.theme.labels import display_unit, displayed
+from tribodyn.study.machine.case import MachineCase
 
 #: Packages whose version may change a figure.
 _PACKAGES = ("numpy", "scipy", "numba")
@@ -26,6 +27,15 @@ def _with_unit(name: str, value: float) -> str:
 
 def operating_point(case: Any) -> list[tuple[str, str]]:
     """Speed, load, surfaces, oil and models of a case as formatted (name, value) pairs."""
+    if isinstance(case, MachineCase):
+        start, end = case.ends
+        return [
+            ("Speed", _with_unit("speed", case.operating_point.speed)),
+            ("Torque", _with_unit("torque", case.operating_point.torque)),
+            ("Input", start),
+            ("Output", end),
+            ("Meshes", ", ".join(case.meshes)),
+        ]
     gears, operation = case.gears, case.operation
     stiffness, film = case.contact_models
     point = [

@@ -15,7 +15,8 @@ from tribodyn.drawing import report_of
 from tribodyn.report.figure_blocks import Block, block_of_figure
 from tribodyn.report.html import plotly_script, template, text_of
 from tribodyn.report.provenance import operating_point, provenance, version
-from tribodyn.study.case.provenance import assumptions
+from tribodyn.study.case.provenance import Assumption, assumptions
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.summary_labels import in_words
@@ -43,6 +44,12 @@ class _Page:
     rows: Sequence[Sequence[str]]
     more: str = ""  #: note on rows that the table leaves out
     heading: str = ""  #: title of the report, where it is not that of the case
+
+
+def _assumptions(case: Case | MachineCase | None) -> Sequence[Assumption]:
+    if case is None:
+        return ()
+    return case.assumptions if isinstance(case, MachineCase) else assumptions(case)
 
 
 @report_of("Sweep")
@@ -170,7 +177,7 @@ def _verdict_cards(diagram: Bifurcation) -> list[tuple[str, str]]:
 
 @with_old_names
 def write_study_report(
-    case: Case | None,
+    case: Case | MachineCase | None,
     path: str | os.PathLike[str],
     *,
     kind: str,
@@ -308,9 +315,7 @@ def _write(path: Path, case: Any, page: _Page) -> Path:
         operating_point=[
             chip for chip in (operating_point(case) if case else ()) if chip[0] not in varied_chips
         ],
-        assumptions=[
-            row for row in (assumptions(case) if case else ()) if row.key not in page.varied
-        ],
+        assumptions=[row for row in _assumptions(case) if row.key not in page.varied],
         provenance=provenance(None),
         case_text=case.to_toml() if case else "",
         figures=Markup("{\n" + figures_json + "\n}"),

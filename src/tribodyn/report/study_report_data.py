@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses
     from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.studies.bifurcation import Findings
 
 #: Rows of the table of a run-up.
@@ -49,7 +50,11 @@ def _title(picture: Picture) -> str:
 
 
 def save_study(
-    kind: str, case: Case, target: Path, report: StudyReportData, force: bool = False
+    kind: str,
+    case: Case | MachineCase,
+    target: Path,
+    report: StudyReportData,
+    force: bool = False,
 ) -> None:
     """Write case, data set and report of a study to a directory."""
     from tribodyn.validated_files import write_dataset

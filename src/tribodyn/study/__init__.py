@@ -10,6 +10,10 @@ from tribodyn.arguments import guarded
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
+    from tribodyn.study.machine.case import LoadCase, MachineCase
+    from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.study.machine.motion import MachineMotion
+    from tribodyn.study.machine.result import LoadResult, MachineResult
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
@@ -42,6 +46,12 @@ __all__ = [
     "CaseEnsemble",
     "CaseSensitivity",
     "DataSet",
+    "LoadCase",
+    "LoadResult",
+    "MachineCampbell",
+    "MachineCase",
+    "MachineMotion",
+    "MachineResult",
     "Result",
     "ResultComparison",
     "Sweep",
@@ -78,6 +88,10 @@ __all__ = [
 _NAMES = {
     "case.case": "Case",
     "case.read": "read_case",
+    "machine.case": "LoadCase MachineCase",
+    "machine.modes": "MachineCampbell",
+    "machine.motion": "MachineMotion",
+    "machine.result": "LoadResult MachineResult",
     "pipeline.result": "Result",
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",

@@ -235,7 +235,7 @@ class _Reader:
         if name is None:
             return None
         try:
-            case = load_case(name if name in case_files() else self.folder / name)
+            case: Case = load_case(name if name in case_files() else self.folder / name)
             changes = self._keys("set", self.data)
             return case.replace(changes, by="set") if changes else case
         except InputError as error:

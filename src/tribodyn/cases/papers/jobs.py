@@ -64,7 +64,8 @@ class Jobs:
     def _changed(name: str, changes: str) -> Case:
         # TOML has no null: an empty text removes a value, as --set KEY= does.
         items = json.loads(changes).items()
-        return load_case(name).replace({key: None if v == "" else v for key, v in items})
+        case: Case = load_case(name)
+        return case.replace({key: None if v == "" else v for key, v in items})
 
     def case(self, request: Request) -> Case:
         """Case of a computation."""

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from tribodyn.cli.console import figures, say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import CaseName, Flag, Settings, changed_case, check_file
+from tribodyn.cli.settings import CaseName, Flag, Settings, changed_any_case, check_file
+
+if TYPE_CHECKING:
+    from tribodyn.study.machine.case import MachineCase
 
 
 def cases(*, json: Flag = False) -> None:
@@ -21,7 +24,7 @@ def cases(*, json: Flag = False) -> None:
     """
     from tribodyn.cases.catalogue import cases as all_cases
 
-    titles = all_cases()
+    titles = all_cases(machines=True)
     if json:
         say_json([{"name": name, "title": title} for name, title in titles.items()])
     else:
@@ -37,24 +40,45 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
         Write one flat JSON object in SI to stdout.
     """
     from tribodyn.study.case.provenance import assumptions
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions
     from tribodyn.study.pipeline.preview import operating_figures
     from tribodyn.study.pipeline.run import rehearse
+    from tribodyn.study.pipeline.summary import summary_rows
 
-    ready = changed_case(case, set_ or [])
+    ready = changed_any_case(case, set_ or [])
+    if isinstance(ready, MachineCase):
+        _check_machine(ready, json)
+        return
     warnings = rehearse(ready)
     values = {n: float(v) for n, v in (geometry(ready) | operating_figures(ready)).items()}
     if json:
         say_json(values)
     else:
-        say(f"{ready.title}\n{figures(values)}")
+        say(f"{ready.title}\n{figures(summary_rows(values))}")
     show_warnings([*case_cautions(ready), *warnings])
     kinds = [assumption.kind for assumption in assumptions(ready)]
     tell(
         f"The case is in order; {kinds.count('assumed')} values are assumed, "
         f"{kinds.count('default')} are defaults."
     )
+
+
+def _check_machine(case: MachineCase, json: bool) -> None:
+    """Show speeds, torques and power of a machine, after rehearsing its teeth."""
+    from tribodyn.study.machine.first_look import kinematic_figures, rehearse_machine
+    from tribodyn.study.machine.summary import summary_rows
+
+    rehearse_machine(case)
+    values = kinematic_figures(case)
+    if json:
+        say_json(values)
+    else:
+        say(f"{case.title}\n{figures(summary_rows(values))}")
+    for assumption in case.assumptions:
+        tell(f"assumed: {assumption.key}: {assumption.value}, {assumption.reason}")
+    tell("The case is in order.")
 
 
 def new(

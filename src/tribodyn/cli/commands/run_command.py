@@ -9,7 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from tribodyn.cli.console import figures, say, say_json, show_warnings, tell
-from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case, check_place
+from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_any_case, check_place
 
 
 def run(
@@ -43,12 +43,12 @@ def run(
     from tribodyn.errors import ModelWarning
 
     target = out if out is not None else Path(Path(case).stem)
-    ready = changed_case(case, set_ or [])
+    ready = changed_any_case(case, set_ or [])
     check_place(target, force)
     with progress_bar() as progress, warnings.catch_warnings():
         # They are shown below, from the result.
         warnings.simplefilter("ignore", ModelWarning)
-        from tribodyn.study.pipeline.run import run as compute
+        from tribodyn.cases.load import run as compute
 
         result = compute(ready, progress)
         progress.start("Report")
@@ -57,7 +57,7 @@ def run(
     if json:
         say_json(result.summary())
     elif not quiet:
-        say(f"{result.case.title}\n{figures(result.summary())}")
+        say(f"{result.case.title}\n{figures(result.rows())}")
     show_warnings(result.warnings)
     report = target / "report.html"
     tell(f"Report: {report}")

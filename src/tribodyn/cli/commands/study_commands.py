@@ -14,6 +14,7 @@ from tribodyn.cli.settings import (
     Output,
     Settings,
     Words,
+    changed_any_case,
     changed_case,
     check_place,
     read_ends,
@@ -22,6 +23,7 @@ from tribodyn.cli.settings import (
 if TYPE_CHECKING:
     from tribodyn.report.study_report_data import StudyReportData
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 
 def prepare_study(
@@ -40,7 +42,12 @@ def stripped(texts: Sequence[str]) -> list[str]:
 
 
 def finish(
-    kind: str, case: Case, target: Path, answer: StudyReportData, force: bool, json: bool
+    kind: str,
+    case: Case | MachineCase,
+    target: Path,
+    answer: StudyReportData,
+    force: bool,
+    json: bool,
 ) -> None:
     """Write the directory of a study and print its results."""
     from tribodyn.report.study_report_data import save_study
@@ -75,11 +82,19 @@ def modes(
         Write the modes in SI as one JSON object to stdout.
     """
     from tribodyn.cli.progress_bar import progress_bar
+    from tribodyn.report.machine_report import machine_modes_report_data
     from tribodyn.report.study_report_data import modes_report_data
+    from tribodyn.study.machine.case import MachineCase
 
-    ready, target = prepare_study("modes", case, out, set_, force)
+    target = out if out is not None else Path(f"{Path(case).stem}-modes")
+    ready = changed_any_case(case, set_ or [])
+    check_place(target, force)
+    ends = None if between is None else read_ends(between)
     with progress_bar() as progress:
-        answer = modes_report_data(ready, None if between is None else read_ends(between), progress)
+        if isinstance(ready, MachineCase):
+            answer = machine_modes_report_data(ready, ends, progress)
+        else:
+            answer = modes_report_data(ready, ends, progress)
     finish("modes", ready, target, answer, force, json)
 
 

@@ -8,6 +8,7 @@ no offset they stay as they are.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -63,9 +64,7 @@ def on_clock(part: T, names: tuple[str, ...], cycles: int, offset: float) -> T:
     return replace(part, **entries, events=events_on_clock(part.events, cycles, offset), **clock)
 
 
-def refuse_several_clocks(
-    friction: LoadFriction, contacts: tuple[Contact, ...], where: str
-) -> None:
+def refuse_several_clocks(friction: LoadFriction, contacts: Sequence[Contact], where: str) -> None:
     """Refuse a friction that follows contacts with different mesh cycles or offsets."""
     clocks = {(contacts[j].cycles, contacts[j].offset) for j in friction.contacts}
     if len(clocks) > 1:

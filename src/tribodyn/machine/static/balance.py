@@ -153,8 +153,10 @@ class StaticBalance:
         bearings = dict(self.machine.bearings)
         for name, bearing in bearings.items():
             if bearing.rolling is not None:
-                stiffness = self.bearings[name].stiffness
-                bearings[name] = replace(bearing, rolling=None, stiffness=stiffness)
+                state = self.bearings[name]
+                stiffness = state.stiffness
+                force = state.load - stiffness @ state.displacement
+                bearings[name] = replace(bearing, rolling=None, stiffness=stiffness, force=force)
                 if not stiffness.any():
                     warn(
                         "unloaded-bearing",

@@ -334,7 +334,7 @@ def _unexpected_keys(
             except FaultError as fault:
                 yield key, fault.problem
         else:
-            yield key, unknown_key(tuple(key.split(".")), data[name])
+            yield key, unknown_key(tuple(key.split(".")), data[name], cls)
 
 
 def _missing(option: Option, name: str, path: str) -> Problem:
@@ -423,10 +423,10 @@ def with_typed_keys(
             yield typed_keys.get(corrected, "") + key[len(corrected) :], problem
 
 
-def unknown_key(path: tuple[str, ...], value: Any) -> Problem:
+def unknown_key(path: tuple[str, ...], value: Any, section: type[Section] | None = None) -> Problem:
     """Return the problem of an unknown key, with the closest key or the table that has it."""
     *table, name = path
-    section = section_at(tuple(table))
+    section = section or section_at(tuple(table))
     keys = list(section.section_keys().keys) if section else []
     keys += [] if table else ["assumed"]
     entry = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"

@@ -16,7 +16,7 @@ from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.pipeline.computed import Computed
 from tribodyn.study.pipeline.response_series import parts_of, stored, to_csv
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.study.pipeline.summary import SUMMARY, by_topic, summarize
+from tribodyn.study.pipeline.summary import summarize, summary_rows
 from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.validated_files import write_dataset
 
@@ -174,13 +174,18 @@ class Result(Computed):
             write_report_of(self, place / "report.html")
         return target
 
+    def rows(self) -> list[tuple[str, str, str, str]]:
+        """Topic, key, value with unit and meaning of each figure of the summary.
+
+        Returns
+        -------
+        list of (str, str, str, str)
+        """
+        return summary_rows(self._summary)
+
     def _repr_html_(self) -> str:
         """Table of the summary by topic for notebooks."""
-        rows = [
-            (topic, in_words(name), SUMMARY[name].show(self._summary[name]), SUMMARY[name].meaning)
-            for topic, names in by_topic(self._summary).items()
-            for name in names
-        ]
+        rows = [(topic, in_words(name), *rest) for topic, name, *rest in self.rows()]
         return html_table(repr(self), ("topic", "figure", "value", "meaning"), rows)
 
     def __reduce__(self) -> NoReturn:

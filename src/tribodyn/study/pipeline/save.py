@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from fnmatch import fnmatch
 from pathlib import Path
 
 from tribodyn.errors import InputError, OutputExistsError, Problem
@@ -18,8 +19,12 @@ _ON_REQUEST = ("response.csv",)
 SWEEP_FILES = ("case.toml", "sweep.csv", "sweep.nc", "report.html")
 STUDY_FILES = ("case.toml", "best.toml", "study.nc", "friction.csv", "report.html")
 BIFURCATION_FILES = ("case.toml", "bifurcation.nc", "bifurcation.html")
+#: What the directory of a machine holds, besides the mesh tables of its meshes.
+MACHINE_FILES = ("case.toml", "summary.json", "motion.nc", "report.html")
+_MESH_TABLES = "mesh-*.nc"
 #: File by which a directory is known -> all that it may hold.
 _KINDS = {
+    "motion.nc": (*MACHINE_FILES, *_ON_REQUEST),
     "summary.json": (*RESULT_FILES, *_ON_REQUEST),
     "sweep.nc": SWEEP_FILES,
     "bifurcation.nc": BIFURCATION_FILES,
@@ -78,7 +83,7 @@ def _strangers(target: Path) -> str:
         return "is not a directory"
     names = sorted(entry.name for entry in target.iterdir())
     allowed = next((files for mark, files in _KINDS.items() if mark in names), RESULT_FILES)
-    others = [name for name in names if name not in allowed]
+    others = [n for n in names if n not in allowed and not fnmatch(n, _MESH_TABLES)]
     if others:
         return f"holds {others[0]}"
     return "" if any(mark in names for mark in _KINDS) else "holds no summary.json"

@@ -1,0 +1,1 @@
+"""Figures of machines: side view, power, natural modes, orders, forces on bearings."""

@@ -1,0 +1,165 @@
+"""Natural modes of a machine drawn on its shafts, and its Campbell diagram."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.machine.orders import COLORS
+from tribodyn.plot.machine.side_view import SideView, shaft_outline
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import GRID, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
+from tribodyn.study.machine.modes import energy_shares, relevant_modes
+
+if TYPE_CHECKING:
+    from tribodyn.machine import MachineModes, MachineStructure
+    from tribodyn.study.machine.modes import MachineCampbell
+
+_MM = 1e3
+#: Modes that can be chosen, points along a shaft, and largest drawn displacement over the height.
+_MOST, _POINTS, _SIZE = 16, 41, 0.12
+#: Directions drawn on a shaft: label, row of the displacement, colour, dash.
+_DRAWN = (("y", 1, PINION, "solid"), ("z", 2, WHEEL, "dash"), ("x", 0, PAIR_COLORS[0], "dot"))
+
+
+def _outlines(view: SideView) -> list[Trace]:
+    traces = []
+    for name, shaft in view.machine.shafts.items():
+        left, right = view.reach[name]
+        x, radius = shaft_outline(shaft, left) if shaft.sections else ([left, right], [0.0, 0.0])
+        low, high = view.height[name] - np.array(radius), view.height[name] + np.array(radius)
+        outline = {"x": _MM * np.array([*x, *x[::-1]]), "y": _MM * np.array([*high, *low[::-1]])}
+        more: Trace = {"type": "scatter", "mode": "lines", "fill": "toself", "fillcolor": GRID}
+        more |= {"line": {"color": MUTED, "width": 0.5}, "hoverinfo": "skip", "showlegend": False}
+        traces.append({**outline, **more})
+    return traces
+
+
+def _deflection(view: SideView, modes: MachineModes, number: int, height: float) -> list[Trace]:
+    """Curves of a mode along every shaft, in the phase of its largest displacement."""
+    structure, shape = modes.structure, modes.shape[number]
+    curves: dict[str, tuple[list[float], list[float]]] = {name: ([], []) for name, *_ in _DRAWN}
+    parts = []
+    for name, shaft in view.machine.shafts.items():
+        at = np.linspace(0.0, shaft.length, _POINTS if shaft.sections else 1)
+        moved = np.array([structure.at(name, float(place)) @ shape for place in at])
+        parts.append((name, at, moved))
+    largest = max(float(np.abs(moved[:, :3]).max()) for *_, moved in parts) or 1.0
+    for name, at, moved in parts:
+        start = view.machine.placement.shafts[name][0]
+        for label, row, *_ in _DRAWN:
+            x, y = curves[label]
+            x += [*(_MM * (start + at)).tolist(), np.nan]
+            shift = _SIZE * height * moved[:, row].real / largest
+            y += [*(_MM * (view.height[name] + shift)).tolist(), np.nan]
+    return [
+        {**line(*curves[label], f"along {label}", color, dash=dash), "hoverinfo": "skip"}
+        for label, _, color, dash in _DRAWN
+    ]
+
+
+@drawing(
+    "machine_modes",
+    heading="Natural modes on the shafts",
+    caption="Choose a mode: its displacement along y, z and x is drawn as a distance from the axis "
+    "of each shaft, to one scale. The title lists where its strain energy is; meshes excite the "
+    "modes that strain them.",
+    of=("MachineStructure", "MachineResult.structure"),
+    made_by="Run a case with shafts, or call tribodyn.machine.machine_structure.",
+)
+def machine_modes(structure: MachineStructure) -> Any:
+    """Draw the natural modes of a machine on its shafts, one at a time."""
+    view = SideView.of(structure.machine)
+    modes, reach = relevant_modes(structure)
+    count = min(max(reach, 1), _MOST, len(modes.frequency))
+    heights = list(view.height.values())
+    height = (max(heights) - min(heights)) or 0.2
+    outlines, traces, buttons = _outlines(view), [], []
+    order = range(count)
+    meshes = modes.share_by_kind()["meshes"][:count]
+    first = int(np.argmax(meshes))
+    for number in order:
+        for trace in _deflection(view, modes, number, height):
+            traces.append({**trace, "visible": number == first})
+        shown = [True] * len(outlines)
+        shown += [k == number for k in order for _ in _DRAWN]
+        label = f"{number + 1}: {significant(float(modes.frequency[number]), 4)} Hz"
+        text = f"{label}: {energy_shares(modes, number)}"
+        step = {
+            "label": label,
+            "method": "update",
+            "args": [{"visible": shown}, {"title.text": text}],
+        }
+        buttons.append(step)
+    menu = {"buttons": buttons, "active": first, "x": 1.0, "xanchor": "right", "y": 1.12}
+    layout = {
+        "height": 520,
+        "hovermode": False,
+        "updatemenus": [{**menu, "yanchor": "top", "bgcolor": "white"}],
+        "xaxis": {"title": {"text": "Along the shafts [mm]"}},
+        "yaxis": {"title": {"text": "Across [mm]"}, "scaleanchor": "x"},
+    }
+    title = (
+        f"{first + 1}: {rounded('frequency', float(modes.frequency[first]), 4)}: "
+        f"{energy_shares(modes, first)}"
+    )
+    return figure(title, [*outlines, *traces], layout)
+
+
+@drawing(
+    "machine_campbell",
+    heading="Campbell diagram of the machine",
+    caption="Natural frequencies with gyroscopic moments (grey) and what excites them over the "
+    "speed of the input: the harmonics of each mesh in its colour, and the turning of the shafts. "
+    "Where a line crosses a natural frequency, that mesh or shaft can excite it.",
+    of=("MachineCampbell", "MachineResult.campbell"),
+    made_by="Run a case with shafts, or tribodyn modes.",
+)
+def machine_campbell(diagram: MachineCampbell) -> Any:
+    """Draw natural frequencies and labelled excitations over the speed of the input."""
+    speed = displayed("speed", diagram.speed)
+    hertz = displayed("frequency", np.multiply.outer(diagram.order, diagram.speed) / (2.0 * np.pi))
+    top, unit = float(hertz.max()), display_unit("frequency")
+    traces: list[Trace] = []
+    for column, values in enumerate(displayed("frequency", diagram.frequency).T):
+        if values.min() > 1.05 * top:
+            continue
+        traces.append(
+            {**line(speed, values, f"mode {column + 1}", MUTED, unit=unit, width=1.2),
+             "showlegend": False}
+        )  # fmt: skip
+    names = list(dict.fromkeys(name.rpartition(" x ")[0] or name for name in diagram.excitation))
+    named: set[str] = set()
+    for name, values in zip(diagram.excitation, hertz, strict=True):
+        group = name.rpartition(" x ")[0] or name
+        mesh = " x " in name
+        color = COLORS[names.index(group) % len(COLORS)] if mesh else GRID
+        trace = line(speed, values, group, color, unit=unit, dash="solid" if mesh else "dot")
+        text = [""] * (len(speed) - 1) + [name.removeprefix("mesh ")]
+        label = {"mode": "lines+text", "text": text, "textposition": "middle right"}
+        traces.append(
+            {**trace, **(label if mesh else {}), "legendgroup": group,
+             "showlegend": group not in named, "cliponaxis": False}
+        )  # fmt: skip
+        named.add(group)
+    met = [
+        (abs(at / diagram.operating_speed - 1.0), name, hertz_mode, at)
+        for hertz_mode in diagram.frequency[-1]
+        for name, at in diagram.excited(float(hertz_mode))
+        if name.startswith("mesh ")
+    ]
+    title = "No mesh meets a natural frequency in this range of speeds"
+    if met:
+        _, name, frequency, at = min(met)
+        title = (
+            f"{name} meets {rounded('frequency', float(frequency), 4)} at "
+            f"{rounded('speed', at)}, nearest to the operating speed"
+        )
+    marks = [("operation", float(displayed("speed", diagram.operating_speed)))]
+    axis = {"range": [0.0, 1.02 * top]}
+    panel = Panel(axis_label("frequency"), traces, axis, height=2.0)
+    layout = {"hovermode": "closest", **event_lines(marks)}
+    return stack(title, axis_label("speed", "Speed of the input"), [panel], layout)

@@ -1,0 +1,106 @@
+"""Order spectra of a machine, each line in the colour of the mesh that excites it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import INK, PAIR_COLORS, PINION, WHEEL, Trace
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.study.machine.motion import MachineMotion
+
+#: Colours of the meshes; lines of several meshes at once are black.
+COLORS = (PINION, WHEEL, *PAIR_COLORS)
+_HARMONICS = 10
+
+
+def _lines(motion: MachineMotion, quantity: str, amplitudes: Array) -> list[Trace]:
+    """Lines at the orders of the meshes: one trace for each mesh, and one for common orders."""
+    orders = motion.mesh_orders(_HARMONICS)
+    groups: dict[str, list[int]] = {name: [] for name in motion.mesh}
+    groups["several meshes"] = []
+    labels = {}
+    for place, meshes in enumerate(orders.values()):
+        group = meshes[0][0] if len(meshes) == 1 else "several meshes"
+        groups[group].append(place)
+        labels[place] = ", ".join(f"{name} harmonic {number}" for name, number in meshes)
+    hertz = displayed("frequency", motion.frequency * np.array(list(orders)))
+    values, unit = displayed(quantity, amplitudes), display_unit(quantity)
+    traces = []
+    for number, (name, places) in enumerate(groups.items()):
+        if not places:
+            continue
+        color = INK if name == "several meshes" else COLORS[number % len(COLORS)]
+        x, y = hertz[places], values[places]
+        stems_x = np.stack((x, x, np.full(x.size, np.nan)), axis=1).reshape(-1)
+        stems_y = np.stack((0.0 * y, y, np.full(y.size, np.nan)), axis=1).reshape(-1)
+        stems = {"type": "scatter", "mode": "lines", "x": stems_x, "y": stems_y}
+        traces.append(
+            {
+                **stems,
+                "line": {"color": color, "width": 2},
+                "hoverinfo": "skip",
+                "showlegend": False,
+            }
+        )
+        traces.append(
+            {
+                "type": "scatter",
+                "mode": "markers",
+                "x": x,
+                "y": y,
+                "name": name,
+                "marker": {"color": color, "size": 6},
+                "customdata": [labels[place] for place in places],
+                "hovertemplate": f"%{{y:.4g}} {unit} at %{{x:.6g}} {display_unit('frequency')}, "
+                "%{customdata}<extra></extra>",
+            }
+        )
+    return traces
+
+
+def _total(motion: MachineMotion, signal: Array) -> Array:
+    """Amplitudes over all directions and parts at the orders of the meshes."""
+    waves = np.abs(motion.harmonics(signal, np.array(list(motion.mesh_orders(_HARMONICS)))))
+    return np.asarray(np.sqrt((waves**2).reshape(len(waves), -1).sum(axis=1)))
+
+
+@drawing(
+    "machine_orders",
+    heading="Which mesh causes which line",
+    caption="Amplitudes at the mesh harmonics. Above, the alternating forces of the meshes; below, "
+    "what reaches bearings and housing: the root of the sum of the squares over all of them and "
+    "over all directions. The colour names the mesh whose harmonic lies at that frequency.",
+    of=("MachineMotion", "MachineResult.motion"),
+    made_by="Run a case with shafts: tribodyn.run.",
+)
+def machine_orders(motion: MachineMotion) -> Any:
+    """Draw the lines of mesh forces, bearing forces and housing accelerations."""
+    signals = [
+        ("mesh_force", "Mesh forces", motion.mesh_force),
+        ("bearing_force", "Bearing forces", motion.bearing_force[..., :3]),
+        ("acceleration", "Housing", motion.acceleration),
+    ]
+    rows = [(q, label, _total(motion, signal)) for q, label, signal in signals if signal.shape[1]]
+    panels = [
+        Panel(
+            axis_label(quantity, label), _lines(motion, quantity, values), {"rangemode": "tozero"}
+        )
+        for quantity, label, values in rows
+    ]
+    quantity, label, values = rows[-1]
+    orders = motion.mesh_orders(_HARMONICS)
+    top = int(np.argmax(values))
+    order, meshes = list(orders.items())[top]
+    cause = " and ".join(f"harmonic {number} of mesh {name}" for name, number in meshes)
+    title = (
+        f"{label}: the largest line, {rounded(quantity, float(values[top]))}, is {cause} at "
+        f"{rounded('frequency', order * motion.frequency)}"
+    )
+    return stack(title, axis_label("frequency"), panels, {"hovermode": "closest"})

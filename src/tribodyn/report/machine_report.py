@@ -1,0 +1,192 @@
+"""Report of a machine: its picture, flow of power, forces, orders, modes and all figures."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn import plot
+from tribodyn.drawing import report_of
+from tribodyn.errors import InputError
+from tribodyn.model import Option
+from tribodyn.plot.theme.labels import engineering, readable
+from tribodyn.progress import SILENT, Progress
+from tribodyn.report.figure_blocks import Block, block_of_figure
+from tribodyn.report.html import embedded_figures, plotly_script, template, text_of
+from tribodyn.report.numbers import Number
+from tribodyn.report.provenance import operating_point, provenance, version
+from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
+from tribodyn.study.case.values import FaultError, read_value
+from tribodyn.study.machine.modes import (
+    MODES_HEAD,
+    campbell_of,
+    mode_rows,
+    modes_facts,
+    structure_at_rest,
+)
+from tribodyn.study.machine.summary import figure_of
+from tribodyn.study.machine.tables import OperationTable
+from tribodyn.study.pipeline.save import write_file
+from tribodyn.study.pipeline.summary_labels import in_words
+from tribodyn.units import convert
+
+if TYPE_CHECKING:
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.result import MachineResult
+
+#: Figures of the report in order.
+FIGURES_OF_MACHINES = (
+    plot.machine,
+    plot.machine_power,
+    plot.machine_orders,
+    plot.machine_forces,
+    plot.machine_modes,
+    plot.machine_campbell,
+)
+#: Figures on the cards: those of every part with these ends.
+_CARDS = (
+    "machine.input_power",
+    "machine.efficiency",
+    "mesh_frequency",
+    "dynamic_factor_peak",
+    "transmission_error_peak_to_peak",
+)
+_MOST_CARDS = 12
+
+
+def _number(key: str, value: float, digits: int = 5) -> Number:
+    figure = figure_of(key)
+    shown = convert(float(value), figure.unit, figure.display_unit)
+    return Number(
+        key,
+        in_words(key.rpartition(".")[2]),
+        *engineering(shown, readable(figure.display_unit), digits),
+        f"{value:.6g}",
+        readable(figure.unit),
+        figure.meaning,
+        figure.topic,
+    )
+
+
+def _cards(summary: dict[str, float]) -> list[Number]:
+    keys = [
+        key
+        for end in _CARDS
+        for key in summary
+        if key.endswith(end) and not key.startswith("load_cases")
+    ]
+    cards = []
+    for key in keys[:_MOST_CARDS]:
+        card = _number(key, summary[key], 4)
+        part = key.split(".")[1] if key.startswith("meshes.") else ""
+        label = f"{card.label}, mesh {part}" if part else card.label
+        cards.append(Number(**{**vars(card), "label": label}))
+    return cards
+
+
+def _blocks(result: MachineResult) -> list[Block]:
+    return [
+        block_of_figure(figure.name, figure.heading, figure(result), figure.caption_of(result))
+        for figure in FIGURES_OF_MACHINES
+        if not figure.missing(result)
+    ]
+
+
+def render_machine_report(result: MachineResult) -> str:
+    """Write the result of a machine as one self-contained HTML page.
+
+    Parameters
+    ----------
+    result : MachineResult
+        What :func:`tribodyn.run` returns for a machine.
+
+    Returns
+    -------
+    str
+        HTML with embedded scripts, styles and data. User texts are escaped.
+    """
+    summary, blocks = result.summary(), _blocks(result)
+    rows_by_topic: dict[str, list[Number]] = {}
+    for key, value in summary.items():
+        row = _number(key, value)
+        rows_by_topic.setdefault(row.topic, []).append(row)
+    return str(
+        template("template.html.j2").render(
+            title=result.case.title,
+            version=version(),
+            operating_point=operating_point(result.case),
+            cards=_cards(summary),
+            rows=[row for part in rows_by_topic.values() for row in part],
+            modes=mode_rows(result.structure),
+            modes_head=MODES_HEAD,
+            modes_text="About the static load, at the speed of the case, with the mean stiffness "
+            "of the meshes. For each mode: which parts move, and where its energy is.",
+            compared=[],
+            blocks=blocks,
+            warnings=[str(warning) for warning in result.warnings],
+            assumptions=result.assumptions,
+            citations=[],
+            provenance=provenance(None),
+            case_text=result.case.to_toml(),
+            figures=embedded_figures(blocks),
+            style=text_of("report.css"),
+            script=text_of("report.js"),
+            plotly_js=plotly_script(),
+        )
+    )
+
+
+def machine_modes_report_data(
+    case: MachineCase, ends: Any, progress: Progress = SILENT
+) -> StudyReportData:
+    """Natural modes of a machine and what excites them; ``ends`` limits the speeds."""
+    structure = structure_at_rest(case, progress)
+    progress.start("Natural modes")
+    campbell = campbell_of(structure, _speeds(case, ends))
+    figures = [
+        figure_with_caption(plot.machine_modes, structure),
+        figure_with_caption(plot.machine_campbell, campbell),
+    ]
+    progress.finish()
+    statements = [f"{figures[1][1].layout.title.text}."]
+    facts = modes_facts(structure, campbell)
+    rows = mode_rows(structure)
+    return StudyReportData(campbell, figures, statements, MODES_HEAD, rows, facts)
+
+
+def _speeds(case: MachineCase, ends: Any) -> Any:
+    """Speeds of a diagram between two ends, given as text or in rad/s."""
+    if ends is None:
+        return None
+    spec = OperationTable.fields["speed"]
+    assert isinstance(spec, Option)
+    try:
+        first, last = (read_value(spec, "speed", end) for end in ends)
+    except FaultError as fault:
+        raise InputError(replace(fault.problem, where="operation.speed")) from None
+    return np.linspace(max(first, 0.0), last, 8)
+
+
+@report_of("MachineResult")
+def write_machine_report(result: MachineResult, path: str | os.PathLike[str]) -> Path:
+    """Write the report of a machine to a file.
+
+    Parameters
+    ----------
+    result : MachineResult
+        What :func:`tribodyn.run` returns for a machine.
+    path : path
+        File to write; an existing one is replaced.
+
+    Raises
+    ------
+    InputError
+        If the place cannot be written to.
+    """
+    target = Path(path)
+    write_file(target, render_machine_report(result))
+    return target

@@ -1,0 +1,1 @@
+"""Machines of a case file: tables, meshes as pair cases, load cases, results."""

@@ -1,0 +1,451 @@
+"""The case of a machine: its parts and load cases, checked and in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from copy import deepcopy
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.machine import Bearing, Gear, Housing, Machine, Mesh, Operation, Shaft
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.provenance import Assumption
+from tribodyn.study.case.user_input import Source, plain, unsound
+from tribodyn.study.case.values import KeyedProblems, Plain
+from tribodyn.study.machine.housing_files import read_housing
+from tribodyn.study.machine.pair_cases import (
+    MESH_KEYS,
+    SHARED,
+    helical_problem,
+    mesh_tables,
+    pair_case,
+)
+from tribodyn.study.machine.read_parts import (
+    read_bearing,
+    read_gear,
+    read_shaft,
+    read_share,
+    table_of,
+    tables_of,
+    unknown_keys,
+)
+from tribodyn.study.machine.tables import (
+    LoadCaseTable,
+    MeshDynamics,
+    MeshTable,
+    MotionTable,
+    OperationTable,
+    ShaftTable,
+)
+from tribodyn.study.machine.write import machine_toml
+
+_GROUPS = ("shafts", "bearings", "gears", "meshes")
+_TOP = ("title", "origin", *_GROUPS, "housing", "operation", "load_cases", "dynamics", *SHARED)
+#: Keys of a mesh that its object takes as they are.
+_OF_MESH = (
+    "normal_module",
+    "helix_angle",
+    "hand",
+    "angle",
+    "center_distance",
+    "stiffness",
+    "offset",
+)
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """Speed and torque of the input, and the share of the time with them.
+
+    Parameters
+    ----------
+    name : str
+        Name of the load case.
+    speed : float
+        Speed of the input [rad/s].
+    torque : float
+        Torque on the input [N*m].
+    share : float
+        Share of the time [1].
+    """
+
+    name: str
+    speed: float
+    torque: float
+    share: float
+
+
+def is_machine(data: Mapping[str, Any]) -> bool:
+    """Whether tables of a case file describe a machine rather than a pair."""
+    return any(group in data for group in ("shafts", "meshes", "bearings"))
+
+
+class MachineCase:
+    """A machine under its load cases: frozen, checked, in SI.
+
+    Created by :func:`tribodyn.load_case` from a file with ``[meshes.NAME]`` and ``[gears.NAME]``,
+    or from nested keywords: a float is SI, text carries its unit.
+
+    Parameters
+    ----------
+    source : Source, optional
+        Where the values come from; then a bare number for a dimension is refused.
+    **data : object
+        The tables of the case file.
+
+    Raises
+    ------
+    InputError
+        Listing every problem with the part that has it, the limit and the remedy.
+
+    Examples
+    --------
+    >>> case = MachineCase(
+    ...     gears={"z1": {"shaft": "in", "teeth": 27, "face_width": "50 mm"},
+    ...            "z2": {"shaft": "out", "teeth": 51, "face_width": "50 mm"}},
+    ...     meshes={"first": {"gears": ["z1", "z2"], "normal_module": "4.5 mm",
+    ...                       "stiffness": "5e8 N/m"}},
+    ...     operation={"input": "in", "output": "out", "speed": "1200 rpm", "torque": "400 N*m"})
+    >>> case
+    MachineCase("Machine": 2 shafts, 2 gears, 1 mesh, 0 bearings)
+    """
+
+    def __init__(self, source: Source | None = None, /, **data: Any) -> None:
+        origin = source or Source()
+        if unreadable := list(unsound(data)):
+            raise InputError(origin.place(unreadable))
+        self.source = source
+        self.data: dict[str, Any] = deepcopy(data) if source is not None else plain(data)
+        problems: KeyedProblems = []
+        unknown_keys("", data, _TOP, problems)
+        self.title: str = str(data.get("title", "Machine"))
+        self.origin: str | None = data.get("origin")
+        groups = {group: tables_of(self.data, group, problems) for group in _GROUPS}
+        self.gears: dict[str, Gear] = _read(groups, "gears", read_gear, problems)
+        self._add_shafts(groups["shafts"])
+        self._add_material(groups["shafts"])
+        self.shafts: dict[str, Shaft] = _read(groups, "shafts", read_shaft, problems)
+        self.bearings: dict[str, Bearing] = _read(groups, "bearings", read_bearing, problems)
+        self._mesh_dynamics: dict[str, Any] = {}
+        self._mesh_tables = {
+            name: self._read_mesh(name, body, problems) for name, body in groups["meshes"].items()
+        }
+        if not groups["meshes"]:
+            remedy = 'Add [meshes.NAME] with gears = ["z1", "z2"] and normal_module'
+            problems.append(("meshes", Problem("there is no mesh", "", "", remedy)))
+        self.housing: Housing | None = read_housing(self.data.get("housing"), problems)
+        motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
+        self.motion = table_of(MotionTable, motion, "dynamics", problems)
+        self.load_cases: tuple[LoadCase, ...] = self._read_loads(problems)  #: of ``[[load_cases]]``
+        if problems:
+            raise InputError(origin.place(problems))
+        self._check_meshes()
+        try:
+            self.machine()
+            for name in self.meshes_with_teeth:
+                self.pair(name, self.operating_point)
+        except InputError as error:
+            raise InputError(self._placed(error)) from None
+
+    def _add_shafts(self, shafts: dict[str, Any]) -> None:
+        """A shaft that only its gears name is a rigid one."""
+        self.implied_shafts = tuple(
+            dict.fromkeys(g.shaft for g in self.gears.values() if g.shaft not in shafts)
+        ) if not shafts else ()  # fmt: skip
+        shafts.update({name: {} for name in self.implied_shafts})
+
+    def _add_material(self, shafts: dict[str, Any]) -> None:
+        """Shafts are of the material of the gears where they have none of their own."""
+        shared = self.data.get("material", {})
+        values = shared.items() if isinstance(shared, Mapping) else ()
+        common = {key: value for key, value in values if key in ShaftTable.fields}
+        for name, body in shafts.items():
+            shafts[name] = {**common, **body}
+
+    def _read_mesh(self, name: str, body: dict[str, Any], problems: KeyedProblems) -> Any:
+        key = f"meshes.{name}"
+        names = body.get("gears")
+        listed = names if isinstance(names, list | tuple) else ()
+        if len(listed) != 2 or not all(isinstance(each, str) for each in listed):
+            remedy = 'Write gears = ["z1", "z2"]'
+            what = "gears is missing" if names is None else f"gears = {names!r}"
+            problems.append((f"{key}.gears", Problem(what, "", "A mesh has two gears", remedy)))
+        inner = mesh_tables(body)
+        other = {k: v for k, v in body.items() if k not in (*inner, *MESH_KEYS, "gears")}
+        for shared in SHARED:
+            if shared in other and shared not in MeshTable.fields:
+                what, remedy = f"{shared} is not a table", f"Write [{key}.{shared}]"
+                problems.append((f"{key}.{shared}", Problem(what, "", "", remedy)))
+                del other[shared]
+        table = table_of(MeshTable, other, key, problems)
+        if table is not None and table.stiffness is not None:
+            shared = self.data.get("dynamics", {})
+            values = {**(shared if isinstance(shared, Mapping) else {}), **body}
+            law = {k: v for k, v in values.items() if k in MeshDynamics.fields}
+            self._mesh_dynamics[name] = table_of(MeshDynamics, law, key, problems)
+        return table
+
+    def _read_loads(self, problems: KeyedProblems) -> tuple[LoadCase, ...]:
+        if "operation" not in self.data:
+            remedy = "Add it with input, output, speed, torque"
+            missing = Problem("the table [operation] is missing", "", "", remedy)
+            problems.append(("operation", missing))
+            return ()
+        run = table_of(OperationTable, self.data["operation"], "operation", problems)
+        if run is None:
+            return ()
+        self.ends: tuple[str, str] = (run.input, run.output)
+        self.operating_point = LoadCase("operation", run.speed, run.torque, 1.0)
+        rows = self.data.get("load_cases", [])
+        if not isinstance(rows, list | tuple) or not all(isinstance(r, Mapping) for r in rows):
+            remedy = "Write [[load_cases]] with share, speed and torque"
+            problems.append(("load_cases", Problem("load_cases is no list", "", "", remedy)))
+            return ()
+        loads = []
+        for place, row in enumerate(rows):
+            body, key = dict(row), "load_cases"
+            share = read_share(f"{key}.share", body.pop("share", 1.0 / len(rows)), problems)
+            body = {"speed": Plain(run.speed), "torque": Plain(run.torque), **body}
+            table = table_of(LoadCaseTable, body, key, problems)
+            if table is not None and share is not None:
+                name = table.name or f"load case {place + 1}"
+                loads.append(LoadCase(name, table.speed, table.torque, share))
+        total = sum(load.share for load in loads)
+        if len(loads) == len(rows) and total > 1.0 + 1e-9:
+            what, why = f"the shares add up to {100.0 * total:.6g} %", "They are parts of one time"
+            problems.append(("load_cases", Problem(what, "", why, "Correct the shares")))
+        if len({load.name for load in loads}) < len(loads):
+            what = "two load cases have one name"
+            problems.append(("load_cases", Problem(what, "", "", "Rename one of them")))
+        return tuple(loads)
+
+    def _check_meshes(self) -> None:
+        """Refuse meshes whose gears do not exist, and teeth that need a stiffness."""
+        problems: KeyedProblems = []
+        for name, table in self._mesh_tables.items():
+            names = self._names(name)
+            missing = [gear for gear in names if gear not in self.gears]
+            for gear in missing:
+                why, remedy = f"Known: {', '.join(self.gears)}", "Add the gear, or correct the name"
+                problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
+                problems.append((f"meshes.{name}.gears", problem))
+            rings = [gear for gear in names if not missing and self.gears[gear].is_ring]
+            if table.stiffness is None:
+                ring = rings[0] if rings else None
+                unknown_teeth = helical_problem({"helix_angle": table.helix_angle}, ring)
+                if unknown_teeth is not None:
+                    key = f"meshes.{name}.{'gears' if ring else 'helix_angle'}"
+                    problems.append((key, unknown_teeth))
+        if problems:
+            raise InputError((self.source or Source()).place(problems))
+
+    def _placed(self, error: InputError) -> list[Problem]:
+        """Problems of a machine with the lines of its parts."""
+        source = self.source or Source()
+        return [
+            source.place([(str(problem.where), problem)])[0]
+            if str(problem.where).partition(".")[0] in (*_GROUPS, "operation", "housing")
+            else problem
+            for problem in error.problems
+        ]
+
+    def _names(self, mesh: str) -> tuple[str, str]:
+        first, second = self.data["meshes"][mesh]["gears"]
+        return first, second
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """What is assumed because the case does not give it."""
+        texts = {
+            f"shafts.{n}": ("rigid", "a shaft without sections")
+            for n, shaft in self.shafts.items()
+            if shaft.is_rigid
+        }
+        texts |= {
+            f"bearings.{n}": ("1e9 N/m", "a bearing without stiffness or type is stiff")
+            for n, bearing in self.bearings.items()
+            if bearing.is_default
+        }
+        texts |= {
+            f"bearings.{name}.{key}": (value, why)
+            for name, bearing in self.bearings.items()
+            for key, value, why in _estimates(getattr(bearing.rolling, "assumptions", ()))
+        }
+        if self.housing is None:
+            texts["housing"] = ("rigid", "without [housing]")
+        return tuple(Assumption(k, value, "default", why) for k, (value, why) in texts.items())
+
+    @property
+    def meshes(self) -> tuple[str, ...]:
+        """Names of the meshes."""
+        return tuple(self._mesh_tables)
+
+    @cached_property
+    def meshes_with_teeth(self) -> tuple[str, ...]:
+        """Names of the meshes whose tooth contact is computed."""
+        return tuple(n for n, table in self._mesh_tables.items() if table.stiffness is None)
+
+    def mesh_table(self, mesh: str) -> Any:
+        """Values of the table of a mesh.
+
+        Parameters
+        ----------
+        mesh : str
+            Name of the mesh.
+
+        Returns
+        -------
+        object
+            With the keys of the table as attributes, in SI.
+        """
+        return self._mesh_tables[mesh]
+
+    def machine(self, load: LoadCase | None = None, **meshes: Mapping[str, Any]) -> Machine:
+        """Machine at its operating point or under a load case.
+
+        Parameters
+        ----------
+        load : LoadCase, optional
+            The operating point by default.
+        **meshes : mapping
+            Further fields of the meshes of these names.
+
+        Returns
+        -------
+        Machine
+        """
+        load = load or self.operating_point
+        operation = Operation(*self.ends, load.speed, load.torque)
+        objects = {n: self._mesh(n, meshes.get(n, {})) for n in self._mesh_tables}
+        parts = self.shafts, self.gears, objects, self.bearings, self.housing
+        return Machine(*parts, operation=operation)
+
+    def _mesh(self, name: str, fields: Mapping[str, Any]) -> Mesh:
+        table = self._mesh_tables[name]
+        values = {key: getattr(table, key) for key in _OF_MESH}
+        values["pressure_angle"] = table.normal_pressure_angle
+        if (law := self._mesh_dynamics.get(name)) is not None:
+            values |= _constant_law(law)
+        if values["center_distance"] is None and name in self.meshes_with_teeth:
+            values["center_distance"] = self._center_distance(name)
+        return Mesh(self._names(name), **{**values, **fields})
+
+    def _center_distance(self, mesh: str) -> float:
+        """Centre distance of a pair of spur gears from its profile shifts [m]."""
+        load = self.operating_point
+        case = pair_case(
+            self.data,
+            mesh,
+            self._names(mesh),
+            self.source,
+            driver=0,
+            speed=abs(load.speed) or 1.0,
+            torque=abs(load.torque) or 1.0,
+        )
+        return float(case.gear_pair.center_distance)
+
+    def pair(self, mesh: str, load: LoadCase, misalignment: float = 0.0) -> Case:
+        """Pair of a mesh under a load case, as a case of its own; its first gear is the pinion.
+
+        Parameters
+        ----------
+        mesh : str
+            Name of the mesh.
+        load : LoadCase
+            Speed and torque of the machine.
+        misalignment : float
+            Difference of the gap over the face [m].
+
+        Returns
+        -------
+        Case
+
+        Raises
+        ------
+        InputError
+            If the gears of the mesh have no tooth contact that is computed.
+        """
+        machine = self.machine(load)
+        names, flow = self._names(mesh), machine.kinematics
+        mesh_load, shaft = flow.meshes[mesh], flow.shafts[self.gears[names[0]].shaft]
+        return pair_case(
+            self.data,
+            mesh,
+            names,
+            self.source,
+            driver=names.index(mesh_load.driver),
+            speed=abs(shaft.speed),
+            torque=abs(mesh_load.torque[0]),
+            misalignment=misalignment,
+        )
+
+    def replace(self, changes: Mapping[str, Any], *, by: str = "") -> MachineCase:
+        """Return a new case with some values changed; it is checked as a whole.
+
+        Parameters
+        ----------
+        changes : mapping
+            Dotted key, such as ``"meshes.first.angle"``, to value: a float in SI, or text.
+        by : str
+            Source of the change, for messages; then a bare number for a dimension is refused.
+
+        Raises
+        ------
+        InputError
+            As for a case file.
+        """
+        data = deepcopy(self.data)
+        for key, value in changes.items():
+            *tables, name = key.split(".")
+            table = data
+            for each in tables:
+                table = table.setdefault(each, {})
+                if not isinstance(table, dict):
+                    why, remedy = f"{each} is not a table", "Correct the key"
+                    raise InputError(f"{key} = {value!r}", key, why, remedy)
+            if value is None:
+                table.pop(name, None)
+            else:
+                table[name] = value if by else plain(value)
+        source = (self.source or Source()).with_replaced(changes, by or "replace:")
+        return MachineCase(source, **data)
+
+    def to_toml(self) -> str:
+        """Write the case file; it reads back to an equal case."""
+        return machine_toml(self.data)
+
+    def __repr__(self) -> str:
+        """One line."""
+        count = len(self.load_cases)
+        parts = repr(self.machine()).removeprefix("Machine(").removesuffix(")")
+        loads = f", {count} load case{'s' * (count != 1)}" if count else ""
+        return f'MachineCase("{self.title}": {parts}{loads})'
+
+
+def _estimates(texts: Iterable[str]) -> Iterator[tuple[str, str, str]]:
+    """Key, value and reason of estimates such as ``balls = 8, estimated: usual filling``."""
+    for text in texts:
+        key, _, rest = text.partition(" = ")
+        value, _, why = rest.partition(", ")
+        yield key, value, why
+
+
+def _constant_law(law: Any) -> dict[str, Any]:
+    """Damping, backlash and error of a mesh with a constant stiffness."""
+    size, shift = law.transmission_error_amplitude, law.transmission_error_phase
+    given = law.mesh_damping is not None
+    return {
+        "gap": 0.5 * (law.backlash or 0.0),
+        "damping": law.mesh_damping if given else 0.0,
+        "damping_ratio": None if given else law.mesh_damping_ratio,
+        "error": (lambda phase: size * np.cos(2.0 * np.pi * phase + shift)) if size else 0.0,
+    }
+
+
+def _read(groups: Mapping[str, Any], group: str, read: Any, problems: KeyedProblems) -> Any:
+    parts = {n: read(n, dict(body), problems) for n, body in groups[group].items()}
+    return {name: part for name, part in parts.items() if part is not None}

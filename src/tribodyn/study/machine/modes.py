@@ -1,0 +1,161 @@
+"""Natural modes of a machine over the speed, and what excites them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.machine import MachineModes, MachineStructure, machine_modes
+from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.study.machine.case import MachineCase
+
+#: Speeds of a diagram, its top speed over that of the operation, and harmonics of each mesh.
+_SPEEDS, _TOP, _HARMONICS = 6, 1.3, 3
+#: Modes above this many times the highest excitation are left out of tables and figures.
+_BEYOND = 1.5
+_LEAST_SHARE = 0.05
+MODES_HEAD = ("Mode", "Frequency [Hz]", "Damping [%]", "Energy in", "Excited by")
+
+
+@record
+class MachineCampbell(Record):
+    """Natural frequencies and excitations of a machine over the speed of its input.
+
+    Parameters
+    ----------
+    speed : (n,) array
+        Speed of the input [rad/s].
+    frequency : (n, m) array
+        Natural frequencies with the gyroscopic moments at that speed [Hz].
+    excitation : tuple of str
+        ``mesh first x 1``, ``shaft input``, ...
+    order : (k,) array
+        Frequency of each excitation over the rotational frequency of the input [1].
+    operating_speed : float
+        Speed of the operation [rad/s].
+    """
+
+    speed: Array = quantity("speed", unit="rad/s", axis=True)
+    frequency: Array = quantity("speed", "mode", unit="Hz")
+    excitation: tuple[str, ...] = quantity("excitation", axis=True, unit="")
+    order: Array = quantity("excitation", unit="1")
+    operating_speed: float = fact()
+
+    def excited(self, hertz: float) -> list[tuple[str, float]]:
+        """Excitations that meet a frequency within the diagram.
+
+        Parameters
+        ----------
+        hertz : float
+            Frequency [Hz].
+
+        Returns
+        -------
+        list of (str, float)
+            Name of the excitation and speed of the input [rad/s].
+        """
+        speeds = 2.0 * np.pi * hertz / self.order
+        inside = speeds <= self.speed[-1]
+        pairs = zip(self.excitation, speeds, inside, strict=True)
+        return [(name, float(speed)) for name, speed, within in pairs if within]
+
+
+def excitations(structure: MachineStructure, harmonics: int = _HARMONICS) -> dict[str, float]:
+    """Orders of the input at which meshes and turning shafts excite a machine."""
+    machine = structure.machine
+    turning = abs(machine.operation.speed) / (2.0 * np.pi)
+    flow = machine.kinematics
+    orders = {
+        f"mesh {name} x {k}": k * mesh.mesh_frequency / turning
+        for name, mesh in flow.meshes.items()
+        for k in range(1, harmonics + 1)
+    }
+    return {
+        **orders,
+        **{f"shaft {name}": abs(float(shaft.ratio)) for name, shaft in flow.shafts.items()},
+    }
+
+
+def campbell_of(structure: MachineStructure, speeds: Array | None = None) -> MachineCampbell:
+    """Campbell diagram of a machine with the mesh stiffness of its operating point."""
+    now = abs(structure.machine.operation.speed)
+    if speeds is None:
+        speeds = np.linspace(0.0, _TOP * now, _SPEEDS)
+    orders = excitations(structure)
+    top = _BEYOND * max(orders.values()) * float(speeds[-1]) / (2.0 * np.pi)
+    rows = [machine_modes(structure, float(speed)).frequency for speed in speeds]
+    count = min(int((row <= top).sum()) for row in rows)
+    frequency = np.array([row[:count] for row in rows])
+    return MachineCampbell(speeds, frequency, tuple(orders), np.array(list(orders.values())), now)
+
+
+def relevant_modes(structure: MachineStructure) -> tuple[MachineModes, int]:
+    """Modes at the speed of the operation, and how many lie in reach of an excitation."""
+    modes = machine_modes(structure)
+    turning = abs(structure.machine.operation.speed) / (2.0 * np.pi)
+    top = _BEYOND * max(excitations(structure).values()) * turning
+    return modes, int((modes.frequency <= top).sum())
+
+
+def energy_shares(modes: MachineModes, number: int) -> str:
+    """Parts with at least 5 % of the strain energy of a mode, the largest first."""
+    shares = modes.strain_share[number]
+    order = [int(i) for i in np.argsort(-shares) if shares[i] >= _LEAST_SHARE]
+    return ", ".join(f"{modes.parts[i]} {100.0 * shares[i]:.0f} %" for i in order)
+
+
+def mode_rows(structure: MachineStructure) -> list[list[str]]:
+    """Rows of the table of modes under :data:`MODES_HEAD`."""
+    modes, count = relevant_modes(structure)
+    orders = excitations(structure)
+    turning = abs(structure.machine.operation.speed) / (2.0 * np.pi)
+    rows = []
+    for k in range(count):
+        hertz = float(modes.frequency[k])
+        near = min(orders, key=lambda name: abs(orders[name] * turning - hertz))
+        apart = orders[near] * turning / hertz - 1.0
+        rows.append(
+            [
+                f"{k + 1}",
+                f"{hertz:.5g}",
+                f"{100.0 * modes.damping_ratio[k]:.3g}",
+                energy_shares(modes, k),
+                f"{near}, {100.0 * apart:+.1f} %",
+            ]
+        )
+    return rows
+
+
+def structure_at_rest(case: MachineCase, progress: Progress = SILENT) -> MachineStructure:
+    """Structure of a machine about its static balance, with the mean stiffness of its meshes."""
+    from tribodyn.study.machine.run import balanced_machine, structure_of
+
+    return structure_of(
+        case, balanced_machine(case, case.operating_point, progress)[0].linearized()
+    )
+
+
+def modes_facts(structure: MachineStructure, campbell: MachineCampbell) -> dict[str, Any]:
+    """Modes and excitations in SI for JSON."""
+    modes, count = relevant_modes(structure)
+    turning = abs(structure.machine.operation.speed) / (2.0 * np.pi)
+    return {
+        "speed": structure.machine.operation.speed,
+        "excitations": {n: float(o) * turning for n, o in excitations(structure).items()},
+        "modes": [
+            {
+                "number": k + 1,
+                "frequency": float(modes.frequency[k]),
+                "damping_ratio": float(modes.damping_ratio[k]),
+                "strain_share": dict(zip(modes.parts, modes.strain_share[k].tolist(), strict=True)),
+                "speeds": dict(campbell.excited(float(modes.frequency[k]))),
+            }
+            for k in range(len(modes.frequency))
+        ],
+        "in_reach": count,
+    }

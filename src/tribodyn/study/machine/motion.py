@@ -1,0 +1,142 @@
+"""Motion of a machine under one load: forces, errors and accelerations of its parts by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import numpy as np
+
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array, ComplexArray
+
+#: Directions of forces and moments of a bearing.
+DIRECTIONS = ("x", "y", "z", "theta_x", "theta_y", "theta_z")
+
+
+@record
+class MachineMotion(Record):
+    """Periodic motion of a machine over one period of its clock.
+
+    Parameters
+    ----------
+    clock : (s,) array
+        Phase of the clock; both ends and the middle of every step.
+    weight : (s,) array
+        Weights of the samples for means over the period.
+    mesh : tuple of str
+        Names of the meshes.
+    bearing : tuple of str
+        Names of the bearings.
+    node : tuple of str
+        Names of the nodes of the housing.
+    mesh_force : (s, meshes) array
+        Force along the transverse line of action [N].
+    compression : (s, meshes) array
+        Compression of the teeth, from where rigid flanks touch [m].
+    transmission_error : (s, meshes) array
+        Rotation of the driving over that of the driven gear, on the line of action [m].
+    open : (s, meshes) array
+        1 where the driving flanks are apart.
+    bearing_force : (s, bearings, 6) array
+        Force and moment of the shaft on each bearing [N, N*m].
+    acceleration : (s, nodes, 3) array
+        Acceleration of the nodes of the housing [m/s^2].
+    cycles : (meshes,) array
+        Mesh cycles of each mesh in a period.
+    frequency : float
+        Periods of the clock per second [Hz].
+    """
+
+    clock: Array = quantity("clock", unit="1", axis=True)
+    weight: Array = quantity("clock", unit="1")
+    mesh: tuple[str, ...] = quantity("mesh", axis=True, unit="")
+    bearing: tuple[str, ...] = quantity("bearing", axis=True, unit="")
+    node: tuple[str, ...] = quantity("node", axis=True, unit="")
+    mesh_force: Array = quantity("clock", "mesh", unit="N")
+    compression: Array = quantity("clock", "mesh", unit="m")
+    transmission_error: Array = quantity("clock", "mesh", unit="m")
+    open: Array = quantity("clock", "mesh", unit="1")
+    bearing_force: Array = quantity("clock", "bearing", "direction", unit="N or N*m")
+    acceleration: Array = quantity("clock", "node", "axis", unit="m/s^2")
+    cycles: Array = quantity("mesh", unit="1")
+    frequency: float = fact()
+
+    def mean(self, signal: Array) -> Array:
+        """Mean over the period.
+
+        Parameters
+        ----------
+        signal : (s, ...) array
+            On the samples.
+
+        Returns
+        -------
+        (...) array
+            In the unit of the signal.
+        """
+        return np.asarray(np.tensordot(self.weight, signal, axes=1))
+
+    def rms(self, signal: Array) -> Array:
+        """Root mean square about the mean.
+
+        Parameters
+        ----------
+        signal : (s, ...) array
+            On the samples.
+
+        Returns
+        -------
+        (...) array
+            In the unit of the signal.
+        """
+        return np.asarray(np.sqrt(np.maximum(self.mean((signal - self.mean(signal)) ** 2), 0.0)))
+
+    def harmonics(self, signal: Array, orders: Array) -> ComplexArray:
+        """Complex amplitudes at orders of the clock.
+
+        Parameters
+        ----------
+        signal : (s, ...) array
+            On the samples.
+        orders : (k,) array
+            Periods of the wave in a period of the clock.
+
+        Returns
+        -------
+        (k, ...) complex array
+            In the unit of the signal.
+        """
+        waves = self.weight * np.exp(-2j * np.pi * np.multiply.outer(orders, self.clock))
+        return np.asarray(2.0 * np.tensordot(waves, signal, axes=1))
+
+    def mesh_orders(self, count: int) -> dict[int, list[tuple[str, int]]]:
+        """Orders of the clock that meshes excite.
+
+        Parameters
+        ----------
+        count : int
+            Harmonics of each mesh.
+
+        Returns
+        -------
+        dict of int to list of (str, int)
+            Meshes and their harmonics by order.
+        """
+        orders: dict[int, list[tuple[str, int]]] = {}
+        for name, cycles in zip(self.mesh, self.cycles, strict=True):
+            for harmonic in range(1, count + 1):
+                orders.setdefault(int(cycles) * harmonic, []).append((name, harmonic))
+        return dict(sorted(orders.items()))
+
+    @cached_property
+    def radial_force(self) -> Array:
+        """Size of the radial force of each bearing (s, bearings) [N]."""
+        return np.hypot(self.bearing_force[..., 1], self.bearing_force[..., 2])
+
+
+def joined(series: Mapping[str, Array], samples: int, width: tuple[int, ...] = ()) -> Array:
+    """Series by name as one array (s, names, ...)."""
+    if not series:
+        return np.zeros((samples, 0, *width))
+    return np.stack(list(series.values()), axis=1)

@@ -1,0 +1,119 @@
+"""The pair of gears of a mesh as a case, with errors placed in the file of the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from tribodyn.errors import Problem
+from tribodyn.study.case import gears
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.sections import Dynamics
+from tribodyn.study.case.to_models import mesh_law_of
+from tribodyn.study.case.user_input import Source
+from tribodyn.study.case.values import Plain
+
+#: Tables of models that hold for all meshes, and that a mesh may have for itself.
+SHARED = ("material", "lubricant", "film", "stiffness", "friction")
+#: Keys of ``[dynamics]`` of a pair that belong to its mesh.
+MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damping_ratio"))
+#: The pair vibrates in the machine, not on supports of its own.
+_STRUCTURE = {"model": "spur-6dof", "bearing_stiffness": Plain(1e9)}
+_ROLES = ("pinion", "wheel")
+
+
+@dataclass(frozen=True)
+class PairSource(Source):
+    """Origin of the values of a pair: keys of the machine in place of those of the pair."""
+
+    mesh: str = ""
+    gears: tuple[str, str] = ("", "")
+    own: frozenset[str] = field(default_factory=frozenset)  #: keys inside the table of the mesh
+
+    def key(self, key: str) -> str:
+        """Key of the machine for a key of the pair."""
+        table, _, name = key.partition(".")
+        if table == "gears":
+            role, _, rest = name.partition(".")
+            if role in _ROLES:
+                return f"gears.{self.gears[_ROLES.index(role)]}.{rest}".rstrip(".")
+            return f"meshes.{self.mesh}.{name}".rstrip(".")
+        if table == "dynamics":
+            return f"meshes.{self.mesh}.{name}" if name in self.own else key
+        inside = {f"{table}.{name}", table} & self.own
+        return f"meshes.{self.mesh}.{key}" if inside else key
+
+    def line(self, key: str) -> int:
+        """Return the line of a key of the pair."""
+        return super().line(self.key(key))
+
+    def where(self, key: str) -> str:
+        """Format the location of a key of the pair."""
+        return Source(self.name, self.find, self.replaced).where(self.key(key))
+
+
+def mesh_tables(body: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Tables of models inside the table of a mesh."""
+    return {name: body[name] for name in SHARED if isinstance(body.get(name), Mapping)}
+
+
+def pair_case(
+    data: Mapping[str, Any],
+    mesh: str,
+    names: tuple[str, str],
+    source: Source | None,
+    *,
+    driver: int,
+    speed: float,
+    torque: float,
+    misalignment: float = 0.0,
+) -> Case:
+    """Case of the pair of a mesh; its first gear is the pinion, of this speed and torque."""
+    body = data["meshes"][mesh]
+    inner = mesh_tables(body)
+    tables = {
+        name: _merged(name, data.get(name, {}), inner.get(name, {}))
+        for name in SHARED
+        if name in data or name in inner
+    }
+    shared_dynamics = {k: v for k, v in data.get("dynamics", {}).items() if k in MESH_KEYS}
+    own_dynamics = {k: v for k, v in body.items() if k in MESH_KEYS}
+    pair = {k: v for k, v in body.items() if k in gears.Gears.fields and k not in inner}
+    pair.setdefault("normal_pressure_angle", "20 deg")
+    pair["driver"] = _ROLES[driver]
+    if misalignment:
+        pair["misalignment"] = Plain(misalignment)
+    for role, name in zip(_ROLES, names, strict=True):
+        table = data["gears"][name]
+        pair[role] = {k: v for k, v in table.items() if k in gears.Gear.fields}
+    own = {*own_dynamics, *(f"{t}.{k}" for t, values in inner.items() for k in values), *inner}
+    origin = source or Source()
+    case = Case(
+        PairSource(origin.name, origin.find, origin.replaced, mesh, names, frozenset(own)),
+        title=f"{data.get('title', 'Machine')}: {mesh}",
+        gears=pair,
+        operation={"speed": Plain(speed), "torque": Plain(torque), "speed_of": "pinion"},
+        dynamics={**_STRUCTURE, **shared_dynamics, **own_dynamics},
+        **tables,
+    )
+    # All ramps of a force law are a contact each: about its load a machine has the tangent to it.
+    given = case.dynamics.mesh_law is not None
+    tangent = not given and mesh_law_of(case) == "force-law"
+    return case.replace({"dynamics.mesh_law": "tangent"}) if tangent else case
+
+
+def _merged(name: str, shared: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    """Table of a mesh: a model of its own brings its options, other keys are added."""
+    selector = Case.fields[name].kind.selector  # type: ignore[union-attr]
+    return {**({} if selector in own else shared), **own}
+
+
+def helical_problem(body: Mapping[str, Any], ring: str | None) -> Problem | None:
+    """Problem of teeth whose contact is not computed: helical teeth, and those of a ring."""
+    if ring is None and not body.get("helix_angle"):
+        return None
+    what = f'gear "{ring}" has internal teeth' if ring else "the teeth are helical"
+    why = "The tooth contact of external spur gears is computed; other teeth need their stiffness"
+    remedy = 'Give the mesh its stiffness along the line of action: stiffness = "5e8 N/m"'
+    return Problem(what, "", why, remedy)

@@ -1,0 +1,29 @@
+"""Read a case file of either kind: a pair of gears, or a machine."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribodyn.study.case.read import key_lines, parse_toml, read_case
+from tribodyn.study.case.user_input import Source
+from tribodyn.study.machine.case import MachineCase, is_machine
+from tribodyn.study.machine.tables import HousingTable
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+
+def read_any_case(text: str, name: str = "", folder: Path | None = None) -> Case | MachineCase:
+    """Check the text of a case file: of a machine, if it has shafts or meshes, or of a pair."""
+    data = parse_toml(text, name)
+    if not is_machine(data):
+        return read_case(text, name)
+    place = Path(name).parent if folder is None else folder
+    housing = data.get("housing")
+    if isinstance(housing, dict):
+        for key in HousingTable.fields:
+            if isinstance(housing.get(key), str):
+                housing[key] = str((place / housing[key]).absolute())
+    return MachineCase(Source(name or "case", partial(key_lines, text)), **data)

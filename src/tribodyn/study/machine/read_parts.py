@@ -1,0 +1,209 @@
+"""Read the tables of the parts of a machine into its objects, collecting every problem."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, fields
+from typing import Any
+
+from tribodyn.errors import Argument, InputError, Problem, did_you_mean
+from tribodyn.machine import ROLLING_BEARINGS, Bearing, Gear, Material, Section, Shaft
+from tribodyn.model import REQUIRED, Option, flag, integer, number, text
+from tribodyn.study.case.section import Section as Table
+from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_table, read_value
+from tribodyn.study.machine.tables import BearingTable, GearTable, ShaftTable
+
+_LENGTH = number(
+    REQUIRED, 0.0, 100.0, "guards against a wrong unit", unit="m", display_unit="mm",
+    example='"60 mm"', meaning="a length of the shaft",
+)  # fmt: skip
+_SECTION = (
+    'Write sections = [["60 mm", "40 mm"], ...]: length, outer and inner diameter, and for a cone '
+    "both diameters of the end"
+)
+_PARTS = ("length", "outer_diameter", "inner_diameter", "end_outer_diameter", "end_inner_diameter")
+_SHARE = re.compile(r"\s*([\d.]+)\s*%\s*")
+
+
+def tables_of(data: Mapping[str, Any], group: str, problems: KeyedProblems) -> dict[str, Any]:
+    """Tables of a group by name; anything else in it is a problem."""
+    found = data.get(group, {})
+    if not isinstance(found, Mapping):
+        remedy = f"Write [{group}.NAME] with the keys of each part"
+        problems.append((group, Problem(f"{group} is not a table", "", "", remedy)))
+        return {}
+    tables = {}
+    for name, body in found.items():
+        if isinstance(body, Mapping):
+            tables[str(name)] = dict(body)
+            continue
+        what, why = f"{name} = {body!r}", f"[{group}] holds one table for each part"
+        problems.append((f"{group}.{name}", Problem(what, "", why, f"Write [{group}.NAME]")))
+    return tables
+
+
+def built(key: str, make: Callable[[], Any], problems: KeyedProblems) -> Any:
+    """Build a part; its problems are placed at the keys of its table."""
+    try:
+        return make()
+    except InputError as error:
+        for problem in error.problems:
+            where = problem.where
+            name = where.name.partition(".")[2] if isinstance(where, Argument) else ""
+            problems.append((f"{key}.{name}" if name else key, problem))
+    return None
+
+
+def read_shaft(name: str, body: dict[str, Any], problems: KeyedProblems) -> Shaft | None:
+    """Shaft of a table."""
+    key = f"shafts.{name}"
+    rows, count = body.pop("sections", ()), len(problems)
+    table = read_table(ShaftTable, body, key, {}, problems)
+    sections = [
+        _section(f"{key}.sections", number, row, problems) for number, row in enumerate(rows)
+    ] if isinstance(rows, list | tuple) else []  # fmt: skip
+    if not isinstance(rows, list | tuple):
+        what = f"sections = {rows!r}"
+        problems.append((f"{key}.sections", Problem(what, "", "It is a list of lists", _SECTION)))
+    if len(problems) > count:
+        return None
+    material = Material(table.youngs_modulus, table.poissons_ratio, table.density)
+    valid = tuple(section for section in sections if section is not None)
+    part: Shaft | None = built(key, lambda: Shaft(valid, material), problems)
+    return part
+
+
+def _section(key: str, place: int, row: Any, problems: KeyedProblems) -> Section | None:
+    row = row.value if isinstance(row, Plain) else row
+    label = f"sections[{place}]"
+    if not isinstance(row, list | tuple) or not 2 <= len(row) <= 5:
+        why = "A section has a length, and one to four diameters"
+        problems.append((key, Problem(f"{label} = {row!r}", "", why, _SECTION)))
+        return None
+    try:
+        values = [read_value(_LENGTH, f"{label}[{i}]", item) for i, item in enumerate(row)]
+    except FaultError as fault:
+        problems.append((key, fault.problem))
+        return None
+    part: Section | None = built(
+        key, lambda: Section(**dict(zip(_PARTS, values, strict=False))), problems
+    )
+    return part
+
+
+def read_bearing(name: str, body: dict[str, Any], problems: KeyedProblems) -> Bearing | None:
+    """Bearing of a table: a linear support, or a rolling bearing by its ``type``."""
+    key, count = f"bearings.{name}", len(problems)
+    rolling = None
+    if "type" in body:
+        rolling = _rolling(key, body, problems)
+    table = read_table(BearingTable, body, key, {}, problems)
+    if len(problems) > count:
+        return None
+    values = {k: getattr(table, k) for k in BearingTable.fields}
+    part: Bearing | None = built(key, lambda: Bearing(**values, rolling=rolling), problems)
+    return part
+
+
+def _rolling(key: str, body: dict[str, Any], problems: KeyedProblems) -> Any:
+    kind = body.pop("type")
+    if kind not in ROLLING_BEARINGS:
+        names = list(ROLLING_BEARINGS)
+        why, remedy = f"Known: {', '.join(names)}", did_you_mean(kind, names, "Choose one of these")
+        problems.append((f"{key}.type", Problem(f'type = "{kind}"', "", why, remedy)))
+        for name in [name for name in body if name not in BearingTable.fields]:
+            del body[name]
+        return None
+    law, values, count = ROLLING_BEARINGS[kind], {}, len(problems)
+    for option, spec in rolling_options(law).items():
+        if option in body:
+            try:
+                values[option] = read_value(spec, option, body.pop(option))
+            except FaultError as fault:
+                problems.append((f"{key}.{option}", fault.problem))
+    return built(key, lambda: law(**values), problems) if len(problems) == count else None
+
+
+#: Units of the geometry of rolling bearings by the end of the name.
+_UNITS = {
+    "diameter": ("m", "mm"), "length": ("m", "mm"), "width": ("m", "mm"), "clearance": ("m", "um"),
+    "angle": ("rad", "deg"), "modulus": ("Pa", "GPa"), "preload": ("N", "N"),
+    "temperature": ("K", "degC"),
+}  # fmt: skip
+
+
+def rolling_options(law: type) -> dict[str, Option]:
+    """Options of a rolling bearing from the fields of its class."""
+    options = {}
+    for field in fields(law):
+        if not field.init:
+            continue
+        default = None if field.default is MISSING else field.default
+        kind, meaning = str(field.type), field.name.replace("_", " ")
+        if "int" in kind and "float" not in kind:
+            options[field.name] = integer(default, -1000, 1000, "counted", meaning=meaning)
+        elif "bool" in kind:
+            options[field.name] = flag(default, meaning=meaning)
+        elif "str" in kind:
+            options[field.name] = text(default, meaning=meaning)
+        else:
+            unit, shown = _UNITS.get(field.name.rpartition("_")[2], ("", ""))
+            example = f'"1 {shown}"' if shown else "1.0"
+            options[field.name] = number(
+                default, -math.inf, math.inf, "", unit=unit, display_unit=shown, meaning=meaning,
+                example=example,
+            )  # fmt: skip
+    return options
+
+
+def read_gear(name: str, body: dict[str, Any], problems: KeyedProblems) -> Gear | None:
+    """Gear of a table."""
+    key, count = f"gears.{name}", len(problems)
+    table = read_table(GearTable, body, key, {}, problems)
+    if len(problems) > count:
+        return None
+    if table.face_width is None:
+        remedy = f'Add for example face_width = "40 mm" to [{key}]'
+        problem = Problem("face_width is missing", "", "A gear has a width", remedy)
+        problems.append((f"{key}.face_width", problem))
+        return None
+    names = ("shaft", "position", "teeth", "face_width", "mass", "moment_of_inertia")
+    values = {k: getattr(table, k) for k in (*names, "transverse_moment_of_inertia")}
+    part: Gear | None = built(key, lambda: Gear(**values), problems)
+    return part
+
+
+def read_share(key: str, value: Any, problems: KeyedProblems) -> float | None:
+    """Share of the time: a fraction, or text with a percent sign."""
+    if isinstance(value, str) and (percent := _SHARE.fullmatch(value)):
+        value = float(percent[1]) / 100.0
+    valid = isinstance(value, int | float) and not isinstance(value, bool) and 0.0 < value <= 1.0
+    if not valid:
+        why, remedy = "A share of the time is above 0 and at most 1", 'Write share = "30 %"'
+        problems.append((key, Problem(f"share = {value!r}", "", why, remedy)))
+        return None
+    return float(value)
+
+
+def unknown_keys(
+    key: str, body: Mapping[str, Any], allowed: tuple[str, ...], problems: KeyedProblems
+) -> None:
+    """Report keys of a table that it does not have."""
+    for name in body:
+        if name not in allowed:
+            remedy = did_you_mean(name, allowed, "Remove it")
+            why = f"{f'[{key}]' if key else 'A machine'} has: {', '.join(allowed)}"
+            place = f"{key}.{name}" if key else str(name)
+            problems.append((place, Problem(f"{name}: unknown key", "", why, remedy)))
+
+
+def table_of(kind: type[Table], body: Any, key: str, problems: KeyedProblems) -> Any:
+    """Read one table of fixed keys; None where it is not a table or has problems."""
+    if not isinstance(body, Mapping):
+        problems.append((key, Problem(f"{key} is not a table", "", "", f"Write [{key}]")))
+        return None
+    count = len(problems)
+    table = read_table(kind, body, key, {}, problems)
+    return table if len(problems) == count else None

@@ -1,0 +1,221 @@
+"""Result of a machine: its loads, summary, data and report."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.drawing import draw, write_report_of
+from tribodyn.record import html_table
+from tribodyn.study.machine.summary import summary_of, summary_rows
+from tribodyn.study.pipeline.save import new_directory
+from tribodyn.validated_files import write_dataset
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response, System
+    from tribodyn.errors import ModelWarning
+    from tribodyn.machine import Machine, StaticBalance
+    from tribodyn.machine.structure import MachineStructure
+    from tribodyn.mesh import MeshTable
+    from tribodyn.study.case.provenance import Assumption
+    from tribodyn.study.machine.case import LoadCase, MachineCase
+    from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.study.machine.motion import MachineMotion
+
+
+@dataclass(frozen=True, eq=False)
+class LoadResult:
+    """A machine under one load.
+
+    Parameters
+    ----------
+    load : LoadCase
+        Speed and torque.
+    structure : MachineStructure
+        With the force laws of its teeth and the stiffness of its bearings at this load.
+    tables : mapping of str to MeshTable
+        Tooth contact of the meshes that are computed.
+    static : StaticBalance
+        Deflections, bearing loads and misalignments at rest.
+    system : System
+        The structure, reduced where it is large, and its contacts.
+    response : Response
+        Its motion over one period of the clock.
+    motion : MachineMotion
+        Forces, errors and accelerations by the names of the parts.
+    """
+
+    load: LoadCase
+    structure: MachineStructure
+    tables: Mapping[str, MeshTable]
+    static: StaticBalance
+    system: System
+    response: Response
+    motion: MachineMotion
+
+    @property
+    def machine(self) -> Machine:
+        """The machine at this load."""
+        return self.structure.machine
+
+    @cached_property
+    def figures(self) -> dict[str, float]:
+        """All figures in SI by dotted key."""
+        return summary_of(self)
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f"LoadResult({self.load.name}: {self.response!r})"
+
+
+@dataclass(frozen=True, eq=False)
+class MachineResult:
+    """What :func:`tribodyn.run` returns for a machine.
+
+    Parameters
+    ----------
+    case : MachineCase
+        What was computed.
+    operation : LoadResult
+        At the speed and torque of ``[operation]``.
+    load_cases : tuple of LoadResult
+        Under each of ``[[load_cases]]``.
+    warnings : tuple of ModelWarning
+        Warnings of the models.
+    """
+
+    case: MachineCase
+    operation: LoadResult
+    load_cases: tuple[LoadResult, ...]
+    warnings: tuple[ModelWarning, ...]
+
+    @property
+    def machine(self) -> Machine:
+        """The machine at its operating point."""
+        return self.operation.machine
+
+    @property
+    def motion(self) -> MachineMotion:
+        """Its motion at the operating point."""
+        return self.operation.motion
+
+    @property
+    def structure(self) -> MachineStructure:
+        """Its matrices at the operating point."""
+        return self.operation.structure
+
+    @cached_property
+    def campbell(self) -> MachineCampbell:
+        """Natural frequencies and excitations over the speed of the input."""
+        from tribodyn.study.machine.modes import campbell_of
+
+        return campbell_of(self.structure)
+
+    @cached_property
+    def _summary(self) -> dict[str, float]:
+        figures = dict(self.operation.figures)
+        for each in self.load_cases:
+            prefix = f"load_cases.{each.load.name}"
+            figures |= {f"{prefix}.{key}": value for key, value in each.figures.items()}
+        return figures
+
+    def summary(self) -> dict[str, float]:
+        """All figures as one flat dictionary: ``meshes.first.mesh_frequency``, ...
+
+        Returns
+        -------
+        dict of str to float
+            In SI; those of load cases begin with ``load_cases.NAME.``.
+        """
+        return dict(self._summary)
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """What was assumed because the case does not give it."""
+        return self.case.assumptions
+
+    def to_xarray(self) -> Any:
+        """Motion at the operating point with units.
+
+        Returns
+        -------
+        xarray.Dataset
+        """
+        return self.motion.to_xarray()
+
+    def plot(self, figure: str = "machine") -> Any:
+        """Draw a figure: ``machine``, ``machine_orders``, ``bearing_forces``, ...
+
+        Parameters
+        ----------
+        figure : str
+            Name in :data:`tribodyn.plot.FIGURES`.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return draw(self, figure)
+
+    def save(
+        self, directory: str | os.PathLike[str], *, force: bool = False, csv: bool = False
+    ) -> Path:
+        """Write case, summary, motions, mesh tables and report into a new directory.
+
+        Parameters
+        ----------
+        directory : str or path
+            Directory to make; it appears complete or not at all.
+        force : bool
+            Replace an earlier result there.
+        csv : bool
+            Write the motion as ``response.csv`` as well.
+
+        Raises
+        ------
+        OutputExistsError
+            If it exists and is not to be replaced, or is no result.
+        InputError
+            If the place cannot be written to.
+        """
+        target = Path(directory)
+        with new_directory(target, force=force) as place:
+            (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
+            summary = json.dumps(self._summary, indent=2, allow_nan=False) + "\n"
+            (place / "summary.json").write_text(summary, encoding="utf-8")
+            for name, table in self.operation.tables.items():
+                table.save(place / f"mesh-{name}.nc")
+            write_dataset(self.to_xarray(), place / "motion.nc")
+            if csv:
+                frame = self.to_xarray().mesh_force.to_pandas()
+                (place / "response.csv").write_text(frame.to_csv(), encoding="utf-8")
+            write_report_of(self, place / "report.html")
+        return target
+
+    def rows(self) -> list[tuple[str, str, str, str]]:
+        """Topic, key, value with unit and meaning of each figure of the summary.
+
+        Returns
+        -------
+        list of (str, str, str, str)
+        """
+        return summary_rows(self._summary)
+
+    def _repr_html_(self) -> str:
+        """Table of the summary by part for notebooks."""
+        return html_table(repr(self), ("part", "figure", "value", "meaning"), self.rows())
+
+    def __repr__(self) -> str:
+        """One line."""
+        figures = self.operation.figures
+        peaks = ", ".join(
+            f"{name} {figures[f'meshes.{name}.peak_mesh_force']:.5g} N" for name in self.motion.mesh
+        )
+        count = len(self.load_cases)
+        loads = f", {count} load case{'s' * (count != 1)}" if count else ""
+        return f'MachineResult("{self.case.title}": peak mesh forces {peaks}{loads})'

@@ -1,0 +1,168 @@
+"""Compute a machine: teeth of each mesh, static balance, motion, and figures by part."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.dynamics import harmonic_balance
+from tribodyn.errors import collected, frames
+from tribodyn.machine import (
+    MachineStructure,
+    face_laws,
+    machine_structure,
+    reduce_structure,
+    static_balance,
+)
+from tribodyn.machine import system as system_of
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.to_models import locate_errors
+from tribodyn.study.machine.case import LoadCase, MachineCase
+from tribodyn.study.machine.motion import MachineMotion, joined
+from tribodyn.study.machine.result import LoadResult, MachineResult
+from tribodyn.study.pipeline.assembly import whole_system
+from tribodyn.study.pipeline.tooth_contact import mesh_of
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response
+    from tribodyn.machine import Machine, StaticBalance
+    from tribodyn.mesh import MeshTable
+
+#: Steps per cycle of the fastest mesh.
+_STEPS = 128
+#: Passes of teeth and balance at most, and change of the misalignment over the compression of the
+#: teeth that ends them.
+_PASSES, _SAME = 4, 0.1
+
+
+def run_machine(
+    case: MachineCase, progress: Progress = SILENT, *, stacklevel: int = 2
+) -> MachineResult:
+    """Compute a machine at its operating point and under its load cases."""
+    with collected() as caught:
+        points = (case.operating_point, *case.load_cases)
+        results = [_under_load(case, load, progress) for load in points]
+    unique = {str(warning): warning for warning in caught}
+    for warning in unique.values():
+        warnings.warn(warning, stacklevel=frames(stacklevel, sys._getframe()))
+    return MachineResult(case, results[0], tuple(results[1:]), tuple(unique.values()))
+
+
+def _under_load(case: MachineCase, load: LoadCase, progress: Progress) -> LoadResult:
+    static, tables = balanced_machine(case, load, progress)
+    progress.start(f"Motion: {load.name}")
+    structure = structure_of(case, static.linearized())
+    system = system_of(structure)
+    response = harmonic_balance(system, structure.machine.clock.frequency, steps=_STEPS)
+    progress.finish()
+    motion = machine_motion(structure, response)
+    return LoadResult(load, structure, tables, static, system, response, motion)
+
+
+def balanced_machine(
+    case: MachineCase, load: LoadCase, progress: Progress = SILENT
+) -> tuple[StaticBalance, dict[str, MeshTable]]:
+    """Static balance of a machine with computed teeth, and their mesh tables.
+
+    Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a little,
+    the deflection: teeth and balance are repeated until they agree.
+    """
+    progress.start(f"Tooth contact: {load.name}")
+    static = _static(case.machine(load))  # with a usual stiffness of the teeth
+    for _ in range(_PASSES):
+        before = {name: static.meshes[name] for name in case.meshes_with_teeth}
+        laws, tables = _teeth(case, load, {n: mesh.misalignment for n, mesh in before.items()})
+        static = _static(case.machine(load, **laws))
+        changes = [
+            abs(static.meshes[name].misalignment - mesh.misalignment) / mesh.compression
+            for name, mesh in before.items()
+        ]
+        if max(changes, default=0.0) <= _SAME:
+            break
+    progress.finish()
+    return static, tables
+
+
+def _static(machine: Machine) -> StaticBalance:
+    return static_balance(machine, laws=face_laws(machine))
+
+
+def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
+    """Structure of a machine, reduced to the modes below the frequency limit of the case."""
+    ratio, limit = case.motion.modal_damping_ratio, case.motion.frequency_limit
+    if limit is None:
+        return machine_structure(machine, damping_ratio=ratio)
+    return reduce_structure(MachineStructure(machine, ratio), limit)
+
+
+def _teeth(
+    case: MachineCase, load: LoadCase, misalignment: Mapping[str, float]
+) -> tuple[dict[str, dict[str, Any]], dict[str, MeshTable]]:
+    """Force laws of the meshes whose teeth are computed, and their mesh tables."""
+    laws, tables = {}, {}
+    for name in case.meshes_with_teeth:
+        pair = case.pair(name, load, misalignment[name])
+        with locate_errors(pair):
+            table = mesh_of(pair)
+            plane = whole_system(pair, table)
+        functions = table.functions()
+        laws[name] = {
+            # The static balance and the modes are those about the load.
+            "stiffness": functions.tangent_stiffness or functions.stiffness,
+            "contacts": plane.contacts,
+            "frictions": plane.frictions,
+            "events": functions.event_phases,
+        }
+        tables[name] = table
+    return laws, tables
+
+
+def machine_motion(structure: MachineStructure, response: Response) -> MachineMotion:
+    """Forces, errors and accelerations of the parts of a machine along its motion."""
+    machine, fine = structure.machine, response.fine
+    samples = fine.phase.size
+    force, compression, error, apart = {}, {}, {}, {}
+    first = 0
+    for name, mesh in machine.meshes.items():
+        count = max(len(mesh.contacts), 1)
+        force[name] = fine.contact_force[:, first : first + count].sum(axis=1)
+        compression[name] = fine.deflection[:, first]
+        apart[name] = (force[name] == 0.0).astype(float)
+        error[name] = fine.position @ _rotation(structure, name)
+        first += count
+    bearings = {}
+    for name, bearing in machine.bearings.items():
+        motion = structure.bearing(name).T
+        springs = fine.position @ motion @ bearing.stiffness_matrix
+        dampers = fine.velocity @ motion @ bearing.damping_matrix
+        bearings[name] = np.asarray(springs + dampers + np.asarray(bearing.force))
+    nodes = machine.housing.nodes if machine.housing is not None else {}
+    accelerations = {n: fine.acceleration @ structure.housing_node(n)[:3].T for n in nodes or {}}
+    return MachineMotion(
+        clock=fine.phase - fine.phase[0],
+        weight=fine.weight,
+        mesh=tuple(force),
+        bearing=tuple(bearings),
+        node=tuple(accelerations),
+        mesh_force=joined(force, samples),
+        compression=joined(compression, samples),
+        transmission_error=joined(error, samples),
+        open=joined(apart, samples),
+        bearing_force=joined(bearings, samples, (6,)),
+        acceleration=joined(accelerations, samples, (3,)),
+        cycles=np.array([machine.clock.cycles[name] for name in force]),
+        frequency=machine.clock.frequency,
+    )
+
+
+def _rotation(structure: MachineStructure, mesh: str) -> Array:
+    """Rotation of both gears on the line of action per coordinate (n,) [1 and m]."""
+    gears = structure.machine.meshes[mesh].gears
+    direction = structure.machine.directions[mesh].direction
+    turns = [structure.gear(name)[3] for name in gears]
+    return np.asarray(direction[3] * turns[0] + direction[9] * turns[1])

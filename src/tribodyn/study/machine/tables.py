@@ -1,0 +1,248 @@
+"""Tables of a machine in a case file: shafts, bearings, gears, meshes, housing, operation."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from tribodyn.machine import STEEL
+from tribodyn.model import REQUIRED, choice, file_path, integer, number, text
+from tribodyn.study.case import gears
+from tribodyn.study.case.section import Section, Table
+from tribodyn.study.case.sections import Dynamics, MaterialData
+
+_GUARD = "guards against a wrong unit"
+_RPM = math.pi / 30.0
+_TURN = 2.0 * math.pi
+
+
+def _stiffness(meaning: str, unit: str = "N/m", **more: Any) -> Any:
+    more.setdefault("example", f'"4e8 {unit}"')
+    return number(more.pop("default", None), 0.0, 1e14, _GUARD, unit=unit, meaning=meaning, **more)
+
+
+def _position(meaning: str, default: Any = REQUIRED, **more: Any) -> Any:
+    shown = {"unit": "m", "display_unit": "mm", "example": '"85 mm"', "meaning": meaning}
+    return number(default, -100.0, 100.0, _GUARD, **shown, **more)
+
+
+class ShaftTable(MaterialData):
+    """A ``[shafts.NAME]`` table; its ``sections`` are read apart."""
+
+    density: float = number(STEEL.density, 500.0, 25000.0, "polymers to tungsten", of="density")
+
+
+class BearingTable(Section):
+    """A ``[bearings.NAME]`` table of a linear support; those of a rolling bearing are apart."""
+
+    shaft: str = text(REQUIRED, meaning="shaft that it carries", example='"input"')
+    position: float = _position("position of its mid plane on the shaft")
+    radial_stiffness: tuple[float, ...] | float | None = _stiffness(
+        "stiffness across the shaft, one value or those along y and z", pair=True
+    )
+    axial_stiffness: float = _stiffness("stiffness along the shaft", default=0.0)
+    tilting_stiffness: tuple[float, ...] | float = _stiffness(
+        "stiffness against tilting, one value or those about y and z",
+        "N*m/rad",
+        default=0.0,
+        pair=True,
+    )
+    radial_damping: tuple[float, ...] | float = _stiffness(
+        "damping across the shaft, one value or those along y and z",
+        "N*s/m",
+        default=0.0,
+        pair=True,
+    )
+    axial_damping: float = _stiffness("damping along the shaft", "N*s/m", default=0.0)
+    tilting_damping: tuple[float, ...] | float = _stiffness(
+        "damping against tilting, one value or those about y and z",
+        "N*m*s/rad",
+        default=0.0,
+        pair=True,
+    )
+    node: str | None = text(None, meaning="node of the housing that carries it", example='"seat A"')
+
+
+class GearTable(gears.Gear):
+    """A ``[gears.NAME]`` table of a machine: a gear of a pair, and its place on a shaft."""
+
+    teeth: int = integer(
+        REQUIRED,
+        -1000,
+        1000,
+        "the range of ISO 1328-1; negative for internal teeth",
+        symbol="z",
+        example="27",
+        meaning="number of teeth",
+    )
+    shaft: str = text(REQUIRED, meaning="shaft that carries it", example='"input"')
+    position: float | None = _position(
+        "position of its mid face on the shaft; of a rigid shaft at its node if not given", None
+    )
+    transverse_moment_of_inertia: float | None = number(
+        None,
+        1e-14,
+        1e7,
+        _GUARD,
+        of="moment_of_inertia",
+        meaning="moment of inertia about an axis across the shaft",
+        basis="the solid gear",
+    )
+
+
+#: Keys of ``[gears]`` of a pair that belong to one mesh of a machine.
+_OF_PAIR = (
+    "normal_module",
+    "center_distance",
+    "composite_roughness",
+    "addendum_coefficient",
+    "dedendum_coefficient",
+    "rack_tip_radius_coefficient",
+)
+
+
+class MeshTable(Section):
+    """A ``[meshes.NAME]`` table; its tables of models are read with the pair of gears."""
+
+    fields = {name: gears.Gears.fields[name] for name in _OF_PAIR}  # noqa: RUF012
+
+    normal_pressure_angle: float = number(
+        math.radians(20.0),
+        math.radians(10.0),
+        math.radians(35.0),
+        "basic racks lie between 14.5 and 30 deg",
+        of="normal_pressure_angle",
+    )
+    helix_angle: float = number(
+        0.0,
+        0.0,
+        math.radians(60.0),
+        "the hand gives its sign",
+        unit="rad",
+        display_unit="deg",
+        example='"21 deg"',
+        meaning="helix angle at the reference circle; 0 for spur gears",
+    )
+    hand: str = choice("right", ("right", "left"), meaning="hand of the teeth of the first gear")
+    angle: float = number(
+        0.0,
+        -_TURN,
+        _TURN,
+        "one turn",
+        unit="rad",
+        display_unit="deg",
+        example='"30 deg"',
+        meaning="direction from the axis of the first gear to that of the second, from y towards z",
+    )
+    stiffness: float | None = number(
+        None,
+        1e3,
+        1e13,
+        _GUARD,
+        unit="N/m",
+        example='"5.2e8 N/m"',
+        meaning="constant along the transverse line of action, in place of the model",
+    )
+    offset: float = number(
+        0.0, 0.0, 1.0, "a part of the mesh cycle", meaning="mesh phase when the clock begins"
+    )
+
+
+class MeshDynamics(Section):
+    """Keys of ``[dynamics]`` that a mesh with a constant stiffness has."""
+
+    fields = {  # noqa: RUF012
+        name: Dynamics.fields[name]
+        for name in (
+            "mesh_damping",
+            "mesh_damping_ratio",
+            "backlash",
+            "transmission_error_amplitude",
+            "transmission_error_phase",
+        )
+    }
+
+
+class HousingTable(Section):
+    """The ``[housing]`` table; its nodes are read apart."""
+
+    matrices: str | None = file_path(
+        meaning="NumPy file with K, M, optional C, and names of the nodes", example='"housing.npz"'
+    )
+    stiffness_file: str | None = file_path(meaning="Matrix Market file", example='"K.mtx"')
+    mass_file: str | None = file_path(meaning="Matrix Market file", example='"M.mtx"')
+    damping_file: str | None = file_path(meaning="Matrix Market file", example='"C.mtx"')
+
+
+class OperationTable(Section):
+    """The ``[operation]`` table of a machine."""
+
+    input: str = text(REQUIRED, meaning="shaft whose speed and torque are given", example='"input"')
+    output: str = text(REQUIRED, meaning="shaft where the power leaves", example='"output"')
+    speed: float = number(
+        REQUIRED, -2e5 * _RPM, 2e5 * _RPM, _GUARD, of="speed", meaning="speed of the input"
+    )
+    torque: float = number(
+        REQUIRED, -1e8, 1e8, _GUARD, of="torque", meaning="torque on the input shaft"
+    )
+
+
+class LoadCaseTable(Section):
+    """A ``[[load_cases]]`` table; its share is read apart."""
+
+    name: str | None = text(None, meaning="name of the load case", example='"cruise"')
+    speed: float = OperationTable.fields["speed"]  # type: ignore[assignment]
+    torque: float = OperationTable.fields["torque"]  # type: ignore[assignment]
+
+
+class MotionTable(Section):
+    """The ``[dynamics]`` table of a machine, without the keys of its meshes."""
+
+    modal_damping_ratio: float = number(
+        0.02,
+        0.0,
+        1.0,
+        "gearboxes lie between 0.005 and 0.05",
+        meaning="damping of each mode of shafts, bearings and housing over its critical value",
+    )
+    harmonics: int = integer(
+        8, 1, 64, "more only cost time", meaning="harmonics of each mesh in tables", example="8"
+    )
+    frequency_limit: float | None = number(
+        None,
+        1.0,
+        1e6,
+        _GUARD,
+        unit="Hz",
+        example='"12 kHz"',
+        meaning="highest frequency that the reduced structure meets",
+        basis="six times the highest mesh frequency, at least 5 kHz",
+    )
+
+
+_TABLES: dict[str, type[Section]] = {
+    "shafts": ShaftTable,
+    "bearings": BearingTable,
+    "gears": GearTable,
+    "meshes": MeshTable,
+    "operation": OperationTable,
+    "load_cases": LoadCaseTable,
+    "dynamics": MotionTable,
+}
+
+
+def unit_of(path: tuple[str, ...]) -> str:
+    """SI unit of the key of a machine at a path; empty for a pure number or a text."""
+    *tables, name = path
+    kind: type[Section] | None = _TABLES.get(path[0])
+    if path[0] == "shafts" and name == "sections":
+        return "m"
+    if path[0] == "meshes" and len(tables) == 3:
+        kind, tables = None, [path[2]]
+    outer = Section.case_class.fields
+    kinds = [kind] if kind else []
+    for each in (tables[0] if tables else "", "dynamics"):
+        field = outer.get(each)
+        kinds += [field.kind] if isinstance(field, Table) else []
+    specs = (each.spec(name) for each in kinds)
+    return next((spec.unit for spec in specs if spec is not None), "")

@@ -1,0 +1,131 @@
+"""Case files of machines: parts, defaults, load cases, and messages that name the part."""
+
+import numpy as np
+import pytest
+
+from tribodyn import load_case
+from tribodyn.errors import InputError
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.read import read_any_case
+
+#: Four gears and two ratios, without shafts, bearings or tooth contact.
+SMALL = """
+[gears]
+z1 = { shaft = "in", teeth = 27, face_width = "50 mm" }
+z2 = { shaft = "middle", teeth = 51, face_width = "50 mm" }
+z3 = { shaft = "middle", position = "80 mm", teeth = 23, face_width = "74 mm" }
+z4 = { shaft = "out", teeth = 34, face_width = "74 mm" }
+[meshes.first]
+gears = ["z1", "z2"]
+normal_module = "4.5 mm"
+stiffness = "5.2e8 N/m"
+[meshes.second]
+gears = ["z3", "z4"]
+normal_module = "6.5 mm"
+stiffness = "7e8 N/m"
+[operation]
+input = "in"
+output = "out"
+speed = "1234 rpm"
+torque = "456 N*m"
+"""
+
+
+@pytest.fixture(scope="module")
+def reducer() -> MachineCase:
+    return load_case("two-stage-spur")
+
+
+def test_a_machine_of_four_gears_needs_no_shafts_and_bearings():
+    case = read_any_case(SMALL, "small.toml")
+    machine = case.machine()
+    assert case.implied_shafts == ("in", "middle", "out")
+    assert dict(machine.clock.cycles) == {"first": 51, "second": 23}
+    speed = machine.kinematics.shafts["out"].speed
+    assert speed == pytest.approx(1234 * np.pi / 30 * 27 / 51 * 23 / 34)
+
+
+def test_what_is_written_reads_back(reducer):
+    again = read_any_case(reducer.to_toml(), "again.toml")
+    assert again.to_toml() == reducer.to_toml()
+    assert again.load_cases == reducer.load_cases
+    assert repr(again.machine()) == repr(reducer.machine())
+
+
+def test_numbers_from_python_are_written_with_their_units(reducer):
+    changed = reducer.replace({"operation.speed": 100.0, "meshes.first.backlash": 1e-4})
+    again = read_any_case(changed.to_toml(), "again.toml")
+    assert again.operating_point.speed == 100.0
+    assert again.pair("first", again.operating_point).backlash == 1e-4
+
+
+def test_the_pair_of_a_mesh_has_its_speed_torque_and_driver(reducer):
+    point = reducer.operating_point
+    first, second = (reducer.pair(name, point) for name in ("first", "second"))
+    assert first.operation.speed == pytest.approx(100.0 * np.pi)
+    assert first.operation.torque == pytest.approx(120.0)
+    assert second.operation.speed == pytest.approx(100.0 * np.pi * 23 / 57)
+    assert second.operation.torque == pytest.approx(120.0 * 57 / 23)
+    assert (first.gears.driver, second.gears.driver) == ("pinion", "pinion")
+    braking = reducer.replace({"operation.torque": "-120 N*m"})
+    assert braking.pair("first", braking.operating_point).gears.driver == "wheel"
+
+
+def test_a_mesh_has_models_of_its_own(reducer):
+    changed = reducer.replace({"meshes.second.friction": {"law": "constant", "coefficient": 0.05}})
+    pairs = {n: changed.pair(n, changed.operating_point) for n in ("first", "second")}
+    assert {n: p.friction.law for n, p in pairs.items()} == {
+        "first": "xu-2007",
+        "second": "constant",
+    }
+
+
+def test_load_cases_have_names_and_shares(reducer):
+    loads = {load.name: (load.share, load.torque) for load in reducer.load_cases}
+    assert loads == {"slow": (0.3, 180.0), "cruise": (0.7, 90.0)}
+
+
+@pytest.mark.parametrize(
+    ("changes", "place", "text"),
+    [
+        ({"bearings.A.position": "500 mm"}, "bearings.A.position", "beside the shaft"),
+        ({"bearings.A.shaft": "inputt"}, "bearings.A.shaft", 'Did you mean "input"'),
+        ({"bearings.A.typ": "ball"}, "bearings.A.typ", "has: shaft, position"),
+        ({"bearings.A.type": "ball"}, "bearings.A.type", "deep-groove"),
+        ({"bearings.A.bore_diameter": "30"}, "bearings.A.bore_diameter", "has no unit"),
+        ({"bearings.C": None, "bearings.D": None}, "shafts.middle", "no bearing"),
+        ({"gears.z1.tip_diameter": "50 mm"}, "gears.z1.tip_diameter", "base circle"),
+        ({"gears.z3.position": "65 mm"}, "gears.z3.position", "one place"),
+        ({"gears.z2.face_width": None}, "gears.z2.face_width", "is missing"),
+        ({"meshes.first.center_distance": "500 mm"}, "meshes.first.center_distance", "reach"),
+        ({"meshes.first.gears": ["z1", "z9"]}, "meshes.first.gears", 'no gear "z9"'),
+        ({"meshes.first.gears": "z1"}, "meshes.first.gears", "two gears"),
+        ({"meshes.first.friction.law": "x"}, "meshes.first.friction.law", "Allowed"),
+        ({"friction.law": "x"}, "friction.law", "Allowed"),
+        ({"meshes.first.helix_angle": "5 deg"}, "meshes.first.helix_angle", "stiffness"),
+        ({"meshes.first.stiffness": "5 mm"}, "meshes.first.stiffness", "N/m"),
+        ({"operation.output": "none"}, "operation.output", "there is no shaft"),
+        ({"operation.speed": "5"}, "operation.speed", "has no unit"),
+        ({"lubricant.temperature": "5"}, "lubricant.temperature", "has no unit"),
+        ({"shafts.input.sections": [["5 mm"]]}, "shafts.input.sections", "diameters"),
+        ({"load_cases": [{"share": "120 %"}]}, "load_cases.share", "at most 1"),
+        ({"load_cases": [{"share": 0.6}, {"share": 0.6}]}, "load_cases", "add up to 120 %"),
+        ({"housing.mass_file": "missing.mtx"}, "housing.mass_file", "cannot be read"),
+        ({"planets": {}}, "planets", "unknown key"),
+        ({"meshes": None}, "meshes", "no mesh"),
+    ],
+)
+def test_messages_name_the_part(reducer, changes, place, text):
+    with pytest.raises(InputError) as caught:
+        reducer.replace(changes, by="--set")
+    assert f"{place}: " in str(caught.value)
+    assert text in str(caught.value)
+
+
+def test_problems_of_a_file_have_their_lines():
+    broken = SMALL.replace('"7e8 N/m"', '"7e8 N"').replace("teeth = 34", "teeth = 3.4")
+    with pytest.raises(InputError) as caught:
+        read_any_case(broken, "small.toml")
+    text = str(caught.value)
+    assert "small.toml:14: meshes.second.stiffness" in text
+    assert "small.toml:6: gears.z4.teeth" in text
