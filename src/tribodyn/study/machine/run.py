@@ -67,11 +67,9 @@ def _under_load(case: MachineCase, load: LoadCase, progress: Progress) -> LoadRe
 def balanced_machine(
     case: MachineCase, load: LoadCase, progress: Progress = SILENT
 ) -> tuple[StaticBalance, dict[str, MeshTable]]:
-    """Static balance of a machine with computed teeth, and their mesh tables.
-
-    Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a little,
-    the deflection: teeth and balance are repeated until they agree.
-    """
+    """Static balance of a machine with computed teeth, and their mesh tables."""
+    # Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a
+    # little, the deflection: teeth and balance are repeated until they agree.
     progress.start(f"Tooth contact: {load.name}")
     static = _static(case.machine(load))  # with a usual stiffness of the teeth
     for _ in range(_PASSES):
