@@ -119,7 +119,7 @@ def main(words: Sequence[str] | None = None) -> None:
         f"Runge-Kutta, {periods} periods": integration("rk4", fine),
         f"SciPy DOP853, {periods} periods": scipy,
     }
-    times = race(contenders, 1 if quick else 5)
+    times = race(contenders, 1 if quick else 3)
     rows = [
         (name, f"{1e3 * one.median:.4g}", f"{times['harmonic balance'].faster_than(one):.3g}")
         for name, one in times.items()

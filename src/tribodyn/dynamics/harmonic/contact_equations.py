@@ -70,6 +70,7 @@ class Breaks(NamedTuple):
 
     step: Index
     fraction: Array
+    jump: Array  #: change of the force at the jump (b, s)
     correction: Array  #: correction of the sum of both samples (b, s)
     tangent: Array  #: its derivative by the motion at the jump (b, s, r)
 
@@ -152,9 +153,9 @@ class ContactEquations:
             self.law(rows, frequency, *at, excess, closed) for rows in (self.before, self.after)
         )
         weight = 0.5 - fraction
-        correction = weight[:, None] * (right.force - left.force)
+        jump = right.force - left.force
         tangent = -weight[:, None, None] * (right.stiffness - left.stiffness)
-        return Breaks(step % self.steps, fraction, correction, tangent)
+        return Breaks(step % self.steps, fraction, jump, weight[:, None] * jump, tangent)
 
     def _crossings(self, law: Law, frequency: float, y: Array, rate: Array, edge: float) -> Breaks:
         clearance = edge * law.compression - self.rows.nodes.gap
@@ -185,7 +186,7 @@ class ContactEquations:
         slope = edge * (jump - (fraction - 0.5) * bend) / (end - begin)
         push = -law.push[step if len(law.push) > 1 else 0 * step, contact]
         tangent = slope[:, None, None] * push[:, :, None] * along[:, None, :]
-        return Breaks(step, fraction, total[:, None] * push, tangent)
+        return Breaks(step, fraction, jump[:, None] * push, total[:, None] * push, tangent)
 
 
 def close_contacts(compiled: Compiled, extra: Array) -> tuple[ClosedStructure, Mask]:

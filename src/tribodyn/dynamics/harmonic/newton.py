@@ -15,7 +15,7 @@ import scipy.fft
 
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
 from tribodyn.dynamics.harmonic.contact_equations import Breaks, ContactEquations, Law
-from tribodyn.types import Array, ComplexArray, Mask
+from tribodyn.types import Array, Mask
 
 #: Newton steps, halvings of a step, and steps over which the residual may rise.
 _LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
@@ -181,8 +181,8 @@ def refined(y: Array, steps: int) -> Array:
     return np.asarray(scipy.fft.irfft(scipy.fft.rfft(y, axis=0), steps, axis=0) * (steps / len(y)))
 
 
-def force_spectrum(state: State) -> ComplexArray:
-    """Amplitudes (k, s) of the forces on the closed structure, without the highest harmonic."""
-    spectrum = np.asarray(scipy.fft.rfft(state.force, axis=0, norm="forward"), dtype=complex)
-    spectrum[-1] = 0.0
-    return spectrum
+def uncorrected(state: State) -> Array:
+    """Forces on the closed structure (steps, s) without the corrections for their jumps."""
+    force, breaks = state.force.copy(), state.breaks
+    _scatter(force, breaks, (breaks.fraction - 0.5)[:, None] * breaks.jump)
+    return force
