@@ -129,7 +129,7 @@ def render_machine_report(result: MachineResult) -> str:
             blocks=blocks,
             warnings=[str(warning) for warning in result.warnings],
             assumptions=result.assumptions,
-            citations=[],
+            citations=result.cite().splitlines(),
             provenance=provenance(None),
             case_text=result.case.to_toml(),
             figures=embedded_figures(blocks),

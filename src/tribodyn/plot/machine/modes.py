@@ -13,9 +13,10 @@ from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, roun
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import GRID, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
 from tribodyn.study.machine.modes import energy_shares, relevant_modes
+from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
-    from tribodyn.machine import MachineModes, MachineStructure
+    from tribodyn.machine import MachineStructure
     from tribodyn.study.machine.modes import MachineCampbell
 
 _MM = 1e3
@@ -38,15 +39,21 @@ def _outlines(view: SideView) -> list[Trace]:
     return traces
 
 
-def _deflection(view: SideView, modes: MachineModes, number: int, height: float) -> list[Trace]:
-    """Curves of a mode along every shaft, in the phase of its largest displacement."""
-    structure, shape = modes.structure, modes.shape[number]
-    curves: dict[str, tuple[list[float], list[float]]] = {name: ([], []) for name, *_ in _DRAWN}
-    parts = []
-    for name, shaft in view.machine.shafts.items():
+def _points(structure: MachineStructure) -> dict[str, tuple[Array, Array]]:
+    """Positions on each shaft (p,), and their displacement per coordinate (p, 6, n)."""
+    points = {}
+    for name, shaft in structure.machine.shafts.items():
         at = np.linspace(0.0, shaft.length, _POINTS if shaft.sections else 1)
-        moved = np.array([structure.at(name, float(place)) @ shape for place in at])
-        parts.append((name, at, moved))
+        points[name] = at, np.array([structure.at(name, float(place)) for place in at])
+    return points
+
+
+def _deflection(
+    view: SideView, points: dict[str, tuple[Array, Array]], shape: ComplexArray, height: float
+) -> list[Trace]:
+    """Curves of a mode along every shaft, in the phase of its largest displacement."""
+    curves: dict[str, tuple[list[float], list[float]]] = {name: ([], []) for name, *_ in _DRAWN}
+    parts = [(name, at, motion @ shape) for name, (at, motion) in points.items()]
     largest = max(float(np.abs(moved[:, :3]).max()) for *_, moved in parts) or 1.0
     for name, at, moved in parts:
         start = view.machine.placement.shafts[name][0]
@@ -81,8 +88,9 @@ def machine_modes(structure: MachineStructure) -> Any:
     order = range(count)
     meshes = modes.share_by_kind()["meshes"][:count]
     first = int(np.argmax(meshes))
+    points = _points(structure)
     for number in order:
-        for trace in _deflection(view, modes, number, height):
+        for trace in _deflection(view, points, modes.shape[number], height):
             traces.append({**trace, "visible": number == first})
         shown = [True] * len(outlines)
         shown += [k == number for k in order for _ in _DRAWN]

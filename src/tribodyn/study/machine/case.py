@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from copy import deepcopy
+from copy import copy, deepcopy
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,7 @@ from tribodyn.study.machine.read_parts import (
     unknown_keys,
 )
 from tribodyn.study.machine.tables import (
+    HousingTable,
     LoadCaseTable,
     MeshDynamics,
     MeshTable,
@@ -330,23 +332,23 @@ class MachineCase:
         values["pressure_angle"] = table.normal_pressure_angle
         if (law := self._mesh_dynamics.get(name)) is not None:
             values |= _constant_law(law)
-        if values["center_distance"] is None and name in self.meshes_with_teeth:
-            values["center_distance"] = self._center_distance(name)
+        if values["center_distance"] is None:
+            values["center_distance"] = self._center_distances.get(name)
         return Mesh(self._names(name), **{**values, **fields})
 
-    def _center_distance(self, mesh: str) -> float:
-        """Centre distance of a pair of spur gears from its profile shifts [m]."""
+    @cached_property
+    def _center_distances(self) -> dict[str, float]:
+        """Centre distances of pairs of spur gears from their profile shifts [m]."""
         load = self.operating_point
-        case = pair_case(
-            self.data,
-            mesh,
-            self._names(mesh),
-            self.source,
-            driver=0,
-            speed=abs(load.speed) or 1.0,
-            torque=abs(load.torque) or 1.0,
-        )
-        return float(case.gear_pair.center_distance)
+        run: dict[str, Any] = {"driver": 0, "speed": abs(load.speed) or 1.0}
+        run["torque"] = abs(load.torque) or 1.0
+        return {
+            name: pair_case(
+                self.data, name, self._names(name), self.source, **run
+            ).gear_pair.center_distance
+            for name in self.meshes_with_teeth
+            if self._mesh_tables[name].center_distance is None
+        }
 
     def pair(self, mesh: str, load: LoadCase, misalignment: float = 0.0) -> Case:
         """Pair of a mesh under a load case, as a case of its own; its first gear is the pinion.
@@ -413,6 +415,30 @@ class MachineCase:
                 table[name] = value if by else plain(value)
         source = (self.source or Source()).with_replaced(changes, by or "replace:")
         return MachineCase(source, **data)
+
+    @property
+    def housing_files(self) -> dict[str, str]:
+        """Paths of the files of the housing by key."""
+        table = self.data.get("housing", {})
+        return {key: table[key] for key in HousingTable.fields if isinstance(table.get(key), str)}
+
+    def with_files(self, prefix: str) -> MachineCase:
+        """Copy whose housing files lie beside its case file.
+
+        Parameters
+        ----------
+        prefix : str
+            Before the name of each file.
+
+        Returns
+        -------
+        MachineCase
+        """
+        other = copy(self)
+        names = {k: prefix + Path(path).name for k, path in self.housing_files.items()}
+        housing = {**self.data["housing"], **names} if names else None
+        other.data = {**self.data, "housing": housing} if housing else self.data
+        return other
 
     def to_toml(self) -> str:
         """Write the case file; it reads back to an equal case."""

@@ -19,7 +19,7 @@ _SPEEDS, _TOP, _HARMONICS = 6, 1.3, 3
 #: Modes above this many times the highest excitation are left out of tables and figures.
 _BEYOND = 1.5
 _LEAST_SHARE = 0.05
-MODES_HEAD = ("Mode", "Frequency [Hz]", "Damping [%]", "Energy in", "Excited by")
+MODES_HEAD = ("Mode", "Frequency [Hz]", "Damping [%]", "Energy in", "Nearest excitation")
 
 
 @record

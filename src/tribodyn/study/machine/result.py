@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -139,6 +140,31 @@ class MachineResult:
         """What was assumed because the case does not give it."""
         return self.case.assumptions
 
+    def cite(self, style: str = "text") -> str:
+        """Name the papers behind the tooth contacts of this result.
+
+        Parameters
+        ----------
+        style : str
+            ``"text"`` or ``"bibtex"``.
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        InputError
+            If there is no such style.
+        """
+        from tribodyn.study.pipeline.citations import cite
+
+        names = self.case.meshes_with_teeth
+        texts = [cite(self.case.pair(name, self.operation.load), style) for name in names]
+        separator = "\n\n" if style == "bibtex" else "\n"
+        entries = [entry for text in texts for entry in text.split(separator) if entry.strip()]
+        return separator.join(dict.fromkeys(entries))
+
     def to_xarray(self) -> Any:
         """Motion at the operating point with units.
 
@@ -185,7 +211,10 @@ class MachineResult:
         """
         target = Path(directory)
         with new_directory(target, force=force) as place:
-            (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
+            for path in self.case.housing_files.values():
+                shutil.copyfile(path, place / f"housing-{Path(path).name}")
+            text = self.case.with_files("housing-").to_toml()
+            (place / "case.toml").write_text(text, encoding="utf-8")
             summary = json.dumps(self._summary, indent=2, allow_nan=False) + "\n"
             (place / "summary.json").write_text(summary, encoding="utf-8")
             for name, table in self.operation.tables.items():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.dynamics import harmonic_balance
-from tribodyn.errors import collected, frames
+from tribodyn.errors import collected, frames, warn
 from tribodyn.machine import (
     MachineStructure,
     face_laws,
@@ -74,7 +74,9 @@ def balanced_machine(
     static = _static(case.machine(load))  # with a usual stiffness of the teeth
     for _ in range(_PASSES):
         before = {name: static.meshes[name] for name in case.meshes_with_teeth}
-        laws, tables = _teeth(case, load, {n: mesh.misalignment for n, mesh in before.items()})
+        model_warnings: list[tuple[str, str]] = []  # those of the last pass are in force
+        misalignment = {name: mesh.misalignment for name, mesh in before.items()}
+        laws, tables = _teeth(case, load, misalignment, model_warnings)
         static = _static(case.machine(load, **laws))
         changes = [
             abs(static.meshes[name].misalignment - mesh.misalignment) / mesh.compression
@@ -82,6 +84,8 @@ def balanced_machine(
         ]
         if max(changes, default=0.0) <= _SAME:
             break
+    for code, message in model_warnings:
+        warn(code, message)
     progress.finish()
     return static, tables
 
@@ -99,15 +103,21 @@ def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
 
 
 def _teeth(
-    case: MachineCase, load: LoadCase, misalignment: Mapping[str, float]
+    case: MachineCase,
+    load: LoadCase,
+    misalignment: Mapping[str, float],
+    model_warnings: list[tuple[str, str]],
 ) -> tuple[dict[str, dict[str, Any]], dict[str, MeshTable]]:
     """Force laws of the meshes whose teeth are computed, and their mesh tables."""
     laws, tables = {}, {}
     for name in case.meshes_with_teeth:
         pair = case.pair(name, load, misalignment[name])
-        with locate_errors(pair):
+        with locate_errors(pair), collected() as caught:
             table = mesh_of(pair)
             plane = whole_system(pair, table)
+        model_warnings += [
+            (each.code, f"mesh {name}, {load.name}: {each.message}") for each in caught
+        ]
         functions = table.functions()
         laws[name] = {
             # The static balance and the modes are those about the load.

@@ -21,7 +21,7 @@ STUDY_FILES = ("case.toml", "best.toml", "study.nc", "friction.csv", "report.htm
 BIFURCATION_FILES = ("case.toml", "bifurcation.nc", "bifurcation.html")
 #: What the directory of a machine holds, besides the mesh tables of its meshes.
 MACHINE_FILES = ("case.toml", "summary.json", "motion.nc", "report.html")
-_MESH_TABLES = "mesh-*.nc"
+_OF_PARTS = ("mesh-*.nc", "housing-*")
 #: File by which a directory is known -> all that it may hold.
 _KINDS = {
     "motion.nc": (*MACHINE_FILES, *_ON_REQUEST),
@@ -83,7 +83,8 @@ def _strangers(target: Path) -> str:
         return "is not a directory"
     names = sorted(entry.name for entry in target.iterdir())
     allowed = next((files for mark, files in _KINDS.items() if mark in names), RESULT_FILES)
-    others = [n for n in names if n not in allowed and not fnmatch(n, _MESH_TABLES)]
+    parts = [name for name in names if any(fnmatch(name, each) for each in _OF_PARTS)]
+    others = [name for name in names if name not in allowed and name not in parts]
     if others:
         return f"holds {others[0]}"
     return "" if any(mark in names for mark in _KINDS) else "holds no summary.json"
