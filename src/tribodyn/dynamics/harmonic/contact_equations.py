@@ -148,9 +148,10 @@ class ContactEquations:
         place = self.events * self.steps
         step = np.ceil(place - 1e-6).astype(np.int64) - 1
         fraction = place - step
-        at = [_between(values, step, fraction) for values in (y, rate)]
+        at, pace = (_between(values, step, fraction) for values in (y, rate))
         left, right = (
-            self.law(rows, frequency, *at, excess, closed) for rows in (self.before, self.after)
+            self.law(rows, frequency, at, pace, excess, closed)
+            for rows in (self.before, self.after)
         )
         weight = 0.5 - fraction
         jump = right.force - left.force
@@ -235,9 +236,11 @@ def contact_equations(system: System, structure: ClosedStructure, steps: int) ->
         )
 
     in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
-    sided = [rows(Nodes(*(values[jumping] for values in part))) for part in (before, after)]
-    parts = rows(nodes), *sided, points[jumping]
-    return ContactEquations(system, *parts, *bases, has_gap(nodes), in_gap, steps)
+    left, right = (rows(Nodes(*(values[jumping] for values in part))) for part in (before, after))
+    at = rows(nodes)
+    return ContactEquations(
+        system, at, left, right, points[jumping], *bases, has_gap(nodes), in_gap, steps
+    )
 
 
 def _distinct(values: Array) -> Array:

@@ -180,7 +180,7 @@ class ModalMotion:
 
         def difference(direction: Array) -> Array:
             moved = self.advance(state + step * direction, frequency, 1, extra)[0][0]
-            return (moved - end) / step
+            return np.asarray((moved - end) / step)
 
         if size <= _DENSE:
             values = np.linalg.eigvals(np.stack([difference(row) for row in np.eye(size)], axis=1))

@@ -161,7 +161,7 @@ def simulate(
         progress.advance(count)
     progress.finish()
     progress.start("Forces along the motion")
-    facts = {"engine": engine_name(chosen)}
-    response = build_response(marcher.compiled, mesh_frequency, record[:, :, 0], extra, **facts)
+    name, states = engine_name(chosen), record[:, :, 0]
+    response = build_response(marcher.compiled, mesh_frequency, states, extra, engine=name)
     progress.finish()
     return later(response, skipped / mesh_frequency)
