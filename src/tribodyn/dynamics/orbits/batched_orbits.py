@@ -29,6 +29,7 @@ from tribodyn.dynamics.equations.grid import build_grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, halved_grid
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.harmonic_balance import STEP_LIMIT, TOLERANCE
 from tribodyn.dynamics.orbits.batched_periods import BatchedLanes, march_cycle
 from tribodyn.dynamics.orbits.coordinates import (
     OrbitCoordinates,
@@ -37,7 +38,7 @@ from tribodyn.dynamics.orbits.coordinates import (
 )
 from tribodyn.dynamics.orbits.orbit_map import Balance, image_of, take_drift_out
 from tribodyn.dynamics.orbits.search import APART, GONE, HORIZON, NEWTON_LIMIT
-from tribodyn.dynamics.orbits.steady_state import CLOSE, OTHER, ROUNDS, STEP_LIMIT, TOLERANCE
+from tribodyn.dynamics.orbits.steady_state import CLOSE, OTHER, ROUNDS
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.errors import InputError, collected
 from tribodyn.types import Array, ComplexArray, Index, Mask

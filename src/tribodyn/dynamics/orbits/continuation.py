@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.nodes import lowest_of_each_law
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.harmonic_balance import TOLERANCE
 from tribodyn.dynamics.orbits.continuation_path import (
     BranchPoint,
     Family,
@@ -32,7 +33,6 @@ from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
-from tribodyn.dynamics.orbits.steady_state import TOLERANCE
 from tribodyn.dynamics.time.response import Response, build_response, sample_extremes
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, require_positive, warn
