@@ -14,9 +14,9 @@ SHEAR = STEEL.young_modulus / 2.6
 CONE = Section(0.08, 0.05, 0.01, 0.03, 0.02)
 
 
-def fixed(matrices, held):
+def fixed(matrices, clamped):
     """Matrices without the coordinates that are held."""
-    free = np.setdiff1d(np.arange(matrices[0].shape[0]), held)
+    free = np.setdiff1d(np.arange(matrices[0].shape[0]), clamped)
     return [matrix[np.ix_(free, free)] for matrix in matrices]
 
 

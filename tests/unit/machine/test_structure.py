@@ -139,8 +139,8 @@ def test_statics_of_the_reduced_machine_are_exact(full, reduced):
     for structure in (full, reduced):
         direction, load = structure.mesh("first"), structure.force
         stiffness = structure.stiffness + 5.2e8 * np.outer(direction, direction)
-        held = np.block([[stiffness, structure.balance[:, None]], [structure.balance, 0.0]])
-        moved = np.linalg.solve(held, np.append(load, 0.0))
+        bordered = np.block([[stiffness, structure.balance[:, None]], [structure.balance, 0.0]])
+        moved = np.linalg.solve(bordered, np.append(load, 0.0))
         assert abs(moved[-1]) < 1e-6  # the torques balance already
         deflections.append([structure.gear(gear) @ moved[:-1] for gear in ("z1", "z2")])
     np.testing.assert_allclose(deflections[1], deflections[0], rtol=1e-6, atol=1e-12)
@@ -272,14 +272,14 @@ def test_motions_of_a_rigid_shaft():
 
 def test_contacts_follow_the_clock_and_the_torques_balance():
     meshes = two_stage_parts()["meshes"]
-    given = {
+    meshed = {
         "first": Mesh(meshes["first"].gears, 4.5e-3, 21 * DEGREE, "right", 0.190, 30 * DEGREE,
                       stiffness=lambda x: 4e8 * (1.0 + 0.1 * np.cos(2 * np.pi * x)),
                       error=1e-6, gap=4e-5),
         "second": Mesh(meshes["second"].gears, 6.5e-3, 10 * DEGREE, "left", 0.190, -20 * DEGREE,
                        stiffness=5e8, damping=2600.0, offset=0.31, events=(0.0, 0.4)),
     }  # fmt: skip
-    machine = two_stages(meshes=given)
+    machine = two_stages(meshes=meshed)
     motion = system(machine)
     first, second = motion.contacts
     assert [first.cycles, second.cycles, second.offset] == [51, 23, 0.31]

@@ -9,18 +9,16 @@ from fractions import Fraction
 
 import numpy as np
 
-from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.errors import Problem
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.shaft_graph import ShaftGraph, listed
-from tribodyn.machine.mesh import Mesh
+from tribodyn.machine.mesh import Mesh, mean_over_phase
 
 #: Mesh stiffness per face width by which loops share where none is given [Pa].
 _USUAL_STIFFNESS = 14e9
 #: Share of the torque below which a mesh of a loop is unloaded.
 _ROUNDING = 1e-9
-_PHASES = (np.arange(64) + 0.5) / 64
 
 
 @dataclass(frozen=True)
@@ -207,12 +205,7 @@ def mean_stiffness(mesh: Mesh, gears: tuple[Gear, Gear]) -> float:
     """Mean mesh stiffness [N/m]; without data the usual 14 N/(mm um) over the common face."""
     if mesh.stiffness is None:
         return _USUAL_STIFFNESS * min(gear.face_width for gear in gears)
-    return mean_of(mesh.stiffness)
-
-
-def mean_of(entry: Entry) -> float:
-    """Mean of an entry over the phase of its mesh."""
-    return float(np.mean(entry(_PHASES) if callable(entry) else np.asarray(entry)))
+    return mean_over_phase(mesh.stiffness)
 
 
 def _conductance(mesh: Mesh, gears: Mapping[str, Gear], ratios: Mapping[str, Fraction]) -> float:

@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import Argument, InputError, real_numbers
 from tribodyn.machine.fields import check_number
-from tribodyn.machine.graph.kinematics import mean_of, mean_stiffness
+from tribodyn.machine.graph.kinematics import mean_stiffness
 from tribodyn.machine.machine import Machine
+from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.types import Array
 
 #: Points over the face: an odd number, for the rule of Simpson.
@@ -172,5 +173,5 @@ def face_laws(machine: Machine) -> dict[str, FaceLaw]:
     for name, mesh in machine.meshes.items():
         gears = machine.gears[mesh.gears[0]], machine.gears[mesh.gears[1]]
         width = min(gear.face_width for gear in gears)
-        laws[name] = FaceLaw(mean_stiffness(mesh, gears), width, error=mean_of(mesh.error))
+        laws[name] = FaceLaw(mean_stiffness(mesh, gears), width, error=mean_over_phase(mesh.error))
     return laws

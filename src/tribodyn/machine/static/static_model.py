@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.machine.bearing import HELD, Bearing
-from tribodyn.machine.graph.kinematics import mean_of, mean_stiffness
+from tribodyn.machine.graph.kinematics import mean_stiffness
 from tribodyn.machine.machine import Machine
+from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
 
@@ -67,7 +68,7 @@ class StaticModel:
             return self.laws[name]
         mesh = self.machine.meshes[name]
         first, second = (self.machine.gears[gear] for gear in mesh.gears)
-        stiffness, error = mean_stiffness(mesh, (first, second)), mean_of(mesh.error)
+        stiffness, error = mean_stiffness(mesh, (first, second)), mean_over_phase(mesh.error)
 
         def linear(compression: float, slope: float) -> tuple[float, float, ArrayLike]:
             return stiffness * (compression - error), 0.0, ((stiffness, 0.0), (0.0, 0.0))
