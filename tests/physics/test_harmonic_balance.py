@@ -16,7 +16,7 @@ from tribodyn.dynamics import (
     harmonic_balance,
     steady_state,
 )
-from tribodyn.errors import InputError, ModelWarning, quiet
+from tribodyn.errors import ComputationError, InputError, ModelWarning, quiet
 
 CASES = [
     (1, {"friction": True}, None, 0.1),
@@ -202,6 +202,13 @@ def test_a_motion_that_does_not_repeat_names_the_contact():
     assert any(
         "Contact 0 has the largest residual" in text or "Contact 1 has" in text for text in messages
     )
+
+
+def test_a_mode_without_damping_at_a_harmonic_is_refused():
+    machine = System([[1.0]], [[0.0]], [[0.0]], [1.0], [Contact([1.0], 4.0)])
+    with pytest.raises(ComputationError, match=r"0.31831 Hz has no damping.*harmonic 1"):
+        harmonic_balance(machine, 1.0 / np.pi)
+    assert harmonic_balance(machine, 1.1 / np.pi).converged
 
 
 def test_arguments_are_checked():

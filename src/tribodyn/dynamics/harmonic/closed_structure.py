@@ -17,10 +17,13 @@ import numpy as np
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates
 from tribodyn.dynamics.orbits.orbit_map import Balance
+from tribodyn.errors import ComputationError, Problem
 from tribodyn.types import Array, ComplexArray
 
 #: Condition of the matrix of modes above which equations are solved per frequency instead.
 _ILL_CONDITIONED = 1e8
+#: Damping ratio, and distance of a mode from a harmonic over its frequency, that are none.
+_UNDAMPED = 1e-12
 #: Frequencies whose matrices are factorized together.
 _CHUNK = 64
 
@@ -90,6 +93,20 @@ class ClosedStructure:
             for at in np.split(np.arange(omega.size), np.arange(_CHUNK, omega.size, _CHUNK))
         ]
         return np.concatenate(parts)
+
+    def refuse_resonance(self, omega: Array) -> None:
+        """Refuse a mode without damping whose frequency is one of these."""
+        values = np.linalg.eigvals(self.matrix) if self.modes is None else self.modes[0]
+        still = np.abs(values.real) <= _UNDAMPED * np.abs(values)
+        for value in np.abs(values[still & (values.imag > 0.0)]):
+            order = int(np.argmin(np.abs(omega - value)))
+            if abs(omega[order] - value) <= _UNDAMPED * value:
+                what = f"a mode of {value / (2.0 * np.pi):.6g} Hz has no damping"
+                why = (
+                    f"It is harmonic {order} of the clock, so that its motion grows without bounds"
+                )
+                remedy = "Give System.damping or Contact.damping, or another frequency"
+                raise ComputationError(Problem(what, "System.damping", why, remedy))
 
     def receptances(self, omega: Array) -> ComplexArray:
         """Motions at the contacts per force there, (k, r, s) [s^2]; the first frequency is zero."""

@@ -57,6 +57,7 @@ class Residual:
         self.structure, self.contacts, self.frequency = structure, contacts, frequency
         steps = contacts.steps
         self.omega: Array = 2.0 * np.pi * frequency * np.arange(steps // 2 + 1.0)
+        structure.refuse_resonance(self.omega)
         self.receptances = structure.receptances(self.omega)
         self.receptances[-1] = 0.0  # the highest harmonic has no phase
         self._differentiate = 1j * self.omega[:, None]
