@@ -129,3 +129,28 @@ def test_problems_of_a_file_have_their_lines():
     text = str(caught.value)
     assert "small.toml:14: meshes.second.stiffness" in text
     assert "small.toml:6: gears.z4.teeth" in text
+
+
+def test_a_case_from_python_takes_numbers_in_si():
+    shaft = {"sections": [[0.1, 0.04], ["100 mm", 0.05, 0.0]]}
+    bearings = {
+        f"{name}{end}": {"shaft": name, "position": at, "radial_stiffness": [4e8, 5e8]}
+        for name in ("in", "out")
+        for end, at in (("left", 0.0), ("right", 0.2))
+    }
+    case = MachineCase(
+        shafts={"in": shaft, "out": shaft},
+        bearings=bearings,
+        gears={
+            "z1": {"shaft": "in", "position": 0.1, "teeth": 27, "face_width": 0.02},
+            "z2": {"shaft": "out", "position": 0.1, "teeth": 51, "face_width": 0.02},
+        },
+        meshes={"first": {"gears": ["z1", "z2"], "normal_module": 4.5e-3, "stiffness": 4e8}},
+        operation={"input": "in", "output": "out", "speed": 100.0, "torque": 50.0},
+        load_cases=[{"share": 0.5, "torque": 25.0}],
+    )
+    assert case.shafts["in"].length == 0.2
+    assert case.bearings["inleft"].stiffness_matrix[2, 2] == 5e8
+    again = read_any_case(case.to_toml(), "again.toml")
+    assert again.to_toml() == case.to_toml()
+    assert again.load_cases[0].torque == 25.0

@@ -15,7 +15,7 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.machine import Bearing, Gear, Housing, Machine, Mesh, Operation, Shaft
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption
-from tribodyn.study.case.user_input import Source, plain, unsound
+from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.pair_cases import (
@@ -26,6 +26,7 @@ from tribodyn.study.machine.pair_cases import (
     pair_case,
 )
 from tribodyn.study.machine.read_parts import (
+    in_si,
     read_bearing,
     read_gear,
     read_shaft,
@@ -121,7 +122,7 @@ class MachineCase:
         if unreadable := list(unsound(data)):
             raise InputError(origin.place(unreadable))
         self.source = source
-        self.data: dict[str, Any] = deepcopy(data) if source is not None else plain(data)
+        self.data: dict[str, Any] = deepcopy(data) if source is not None else in_si(data)
         problems: KeyedProblems = []
         unknown_keys("", data, _TOP, problems)
         self.title: str = str(data.get("title", "Machine"))
@@ -412,7 +413,7 @@ class MachineCase:
             if value is None:
                 table.pop(name, None)
             else:
-                table[name] = value if by else plain(value)
+                table[name] = value if by else in_si(value)
         source = (self.source or Source()).with_replaced(changes, by or "replace:")
         return MachineCase(source, **data)
 

@@ -27,6 +27,17 @@ _PARTS = ("length", "outer_diameter", "inner_diameter", "end_outer_diameter", "e
 _SHARE = re.compile(r"\s*([\d.]+)\s*%\s*")
 
 
+def in_si(data: Any) -> Any:
+    """Mark numbers of tables from Python as SI; lists of numbers as a whole."""
+    if isinstance(data, Mapping):
+        return {str(name): in_si(value) for name, value in data.items()}
+    if isinstance(data, list | tuple) and any(
+        isinstance(x, str | list | tuple | dict) for x in data
+    ):
+        return [in_si(item) for item in data]
+    return data if isinstance(data, str | bool | Plain) else Plain(data)
+
+
 def tables_of(data: Mapping[str, Any], group: str, problems: KeyedProblems) -> dict[str, Any]:
     """Tables of a group by name; anything else in it is a problem."""
     found = data.get(group, {})
@@ -76,7 +87,7 @@ def read_shaft(name: str, body: dict[str, Any], problems: KeyedProblems) -> Shaf
 
 
 def _section(key: str, place: int, row: Any, problems: KeyedProblems) -> Section | None:
-    row = row.value if isinstance(row, Plain) else row
+    row = [Plain(item) for item in row.value] if isinstance(row, Plain) else row
     label = f"sections[{place}]"
     if not isinstance(row, list | tuple) or not 2 <= len(row) <= 5:
         why = "A section has a length, and one to four diameters"
@@ -177,6 +188,7 @@ def read_gear(name: str, body: dict[str, Any], problems: KeyedProblems) -> Gear 
 
 def read_share(key: str, value: Any, problems: KeyedProblems) -> float | None:
     """Share of the time: a fraction, or text with a percent sign."""
+    value = value.value if isinstance(value, Plain) else value
     if isinstance(value, str) and (percent := _SHARE.fullmatch(value)):
         value = float(percent[1]) / 100.0
     valid = isinstance(value, int | float) and not isinstance(value, bool) and 0.0 < value <= 1.0

@@ -44,7 +44,10 @@ def run_machine(
     case: MachineCase, progress: Progress = SILENT, *, stacklevel: int = 2
 ) -> MachineResult:
     """Compute a machine at its operating point and under its load cases."""
-    with collected() as caught:
+    from threadpoolctl import threadpool_limits
+
+    # The matrices of a machine are small: threads of the linear algebra only wait for each other.
+    with collected() as caught, threadpool_limits(1, "blas"):
         points = (case.operating_point, *case.load_cases)
         results = [_under_load(case, load, progress) for load in points]
     unique = {str(warning): warning for warning in caught}

@@ -44,6 +44,8 @@ def _key(name: str) -> str:
 
 def _value(value: Any, unit: str) -> str:
     """Text of a value; a number in SI, as Python gives it, with its unit."""
+    if isinstance(value, Plain) and isinstance(value.value, list | tuple):
+        value = [Plain(item) for item in value.value]
     if isinstance(value, Plain):
         number = isinstance(value.value, float | int) and not isinstance(value.value, bool)
         return f'"{value.value!r} {unit}"' if number and unit else _value(value.value, "")
