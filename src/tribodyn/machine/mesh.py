@@ -104,7 +104,7 @@ class Mesh:
         check_number(self, "normal_module", "m", 0.0, 1.0, above=True)
         check_number(self, "helix_angle", "rad", 0.0, math.radians(60.0))
         if self.hand not in ("right", "left"):
-            what, where = f'hand = "{self.hand}"', Argument("Mesh.hand")
+            what, where = f"hand = {quoted(self.hand)}", Argument("Mesh.hand")
             why = "Hand of the first gear; the other follows"
             raise InputError(what, where, why, "Choose right or left")
         if self.center_distance is not None:
