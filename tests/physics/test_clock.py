@@ -47,11 +47,11 @@ def pair(cycles=1, offset=0.0, *, lag=0.0, gyroscopic=None) -> System:
 
 @pytest.mark.parametrize("cycles", [2, 5])
 def test_several_cycles_in_a_period_are_the_motion_of_one_at_its_own_frequency(cycles):
-    one = steady_state(pair(), 0.3, steps=192)
-    many = steady_state(pair(cycles), 0.3 / cycles, steps=192)
+    motion_of_mesh = steady_state(pair(), 0.3, steps=192)
+    motion_of_period = steady_state(pair(cycles), 0.3 / cycles, steps=192)
     for name in ("position", "contact_force", "deflection"):
-        expected = np.tile(getattr(one, name), (cycles, 1))
-        np.testing.assert_allclose(getattr(many, name), expected, rtol=0, atol=2e-8)
+        expected = np.tile(getattr(motion_of_mesh, name), (cycles, 1))
+        np.testing.assert_allclose(getattr(motion_of_period, name), expected, rtol=0, atol=2e-8)
 
 
 def test_an_offset_is_a_mesh_that_begins_later_in_its_cycle():
@@ -63,12 +63,16 @@ def test_an_offset_is_a_mesh_that_begins_later_in_its_cycle():
 def test_every_engine_follows_the_clock():
     start = ([0.2, 0.1], [0.0, 0.0])
     for method in ("rk4", "dormand-prince", "newmark"):
-        one = simulate(pair(), 0.3, 3, start, steps=384, method=method)
-        many = simulate(pair(3), 0.1, 1, start, steps=384, method=method)
-        np.testing.assert_allclose(many.position, one.position, rtol=0, atol=2e-6)
-    one = simulate_ensemble(pair(), [0.3, 0.35], 3, start, steps=192)
-    many = simulate_ensemble(pair(3), [0.1, 0.35 / 3.0], 1, start, steps=192)
-    np.testing.assert_allclose(many.position, one.position, rtol=0, atol=1e-9)
+        motion_of_mesh = simulate(pair(), 0.3, 3, start, steps=384, method=method)
+        motion_of_period = simulate(pair(3), 0.1, 1, start, steps=384, method=method)
+        np.testing.assert_allclose(
+            motion_of_period.position, motion_of_mesh.position, rtol=0, atol=2e-6
+        )
+    motion_of_mesh = simulate_ensemble(pair(), [0.3, 0.35], 3, start, steps=192)
+    motion_of_period = simulate_ensemble(pair(3), [0.1, 0.35 / 3.0], 1, start, steps=192)
+    np.testing.assert_allclose(
+        motion_of_period.position, motion_of_mesh.position, rtol=0, atol=1e-9
+    )
 
 
 def test_two_meshes_of_a_gearbox_meet_the_printed_motion():
@@ -99,9 +103,9 @@ def test_gyroscopic_moments_split_the_frequencies_of_a_disc():
 
 
 def test_modes_at_a_phase_of_the_clock_are_those_at_the_phase_of_the_mesh():
-    one = natural_modes(pair(), phase=0.6)
-    many = natural_modes(pair(4, 0.2), phase=0.1)
-    np.testing.assert_allclose(many.frequency, one.frequency, rtol=1e-9)
+    modes_of_mesh = natural_modes(pair(), phase=0.6)
+    modes_of_clock = natural_modes(pair(4, 0.2), phase=0.1)
+    np.testing.assert_allclose(modes_of_clock.frequency, modes_of_mesh.frequency, rtol=1e-9)
 
 
 @pytest.mark.parametrize(

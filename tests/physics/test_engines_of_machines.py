@@ -34,8 +34,8 @@ def test_orbits_with_jumps_of_stiffness_and_friction(friction):
 )
 def test_both_motions_behind_a_backlash(start, value):
     system, frequency = hysteresis_system(), SPEED / (2.0 * pi)
-    near = steady_state(system, 0.99 * frequency, start=start, steps=128)
-    motion = harmonic_balance(system, frequency, start=near, steps=2048, stability=True)
+    neighbour_motion = steady_state(system, 0.99 * frequency, start=start, steps=128)
+    motion = harmonic_balance(system, frequency, start=neighbour_motion, steps=2048, stability=True)
     assert motion.converged
     assert alternating_rms(motion.fine, motion.fine.position[:, 0]) == pytest.approx(
         value, rel=3e-6

@@ -115,10 +115,10 @@ def test_responses_of_separate_meshes_add_in_a_linear_machine():
         return harmonic_balance(System(*parts, balance=machine.balance), CLOCK, steps=64).position
 
     still = compression(())
-    both, first, second = (compression(which) - still for which in ((0, 1), (0,), (1,)))
+    joint, first, second = (compression(which) - still for which in ((0, 1), (0,), (1,)))
     elastic = [1, 3, 5, 7]
-    scale = np.abs(both[:, elastic]).max()
-    assert both[:, elastic] == pytest.approx((first + second)[:, elastic], abs=1e-11 * scale)
+    scale = np.abs(joint[:, elastic]).max()
+    assert joint[:, elastic] == pytest.approx((first + second)[:, elastic], abs=1e-11 * scale)
 
 
 @pytest.mark.parametrize("parts", [{}, {"friction": True, "gyroscopic": True}, {"torque": True}])
@@ -157,9 +157,9 @@ def test_small_machine_follows_scipy():
         total = machine.force - machine.stiffness @ q - machine.damping @ v
         for contact in machine.clocked_contacts:
             clock, h = np.array([time * frequency % 1.0]), np.asarray(contact.direction)
-            near = contact.error(clock + 1e-6) - contact.error(clock - 1e-6)
+            error_change = contact.error(clock + 1e-6) - contact.error(clock - 1e-6)
             d = h @ q - contact.error(clock)[0]
-            rate = h @ v - frequency * near[0] / 2e-6
+            rate = h @ v - frequency * error_change[0] / 2e-6
             if abs(d) > contact.gap:
                 spring = contact.stiffness(clock)[0] * (d - np.sign(d) * contact.gap)
                 total = total - h * (spring + contact.damping * rate)

@@ -166,9 +166,9 @@ def test_commands_for_pairs_name_those_for_machines(capsys):
 
 def test_check_shows_speeds_and_torques(capsys):
     assert command("check", "two-stage-spur") == 0
-    shown = capsys.readouterr()
-    assert "meshes.second.mesh_frequency" in shown.out
-    assert "423.684 Hz" in shown.out
+    captured = capsys.readouterr()
+    assert "meshes.second.mesh_frequency" in captured.out
+    assert "423.684 Hz" in captured.out
 
 
 @pytest.mark.slow
