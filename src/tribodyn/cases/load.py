@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,20 +16,24 @@ if TYPE_CHECKING:
     from tribodyn.study import Case
     from tribodyn.study.machine.case import MachineCase
 
+#: Endings of gearbox models of other programs.
+_REXS = (".rexs", ".rexsj", ".rexsz")
+
 
 def load_case(name_or_path: str | os.PathLike[str]) -> Any:
-    """Load a built-in case or a case file.
+    """Load a built-in case, a case file, or a gearbox model of another program.
 
     Parameters
     ----------
     name_or_path : str or path
-        Name from :func:`tribodyn.cases`, or path of a TOML file. A file that has the name of a
-        built-in case is reached as ``./name``.
+        Name from :func:`tribodyn.cases`, or path of a TOML file or of a REXS model (``.rexs``,
+        ``.rexsj``, ``.rexsz``). A file that has the name of a built-in case is reached as
+        ``./name``.
 
     Returns
     -------
     Case or MachineCase
-        A machine, where the file has ``[meshes.NAME]``.
+        A machine, where the file has ``[meshes.NAME]`` or is a REXS model of another program.
 
     Raises
     ------
@@ -40,6 +45,24 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Any:
     >>> load_case("fzg-roughness").operation.torque
     90.0
     """
+    return load_changed_case(name_or_path, {})
+
+
+def load_changed_case(
+    name_or_path: str | os.PathLike[str], changes: Mapping[str, Any], by: str = ""
+) -> Any:
+    """Load a case with values changed by dotted key; a REXS model may need some to be a case."""
+    path = Path(os.fspath(name_or_path))
+    if path.suffix.lower() in _REXS and path.is_file():
+        from tribodyn.exchange.gearbox import read_rexs
+        from tribodyn.exchange.to_machine import case_from_model
+
+        return case_from_model(read_rexs(path), dict(changes), by)
+    case = _load_toml(name_or_path)
+    return case.replace(changes, by=by) if changes else case
+
+
+def _load_toml(name_or_path: str | os.PathLike[str]) -> Any:
     from tribodyn.cases.catalogue import with_known_reasons
     from tribodyn.study.case.read import read_text
     from tribodyn.study.machine.case import MachineCase

@@ -22,7 +22,9 @@ Output = Path | None
 Flag = Annotated[bool, Parameter(negative="")]
 Words = Annotated[list[str] | None, Parameter(name="--set", negative="")]
 # These mean the same in every command, so their help texts are defined here once.
-CaseName = Annotated[str, Parameter(help="Built-in case or path of a case file.")]
+CaseName = Annotated[
+    str, Parameter(help="Built-in case, or path of a case file or of a REXS model.")
+]
 Force = Annotated[bool, Parameter(negative="", help="Replace an earlier result in that directory.")]
 Settings = Annotated[
     list[str] | None,
@@ -96,11 +98,10 @@ def changed_case(name_or_path: str, settings: Sequence[str]) -> Case:
 
 def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | MachineCase:
     """Load the case of a gear pair or of a machine and change values."""
-    from tribodyn.cases.load import load_case
+    from tribodyn.cases.load import load_changed_case
 
-    case: Case | MachineCase = load_case(name_or_path)
-    changes = read_changes(settings)
-    return case.replace(changes, by="--set") if changes else case
+    case: Case | MachineCase = load_changed_case(name_or_path, read_changes(settings), by="--set")
+    return case
 
 
 RANGE = 'Write "operation.speed=400..3500 rpm:60"'

@@ -6,6 +6,8 @@
 | ``gearbox`` | stages and load cases of a REXS model, with remarks |
 | ``flank_forms`` | reliefs and crownings of the flanks |
 | ``to_case`` | case of a spur stage, with the assumed values |
+| ``to_machine`` | machine of all stages, with shafts, bearings and load cases |
+| ``machine_parts`` | shafts, gears and bearings at their positions |
 | ``tables`` | tables and figures of a result as CSV and JSON |
 | ``write`` | export of a case as a REXS model, without loss |
 """
@@ -14,6 +16,7 @@ from tribodyn.arguments import guard
 from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, StageGear, read_rexs
 from tribodyn.exchange.tables import write_tables
 from tribodyn.exchange.to_case import case_from_rexs
+from tribodyn.exchange.to_machine import machine_from_rexs
 from tribodyn.exchange.write import write_rexs
 
 __all__ = [
@@ -22,6 +25,7 @@ __all__ = [
     "Stage",
     "StageGear",
     "case_from_rexs",
+    "machine_from_rexs",
     "read_rexs",
     "write_rexs",
     "write_tables",

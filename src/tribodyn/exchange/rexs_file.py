@@ -41,9 +41,9 @@ _MOST = 100_000
 
 @dataclass(frozen=True)
 class Value:
-    """One value of a component, as written: a number, a flag, a text, or None for an array."""
+    """One value of a component, as written: a number, a flag, a text, numbers, or None."""
 
-    content: float | bool | str | None
+    content: float | bool | str | tuple[float, ...] | None
     unit: str = ""
 
 
@@ -62,17 +62,36 @@ class Component:
     def number(self, name: str, unit: str) -> float | None:
         """A finite number in an SI unit; None where the file has none."""
         value = self.values.get(name)
-        if value is None or value.content is None or value.content == "":
+        if value is None or isinstance(value.content, tuple) or value.content in (None, ""):
             return None
         content = value.content
         if isinstance(content, bool | str) or not math.isfinite(content):
             raise InputError(f"{name} = {content}", str(self), "It is not a number", _REMEDY)
-        written = "".join(value.unit.split())
+        return self._parsed(name, content, value.unit, unit)
+
+    def vector(self, name: str, unit: str) -> tuple[float, ...] | None:
+        """Three finite numbers in an SI unit; None where the file has none."""
+        value = self.values.get(name)
+        if value is None or not isinstance(value.content, tuple) or len(value.content) != 3:
+            return None
+        if not all(map(math.isfinite, value.content)):
+            raise InputError(f"{name} = {value.content}", str(self), "It is not finite", _REMEDY)
+        return tuple(self._parsed(name, item, value.unit, unit) for item in value.content)
+
+    def text(self, name: str) -> str:
+        """Return a text, also of digits only; empty where the file has none."""
+        content = self.values[name].content if name in self.values else None
+        if isinstance(content, float):
+            return f"{content:.12g}"
+        return content if isinstance(content, str) else ""
+
+    def _parsed(self, name: str, content: Any, unit: str, si_unit: str) -> float:
+        written = "".join(unit.split())
         written = _UNITS.get(written, written)
         try:
-            return units.parse(f"{content!r} {written}".strip(), unit)
+            return units.parse(f"{content!r} {written}".strip(), si_unit)
         except units.UnitProblemError as error:
-            what = f'{name} = {content:g} "{value.unit}"'
+            what = f'{name} = {content:g} "{unit}"'
             raise InputError(what, str(self), str(error), _REMEDY) from None
 
 
@@ -209,12 +228,17 @@ def _xml_components(parent: ElementTree.Element | None) -> list[dict[str, Any]]:
         {
             **component.attrib,
             "attributes": [
-                {**a.attrib, "text": None if len(a) else (a.text or "").strip()}
+                {**a.attrib, "text": _xml_array(a) if len(a) else (a.text or "").strip()}
                 for a in component.findall("attribute")
             ],
         }
         for component in elements
     ]
+
+
+def _xml_array(attribute: ElementTree.Element) -> list[str] | None:
+    array = attribute.find("array")
+    return None if array is None else [(item.text or "").strip() for item in array.iter("c")]
 
 
 def model_of(tree: dict[str, Any], place: str) -> RexsFile:
@@ -293,11 +317,16 @@ def _id(item: dict[str, Any], place: str) -> int:
         raise InputError(Problem(what, place, "", _REMEDY)) from None
 
 
-def _content(attribute: dict[str, Any]) -> float | bool | str | None:
-    """Number, flag or text; XML writes all of them as text."""
+def _content(attribute: dict[str, Any]) -> float | bool | str | tuple[float, ...] | None:
+    """Number, flag, text or list of numbers; XML writes all of them as text."""
     others = [v for name, v in attribute.items() if name not in ("id", "unit")]
     content = others[0] if len(others) == 1 else None
-    if isinstance(content, bool) or content is None or isinstance(content, list | dict):
+    if isinstance(content, list):
+        try:
+            return tuple(map(float, content))
+        except (TypeError, ValueError, OverflowError):
+            return None
+    if isinstance(content, bool) or content is None or isinstance(content, dict):
         return content if isinstance(content, bool) else None
     if isinstance(content, str) and content in ("true", "false"):
         return content == "true"

@@ -17,7 +17,7 @@ from tribodyn.study.case.read import read_case
 
 #: Values closer than this are the same: files hold decimal fractions of millimetres.
 _SAME = 1e-9
-_MODELS = {
+MODELS = {
     "film.model": "moes",
     "stiffness.model": "fe2d",
     "friction.law": "xu-2007",
@@ -25,7 +25,7 @@ _MODELS = {
     "dynamics.mesh_law": "force-law",
 }
 _OIL_TEMPERATURE = 333.15
-_ASSUMED = {
+ASSUMED = {
     "dynamics.bearing_stiffness": (500e6, "a usual stiffness of shaft and bearings together"),
     "dynamics.backlash": (0.1e-3, "a usual backlash"),
     "gears.driver": ("pinion", "the file does not specify where a torque comes from"),
@@ -34,7 +34,7 @@ _ASSUMED = {
 }
 #: Density of mineral oil at 15 degC [kg/m^3].
 _DENSITY = 880.0
-_NOT_THERE = "not in the REXS file; "
+NOT_THERE = "not in the REXS file; "
 
 
 def case_from_rexs(
@@ -79,13 +79,10 @@ def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]
     if "lubricant.name" in changes:  # another oil than that of the file
         file_values = {key: v for key, v in file_values.items() if not key.startswith("lubricant.")}
         notes = {key: note for key, note in notes.items() if not key.startswith("lubricant.")}
-    for unit in model.file.of_kind("gear_unit"):
-        if WHOLE_CASE in unit.values:
-            stored_case = read_case(
-                str(unit.values[WHOLE_CASE].content), f"{model.path}: {WHOLE_CASE}"
-            )
-            return _updated(model, stored_case, file_values).replace(changes)
-    data: dict[str, Any] = {**file_values, **_MODELS, **changes}
+    if text := stored_case_text(model):
+        stored_case = read_case(text, f"{model.path}: {WHOLE_CASE}")
+        return _updated(model, stored_case, file_values).replace(changes)
+    data: dict[str, Any] = {**file_values, **MODELS, **changes}
     for key in ("operation.speed", "operation.torque"):
         if key not in data:
             what = f"the speed and torque of stage {stage.id} are not known"
@@ -93,18 +90,23 @@ def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]
             raise InputError(what, model.path, "No load case specifies them", remedy)
     oil = any(key.startswith("lubricant.") for key in data)
     rough = any("roughness" in key for key in data)
-    for key, (value, reason) in _ASSUMED.items():
+    for key, (value, reason) in ASSUMED.items():
         if key not in data and not (oil and key.startswith("lubricant.")):
             data[key] = value
-            notes[key] = _NOT_THERE + reason
+            notes[key] = NOT_THERE + reason
     if not rough:
         for gear in ("pinion", "wheel"):
             data[f"gears.{gear}.roughness_ra"] = 0.4e-6
-            notes[f"gears.{gear}.roughness_ra"] = _NOT_THERE + "ground flanks"
+            notes[f"gears.{gear}.roughness_ra"] = NOT_THERE + "ground flanks"
     title = f"Stage {stage.id}: {stage.gear_1.name or 'gear 1'}, {stage.gear_2.name or 'gear 2'}"
     origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
     assumed = {key: note for key, note in notes.items() if key not in changes}
-    return Case(title=title, origin=origin, **_nested(data), assumed=assumed)
+    return Case(title=title, origin=origin, **nested(data), assumed=assumed)
+
+
+def stored_case_text(model: GearboxModel) -> str:
+    """Text of the case that tribodyn stored in the file; empty in files of other programs."""
+    return next((u.text(WHOLE_CASE) for u in model.file.of_kind("gear_unit")), "")
 
 
 def _kelvin(value: Any) -> float:
@@ -145,8 +147,8 @@ def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, An
         "gears.normal_module": pinion.normal_module,
         "gears.normal_pressure_angle": pinion.normal_pressure_angle,
         "gears.center_distance": stage.center_distance,
-        **_rack(model, pinion, wheel),
-        **_material(model, pinion),
+        **rack_values(model, pinion, wheel),
+        **material_values(model, pinion.id, model.shaft_of(pinion.id)),
     }
     for name, gear in (("pinion", pinion), ("wheel", wheel)):
         data |= {
@@ -167,11 +169,11 @@ def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, An
         data["operation.torque"] = load.torques[shaft]
         data["operation.speed_of"] = "pinion"
         data["gears.driver"] = _driver(model, stage, load)
-    oil, notes = _oil(model, load)
+    oil, notes = oil_values(model, load)
     return data | oil, notes
 
 
-def _rack(model: GearboxModel, pinion: StageGear, wheel: StageGear) -> dict[str, float]:
+def rack_values(model: GearboxModel, pinion: StageGear, wheel: StageGear) -> dict[str, float]:
     """Basic rack of both gears if the same rack-shaped tool cuts them."""
     tools = []
     for gear in (pinion, wheel):
@@ -190,10 +192,11 @@ def _rack(model: GearboxModel, pinion: StageGear, wheel: StageGear) -> dict[str,
     return {}
 
 
-def _material(model: GearboxModel, gear: StageGear) -> dict[str, float]:
-    for origin in (gear.id, model.shaft_of(gear.id)):
+def material_values(model: GearboxModel, *origins: int | None) -> dict[str, float]:
+    """Material of the first of some components that has one."""
+    for origin in origins:
         for relation in model.file.related("reference", origin=origin) if origin else ():
-            part = model.file.components[relation.of("referenced") or gear.id]
+            part = model.file.components[relation.of("referenced") or origin or 0]
             if part.kind == "material":
                 properties = {
                     "material.youngs_modulus": part.number("elastic_modulus", "Pa"),
@@ -221,7 +224,7 @@ def _driver(model: GearboxModel, stage: Stage, load: Load) -> str:
     return "pinion" if (nearest == pinion.id) != load.driven else "wheel"
 
 
-def _oil(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str]]:
+def oil_values(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str]]:
     """Oil at its temperature, from its viscosities at 40 and 100 degC."""
     for part in model.file.of_kind("lubricant"):
         cold = part.number("viscosity_at_40_degree_celsius", "m^2/s")
@@ -242,12 +245,12 @@ def _oil(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str
         )
         data = {f"lubricant.{key}": getattr(oil, key) for key in keys}
         estimate = "as of a mineral oil, from the viscosity by AGMA 925"
-        notes = {"lubricant.pressure_viscosity_coefficient": _NOT_THERE + estimate}
+        notes = {"lubricant.pressure_viscosity_coefficient": NOT_THERE + estimate}
         if not load.oil_temperature:
-            reason = _ASSUMED["lubricant.temperature"][1]
-            notes["lubricant.temperature"] = _NOT_THERE + str(reason)
+            reason = ASSUMED["lubricant.temperature"][1]
+            notes["lubricant.temperature"] = NOT_THERE + str(reason)
         if "density_at_15_degree_celsius" not in part.values:
-            notes["lubricant.density"] = _NOT_THERE + "a usual one of mineral oil"
+            notes["lubricant.density"] = NOT_THERE + "a usual one of mineral oil"
         return {key: value for key, value in data.items() if value is not None}, notes
     return {}, {}
 
@@ -273,7 +276,8 @@ def _same(first: Any, second: Any) -> bool:
     return bool(first == second)
 
 
-def _nested(data: dict[str, Any]) -> dict[str, Any]:
+def nested(data: dict[str, Any]) -> dict[str, Any]:
+    """Tables of dotted keys."""
     tree: dict[str, Any] = {}
     for key, value in data.items():
         place = tree

@@ -77,7 +77,8 @@ def _check_machine(case: MachineCase, json: bool) -> None:
     else:
         say(f"{case.title}\n{figures(summary_rows(values))}")
     for assumption in case.assumptions:
-        tell(f"assumed: {assumption.key}: {assumption.value}, {assumption.reason}")
+        text = ", ".join(filter(None, (assumption.value, assumption.reason)))
+        tell(f"assumed: {assumption.key}: {text}")
     tell("The case is in order.")
 
 

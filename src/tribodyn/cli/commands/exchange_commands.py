@@ -25,11 +25,12 @@ def import_(
     out: Path | None = None,
     stage: int | None = None,
     load_case: int | None = None,
+    machine: Flag = False,
     set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
     force: Flag = False,
     json: Flag = False,
 ) -> None:
-    """List the stages and loads of a REXS gearbox model, and write a case of one stage.
+    """List the stages and loads of a REXS gearbox model; write a case of one stage or of all.
 
     Parameters
     ----------
@@ -41,6 +42,8 @@ def import_(
         Number of the stage, where there are several.
     load_case : int
         Number of the load case; the first by default.
+    machine : bool
+        Write the machine of all stages, with its shafts, bearings and load cases.
     set_ : list of str
         Values to add or to change in the case, for example "operation.torque=120 N*m".
     force : bool
@@ -48,9 +51,13 @@ def import_(
     json : bool
         Write one JSON object in SI to stdout.
     """
-    from tribodyn.exchange import case_from_rexs, read_rexs
+    from tribodyn.exchange import case_from_rexs, machine_from_rexs, read_rexs
     from tribodyn.study.pipeline.save import write_file
 
+    if machine and (out is None or stage is not None):
+        what = "--machine writes the case of all stages"
+        remedy = "Add --out FILE, and leave out --stage"
+        raise InputError(what, "tribodyn import", "", remedy)
     model = read_rexs(file)
     if out is None:
         if json:
@@ -59,10 +66,15 @@ def import_(
             say(_tables(model))
             _show_remarks(model)
             tell(f"To compute a stage: tribodyn import {file} --stage NUMBER --out case.toml")
+            tell(f"To compute all of them: tribodyn run {file}")
         return
     check_file(out, force)
-    case = case_from_rexs(model, stage, load_case, changes=read_changes(set_ or []))
-    write_file(out, case.to_toml())
+    changes = read_changes(set_ or [])
+    if machine:
+        text = machine_from_rexs(model, load_case, changes=changes, by="--set").to_toml()
+    else:
+        text = case_from_rexs(model, stage, load_case, changes=changes).to_toml()
+    write_file(out, text)
     if json:
         say_json({"path": str(out)})
     else:

@@ -14,7 +14,7 @@ import numpy as np
 from tribodyn.errors import InputError, Problem
 from tribodyn.machine import Bearing, Gear, Housing, Machine, Mesh, Operation, Shaft
 from tribodyn.study.case.case import Case
-from tribodyn.study.case.provenance import Assumption
+from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.machine.housing_files import read_housing
@@ -44,10 +44,17 @@ from tribodyn.study.machine.tables import (
     OperationTable,
     ShaftTable,
 )
+from tribodyn.study.machine.user_tables import (
+    changed_tables,
+    stated_assumptions,
+)
 from tribodyn.study.machine.write import machine_toml
 
 _GROUPS = ("shafts", "bearings", "gears", "meshes")
-_TOP = ("title", "origin", *_GROUPS, "housing", "operation", "load_cases", "dynamics", *SHARED)
+_TOP = (
+    *("title", "origin", *_GROUPS, "housing", "operation", "load_cases", "dynamics", *SHARED),
+    "assumed",
+)
 #: Keys of a mesh that its object takes as they are.
 _OF_MESH = (
     "normal_module",
@@ -127,6 +134,7 @@ class MachineCase:
         unknown_keys("", data, _TOP, problems)
         self.title: str = str(data.get("title", "Machine"))
         self.origin: str | None = data.get("origin")
+        problems += reason_faults(data.get("assumed", {}))
         groups = {group: tables_of(self.data, group, problems) for group in _GROUPS}
         self.gears: dict[str, Gear] = _read(groups, "gears", read_gear, problems)
         self._add_shafts(groups["shafts"])
@@ -262,7 +270,7 @@ class MachineCase:
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
-        """What is assumed because the case does not give it."""
+        """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
         texts = {
             f"shafts.{n}": ("rigid", "a shaft without sections")
             for n, shaft in self.shafts.items()
@@ -280,7 +288,8 @@ class MachineCase:
         }
         if self.housing is None:
             texts["housing"] = ("rigid", "without [housing]")
-        return tuple(Assumption(k, value, "default", why) for k, (value, why) in texts.items())
+        defaults = (Assumption(k, value, "default", why) for k, (value, why) in texts.items())
+        return (*stated_assumptions(self.data), *defaults)
 
     @property
     def meshes(self) -> tuple[str, ...]:
@@ -401,21 +410,8 @@ class MachineCase:
         InputError
             As for a case file.
         """
-        data = deepcopy(self.data)
-        for key, value in changes.items():
-            *tables, name = key.split(".")
-            table = data
-            for each in tables:
-                table = table.setdefault(each, {})
-                if not isinstance(table, dict):
-                    why, remedy = f"{each} is not a table", "Correct the key"
-                    raise InputError(f"{key} = {value!r}", key, why, remedy)
-            if value is None:
-                table.pop(name, None)
-            else:
-                table[name] = value if by else in_si(value)
         source = (self.source or Source()).with_replaced(changes, by or "replace:")
-        return MachineCase(source, **data)
+        return MachineCase(source, **changed_tables(self.data, changes, by=by))
 
     @property
     def housing_files(self) -> dict[str, str]:

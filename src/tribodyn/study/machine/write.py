@@ -21,7 +21,7 @@ def _lines(table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
     rows = {k: v for k, v in values.items() if _is_rows(v)}
     for name, value in table.items():
         if name not in inner and name not in rows and values[name] is not None:
-            yield f"{_key(name)} = {_value(value, unit_of((*path, name)))}"
+            yield f"{_key(name)} = {written_value(value, unit_of((*path, name)))}"
     for name, body in inner.items():
         place = (*path, name)
         if not body or any(not isinstance(v, Mapping) for v in body.values()):
@@ -42,15 +42,15 @@ def _key(name: str) -> str:
     return name if name.replace("_", "").replace("-", "").isalnum() else json.dumps(name)
 
 
-def _value(value: Any, unit: str) -> str:
+def written_value(value: Any, unit: str) -> str:
     """Text of a value; a number in SI, as Python gives it, with its unit."""
     if isinstance(value, Plain) and isinstance(value.value, list | tuple):
         value = [Plain(item) for item in value.value]
     if isinstance(value, Plain):
         number = isinstance(value.value, float | int) and not isinstance(value.value, bool)
-        return f'"{value.value!r} {unit}"' if number and unit else _value(value.value, "")
+        return f'"{value.value!r} {unit}"' if number and unit else written_value(value.value, "")
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, list | tuple):
-        return f"[{', '.join(_value(item, unit) for item in value)}]"
+        return f"[{', '.join(written_value(item, unit) for item in value)}]"
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)

@@ -1,0 +1,336 @@
+"""Convert a REXS model to a machine: shafts, bearings, stages as meshes, and load cases."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.exchange.gearbox import GearboxModel, Load, Stage
+from tribodyn.exchange.machine_parts import (
+    Axis,
+    add_remark,
+    axes_of,
+    bearing_tables,
+    gear_table,
+)
+from tribodyn.exchange.to_case import (
+    ASSUMED,
+    MODELS,
+    NOT_THERE,
+    case_from_rexs,
+    material_values,
+    nested,
+    oil_values,
+    rack_values,
+    stored_case_text,
+)
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.user_input import Source
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.read_parts import in_si
+from tribodyn.study.machine.user_tables import changed_tables
+
+_SPUR = 1e-6
+#: Deviation of the axes from a centre distance that is worth a remark [m].
+_APART = 1e-5
+_FORCES = ("force_u_direction", "force_v_direction", "force_w_direction",
+           "torque_around_v_axis", "torque_around_w_axis")  # fmt: skip
+
+
+def machine_from_rexs(
+    model: GearboxModel,
+    load_case: int | None = None,
+    *,
+    changes: dict[str, Any] | None = None,
+    by: str = "",
+) -> MachineCase:
+    """Machine of all stages of a gearbox model, with its shafts, bearings and load cases.
+
+    Parameters
+    ----------
+    model : GearboxModel
+        Result of :func:`read_rexs`.
+    load_case : int, optional
+        Number of the load case that is the operating point; the first by default.
+    changes : dict, optional
+        Values by dotted key that replace those of the file, as in :meth:`MachineCase.replace`;
+        a helical stage needs one: ``{"meshes.stage_19.stiffness": 5e8}``.
+    by : str
+        Source of the changes, for messages; then a bare number for a dimension is refused.
+
+    Returns
+    -------
+    MachineCase
+        Parts are named after their numbers in the file: ``shaft_12``, ``gear_15``, ``stage_19``,
+        ``bearing_33``. Values that the file does not contain are in its ``assumptions``, and so
+        are the remarks on the model.
+
+    Raises
+    ------
+    InputError
+        Naming each stage that needs a mesh stiffness (helical, internal) or is not computed
+        (planetary, bevel, worm), or if the machine cannot be composed.
+    """
+    changes = dict(changes or {})
+    if problems := [*_unsupported(model), *_without_stiffness(model, changes)]:
+        raise InputError(problems)
+    model.stage(model.stages[0].id if model.stages else None)  # refuses a model without stages
+    load = model.load(load_case)
+    shafts = _reached(model, load)
+    data, assumed = _parts(model, shafts, changes)
+    data |= _operation(model, load, data, shafts)
+    shared, notes = _models(model, load, changes)
+    for name, values in shared.pop("gears", {}).items():
+        data["gears"][name] |= values
+    data |= shared
+    assumed |= notes
+    _remark_on_forces(model)
+    assumed |= {f"remark {n}": text for n, text in enumerate(model.remarks, 1)}
+    data["assumed"] = {key: reason for key, reason in assumed.items() if key not in changes}
+    origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
+    title = f"Gearbox of {len(model.stages)} stage{'s' * (len(model.stages) > 1)}"
+    tables = changed_tables(in_si({"title": title, "origin": origin, **data}), changes, by=by)
+    if "operation" not in tables or {"speed", "torque"} - tables["operation"].keys():
+        remedy = 'Give both: --set "operation.speed=1500 rpm" --set "operation.torque=100 N*m"'
+        what = "the speed and the torque of the gearbox are not known"
+        raise InputError(what, model.path, "No load case specifies them on one shaft", remedy)
+    source = Source(model.path).with_replaced(changes, by or "changes:")
+    return MachineCase(source, **tables)
+
+
+def case_from_model(model: GearboxModel, changes: dict[str, Any], by: str) -> Case | MachineCase:
+    """Case of a REXS file: the one that tribodyn stored in it, or the machine of its stages."""
+    if stored_case_text(model):
+        case = case_from_rexs(model)
+        return case.replace(changes, by=by) if changes else case
+    return machine_from_rexs(model, changes=changes, by=by)
+
+
+def _unsupported(model: GearboxModel) -> list[Problem]:
+    problems = []
+    for kind in ("planetary_stage", "bevel_stage", "worm_stage"):
+        for stage in model.file.of_kind(kind):
+            teeth = next((r for r in model.remarks if r.startswith(str(stage))), "")
+            teeth = teeth.partition("its gears are listed")[2].removeprefix(": ")
+            what = f"{stage} is not computed" + (f" ({teeth})" if teeth else "")
+            why = "The axes of a machine are parallel and fixed in the housing"
+            remedy = f"List the data of its gears: tribodyn import {model.path}"
+            problems.append(Problem(what, model.path, why, remedy))
+    return problems
+
+
+def _without_stiffness(model: GearboxModel, changes: dict[str, Any]) -> list[Problem]:
+    """Stages whose tooth contact is not computed, and that have no stiffness yet."""
+    problems = []
+    for stage in model.stages:
+        key = f"meshes.stage_{stage.id}.stiffness"
+        first, second = stage.gear_1, stage.gear_2
+        what = ""
+        if min(first.teeth, second.teeth) < 0:
+            what = "has internal teeth"
+        elif abs(first.helix_angle) > _SPUR:
+            what = f"is helical, {math.degrees(abs(first.helix_angle)):g} deg"
+        if not what or stage.planetary or changes.get(key) is not None:
+            continue
+        names = [f"gear_{g.id}" + (f' "{g.name}"' if g.name else "") for g in (first, second)]
+        teeth = f"z = {first.teeth} / {second.teeth}"
+        problems.append(
+            Problem(
+                f"stage_{stage.id} {what} ({' and '.join(names)}, {teeth})",
+                model.path,
+                "Teeth of external spur gears are computed; this mesh needs its stiffness",
+                f'Give it along the transverse line of action: --set "{key}=5e8 N/m"',
+            )
+        )
+    return problems
+
+
+def _shafts_of(model: GearboxModel, stage: Stage) -> tuple[int, int]:
+    numbers = []
+    for gear in (stage.gear_1, stage.gear_2):
+        number = model.shaft_of(gear.id)
+        if number is None:
+            component = model.file.components[gear.id]
+            why, remedy = "A machine has its gears on shafts", "tribodyn import computes one stage"
+            raise InputError("the gear is on no shaft", f"{model.path}: {component}", why, remedy)
+        numbers.append(number)
+    return numbers[0], numbers[1]
+
+
+def _reached(model: GearboxModel, load: Load) -> dict[int, int]:
+    """Shafts from the input on, with 1 or -1 where they turn against it."""
+    edges = [(*_shafts_of(model, stage), -1 if stage.ratio > 0.0 else 1) for stage in model.stages]
+    joined = {shaft for edge in edges for shaft in edge[:2]}
+    named = [load.source, *load.speeds, edges[0][0]]
+    senses = {next(number for number in named if number in joined): 1}
+    for _ in edges:
+        for first, second, turn in edges:
+            for a, b in ((first, second), (second, first)):
+                if a in senses:
+                    senses.setdefault(b, turn * senses[a])
+    for shaft in sorted(joined - senses.keys()):
+        add_remark(model, f"{model.file.components[shaft]}: no stage joins it with the input")
+    return senses
+
+
+def _parts(
+    model: GearboxModel, shafts: dict[int, int], changes: dict[str, Any]
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Tables of shafts, gears, meshes and bearings, and what is assumed."""
+    axes, directions = axes_of(model, list(shafts))
+    shared = material_values(model, *shafts)
+    assumed: dict[str, str] = {}
+    tables: dict[str, Any] = {"shafts": {}, "bearings": {}, "gears": {}, "meshes": {}}
+    for number, axis in axes.items():
+        own = {**shared, **material_values(model, number)}
+        values = {k.partition(".")[2]: v for k, v in own.items() if shared.get(k) != v}
+        tables["shafts"][axis.name] = axis.table | values
+    for stage in model.stages:
+        numbers = _shafts_of(model, stage)
+        if not set(numbers) <= axes.keys():
+            continue
+        for gear, number in zip((stage.gear_1, stage.gear_2), numbers, strict=True):
+            tables["gears"][f"gear_{gear.id}"] = gear_table(model, gear, axes[number])
+        name = f"stage_{stage.id}"
+        ends = axes[numbers[0]], axes[numbers[1]]
+        tables["meshes"][name], note = _mesh(model, stage, ends, directions)
+        if note:
+            assumed[f"meshes.{name}.angle"] = note
+    for name, table, reason in bearing_tables(model, axes):
+        if f"bearings.{name}.type" in changes:
+            table, reason = {key: table[key] for key in ("shaft", "position")}, ""
+        tables["bearings"][name] = table
+        if reason:
+            assumed[f"bearings.{name}"] = reason
+    if shared:
+        tables["material"] = {key.partition(".")[2]: value for key, value in shared.items()}
+    return tables, assumed
+
+
+def _mesh(
+    model: GearboxModel, stage: Stage, ends: tuple[Axis, Axis], directions: Any
+) -> tuple[dict[str, Any], str]:
+    """Table of a stage as a mesh, and the reason of its angle where that is assumed."""
+    gear = stage.gear_1
+    table = {
+        "gears": [f"gear_{g.id}" for g in (stage.gear_1, stage.gear_2)],
+        "normal_module": gear.normal_module,
+        "normal_pressure_angle": gear.normal_pressure_angle,
+        "center_distance": stage.center_distance,
+    }
+    if abs(gear.helix_angle) > _SPUR:
+        table["helix_angle"] = abs(gear.helix_angle)
+        table["hand"] = "right" if gear.helix_angle > 0.0 else "left"
+    rack = rack_values(model, stage.gear_1, stage.gear_2)
+    table |= {key.partition(".")[2]: value for key, value in rack.items()}
+    first, second = (axis.start for axis in ends)
+    if directions is None or first is None or second is None:
+        return table, "the file has no positions of the axes"
+    y, z = directions @ (second - first)
+    distance = math.hypot(y, z)
+    if abs(distance - stage.center_distance) > _APART:
+        add_remark(
+            model,
+            f"stage {stage.id}: the axes of its shafts are {1e3 * distance:.6g} mm apart; its "
+            f"centre distance of {1e3 * stage.center_distance:.6g} mm is used",
+        )
+    table["angle"] = math.atan2(z, y)
+    return table, ""
+
+
+def _operation(
+    model: GearboxModel, load: Load, data: dict[str, Any], shafts: dict[int, int]
+) -> dict[str, Any]:
+    """Operating point, and load cases where there are several."""
+    first = next(iter(shafts))
+    loaded = [
+        number
+        for number in list(shafts)[1:]
+        if any(
+            relation.of("assembly") == number
+            for c in model.file.of_kind("external_load")
+            if (flag := c.values.get("transmits_torque")) is not None and flag.content is True
+            for relation in model.file.related("assembly", part=c.id)
+        )
+    ]
+    last = (loaded or list(shafts))[-1]
+    run = {"input": f"shaft_{first}", "output": f"shaft_{last}"}
+    tables: dict[str, Any] = {"operation": run | _point(model, load, shafts)}
+    if len(model.loads) > 1:
+        tables["load_cases"] = [
+            {"name": f"case_{each.id}"}
+            | ({} if each.share is None else {"share": each.share})
+            | _point(model, each, shafts)
+            for each in model.loads
+        ]
+    return tables
+
+
+def _point(model: GearboxModel, load: Load, shafts: dict[int, int]) -> dict[str, float]:
+    """Speed and torque of the input under a load case, as far as the file has them."""
+    first, point = next(iter(shafts)), {}
+    if first in load.speeds:
+        point["speed"] = load.speeds[first] * _sense(model, load, shafts)
+    if first in load.torques:
+        drives = load.driven == (load.source != first)
+        point["torque"] = load.torques[first] * (1.0 if drives else -1.0)
+    return point
+
+
+def _sense(model: GearboxModel, load: Load, shafts: dict[int, int]) -> float:
+    """Direction of rotation of the input about x: the sign of the speed in the file."""
+    for number, sense in shafts.items():
+        component = model.file.components[number]
+        for part in (model.file.load_cases.get(load.id, {}).get(number), component):
+            if part is not None and (speed := part.number("rotational_speed", "rad/s")):
+                return math.copysign(1.0, speed) * sense * _along_x(model, number, shafts)
+    return 1.0
+
+
+def _along_x(model: GearboxModel, shaft: int, shafts: dict[int, int]) -> int:
+    """1 where the u axis of a shaft points as that of the input, -1 where it is opposed."""
+    axes = [model.file.components[n].vector("u_axis_vector", "m") for n in (shaft, *shafts)]
+    pair = axes[0], axes[1]
+    opposed = None not in pair and np.dot(np.array(pair[0]), np.array(pair[1])) < 0.0
+    return -1 if opposed else 1
+
+
+def _models(
+    model: GearboxModel, load: Load, changes: dict[str, Any]
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Tables of models that all meshes share, and what is assumed for their teeth."""
+    spur = [s for s in model.stages if f"meshes.stage_{s.id}.stiffness" not in changes]
+    values: dict[str, Any] = {"dynamics.backlash": ASSUMED["dynamics.backlash"][0]}
+    notes = {"dynamics.backlash": NOT_THERE + str(ASSUMED["dynamics.backlash"][1])}
+    if spur:
+        values |= {k: v for k, v in MODELS.items() if not k.startswith("dynamics.")}
+        oil, oil_notes = oil_values(model, load)
+        values |= oil
+        notes |= oil_notes
+        for key in () if oil else ("lubricant.name", "lubricant.temperature"):
+            values[key], reason = ASSUMED[key]
+            notes[key] = NOT_THERE + str(reason)
+    for stage in spur:
+        for gear in (stage.gear_1, stage.gear_2):
+            if gear.roughness_ra is None:
+                values[f"gears.gear_{gear.id}.roughness_ra"] = 0.4e-6
+                notes[f"gears.gear_{gear.id}.roughness_ra"] = NOT_THERE + "ground flanks"
+    return nested(values), notes
+
+
+def _remark_on_forces(model: GearboxModel) -> None:
+    """Forces on shafts other than torques are not part of a machine."""
+    cases = [model.file.components, *model.file.load_cases.values()]
+    parts = {
+        c.id
+        for case in cases
+        for c in case.values()
+        if c.kind == "external_load"
+        and any(c.number(n, "N*m" if n.startswith("torque") else "N") for n in _FORCES)
+    }
+    for number in sorted(parts):
+        part = model.file.components[number]
+        add_remark(model, f"{part}: its forces and bending moments are ignored")
