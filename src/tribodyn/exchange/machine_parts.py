@@ -28,28 +28,14 @@ _TYPES = {
 
 @dataclass(frozen=True)
 class Axis:
-    """A shaft of the file: its axis in space, and its sections from small to large x.
-
-    Parameters
-    ----------
-    component : Component
-        The shaft.
-    start, along : (3,) array, optional
-        Point and direction of its u axis in the file [m].
-    sense : int
-        1 if its u axis points along x of the machine, -1 if it points against it.
-    sections : list
-        Length, outer, inner diameter, and both diameters of the end [m].
-    offset, length : float
-        Where its first section begins on the u axis, and length of all [m].
-    """
+    """A shaft of the file: its axis in space, and its sections from small to large x, in SI."""
 
     component: Component
     start: Array | None
-    along: Array
-    sense: int
-    sections: list[list[float]]
-    offset: float
+    along: Array  #: direction of its u axis in the file
+    sense: int  #: -1 if this direction points against x of the machine
+    sections: list[list[float]]  #: length, outer, inner diameter, and both of the end
+    offset: float  #: where its first section begins on the u axis
     length: float
 
     @property
