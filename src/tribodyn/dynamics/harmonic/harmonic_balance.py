@@ -10,7 +10,6 @@ import weakref
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.fft
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_flag, require_number, require_whole
@@ -119,7 +118,8 @@ def harmonic_balance(
         Steps per cycle of the fastest mesh. By default steps are halved until the motion changes
         by less than 2e-7 of its size.
     start : Response or (position, velocity), optional
-        Motion or position from which the search starts; the static equilibrium by default.
+        Motion, or position and velocity [m or rad, m/s or rad/s], from which the search starts;
+        the static equilibrium by default.
     tolerance : float
         Largest certified error of a converged motion.
     stability : bool
@@ -229,7 +229,9 @@ def _multipliers(prepared: Prepared, residual: Residual, solution: Solution) -> 
 
 def _fft_length(steps: int) -> int:
     """An even number of samples whose transform is fast."""
-    return 2 * int(scipy.fft.next_fast_len(-(-steps // 2), real=True))
+    from scipy.fft import next_fast_len
+
+    return 2 * int(next_fast_len(-(-steps // 2), real=True))
 
 
 def _start(

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-import scipy.fft
 
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
 from tribodyn.dynamics.harmonic.contact_equations import Breaks, ContactEquations, Law
@@ -66,13 +65,13 @@ class Residual:
 
     def rate(self, y: Array) -> Array:
         """Derivative of a motion (steps, r) by time."""
-        spectrum = self._differentiate * scipy.fft.rfft(y, axis=0)
-        return np.asarray(scipy.fft.irfft(spectrum, len(y), axis=0))
+        spectrum = self._differentiate * np.fft.rfft(y, axis=0)
+        return np.asarray(np.fft.irfft(spectrum, len(y), axis=0))
 
     def response(self, force: Array) -> Array:
         """Motion at the contacts under forces (steps, s)."""
-        spectrum = self.receptances @ scipy.fft.rfft(force, axis=0)[..., None]
-        return np.asarray(scipy.fft.irfft(spectrum[..., 0], len(force), axis=0))
+        spectrum = self.receptances @ np.fft.rfft(force, axis=0)[..., None]
+        return np.asarray(np.fft.irfft(spectrum[..., 0], len(force), axis=0))
 
     def at(self, y: Array, closed: Mask | None = None) -> State:
         """Evaluate a motion; ``closed`` (contacts,) fixes the contacts that are closed."""
@@ -179,7 +178,7 @@ def _search(residual: Residual, state: State, step: Array, bound: float) -> Stat
 
 def refined(y: Array, steps: int) -> Array:
     """A motion (steps, r) on more steps, with the same harmonics."""
-    return np.asarray(scipy.fft.irfft(scipy.fft.rfft(y, axis=0), steps, axis=0) * (steps / len(y)))
+    return np.asarray(np.fft.irfft(np.fft.rfft(y, axis=0), steps, axis=0) * (steps / len(y)))
 
 
 def uncorrected(state: State) -> Array:

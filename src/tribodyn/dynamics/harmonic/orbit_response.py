@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.fft
 
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.harmonic.newton import Residual, State, uncorrected
@@ -89,7 +88,7 @@ def _spectrum(state: State, jumps: _Jumps) -> tuple[ComplexArray, ComplexArray]:
     """Amplitudes (k, s) of the forces on the closed structure, and of pulses at the jumps."""
     steps = len(state.y)
     force = uncorrected(state) - jumps.polynomials(np.arange(steps) / steps, 1)
-    spectrum = np.asarray(scipy.fft.rfft(force, axis=0, norm="forward"), dtype=complex)
+    spectrum = np.asarray(np.fft.rfft(force, axis=0, norm="forward"), dtype=complex)
     pulses = jumps.turns(len(spectrum) - 2)
     spectrum[1:-1] += pulses / _orders(len(pulses))
     spectrum[-1] = 0.0  # the highest harmonic has no phase
@@ -112,7 +111,7 @@ def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:
         count = _REFINED * steps
     padded = np.zeros((count // 2 + 1, amplitudes.shape[1]), dtype=complex)
     padded[: len(amplitudes)] = amplitudes
-    fine = scipy.fft.irfft(padded, count, axis=0, norm="forward")
+    fine = np.fft.irfft(padded, count, axis=0, norm="forward")
     place = phase * count
     near = np.rint(place)
     if np.abs(place - near).max() < 1e-7:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from tribodyn.study.uncertain.lanes import Lanes, draw, lanes_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    from tribodyn.dynamics.time.engines import FixedMarcher
     from tribodyn.study.case.case import Case
 
 #: Stiffness and friction as the source of the data set spreads them.
@@ -228,7 +229,7 @@ class _March:
         }
         setting = Setting(system, lanes.mesh_frequency, 1, steps, extra, LaneParameters(**widest))
         backend = engine_arguments(case).get("backend")
-        self.marcher = prepare("rk4", setting, backend=backend)
+        self.marcher = cast("FixedMarcher", prepare("rk4", setting, backend=backend))
         self.parameters, self.elapsed = lanes.parameters(), 0
         self.state = np.tile(static_start(self.marcher.compiled), (lanes.count, 1))
 
