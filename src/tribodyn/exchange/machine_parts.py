@@ -154,7 +154,9 @@ def gear_table(model: GearboxModel, gear: StageGear, axis: Axis) -> dict[str, An
     return {**table, "modification": gear.modification} if gear.modification else table
 
 
-def bearing_tables(model: GearboxModel, axes: dict[int, Axis]) -> Iterator[tuple[str, dict, str]]:
+def bearing_tables(
+    model: GearboxModel, axes: dict[int, Axis]
+) -> Iterator[tuple[str, dict[str, Any], str]]:
     """Name, table and reason of what is assumed of each bearing."""
     held = [(b, _sides(model, b, axes)) for b in _bearings(model)]
     grounded = [next(iter(sides.values())) for _, sides in held if len(sides) == 1]

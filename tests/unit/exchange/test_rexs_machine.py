@@ -12,7 +12,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import InputError
-from tribodyn.exchange import machine_from_rexs, read_rexs
+from tribodyn.exchange import machine_from_rexs, read_rexs, write_rexs
 from tribodyn.gear import zero_backlash_center_distance
 from tribodyn.machine import DeepGrooveBallBearing, TaperedRollerBearing
 from tribodyn.study import MachineCase
@@ -159,6 +159,24 @@ def test_planetary_stages_are_named_with_their_teeth() -> None:
     assert 'planetary_stage 9 "Planetenstufe [9]" is not computed' in str(problem)
     assert "sun 17, 3 planets 22, ring 61 teeth" in str(problem)
     assert "tribodyn import" in str(problem)
+
+
+def test_internal_teeth_need_a_stiffness_and_then_turn_alike(tree, tmp_path) -> None:
+    straight(tree)
+    add(tree, 17, "", number_of_teeth=-51.0)
+    add(tree, 19, center_distance=-54.0)
+    model = read_rexs(stored(tree, tmp_path))
+    with pytest.raises(InputError, match=r"stage_19 has internal teeth .* z = 27 / -51"):
+        machine_from_rexs(model)
+    case = machine_from_rexs(model, changes=STIFF)
+    speeds = [case.machine().kinematics.shafts[f"shaft_{n}"].speed / RPM for n in (12, 13)]
+    assert speeds == pytest.approx([543.0, 543.0 * 27.0 / 51.0])
+
+
+def test_a_pair_stored_as_a_gearbox_model_is_loaded_as_a_pair(tmp_path) -> None:
+    case = td.load_case("fzg-roughness")
+    write_rexs(case, tmp_path / "pair.rexs")
+    assert td.load_case(tmp_path / "pair.rexs") == case
 
 
 def test_spur_stages_make_a_machine_with_computed_teeth(tree, tmp_path) -> None:

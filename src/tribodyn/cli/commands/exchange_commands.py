@@ -66,7 +66,8 @@ def import_(
             say(_tables(model))
             _show_remarks(model)
             tell(f"To compute a stage: tribodyn import {file} --stage NUMBER --out case.toml")
-            tell(f"To compute all of them: tribodyn run {file}")
+            if not any(stage.planetary for stage in model.stages):
+                tell(f"To compute all of them: tribodyn run {file}")
         return
     check_file(out, force)
     changes = read_changes(set_ or [])
