@@ -121,8 +121,8 @@ def main(words: Sequence[str] | None = None) -> None:
     }
     times = race(contenders, 1 if quick else 3)
     rows = [
-        (name, f"{1e3 * one.median:.4g}", f"{times['harmonic balance'].faster_than(one):.3g}")
-        for name, one in times.items()
+        (name, f"{1e3 * spent.median:.4g}", f"{times['harmonic balance'].faster_than(spent):.3g}")
+        for name, spent in times.items()
     ]
     print_table(("steady state to 1e-6", "CPU ms", "times harmonic balance"), rows)
 

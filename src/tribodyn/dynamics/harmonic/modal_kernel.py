@@ -95,10 +95,10 @@ def _exponentials(x: complex) -> tuple[complex, complex, complex, complex]:
         second = 0.5 + x * third
         first = 1.0 + x * second
         return 1.0 + x * first, first, second, third
-    whole = np.exp(x)
-    first = (whole - 1.0) / x
+    full_step = np.exp(x)
+    first = (full_step - 1.0) / x
     second = (first - 1.0) / x
-    return whole, first, second, (second - 0.5) / x
+    return full_step, first, second, (second - 0.5) / x
 
 
 @nb.njit(**INNER)
@@ -108,9 +108,9 @@ def _fill_weights(modes: Modes, h: float, weights: Weights) -> None:
     weights.direct[:] = 0.0
     for m in range(modes.values.size):
         value = modes.values[m]
-        whole, first, second, third = _exponentials(value * h)
+        full_step, first, second, third = _exponentials(value * h)
         half, begin, middle, end = _exponentials(0.5 * value * h)
-        weights.decay[0, m], weights.decay[1, m] = whole.real, whole.imag
+        weights.decay[0, m], weights.decay[1, m] = full_step.real, full_step.imag
         full = (
             h * (first - 3.0 * second + 4.0 * third),
             h * (4.0 * second - 8.0 * third),
@@ -127,8 +127,8 @@ def _fill_weights(modes: Modes, h: float, weights: Weights) -> None:
             for k, factor in (
                 (0, place * half),
                 (r, rate * half),
-                (2 * r, place * whole),
-                (3 * r, rate * whole),
+                (2 * r, place * full_step),
+                (3 * r, rate * full_step),
             ):
                 weights.motion[0, m, k + o], weights.motion[1, m, k + o] = factor.real, -factor.imag
             for node in range(3):
@@ -302,13 +302,13 @@ def _divide(
         ):
             return UNSETTLED
         middle, last = _clearance(contacts, w, 1, worst), _clearance(contacts, w, 2, worst)
-        near = -_TOUCHING * reach
-        if middle >= near and last >= near:
+        edge = -_TOUCHING * reach
+        if middle >= edge and last >= edge:
             _accept(modes, weights, w, (1.0 - tau) * width, sums)
             start[:] = w.motion[2 * r :]
             return 0
-        low, high = tau, 0.5 * (1.0 + tau) if middle < near else 1.0
-        above, below = np.inf, middle if middle < near else last
+        low, high = tau, 0.5 * (1.0 + tau) if middle < edge else 1.0
+        above, below = np.inf, middle if middle < edge else last
         # Regula falsi after Illinois; the clearance at the lower end is that of the last change.
         for round_ in range(_BISECTIONS):
             at = 0.5 * (low + high)
@@ -401,9 +401,9 @@ def _build(digest: str) -> Any:
                 trace.report[4] += iterations
                 failure = 0 if iterations else UNSETTLED
                 if iterations and switching:
-                    near = -_TOUCHING * reach
-                    crossing = _clearance(contacts, w, 1, worst) < near
-                    crossing |= _clearance(contacts, w, 2, worst) < near
+                    edge = -_TOUCHING * reach
+                    crossing = _clearance(contacts, w, 1, worst) < edge
+                    crossing |= _clearance(contacts, w, 2, worst) < edge
                 else:
                     crossing = False
                 trace.contacts[step, 0] = w.motion[:r]

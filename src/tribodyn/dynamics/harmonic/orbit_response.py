@@ -113,9 +113,9 @@ def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:
     padded[: len(amplitudes)] = amplitudes
     fine = np.fft.irfft(padded, count, axis=0, norm="forward")
     place = phase * count
-    near = np.rint(place)
-    if np.abs(place - near).max() < 1e-7:
-        return np.asarray(fine[near.astype(np.int64) % count])
+    nearest = np.rint(place)
+    if np.abs(place - nearest).max() < 1e-7:
+        return np.asarray(fine[nearest.astype(np.int64) % count])
     first = np.floor(place).astype(np.int64) - _POINTS // 2 + 1
     weights = _lagrange(place - first)
     result = np.zeros((phase.size, amplitudes.shape[1]))
