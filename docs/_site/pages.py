@@ -4,6 +4,7 @@ import re
 from typing import Any
 
 from _site.gallery import DOCS
+from _site.names import packages
 from tribodyn.nomenclature import QUANTITIES, Quantity
 
 _EXAMPLE = re.compile(r"\]\(\.\./examples/(\w+)\.py\)")
@@ -17,7 +18,7 @@ def rewrite(_: Any, name: str, source: list[str]) -> None:
     text = _EXAMPLE.sub(r"](/_generated/examples/\1.md)", text)
     text = text.replace("](../src/tribodyn/cli)", "](command-line.md)")
     text = text.replace("](../src/tribodyn/app)", "](app.md)")
-    text = _PACKAGE.sub(r"](/_generated/api/tribodyn.\1.md)", text)
+    text = _PACKAGE.sub(_to_api, text)
     text = _SOURCE.sub(r"\1", text)
     if name == "index":
         text += contents((DOCS / "index.md").read_text("utf-8"))
@@ -26,6 +27,12 @@ def rewrite(_: Any, name: str, source: list[str]) -> None:
     if name == "nomenclature":
         text = text[: text.index("| Name |")] + _glossary()
     source[0] = text
+
+
+def _to_api(link: re.Match[str]) -> str:
+    """Lead to the page of a public package; links to other packages become names."""
+    name = f"tribodyn.{link[1]}"
+    return f"](/_generated/api/{name}.md)" if name in packages() else link[0]
 
 
 def contents(index: str) -> str:

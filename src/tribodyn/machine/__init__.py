@@ -34,7 +34,7 @@ from tribodyn.machine.rolling.ball_bearing import AngularContactBallBearing, Dee
 from tribodyn.machine.rolling.bearing_types import ROLLING_BEARINGS
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
 from tribodyn.machine.rolling.roller_bearing import CylindricalRollerBearing, TaperedRollerBearing
-from tribodyn.machine.section import STEEL, Material, Section
+from tribodyn.machine.section import STEEL, Section
 from tribodyn.machine.shaft import Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices
 from tribodyn.machine.static.balance import (
@@ -65,7 +65,6 @@ __all__ = [
     "Machine",
     "MachineModes",
     "MachineStructure",
-    "Material",
     "Mesh",
     "MeshBalance",
     "MeshDirection",

@@ -12,7 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from tribodyn.machine.section import Material, Section
+from tribodyn.gear import Material
+from tribodyn.machine.section import Section
 from tribodyn.types import Array
 
 #: Gauss points of an integral over an element: exact for a cylinder, rounding for usual cones.
@@ -20,10 +21,10 @@ _POINTS = 12
 _ABSCISSA, _WEIGHT = 0.5 * np.array(np.polynomial.legendre.leggauss(_POINTS)) + [[0.5], [0.0]]
 
 
-def shear_coefficient(diameter_ratio: Array | float, poisson_ratio: float) -> Array:
+def shear_coefficient(diameter_ratio: Array | float, poissons_ratio: float) -> Array:
     """Effective over geometric area in shear of a hollow round section, G. R. Cowper (1966) [1]."""
     square = np.asarray(diameter_ratio, dtype=float) ** 2
-    outer, nu = (1.0 + square) ** 2, poisson_ratio
+    outer, nu = (1.0 + square) ** 2, poissons_ratio
     return np.asarray(
         6.0 * (1.0 + nu) * outer / ((7.0 + 6.0 * nu) * outer + (20.0 + 12.0 * nu) * square)
     )
@@ -119,7 +120,7 @@ class BeamElement:
         material = self.material
         area, bending, ratio = _profile(self.section, position)
         shear = material.shear_modulus
-        sheared = 1.0 / (shear_coefficient(ratio, material.poisson_ratio) * shear * area)
-        stretched, curved = 1.0 / (material.young_modulus * np.stack((area, bending)))
+        sheared = 1.0 / (shear_coefficient(ratio, material.poissons_ratio) * shear * area)
+        stretched, curved = 1.0 / (material.youngs_modulus * np.stack((area, bending)))
         twisted = 1.0 / (2.0 * shear * bending)
         return np.stack((stretched, sheared, sheared, twisted, curved, curved), axis=-1)

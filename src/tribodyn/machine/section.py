@@ -5,47 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tribodyn.errors import Argument, InputError
+from tribodyn.gear import Material
 from tribodyn.machine.fields import check_number, display
-
-
-@dataclass(frozen=True)
-class Material:
-    """Isotropic elastic material of a shaft or of the body of a gear.
-
-    Parameters
-    ----------
-    young_modulus : float
-        Young's modulus [Pa].
-    poisson_ratio : float
-        Poisson's ratio, 0 to 0.499.
-    density : float
-        Density [kg/m^3].
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
-
-    Examples
-    --------
-    >>> round(STEEL.shear_modulus / 1e9, 3)
-    79.231
-    """
-
-    young_modulus: float
-    poisson_ratio: float
-    density: float
-
-    def __post_init__(self) -> None:
-        check_number(self, "young_modulus", "Pa", 0.0, above=True)
-        check_number(self, "poisson_ratio", "", 0.0, 0.499)
-        check_number(self, "density", "kg/m^3", 0.0, above=True)
-
-    @property
-    def shear_modulus(self) -> float:
-        """Shear modulus E / (2 (1 + nu)) [Pa]."""
-        return self.young_modulus / (2.0 * (1.0 + self.poisson_ratio))
-
 
 #: Steel of shafts and gear bodies.
 STEEL = Material(206e9, 0.3, 7850.0)

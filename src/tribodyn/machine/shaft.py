@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tribodyn.errors import Argument, InputError
+from tribodyn.gear import Material
 from tribodyn.machine.fields import quoted
-from tribodyn.machine.section import STEEL, Material, Section
+from tribodyn.machine.section import STEEL, Section
 
 
 @dataclass(frozen=True)

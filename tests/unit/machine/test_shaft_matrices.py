@@ -6,11 +6,12 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from tribodyn.errors import InputError
-from tribodyn.machine import STEEL, Material, Section, Shaft
+from tribodyn.gear import Material
+from tribodyn.machine import STEEL, Section, Shaft
 from tribodyn.machine.beam import BeamElement, carried_along, shear_coefficient
 from tribodyn.machine.shaft_matrices import ShaftMatrices
 
-SHEAR = STEEL.young_modulus / 2.6
+SHEAR = STEEL.youngs_modulus / 2.6
 CONE = Section(0.08, 0.05, 0.01, 0.03, 0.02)
 
 
@@ -35,7 +36,7 @@ def supported_beam(mode, length, diameter):
     """Natural frequency of a simply supported Timoshenko beam [Hz]."""
     area, second = np.pi * diameter**2 / 4.0, np.pi * diameter**4 / 64.0
     wave = mode * np.pi / length
-    bending, rho = STEEL.young_modulus * second, STEEL.density
+    bending, rho = STEEL.youngs_modulus * second, STEEL.density
     sheared = shear_coefficient(0.0, 0.3) * SHEAR * area
     # rho I rho w^4/(kappa G) - w^2 (rho A + wave^2 (rho I + EI rho A/(kappa G A))) + EI wave^4 = 0
     square = rho * second * rho * area / sheared
@@ -67,7 +68,7 @@ def test_default_elements_are_fine_enough():
 def test_euler_bernoulli_limit():
     length, diameter = 2.0, 0.002
     shaft = ShaftMatrices(Shaft((Section(length, diameter),)), element_length=0.05)
-    exact = (np.pi / length) ** 2 * np.sqrt(STEEL.young_modulus / STEEL.density) * diameter / 4.0
+    exact = (np.pi / length) ** 2 * np.sqrt(STEEL.youngs_modulus / STEEL.density) * diameter / 4.0
     first = frequencies(supported_in_plane(shaft))[:3]
     np.testing.assert_allclose(first, exact / (2.0 * np.pi) * np.array([1, 4, 9]), rtol=2e-5)
 
@@ -77,7 +78,7 @@ def test_hollow_beam_in_the_limit_of_a_thin_wall():
     length, outer, inner = 3.0, 0.04, 0.03
     shaft = ShaftMatrices(Shaft((Section(length, outer, inner),)), element_length=0.1)
     radius = np.sqrt((outer**2 + inner**2) / 16.0)
-    exact = np.pi / 2.0 / length**2 * np.sqrt(STEEL.young_modulus / STEEL.density) * radius
+    exact = np.pi / 2.0 / length**2 * np.sqrt(STEEL.youngs_modulus / STEEL.density) * radius
     slender = 0.5 * (np.pi * radius / length) ** 2 * (1.0 + 2.6 / shear_coefficient(0.75, 0.3))
     first = frequencies(supported_in_plane(shaft))[0]
     assert first == pytest.approx(exact * (1.0 - slender), rel=1e-6)
@@ -89,7 +90,7 @@ def test_stepped_beam_of_two_sections():
     shaft = ShaftMatrices(
         Shaft(tuple(map(Section, lengths, diameters))), element_length=0.05
     )  # fmt: skip
-    stiff = [STEEL.young_modulus * np.pi * d**4 / 64.0 for d in diameters]
+    stiff = [STEEL.youngs_modulus * np.pi * d**4 / 64.0 for d in diameters]
     heavy = [STEEL.density * np.pi * d**2 / 4.0 for d in diameters]
 
     def determinant(frequency):
@@ -120,15 +121,15 @@ def test_cantilever_bends_shears_stretches_and_twists():
     stiffness = BeamElement(Section(length, diameter), STEEL).stiffness[6:, 6:]
     area, second = np.pi * diameter**2 / 4.0, np.pi * diameter**4 / 64.0
     moved = np.linalg.solve(stiffness, np.diag([3.0, 5.0, 7.0, 11.0, 13.0, 17.0]))
-    bent = length**3 / (3.0 * STEEL.young_modulus * second)
+    bent = length**3 / (3.0 * STEEL.youngs_modulus * second)
     bent += length / (shear_coefficient(0.0, 0.3) * SHEAR * area)
-    turned = length**2 / (2.0 * STEEL.young_modulus * second)
-    assert moved[0, 0] == pytest.approx(3.0 * length / (STEEL.young_modulus * area))
+    turned = length**2 / (2.0 * STEEL.youngs_modulus * second)
+    assert moved[0, 0] == pytest.approx(3.0 * length / (STEEL.youngs_modulus * area))
     assert [moved[1, 1], moved[2, 2]] == pytest.approx([5.0 * bent, 7.0 * bent])
     assert moved[3, 3] == pytest.approx(11.0 * length / (SHEAR * 2.0 * second))
     # a force along y turns about +z, one along z about -y
     assert [moved[5, 1], moved[4, 2]] == pytest.approx([5.0 * turned, -7.0 * turned])
-    slope = length / (STEEL.young_modulus * second)
+    slope = length / (STEEL.youngs_modulus * second)
     assert [moved[4, 4], moved[5, 5]] == pytest.approx([13.0 * slope, 17.0 * slope])
 
 
@@ -138,7 +139,7 @@ def test_solid_cone_against_its_closed_form():
     flexibility = np.linalg.inv(
         BeamElement(Section(length, thick, 0.0, thin, 0.0), STEEL).stiffness[6:, 6:]
     )
-    young = STEEL.young_modulus
+    young = STEEL.youngs_modulus
     stretched = 4.0 * length / (np.pi * young * thick * thin)
     assert flexibility[0, 0] == pytest.approx(stretched, rel=1e-12)
     sheared = stretched * young / (SHEAR * shear_coefficient(0.0, 0.3))

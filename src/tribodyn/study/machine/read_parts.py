@@ -9,7 +9,8 @@ from dataclasses import MISSING, fields
 from typing import Any
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean
-from tribodyn.machine import ROLLING_BEARINGS, Bearing, Gear, Material, Section, Shaft
+from tribodyn.gear import Material
+from tribodyn.machine import ROLLING_BEARINGS, Bearing, Gear, Section, Shaft
 from tribodyn.model import REQUIRED, Option, flag, integer, number, text
 from tribodyn.study.case.section import Section as Table
 from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_table, read_value
