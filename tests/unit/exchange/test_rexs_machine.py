@@ -111,7 +111,7 @@ def test_parts_are_where_the_file_has_them_in_space() -> None:
     assert machine.meshes["stage_20"].hand == "left"
     assert [s.length for s in machine.shafts["shaft_12"].sections] == [0.08, 0.08, 0.03]
     assert machine.shafts["shaft_14"].sections[0].inner_diameter == pytest.approx(0.058)
-    assert machine.shafts["shaft_13"].material.young_modulus == pytest.approx(210e9)
+    assert machine.shafts["shaft_13"].material.youngs_modulus == pytest.approx(210e9)
 
 
 def test_a_shaft_drawn_from_its_other_end_is_the_same_machine(tree, tmp_path) -> None:
