@@ -92,14 +92,14 @@ def machine_modes(structure: MachineStructure) -> Any:
     for number in order:
         for trace in _deflection(view, points, modes.shape[number], height):
             traces.append({**trace, "visible": number == first})
-        shown = [True] * len(outlines)
-        shown += [k == number for k in order for _ in _DRAWN]
+        visible = [True] * len(outlines)
+        visible += [k == number for k in order for _ in _DRAWN]
         label = f"{number + 1}: {significant(float(modes.frequency[number]), 4)} Hz"
         text = f"{label}: {energy_shares(modes, number)}"
         step = {
             "label": label,
             "method": "update",
-            "args": [{"visible": shown}, {"title.text": text}],
+            "args": [{"visible": visible}, {"title.text": text}],
         }
         buttons.append(step)
     menu = {"buttons": buttons, "active": first, "x": 1.0, "xanchor": "right", "y": 1.12}

@@ -452,19 +452,19 @@ class MachineCase:
 def _estimates(texts: Iterable[str]) -> Iterator[tuple[str, str, str]]:
     """Key, value and reason of estimates such as ``balls = 8, estimated: usual filling``."""
     for text in texts:
-        key, _, rest = text.partition(" = ")
-        value, _, why = rest.partition(", ")
+        key, _, value_and_reason = text.partition(" = ")
+        value, _, why = value_and_reason.partition(", ")
         yield key, value, why
 
 
 def _constant_law(law: Any) -> dict[str, Any]:
     """Damping, backlash and error of a mesh with a constant stiffness."""
     size, shift = law.transmission_error_amplitude, law.transmission_error_phase
-    given = law.mesh_damping is not None
+    has_damping = law.mesh_damping is not None
     return {
         "gap": 0.5 * (law.backlash or 0.0),
-        "damping": law.mesh_damping if given else 0.0,
-        "damping_ratio": None if given else law.mesh_damping_ratio,
+        "damping": law.mesh_damping if has_damping else 0.0,
+        "damping_ratio": None if has_damping else law.mesh_damping_ratio,
         "error": (lambda phase: size * np.cos(2.0 * np.pi * phase + shift)) if size else 0.0,
     }
 

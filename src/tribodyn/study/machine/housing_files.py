@@ -54,13 +54,13 @@ def _read_files(table: Any) -> tuple[dict[str, Array], dict[str, list[int]]]:
             names = [str(name) for name in archive["nodes"]] if "nodes" in archive else []
         return matrices, {name: list(range(6 * i, 6 * i + 6)) for i, name in enumerate(names)}
     files = {name: getattr(table, f"{name}_file") for name in _MATRICES}
-    given = {name: path for name, path in files.items() if path is not None}
-    absent = [name for name in ("stiffness", "mass") if name not in given]
+    paths = {name: path for name, path in files.items() if path is not None}
+    absent = [name for name in ("stiffness", "mass") if name not in paths]
     if absent:
         why = "A housing has a stiffness and a mass matrix"
         remedy = 'Give matrices = "housing.npz", or stiffness_file and mass_file'
         raise InputError(f"{absent[0]}_file is missing", f"{absent[0]}_file", why, remedy)
-    return {name: _market(f"{name}_file", path) for name, path in given.items()}, {}
+    return {name: _market(f"{name}_file", path) for name, path in paths.items()}, {}
 
 
 def _opened(key: str, path: str) -> Any:

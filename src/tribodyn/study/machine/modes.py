@@ -117,15 +117,15 @@ def mode_rows(structure: MachineStructure) -> list[list[str]]:
     rows = []
     for k in range(count):
         hertz = float(modes.frequency[k])
-        near = min(orders, key=lambda name: abs(orders[name] * turning - hertz))
-        apart = orders[near] * turning / hertz - 1.0
+        nearest = min(orders, key=lambda name: abs(orders[name] * turning - hertz))
+        distance = orders[nearest] * turning / hertz - 1.0
         rows.append(
             [
                 f"{k + 1}",
                 f"{hertz:.5g}",
                 f"{100.0 * modes.damping_ratio[k]:.3g}",
                 energy_shares(modes, k),
-                f"{near}, {100.0 * apart:+.1f} %",
+                f"{nearest}, {100.0 * distance:+.1f} %",
             ]
         )
     return rows

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from tribodyn.errors import Problem
@@ -29,19 +29,19 @@ class PairSource(Source):
 
     mesh: str = ""
     gears: tuple[str, str] = ("", "")
-    own: frozenset[str] = field(default_factory=frozenset)  #: keys inside the table of the mesh
+    mesh_keys: frozenset[str] = frozenset()  #: keys inside the table of the mesh
 
     def key(self, key: str) -> str:
         """Key of the machine for a key of the pair."""
         table, _, name = key.partition(".")
         if table == "gears":
-            role, _, rest = name.partition(".")
+            role, _, gear_key = name.partition(".")
             if role in _ROLES:
-                return f"gears.{self.gears[_ROLES.index(role)]}.{rest}".rstrip(".")
+                return f"gears.{self.gears[_ROLES.index(role)]}.{gear_key}".rstrip(".")
             return f"meshes.{self.mesh}.{name}".rstrip(".")
         if table == "dynamics":
-            return f"meshes.{self.mesh}.{name}" if name in self.own else key
-        inside = {f"{table}.{name}", table} & self.own
+            return f"meshes.{self.mesh}.{name}" if name in self.mesh_keys else key
+        inside = {f"{table}.{name}", table} & self.mesh_keys
         return f"meshes.{self.mesh}.{key}" if inside else key
 
     def line(self, key: str) -> int:
@@ -78,7 +78,7 @@ def pair_case(
         if name in data or name in inner
     }
     shared_dynamics = {k: v for k, v in data.get("dynamics", {}).items() if k in MESH_KEYS}
-    own_dynamics = {k: v for k, v in body.items() if k in MESH_KEYS}
+    mesh_dynamics = {k: v for k, v in body.items() if k in MESH_KEYS}
     pair = {k: v for k, v in body.items() if k in gears.Gears.fields and k not in inner}
     pair.setdefault("normal_pressure_angle", "20 deg")
     pair["driver"] = _ROLES[driver]
@@ -87,26 +87,27 @@ def pair_case(
     for role, name in zip(_ROLES, names, strict=True):
         table = data["gears"][name]
         pair[role] = {k: v for k, v in table.items() if k in gears.Gear.fields}
-    own = {*own_dynamics, *(f"{t}.{k}" for t, values in inner.items() for k in values), *inner}
+    model_keys = (f"{table}.{key}" for table, values in inner.items() for key in values)
+    mesh_keys = {*mesh_dynamics, *model_keys, *inner}
     origin = source or Source()
     case = Case(
-        PairSource(origin.name, origin.find, origin.replaced, mesh, names, frozenset(own)),
+        PairSource(origin.name, origin.find, origin.replaced, mesh, names, frozenset(mesh_keys)),
         title=f"{data.get('title', 'Machine')}: {mesh}",
         gears=pair,
         operation={"speed": Plain(speed), "torque": Plain(torque), "speed_of": "pinion"},
-        dynamics={**_STRUCTURE, **shared_dynamics, **own_dynamics},
+        dynamics={**_STRUCTURE, **shared_dynamics, **mesh_dynamics},
         **tables,
     )
     # All ramps of a force law are a contact each: about its load a machine has the tangent to it.
-    given = case.dynamics.mesh_law is not None
-    tangent = not given and mesh_law_of(case) == "force-law"
+    chosen = case.dynamics.mesh_law is not None
+    tangent = not chosen and mesh_law_of(case) == "force-law"
     return case.replace({"dynamics.mesh_law": "tangent"}) if tangent else case
 
 
-def _merged(name: str, shared: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) -> dict[str, Any]:
     """Table of a mesh: a model of its own brings its options, other keys are added."""
     selector = Case.fields[name].kind.selector  # type: ignore[union-attr]
-    return {**({} if selector in own else shared), **own}
+    return {**({} if selector in of_mesh else shared), **of_mesh}
 
 
 def helical_problem(body: Mapping[str, Any], ring: str | None) -> Problem | None:

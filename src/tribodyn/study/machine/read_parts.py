@@ -41,13 +41,13 @@ def in_si(data: Any) -> Any:
 
 def tables_of(data: Mapping[str, Any], group: str, problems: KeyedProblems) -> dict[str, Any]:
     """Tables of a group by name; anything else in it is a problem."""
-    found = data.get(group, {})
-    if not isinstance(found, Mapping):
+    group_tables = data.get(group, {})
+    if not isinstance(group_tables, Mapping):
         remedy = f"Write [{group}.NAME] with the keys of each part"
         problems.append((group, Problem(f"{group} is not a table", "", "", remedy)))
         return {}
     tables = {}
-    for name, body in found.items():
+    for name, body in group_tables.items():
         if isinstance(body, Mapping):
             tables[str(name)] = dict(body)
             continue
@@ -161,12 +161,10 @@ def rolling_options(law: type) -> dict[str, Option]:
         elif "str" in kind:
             options[field.name] = text(default, meaning=meaning)
         else:
-            unit, shown = _UNITS.get(field.name.rpartition("_")[2], ("", ""))
-            example = f'"1 {shown}"' if shown else "1.0"
-            options[field.name] = number(
-                default, -math.inf, math.inf, "", unit=unit, display_unit=shown, meaning=meaning,
-                example=example,
-            )  # fmt: skip
+            unit, display_unit = _UNITS.get(field.name.rpartition("_")[2], ("", ""))
+            example = f'"1 {display_unit}"' if display_unit else "1.0"
+            units = {"unit": unit, "display_unit": display_unit, "example": example}
+            options[field.name] = number(default, -math.inf, math.inf, "", meaning=meaning, **units)
     return options
 
 

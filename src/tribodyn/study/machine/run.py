@@ -137,13 +137,13 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
     """Forces, errors and accelerations of the parts of a machine along its motion."""
     machine, fine = structure.machine, response.fine
     samples = fine.phase.size
-    force, compression, error, apart = {}, {}, {}, {}
+    force, compression, error, separated = {}, {}, {}, {}
     first = 0
     for name, mesh in machine.meshes.items():
         count = max(len(mesh.contacts), 1)
         force[name] = fine.contact_force[:, first : first + count].sum(axis=1)
         compression[name] = fine.deflection[:, first]
-        apart[name] = (force[name] == 0.0).astype(float)
+        separated[name] = (force[name] == 0.0).astype(float)
         error[name] = fine.position @ _rotation(structure, name)
         first += count
     bearings = {}
@@ -163,7 +163,7 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
         mesh_force=joined(force, samples),
         compression=joined(compression, samples),
         transmission_error=joined(error, samples),
-        open=joined(apart, samples),
+        open=joined(separated, samples),
         bearing_force=joined(bearings, samples, (6,)),
         acceleration=joined(accelerations, samples, (3,)),
         cycles=np.array([machine.clock.cycles[name] for name in force]),

@@ -84,12 +84,12 @@ _TOPICS = {
 
 def figure_of(key: str) -> SummaryFigure:
     """Unit, meaning and topic of a key of the summary, such as ``meshes.first.mesh_frequency``."""
-    kind, _, rest = key.partition(".")
+    kind, _, part_key = key.partition(".")
     prefix = ""
     if kind == "load_cases":
-        case, _, key = rest.partition(".")
-        prefix, (kind, _, rest) = f"{case}: ", key.partition(".")
-    name, _, last = rest.rpartition(".")
+        case, _, key = part_key.partition(".")
+        prefix, (kind, _, part_key) = f"{case}: ", key.partition(".")
+    name, _, last = part_key.rpartition(".")
     quantity, meaning = _KINDS[kind][last]
     entry = QUANTITIES[quantity] if quantity else None
     units = (entry.unit, entry.display_unit) if entry else ("", "")

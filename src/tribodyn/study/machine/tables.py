@@ -22,8 +22,8 @@ def _stiffness(meaning: str, unit: str = "N/m", **more: Any) -> Any:
 
 
 def _position(meaning: str, default: Any = REQUIRED, **more: Any) -> Any:
-    shown = {"unit": "m", "display_unit": "mm", "example": '"85 mm"', "meaning": meaning}
-    return number(default, -100.0, 100.0, _GUARD, **shown, **more)
+    length_in_mm = {"unit": "m", "display_unit": "mm", "example": '"85 mm"', "meaning": meaning}
+    return number(default, -100.0, 100.0, _GUARD, **length_in_mm, **more)
 
 
 class ShaftTable(MaterialData):
