@@ -12,6 +12,7 @@ import numpy as np
 from tribodyn import plot
 from tribodyn.drawing import report_of
 from tribodyn.errors import InputError
+from tribodyn.machine import machine_modes
 from tribodyn.model import Option
 from tribodyn.plot.theme.labels import engineering, readable
 from tribodyn.progress import SILENT, Progress
@@ -121,7 +122,7 @@ def render_machine_report(result: MachineResult) -> str:
             operating_point=operating_point(result.case),
             cards=_cards(summary),
             rows=[row for part in rows_by_topic.values() for row in part],
-            modes=mode_rows(result.structure),
+            modes=mode_rows(result.modes),
             modes_head=MODES_HEAD,
             modes_text="About the static load, at the speed of the case, with the mean stiffness "
             "of the meshes. For each mode: which parts move, and where its energy is.",
@@ -146,15 +147,15 @@ def machine_modes_report_data(
     """Natural modes of a machine and what excites them; ``ends`` limits the speeds."""
     structure = structure_at_rest(case, progress)
     progress.start("Natural modes")
-    campbell = campbell_of(structure, _speeds(case, ends))
+    modes, campbell = machine_modes(structure), campbell_of(structure, _speeds(case, ends))
     figures = [
-        figure_with_caption(plot.machine_modes, structure),
+        figure_with_caption(plot.machine_modes, modes),
         figure_with_caption(plot.machine_campbell, campbell),
     ]
     progress.finish()
     statements = [f"{figures[1][1].layout.title.text}."]
-    facts = modes_facts(structure, campbell)
-    rows = mode_rows(structure)
+    facts = modes_facts(modes, campbell)
+    rows = mode_rows(modes)
     return StudyReportData(campbell, figures, statements, MODES_HEAD, rows, facts)
 
 

@@ -311,7 +311,7 @@ def test_wrong_input_is_refused():
         solve_adaptive(OSCILLATOR, 1.0, 1, start, rtol=0.5)
     with pytest.raises(InputError, match="each of the 2 states"):
         solve_adaptive(OSCILLATOR, 1.0, 1, start, atol=[1e-6, -1.0])
-    with pytest.raises(InputError, match='"rk4", "dormand-prince", "newmark"'):
+    with pytest.raises(InputError, match="Known: rk4, dormand-prince, newmark, modal"):
         simulate(OSCILLATOR, 1.0, 1, start, method="euler")
     with pytest.raises(InputError, match='It belongs to "dormand-prince"'):
         simulate(OSCILLATOR, 1.0, 1, start, rtol=1e-6)

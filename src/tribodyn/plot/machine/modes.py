@@ -12,11 +12,11 @@ from tribodyn.plot.machine.side_view import SideView, shaft_outline
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import GRID, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
-from tribodyn.study.machine.modes import energy_shares, relevant_modes
+from tribodyn.study.machine.modes import energy_shares, modes_in_reach
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
-    from tribodyn.machine import MachineStructure
+    from tribodyn.machine import MachineModes, MachineStructure
     from tribodyn.study.machine.modes import MachineCampbell
 
 _MM = 1e3
@@ -74,13 +74,14 @@ def _deflection(
     caption="Choose a mode: its displacement along y, z and x is drawn as a distance from the axis "
     "of each shaft, to one scale. The title lists where its strain energy is; meshes excite the "
     "modes that strain them.",
-    of=("MachineStructure", "MachineResult.structure"),
-    made_by="Run a case with shafts, or call tribodyn.machine.machine_structure.",
+    of=("MachineModes", "MachineResult.modes"),
+    made_by="Run a case with shafts, or call tribodyn.machine.machine_modes.",
 )
-def machine_modes(structure: MachineStructure) -> Any:
+def machine_modes(modes: MachineModes) -> Any:
     """Draw the natural modes of a machine on its shafts, one at a time."""
+    structure = modes.structure
     view = SideView.of(structure.machine)
-    modes, reach = relevant_modes(structure)
+    reach = modes_in_reach(modes)
     count = min(max(reach, 1), _MOST, len(modes.frequency))
     heights = list(view.height.values())
     height = (max(heights) - min(heights)) or 0.2

@@ -94,12 +94,11 @@ def campbell_of(structure: MachineStructure, speeds: Array | None = None) -> Mac
     return MachineCampbell(speeds, frequency, tuple(orders), np.array(list(orders.values())), now)
 
 
-def relevant_modes(structure: MachineStructure) -> tuple[MachineModes, int]:
-    """Modes at the speed of the operation, and how many lie in reach of an excitation."""
-    modes = machine_modes(structure)
-    turning = abs(structure.machine.operation.speed) / (2.0 * np.pi)
-    top = _BEYOND * max(excitations(structure).values()) * turning
-    return modes, int((modes.frequency <= top).sum())
+def modes_in_reach(modes: MachineModes) -> int:
+    """Number of modes in reach of an excitation at the speed of the operation."""
+    turning = abs(modes.structure.machine.operation.speed) / (2.0 * np.pi)
+    top = _BEYOND * max(excitations(modes.structure).values()) * turning
+    return int((modes.frequency <= top).sum())
 
 
 def energy_shares(modes: MachineModes, number: int) -> str:
@@ -109,9 +108,9 @@ def energy_shares(modes: MachineModes, number: int) -> str:
     return ", ".join(f"{modes.parts[i]} {100.0 * shares[i]:.0f} %" for i in order)
 
 
-def mode_rows(structure: MachineStructure) -> list[list[str]]:
+def mode_rows(modes: MachineModes) -> list[list[str]]:
     """Rows of the table of modes under :data:`MODES_HEAD`."""
-    modes, count = relevant_modes(structure)
+    structure, count = modes.structure, modes_in_reach(modes)
     orders = excitations(structure)
     turning = abs(structure.machine.operation.speed) / (2.0 * np.pi)
     rows = []
@@ -140,9 +139,9 @@ def structure_at_rest(case: MachineCase, progress: Progress = SILENT) -> Machine
     )
 
 
-def modes_facts(structure: MachineStructure, campbell: MachineCampbell) -> dict[str, Any]:
+def modes_facts(modes: MachineModes, campbell: MachineCampbell) -> dict[str, Any]:
     """Modes and excitations in SI for JSON."""
-    modes, count = relevant_modes(structure)
+    structure, count = modes.structure, modes_in_reach(modes)
     turning = abs(structure.machine.operation.speed) / (2.0 * np.pi)
     return {
         "speed": structure.machine.operation.speed,

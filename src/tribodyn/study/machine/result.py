@@ -20,7 +20,7 @@ from tribodyn.validated_files import write_dataset
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
-    from tribodyn.machine import Machine, StaticBalance
+    from tribodyn.machine import Machine, MachineModes, StaticBalance
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.provenance import Assumption
@@ -109,6 +109,13 @@ class MachineResult:
     def structure(self) -> MachineStructure:
         """Its matrices at the operating point."""
         return self.operation.structure
+
+    @cached_property
+    def modes(self) -> MachineModes:
+        """Natural modes at the operating point."""
+        from tribodyn.machine import machine_modes
+
+        return machine_modes(self.structure)
 
     @cached_property
     def campbell(self) -> MachineCampbell:
