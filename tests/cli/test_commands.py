@@ -230,7 +230,7 @@ def test_explain_knows_quantities_keys_and_figures(capsys: pytest.CaptureFixture
 def test_an_unexpected_failure_shows_no_traceback(
     failure: Exception, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: Any) -> None:
+    def fail(*_: Any, **__: Any) -> None:
         raise failure
 
     monkeypatch.setattr("tribodyn.cases.catalogue.cases", fail)
@@ -247,7 +247,7 @@ def test_an_unexpected_failure_shows_no_traceback(
 def test_interruption_has_its_own_exit_code(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def stop(*_: Any) -> None:
+    def stop(*_: Any, **__: Any) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("tribodyn.cases.catalogue.cases", stop)

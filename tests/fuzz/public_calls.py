@@ -19,12 +19,14 @@ import tempfile
 import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping
+from inspect import getattr_static
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from freeze.frozen_surface import PAGES
+from tribodyn.aliases import Alias
 from tribodyn.cases import case_files, run
 from tribodyn.contact import path_of_contact
 from tribodyn.drawing import FIGURES, Drawing
@@ -158,7 +160,8 @@ def methods(kind: type) -> list[str]:
     """Public methods of a class that neither show nor open anything."""
     names = [name for name in dir(kind) if not name.startswith("_") or name == "__call__"]
     left = {"show", "open", "write_image"}.union(dir(tuple))
-    return [name for name in names if callable(getattr(kind, name)) and name not in left]
+    left |= {name for name in names if isinstance(getattr_static(kind, name), Alias)}
+    return [name for name in names if name not in left and callable(getattr(kind, name))]
 
 
 def _others(

@@ -231,7 +231,7 @@ def test_positional_and_keyword_arguments_reach_their_parameters():
     with pytest.raises(InputError) as refused:
         checked(several)("a", 2.0, "b", last=5)
     places = [str(problem.where).split()[-1] for problem in refused.value.problems]
-    assert places == ["first", "rest", "last"]
+    assert places == ["first", "others", "last"]
 
 
 def test_functions_that_read_their_arguments_are_pickled_by_name():

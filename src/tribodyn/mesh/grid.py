@@ -291,7 +291,7 @@ class MonotonePhaseFunction:
         ]
 
     def __call__(self, phase: Array | float) -> Array:
-        """Interpolate; exactly on an event the value after it is returned."""
+        """Interpolate; on an event the value after it, NaN where the phase is not finite."""
         folded = np.mod(np.asarray(phase, dtype=float), 1.0)
         segment = np.searchsorted(np.array(self.grid.event_phases), folded, side="right") - 1
         interpolated = np.empty(folded.shape + self.values.shape[1:])

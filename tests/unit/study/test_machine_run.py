@@ -172,10 +172,10 @@ def test_check_shows_speeds_and_torques(capsys):
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:\\[friction-range\\]")
 def test_the_built_in_reducer_runs_with_its_teeth(tmp_path):
     case = td.load_case("two-stage-spur").replace({"load_cases": None})
-    with td.errors.collected():
-        result = td.run(case)
+    result = td.run(case)
     figures = result.summary()
     assert figures["meshes.second.mesh_frequency"] == pytest.approx(3000 / 60 * 23 / 57 * 21)
     for name in ("first", "second"):

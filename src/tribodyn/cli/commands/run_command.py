@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from tribodyn.cli.console import figures, say, say_json, show_warnings, tell
 from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_any_case, check_place
+
+if TYPE_CHECKING:
+    from tribodyn.study import MachineResult, Result
 
 
 def run(
@@ -48,9 +51,15 @@ def run(
     with progress_bar() as progress, warnings.catch_warnings():
         # They are shown below, from the result.
         warnings.simplefilter("ignore", ModelWarning)
-        from tribodyn.cases.load import run as compute
+        from tribodyn.study.machine.case import MachineCase
+        from tribodyn.study.machine.run import run_machine
+        from tribodyn.study.pipeline.run import run as compute
 
-        result = compute(ready, progress)
+        result: Result | MachineResult
+        if isinstance(ready, MachineCase):
+            result = run_machine(ready, progress)
+        else:
+            result = compute(ready, progress)
         progress.start("Report")
         result.save(target, force=force, csv=csv)
         progress.finish()
