@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from tribodyn.aliases import old_module
+from tribodyn import aliases
 
-__getattr__ = old_module(__name__)
+__getattr__ = aliases.old_module(__name__)
