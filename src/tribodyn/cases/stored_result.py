@@ -14,6 +14,7 @@ import numpy as np
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
 from tribodyn.study.case.to_models import locate_errors
+from tribodyn.study.machine.stored import MOTION, read_machine
 from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.save import RESULT_FILES
@@ -33,17 +34,17 @@ _FACTS = ("mesh_frequency", "periods", "steady_state_error", "warnings", "cycles
           "search_cycles", "period", "converged")  # fmt: skip
 
 
-def load_result(directory: str | os.PathLike[str]) -> Result:
+def load_result(directory: str | os.PathLike[str]) -> Any:
     """Read a saved result; only the forces along its motion are computed again.
 
     Parameters
     ----------
     directory : str or path
-        What :meth:`tribodyn.Result.save` or ``tribodyn run`` wrote.
+        What :meth:`tribodyn.Result.save` or ``tribodyn run`` wrote, of a gear pair or a machine.
 
     Returns
     -------
-    Result
+    Result or MachineResult
         With the same case, summary, warnings and figures. Of a long transient it has the mesh
         cycles that were stored; the summary is that of the whole run. The motion with nominal
         friction is not stored, only its figures in the summary.
@@ -66,6 +67,8 @@ Give the directory that tribodyn run or Result.save wrote.
     from tribodyn.validated_files import read_dataset
 
     folder = Path(directory)
+    if (folder / MOTION).is_file():
+        return read_machine(folder, load_case)
     summary = read_summary(folder)
     case = load_case(folder / "case.toml")
     mesh = MeshTable.load(folder / "mesh.nc")

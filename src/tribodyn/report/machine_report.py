@@ -29,6 +29,7 @@ from tribodyn.study.machine.modes import (
     modes_facts,
     structure_at_rest,
 )
+from tribodyn.study.machine.stored import HOUSING
 from tribodyn.study.machine.summary import figure_of
 from tribodyn.study.machine.tables import OperationTable
 from tribodyn.study.pipeline.save import write_file
@@ -132,7 +133,7 @@ def render_machine_report(result: MachineResult) -> str:
             assumptions=result.assumptions,
             citations=result.cite().splitlines(),
             provenance=provenance(None),
-            case_text=result.case.to_toml(),
+            case_text=result.case.with_files(HOUSING).to_toml(),
             figures=embedded_figures(blocks),
             style=text_of("report.css"),
             script=text_of("report.js"),

@@ -67,10 +67,17 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
 
 def _check_machine(case: MachineCase, json: bool) -> None:
     """Show speeds, torques and power of a machine, after rehearsing its teeth."""
-    from tribodyn.study.machine.first_look import kinematic_figures, rehearse_machine
+    from tribodyn.errors import collected
+    from tribodyn.study.machine.first_look import (
+        kinematic_figures,
+        rehearse_machine,
+        warn_of_period,
+    )
     from tribodyn.study.machine.summary import summary_rows
 
-    rehearse_machine(case)
+    with collected() as warnings:
+        rehearse_machine(case)
+        warn_of_period(case.machine())
     values = kinematic_figures(case)
     if json:
         say_json(values)
@@ -79,6 +86,7 @@ def _check_machine(case: MachineCase, json: bool) -> None:
     for assumption in case.assumptions:
         text = ", ".join(filter(None, (assumption.value, assumption.reason)))
         tell(f"assumed: {assumption.key}: {text}")
+    show_warnings(warnings)
     tell("The case is in order.")
 
 

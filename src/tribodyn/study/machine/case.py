@@ -425,14 +425,17 @@ class MachineCase:
         Parameters
         ----------
         prefix : str
-            Before the name of each file.
+            Before the name of each file that does not begin with it.
 
         Returns
         -------
         MachineCase
         """
         other = copy(self)
-        names = {k: prefix + Path(path).name for k, path in self.housing_files.items()}
+        names = {
+            key: prefix + Path(path).name.removeprefix(prefix)
+            for key, path in self.housing_files.items()
+        }
         housing = {**self.data["housing"], **names} if names else None
         other.data = {**self.data, "housing": housing} if housing else self.data
         return other

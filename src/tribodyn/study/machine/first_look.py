@@ -4,10 +4,38 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tribodyn.errors import warn
 from tribodyn.study.pipeline.run import rehearse
 
 if TYPE_CHECKING:
+    from tribodyn.machine import Machine
     from tribodyn.study.machine.case import MachineCase
+
+#: Mesh cycles of a period above which a warning says what they cost, steps per cycle, and bytes of
+#: a step for each coordinate: three samples of position, velocity and acceleration.
+_LONG_PERIOD, _STEPS, _BYTES = 400, 128, 72
+
+
+def warn_of_period(machine: Machine) -> None:
+    """Warn of a period with so many mesh cycles that it takes much time and memory."""
+    clock = machine.clock
+    fastest = max(clock.cycles, key=lambda name: clock.cycles[name])
+    cycles = clock.cycles[fastest]
+    if cycles <= _LONG_PERIOD:
+        return
+    pairs = (
+        f"{name} {' : '.join(str(abs(machine.gears[gear].teeth)) for gear in mesh.gears)}"
+        for name, mesh in machine.meshes.items()
+    )
+    gigabytes = 1e-9 * _BYTES * _STEPS * cycles * 100
+    warn(
+        "long-period",
+        f"the meshes repeat together only after {cycles} cycles of mesh {fastest} "
+        f"({1.0 / clock.frequency:.4g} s), because the teeth have few common factors "
+        f"({', '.join(pairs)}). Each motion takes {_STEPS * cycles} steps and about "
+        f"{gigabytes:.2g} GB for 100 coordinates. Numbers of teeth on one shaft with a common "
+        "factor shorten the period, such as 57 and 21 in place of 57 and 22",
+    )
 
 
 def rehearse_machine(case: MachineCase) -> None:

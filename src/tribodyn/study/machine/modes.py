@@ -132,11 +132,11 @@ def mode_rows(modes: MachineModes) -> list[list[str]]:
 
 def structure_at_rest(case: MachineCase, progress: Progress = SILENT) -> MachineStructure:
     """Structure of a machine about its static balance, with the mean stiffness of its meshes."""
-    from tribodyn.study.machine.run import balanced_machine, structure_of
+    from tribodyn.study.machine.run import balanced_machine, structure_of, warn_of_meshes
 
-    return structure_of(
-        case, balanced_machine(case, case.operating_point, progress)[0].linearized()
-    )
+    balanced = balanced_machine(case, case.operating_point, progress)
+    warn_of_meshes(balanced.warnings)
+    return structure_of(case, balanced.static.linearized())
 
 
 def modes_facts(modes: MachineModes, campbell: MachineCampbell) -> dict[str, Any]:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import os
-import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +13,6 @@ from tribodyn.drawing import draw, write_report_of
 from tribodyn.record import html_table
 from tribodyn.study.machine.summary import summary_of, summary_rows
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.validated_files import write_dataset
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
@@ -29,6 +26,19 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.motion import MachineMotion
 
 
+#: Steps per cycle of the fastest mesh.
+_STEPS = 128
+
+
+def steady_motion(
+    structure: MachineStructure, system: System, start: Response | None = None
+) -> Response:
+    """Motion of a machine over one period of its clock."""
+    from tribodyn.dynamics import harmonic_balance
+
+    return harmonic_balance(system, structure.machine.clock.frequency, steps=_STEPS, start=start)
+
+
 @dataclass(frozen=True, eq=False)
 class LoadResult:
     """A machine under one load.
@@ -39,25 +49,33 @@ class LoadResult:
         Speed and torque.
     structure : MachineStructure
         With the force laws of its teeth and the stiffness of its bearings at this load.
-    tables : mapping of str to MeshTable
-        Tooth contact of the meshes that are computed.
     static : StaticBalance
         Deflections, bearing loads and misalignments at rest.
+    tables : mapping of str to MeshTable
+        Tooth contact of the meshes that are computed.
+    misalignment : mapping of str to float
+        Misalignment of the flanks with which each table was computed [m].
     system : System
         The structure, reduced where it is large, and its contacts.
-    response : Response
-        Its motion over one period of the clock.
     motion : MachineMotion
         Forces, errors and accelerations by the names of the parts.
+    steady : Response, optional
+        Motion of all coordinates over one period of the clock, where it is at hand.
     """
 
     load: LoadCase
     structure: MachineStructure
-    tables: Mapping[str, MeshTable]
     static: StaticBalance
+    tables: Mapping[str, MeshTable]
+    misalignment: Mapping[str, float]
     system: System
-    response: Response
     motion: MachineMotion
+    steady: Response | None = None
+
+    @cached_property
+    def response(self) -> Response:
+        """Motion of all coordinates over one period; of a stored result computed again."""
+        return self.steady or steady_motion(self.structure, self.system)
 
     @property
     def machine(self) -> Machine:
@@ -71,7 +89,8 @@ class LoadResult:
 
     def __repr__(self) -> str:
         """One line."""
-        return f"LoadResult({self.load.name}: {self.response!r})"
+        meshes = ", ".join(self.motion.mesh)
+        return f"LoadResult({self.load.name}: meshes {meshes} at {self.motion.frequency:.6g} Hz)"
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,6 +219,8 @@ class MachineResult:
     ) -> Path:
         """Write case, summary, motions, mesh tables and report into a new directory.
 
+        :func:`tribodyn.load_result` reads it.
+
         Parameters
         ----------
         directory : str or path
@@ -216,17 +237,11 @@ class MachineResult:
         InputError
             If the place cannot be written to.
         """
+        from tribodyn.study.machine.stored import write_machine
+
         target = Path(directory)
         with new_directory(target, force=force) as place:
-            for path in self.case.housing_files.values():
-                shutil.copyfile(path, place / f"housing-{Path(path).name}")
-            text = self.case.with_files("housing-").to_toml()
-            (place / "case.toml").write_text(text, encoding="utf-8")
-            summary = json.dumps(self._summary, indent=2, allow_nan=False) + "\n"
-            (place / "summary.json").write_text(summary, encoding="utf-8")
-            for name, table in self.operation.tables.items():
-                table.save(place / f"mesh-{name}.nc")
-            write_dataset(self.to_xarray(), place / "motion.nc")
+            write_machine(self, place)
             if csv:
                 frame = self.to_xarray().mesh_force.to_pandas()
                 (place / "response.csv").write_text(frame.to_csv(), encoding="utf-8")

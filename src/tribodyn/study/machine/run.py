@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import warnings
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics import harmonic_balance
-from tribodyn.errors import collected, frames, warn
+from tribodyn.errors import ModelWarning, collected, frames, warn
 from tribodyn.machine import (
     MachineStructure,
     face_laws,
@@ -22,8 +22,9 @@ from tribodyn.machine import system as system_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.machine.case import LoadCase, MachineCase
+from tribodyn.study.machine.first_look import warn_of_period
 from tribodyn.study.machine.motion import MachineMotion, joined
-from tribodyn.study.machine.result import LoadResult, MachineResult
+from tribodyn.study.machine.result import LoadResult, MachineResult, steady_motion
 from tribodyn.study.pipeline.assembly import whole_system
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 from tribodyn.types import Array
@@ -32,12 +33,28 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import Response
     from tribodyn.machine import Machine, StaticBalance
     from tribodyn.mesh import MeshTable
+    from tribodyn.study.case.case import Case
 
-#: Steps per cycle of the fastest mesh.
-_STEPS = 128
 #: Passes of teeth and balance at most, and change of the misalignment over the compression of the
 #: teeth that ends them.
 _PASSES, _SAME = 4, 0.1
+
+
+class MeshWarning(NamedTuple):
+    """Warning about the teeth of a mesh under a load."""
+
+    mesh: str
+    load: str
+    warning: ModelWarning
+
+
+class Balanced(NamedTuple):
+    """A machine at rest under one load, with its computed teeth."""
+
+    static: StaticBalance
+    tables: dict[str, MeshTable]
+    misalignment: dict[str, float]  #: with which the teeth were computed [m]
+    warnings: list[MeshWarning]
 
 
 def run_machine(
@@ -48,28 +65,32 @@ def run_machine(
 
     # The matrices of a machine are small: threads of the linear algebra only wait for each other.
     with collected() as caught, threadpool_limits(1, "blas"):
+        warn_of_period(case.machine())
+        of_meshes: list[MeshWarning] = []
         points = (case.operating_point, *case.load_cases)
-        results = [_under_load(case, load, progress) for load in points]
+        results = [_under_load(case, load, progress, of_meshes) for load in points]
+        warn_of_meshes(of_meshes)
     unique = {str(warning): warning for warning in caught}
     for warning in unique.values():
         warnings.warn(warning, stacklevel=frames(stacklevel, sys._getframe()))
     return MachineResult(case, results[0], tuple(results[1:]), tuple(unique.values()))
 
 
-def _under_load(case: MachineCase, load: LoadCase, progress: Progress) -> LoadResult:
-    static, tables = balanced_machine(case, load, progress)
+def _under_load(
+    case: MachineCase, load: LoadCase, progress: Progress, of_meshes: list[MeshWarning]
+) -> LoadResult:
+    balanced = balanced_machine(case, load, progress)
+    of_meshes += balanced.warnings
     progress.start(f"Motion: {load.name}")
-    structure = structure_of(case, static.linearized())
+    structure = structure_of(case, balanced.static.linearized())
     system = system_of(structure)
-    response = harmonic_balance(system, structure.machine.clock.frequency, steps=_STEPS)
+    response = steady_motion(structure, system)
     progress.finish()
     motion = machine_motion(structure, response)
-    return LoadResult(load, structure, tables, static, system, response, motion)
+    return LoadResult(load, structure, *balanced[:3], system, motion, response)
 
 
-def balanced_machine(
-    case: MachineCase, load: LoadCase, progress: Progress = SILENT
-) -> tuple[StaticBalance, dict[str, MeshTable]]:
+def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SILENT) -> Balanced:
     """Static balance of a machine with computed teeth, and their mesh tables."""
     # Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a
     # little, the deflection: teeth and balance are repeated until they agree.
@@ -77,9 +98,15 @@ def balanced_machine(
     static = _static(case.machine(load))  # with a usual stiffness of the teeth
     for _ in range(_PASSES):
         before = {name: static.meshes[name] for name in case.meshes_with_teeth}
-        model_warnings: list[tuple[str, str]] = []  # those of the last pass are in force
+        mesh_warnings: list[MeshWarning] = []  # those of the last pass are in force
         misalignment = {name: mesh.misalignment for name, mesh in before.items()}
-        laws, tables = _teeth(case, load, misalignment, model_warnings)
+        tables, laws = {}, {}
+        for name in case.meshes_with_teeth:
+            pair = case.pair(name, load, misalignment[name])
+            with locate_errors(pair), collected() as caught:
+                tables[name] = mesh_of(pair)
+                laws[name] = _law(pair, tables[name])
+            mesh_warnings += [MeshWarning(name, load.name, warning) for warning in caught]
         static = _static(case.machine(load, **laws))
         changes = [
             abs(static.meshes[name].misalignment - mesh.misalignment) / mesh.compression
@@ -87,10 +114,31 @@ def balanced_machine(
         ]
         if max(changes, default=0.0) <= _SAME:
             break
-    for code, message in model_warnings:
-        warn(code, message)
     progress.finish()
-    return static, tables
+    return Balanced(static, tables, misalignment, mesh_warnings)
+
+
+def static_with_teeth(
+    case: MachineCase,
+    load: LoadCase,
+    tables: Mapping[str, MeshTable],
+    misalignment: Mapping[str, float],
+) -> StaticBalance:
+    """Static balance of a machine with the force laws of its mesh tables."""
+    laws = {n: _law(case.pair(n, load, misalignment[n]), table) for n, table in tables.items()}
+    return _static(case.machine(load, **laws))
+
+
+def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
+    """Warn of the teeth, each reason once with all the meshes and loads that have it."""
+    groups: dict[tuple[str, str], list[MeshWarning]] = {}
+    for each in mesh_warnings:
+        text = re.sub(r"[-+]?\d[\d.e+-]*", "#", each.warning.message)
+        groups.setdefault((each.warning.code, text), []).append(each)
+    for (code, _), group in groups.items():
+        first, places = group[0], [f"mesh {mesh}, {load}" for mesh, load, _ in group[1:]]
+        others = f" The same in {'; '.join(dict.fromkeys(places))}." if places else ""
+        warn(code, f"mesh {first.mesh}, {first.load}: {first.warning.message}{others}")
 
 
 def _static(machine: Machine) -> StaticBalance:
@@ -105,32 +153,16 @@ def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
     return reduce_structure(MachineStructure(machine, ratio), limit)
 
 
-def _teeth(
-    case: MachineCase,
-    load: LoadCase,
-    misalignment: Mapping[str, float],
-    model_warnings: list[tuple[str, str]],
-) -> tuple[dict[str, dict[str, Any]], dict[str, MeshTable]]:
-    """Force laws of the meshes whose teeth are computed, and their mesh tables."""
-    laws, tables = {}, {}
-    for name in case.meshes_with_teeth:
-        pair = case.pair(name, load, misalignment[name])
-        with locate_errors(pair), collected() as caught:
-            table = mesh_of(pair)
-            plane = whole_system(pair, table)
-        model_warnings += [
-            (each.code, f"mesh {name}, {load.name}: {each.message}") for each in caught
-        ]
-        functions = table.functions()
-        laws[name] = {
-            # The static balance and the modes are those about the load.
-            "stiffness": functions.tangent_stiffness or functions.stiffness,
-            "contacts": plane.contacts,
-            "frictions": plane.frictions,
-            "events": functions.event_phases,
-        }
-        tables[name] = table
-    return laws, tables
+def _law(pair: Case, table: MeshTable) -> dict[str, Any]:
+    """Force law of a mesh whose teeth are computed."""
+    plane, functions = whole_system(pair, table), table.functions()
+    return {
+        # The static balance and the modes are those about the load.
+        "stiffness": functions.tangent_stiffness or functions.stiffness,
+        "contacts": plane.contacts,
+        "frictions": plane.frictions,
+        "events": functions.event_phases,
+    }
 
 
 def machine_motion(structure: MachineStructure, response: Response) -> MachineMotion:

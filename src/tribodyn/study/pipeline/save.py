@@ -21,7 +21,7 @@ STUDY_FILES = ("case.toml", "best.toml", "study.nc", "friction.csv", "report.htm
 BIFURCATION_FILES = ("case.toml", "bifurcation.nc", "bifurcation.html")
 #: What the directory of a machine holds, besides the mesh tables of its meshes.
 MACHINE_FILES = ("case.toml", "summary.json", "motion.nc", "report.html")
-_OF_PARTS = ("mesh-*.nc", "housing-*")
+_OF_PARTS = ("mesh-*.nc", "load-*.nc", "housing-*")
 #: File by which a directory is known -> all that it may hold.
 _KINDS = {
     "motion.nc": (*MACHINE_FILES, *_ON_REQUEST),
