@@ -29,21 +29,21 @@ def cubic(x: Array, y: Array, slope: Array) -> Callable[[Array], Array]:
 
 
 def spline(x: Array, y: Array) -> Callable[[Array], Array]:
-    """Cubic through values (n,) at increasing places (n,), four or more, with steady bends.
+    """Cubic through values (n, ...) at increasing places (n,), four or more, with steady bends.
 
     The two pieces at each end are one cubic. Source: de Boor (1978), A practical guide to splines,
     chapter IV.
     """
     if x.size < 4:
         raise ValueError("a spline needs four places or more")
-    h, secant, rows = np.diff(x), np.diff(y) / np.diff(x), np.zeros((x.size, x.size))
+    h, rows, right = np.diff(x), np.zeros((x.size, x.size)), np.zeros((x.size, x.size - 1))
     inner = np.arange(1, x.size - 1)
     rows[inner, inner - 1], rows[inner, inner + 1] = h[1:], h[:-1]
     rows[inner, inner] = 2.0 * (h[:-1] + h[1:])
+    right[inner, inner - 1], right[inner, inner] = 3.0 * h[1:], 3.0 * h[:-1]
     first, last = x[2] - x[0], x[-1] - x[-3]
     rows[0, :2], rows[-1, -2:] = (h[1], first), (last, h[-2])
-    right = np.empty(x.size)
-    right[1:-1] = 3.0 * (h[1:] * secant[:-1] + h[:-1] * secant[1:])
-    right[0] = ((h[0] + 2.0 * first) * h[1] * secant[0] + h[0] ** 2 * secant[1]) / first
-    right[-1] = (h[-1] ** 2 * secant[-2] + (2.0 * last + h[-1]) * h[-2] * secant[-1]) / last
-    return cubic(x, y, np.asarray(np.linalg.solve(rows, right)))
+    right[0, :2] = (h[0] + 2.0 * first) * h[1] / first, h[0] ** 2 / first
+    right[-1, -2:] = h[-1] ** 2 / last, (2.0 * last + h[-1]) * h[-2] / last
+    secant = (np.diff(y, axis=0).T / h).T
+    return cubic(x, y, np.asarray(np.linalg.solve(rows, right @ secant)))

@@ -148,10 +148,13 @@ def mesh_table(
     pinion_speed: float,
     pinion_torque: float,
     steps: int | None = None,
-    force_law: bool = False,
+    force_law: bool | None = False,
     progress: Progress = SILENT,
 ) -> MeshTable:
-    """Compute the tooth contact with these settings at one speed and torque, as :func:`build`."""
+    """Compute the tooth contact with these settings at one speed and torque, as :func:`build`.
+
+    ``force_law`` None replaces the law by its tangent at the load.
+    """
     operation = (pinion_speed, pinion_torque)
     loaded = loaded_mesh(
         pair, settings, operation, steps=steps, force_law=force_law, progress=progress
@@ -172,7 +175,8 @@ class LoadedMesh:
     loads: Loads
     pinion_speed: float
     pinion_torque: float
-    force_law: bool  #: fit the force law of pairs that are springs of their own too
+    #: Fit the force law of pairs that are springs of their own too; None: only its tangent.
+    force_law: bool | None
 
     @cached_property
     def films(self) -> Films:
@@ -254,7 +258,7 @@ def loaded_mesh(
     operation: tuple[float, float],
     *,
     steps: int | None = None,
-    force_law: bool = False,
+    force_law: bool | None = False,
     loading: Array | None = None,
     progress: Progress = SILENT,
 ) -> LoadedMesh:

@@ -22,6 +22,7 @@ from tribodyn.friction.base import STEEL_BODIES
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
+from tribodyn.stiffness.loaded.problem import Equilibrium
 from tribodyn.stiffness.model import usable_stiffness
 from tribodyn.types import Array, Mask
 
@@ -143,12 +144,16 @@ class Teeth:
         return np.asarray((self.load_per_width * self._dry.share)[self.in_contact])
 
     @cached_property
+    def _dry_equilibrium(self) -> Equilibrium:
+        return self.problem.at_loads(self._totals)
+
+    @cached_property
     def _dry_law(self) -> tuple[Array, Array, float]:
         return force_ramps(self.problem, self.normal_force)
 
     def _shared(self, film: FilmSprings | None) -> SharedLoad:
         problem = self.with_film(film)
-        solved = problem.at_loads(self._totals)
+        solved = self._dry_equilibrium if film is None else problem.at_loads(self._totals)
         force = np.einsum("s,psn->pn", problem.widths, solved.load[0])
         inner = force[:, 1:-1] if self._extended else force
         on_path = np.where(self.in_contact, inner, 0.0)
@@ -240,7 +245,7 @@ class Teeth:
     @cached_property
     def bends(self) -> tuple[float, ...]:
         """Mesh phases, no events, at which a pair begins or ceases to carry."""
-        carries = self.problem.at_loads(self._totals).load[0].any(axis=1)
+        carries = self._dry_equilibrium.load[0].any(axis=1)
         phase = self.problem.places.phase
         turns = (carries[1:] != carries[:-1]).any(axis=1) & (np.diff(phase) > 0.0)
         return tuple(float(bend) for bend in 0.5 * (phase[1:] + phase[:-1])[turns])
@@ -334,10 +339,17 @@ def teeth_of(
 
 
 def shared_load_columns(
-    teeth: Teeth, shared: SharedLoad, film: FilmSprings | None, *, force_law: bool
+    teeth: Teeth, shared: SharedLoad, film: FilmSprings | None, *, force_law: bool | None
 ) -> dict[str, Any]:
-    """Columns of the mesh table that follow from teeth and films under load, its own copies."""
-    ramps = teeth.ramps(shared, film, fitted=force_law)
+    """Columns of the mesh table that follow from teeth and films under load, its own copies.
+
+    Without a ``force_law`` (None) its ramp is the tangent at the load, which costs nothing.
+    """
+    if force_law is None:
+        first = shared.transmission_error - np.ravel(teeth.force) / shared.tangent
+        ramps = first[:, None], shared.tangent[:, None]
+    else:
+        ramps = teeth.ramps(shared, film, fitted=force_law)
     without_film = shared if film is None else teeth.shared_load()
     alone: dict[str, Any] = {}
     if film is not None:

@@ -92,7 +92,9 @@ def _cards(summary: dict[str, float]) -> list[Number]:
 
 def _blocks(result: MachineResult) -> list[Block]:
     return [
-        block_of_figure(figure.name, figure.heading, figure(result), figure.caption_of(result))
+        block_of_figure(
+            figure.name, figure.heading, figure.sketch(result), figure.caption_of(result)
+        )
         for figure in FIGURES_OF_MACHINES
         if not figure.missing(result)
     ]

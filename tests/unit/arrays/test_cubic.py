@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 from tribodyn.arrays.cubic import spline
 
@@ -15,6 +15,16 @@ def test_values_are_those_of_scipy(count: int) -> None:
     places = np.stack([rng.choice(x, 99), rng.uniform(x[0], x[-1], 99)])
     values, expected = spline(x, y)(places), CubicSpline(x, y)(places)
     np.testing.assert_allclose(values, expected, rtol=1e-11, atol=0.0)
+
+
+def test_splines_in_two_directions_are_the_one_of_scipy() -> None:
+    rng = np.random.default_rng(3)
+    x, table = np.cumsum(rng.uniform(0.5, 1.0, 12)), rng.normal(size=(12, 12))
+    first, second = rng.uniform(x[0], x[-1], (2, 99))
+    weights = spline(x, np.eye(12))
+    values = ((weights(first) @ table) * weights(second)).sum(axis=1)
+    expected = RectBivariateSpline(x, x, table)(first, second, grid=False)
+    np.testing.assert_allclose(values, expected, rtol=0.0, atol=1e-13)
 
 
 def test_three_places_are_refused() -> None:

@@ -9,6 +9,7 @@ from tribodyn.dynamics import Contact, System, harmonic_balance
 from tribodyn.dynamics.equations.grid import PointEvaluator
 from tribodyn.dynamics.equations.nodes import evaluate_rows
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
+from tribodyn.dynamics.harmonic.contact_equations import _basis
 from tribodyn.dynamics.harmonic.harmonic_balance import prepare
 from tribodyn.dynamics.harmonic.newton import solve_linear
 from tribodyn.dynamics.harmonic.orbit_response import series
@@ -24,6 +25,18 @@ def test_krylov_solution_is_that_of_the_matrix():
     assert product(solution) == pytest.approx(right, abs=1e-10)
     assert count <= 30
     assert solve_linear(product, 0.0 * right, 1e-3)[1] == 0
+
+
+def test_directions_of_few_rows_are_in_the_basis():
+    generator = np.random.default_rng(4)
+    inverse = np.triu(generator.normal(size=(9, 9))) + 3.0 * np.eye(9)
+    flat = generator.normal(size=(2000, 3)) @ generator.normal(size=(3, 9))
+    flat[1234] += 1e-6 * generator.normal(size=9)  # rows between those that are looked at first
+    flat[777] = generator.normal(size=9)
+    basis = _basis([flat.reshape(500, 4, 9), np.zeros((1, 9))], inverse)
+    rows = flat @ inverse.T
+    assert basis.T @ basis == pytest.approx(np.eye(5), abs=1e-12)
+    assert rows @ basis @ basis.T == pytest.approx(rows, abs=1e-9)
 
 
 @pytest.mark.parametrize("direct", [False, True])

@@ -13,6 +13,7 @@ from known_pairs import pair_of, standard, type_c
 from tribodyn.gear import FlankModification, Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import MeshTable, build, sharing
+from tribodyn.mesh.build import mesh_table
 from tribodyn.mesh.sharing import LARGEST_ERROR, LARGEST_GRADUAL_ERROR
 from tribodyn.stiffness import loaded_contact
 
@@ -53,6 +54,23 @@ def test_a_table_is_the_loaded_contact_at_its_knots(name):
     assert mesh.mesh_stiffness_tangent == pytest.approx(loaded.mesh_stiffness_tangent, rel=1e-6)
     total = mesh.load_share.sum(axis=1) + mesh.corner_share.sum(axis=1)
     assert total == pytest.approx(1.0, abs=1e-10)
+
+
+def test_a_table_about_its_load_has_the_tangent_there_as_its_force_law(monkeypatch):
+    pair = replace(pair_of(), misalignment=8e-6)
+    settings = sharing.ToothContact(Material(), OIL, "analytic", composite_roughness=0.0)
+    run = {"pinion_speed": 100.0, "pinion_torque": 90.0, "steps": 64}
+    full = mesh_table(pair, settings, **run)
+    monkeypatch.setattr(sharing, "force_ramps", None)  # the expensive fit is not called
+    about_load = mesh_table(pair, settings, force_law=None, **run)
+    law, error = about_load.force_law, about_load.static_transmission_error
+    assert law.knot_deflection.shape[1] == 1 < full.force_law.knot_deflection.shape[1]
+    rows = np.arange(error.size)
+    place, slope = law.knot_deflection[rows, 0], law.knot_stiffness[rows, 0]
+    assert slope * (error - place) == pytest.approx(full.total_normal_force, rel=1e-12)
+    assert slope == pytest.approx(full.mesh_stiffness_tangent, rel=1e-12)
+    for name in ("load_share", "stiffness", "static_transmission_error", "friction_sum"):
+        assert np.array_equal(getattr(about_load, name), getattr(full, name))
 
 
 def test_tip_corners_carry_on_where_the_path_ends():

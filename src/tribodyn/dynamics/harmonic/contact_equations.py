@@ -31,6 +31,8 @@ from tribodyn.types import Array, Index, Mask
 
 #: Part of a singular value below which a direction depends on others; of an entry that is no jump.
 _RANK, _JUMP = 1e-10, 1e-5
+#: Of so many directions one is taken for a first basis; random directions that test all others.
+_SAMPLED, _PROBES = 31, 8
 
 
 class Rows(NamedTuple):
@@ -190,8 +192,13 @@ class ContactEquations:
         return Breaks(step, fraction, jump[:, None] * push, total[:, None] * push, tangent)
 
 
-def close_contacts(compiled: Compiled, extra: Array) -> tuple[ClosedStructure, Mask]:
-    """Structure with closed contacts, and those closed at rest; ``extra`` (m, n) forces act too."""
+def close_contacts(
+    compiled: Compiled, extra: Array, still: Array | None = None
+) -> tuple[ClosedStructure, Mask]:
+    """Structure with closed contacts, and those closed at rest in the position ``still``.
+
+    ``extra`` (m, n) forces act too.
+    """
     system, nodes = compiled.system, compiled.nodes
     coordinates = structure_coordinates(compiled)
     inverse = coordinates.inverse
@@ -200,7 +207,7 @@ def close_contacts(compiled: Compiled, extra: Array) -> tuple[ClosedStructure, M
         pushes.append(np.asarray(system.balance)[None])
     along = _basis([nodes.direction, nodes.direction_slope], inverse)
     push = _basis(pushes, inverse)
-    still = static_start(compiled)[: system.size]
+    still = static_start(compiled)[: system.size] if still is None else still
     clearance = np.einsum("rs,rsj->j", nodes.weight, compression(nodes, still) - nodes.gap)
     closed = lowest_of_each_law(nodes) | (clearance > 0.0)
     into_along = _distinct(nodes.direction) @ (inverse.T @ along)
@@ -262,11 +269,24 @@ def _jumping(before: Nodes, after: Nodes) -> Index:
 def _basis(parts: list[Array], inverse: Array) -> Array:
     """Orthonormal basis (n, r) of directions (..., n), each of which counts by its direction."""
     size = parts[0].shape[-1]
-    rows = np.concatenate([unrepeated(part, 1).reshape(-1, size) for part in parts]) @ inverse.T
+    rows = [unrepeated(part, 1).reshape(-1, size) for part in parts]
+    basis = _span(np.concatenate([part[::_SAMPLED] for part in rows]) @ inverse.T)
+    # Most rows repeat what some span; components along random directions show those that do not.
+    random = np.random.default_rng(0).standard_normal((size, _PROBES))
+    probes, left = inverse.T @ random, inverse.T @ (random - basis @ (basis.T @ random))
+    outside = [
+        part[np.linalg.norm(part @ left, axis=1) > _RANK * np.linalg.norm(part @ probes, axis=1)]
+        for part in rows
+    ]
+    return _span(np.concatenate((basis.T, np.concatenate(outside) @ inverse.T)))
+
+
+def _span(rows: Array) -> Array:
+    """Orthonormal basis (n, r) of the directions of rows (m, n)."""
     length = np.linalg.norm(rows, axis=1)
     rows = rows[length > 0.0] / length[length > 0.0, None]
     if not len(rows):
-        return np.zeros((size, 0))
+        return np.zeros((rows.shape[1], 0))
     _, values, basis = np.linalg.svd(np.linalg.qr(rows, mode="r"), full_matrices=False)
     return np.ascontiguousarray(basis[values > _RANK * values[0]].T)
 

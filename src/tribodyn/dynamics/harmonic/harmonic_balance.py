@@ -87,7 +87,7 @@ def prepare(system: System, frequency: float) -> Prepared:
     refuse_disconnected(compiled)
     orbit_coordinates(compiled, frequency)  # warns of forces that do not balance
     start = static_start(compiled)[: system.size]
-    structure, closed = close_contacts(compiled, np.zeros((0, system.size)))
+    structure, closed = close_contacts(compiled, np.zeros((0, system.size)), start)
     prepared = Prepared(system, structure, closed, start, {steps: compiled})
     _cache[:] = [(weakref.ref(system), prepared), *_cache[:3]]
     return prepared

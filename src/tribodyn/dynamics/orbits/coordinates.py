@@ -242,6 +242,10 @@ def _sums(push: Array, weight: Array, along: Array, shift: Array) -> tuple[Array
     if not lead and unrepeated(push, 2).size == unrepeated(along, 2).size == push[0, 0].size:
         total, moved = weight.sum(axis=(0, 1)), (weight * shift).sum(axis=(0, 1))
         return (push[0, 0].T * total) @ along[0, 0], push[0, 0].T @ moved
+    if not lead and unrepeated(along, 2).size == along[0, 0].size:
+        # Of each contact only the sum of its pushes counts.
+        total, moved = (np.einsum("rsji,rsj->ji", push, w) for w in (weight, weight * shift))
+        return total.T @ along[0, 0], moved.sum(axis=0)
     flat = np.swapaxes(push.reshape(*lead, -1, size), -1, -2)
     factors = np.stack((weight, weight * shift), axis=-1).reshape(*lead, -1, 2)
     if (constant := unrepeated(along, 1)).size == size:  # a factor of the sum

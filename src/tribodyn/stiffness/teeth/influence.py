@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -85,11 +84,9 @@ class GearInfluence:
         return spline(self.curvature_radius, self.self_compliance)
 
     @cached_property
-    def _cross(self) -> list[Any]:
-        from scipy.interpolate import RectBivariateSpline
-
-        nodes = self.curvature_radius
-        return [RectBivariateSpline(nodes, nodes, table) for table in self.cross_compliance]
+    def _weights(self) -> Callable[[Array], Array]:
+        """Weights (..., nodes) of the values at the nodes in their spline at a place."""
+        return spline(self.curvature_radius, np.eye(self.curvature_radius.size))
 
     def at(self, curvature_radius: Array | float) -> Array:
         """Compliance at the loaded place.
@@ -145,7 +142,8 @@ class GearInfluence:
             return np.zeros(np.broadcast_shapes(first.shape, second.shape))
         if neighbour < 0:
             first, second = second, first
-        return np.asarray(self._cross[abs(neighbour) - 1](first, second, grid=False))
+        loaded = self._weights(first) @ self.cross_compliance[abs(neighbour) - 1]
+        return np.asarray((loaded * self._weights(second)).sum(axis=-1))
 
     def _inside(self, curvature_radius: Array | float) -> Array:
         """Bring rounding back to the nodes, and refuse what lies beyond them."""

@@ -104,7 +104,7 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
         for name in case.meshes_with_teeth:
             pair = case.pair(name, load, misalignment[name])
             with locate_errors(pair), collected() as caught:
-                tables[name] = mesh_of(pair)
+                tables[name] = mesh_of(pair, about_load=True)
                 laws[name] = _law(pair, tables[name])
             mesh_warnings += [MeshWarning(name, load.name, warning) for warning in caught]
         static = _static(case.machine(load, **laws))

@@ -67,11 +67,17 @@ def contact_settings(case: Case) -> ToothContact:
 
 
 def mesh_of(
-    case: Case, progress: Progress = SILENT, *, load: float = 1.0, rehearsal: bool = False
+    case: Case,
+    progress: Progress = SILENT,
+    *,
+    load: float = 1.0,
+    rehearsal: bool = False,
+    about_load: bool = False,
 ) -> MeshTable:
     """Compute the tooth contact of a case over one mesh cycle.
 
-    A rehearsal has few phases and a film by formula: it only has to raise the input errors.
+    A rehearsal has few phases and a film by formula: it only has to raise the input errors. With
+    ``about_load`` the force law is computed only where the mesh law of the case needs it.
     """
     from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
@@ -102,7 +108,7 @@ def mesh_of(
         steps=_FEWEST if rehearsal else None,
         pinion_speed=case.pinion_speed,
         pinion_torque=case.pinion_torque * load,
-        force_law=mesh_law_of(case) == "force-law",
+        force_law=mesh_law_of(case) == "force-law" or (None if about_load else False),
         progress=progress,
     )
 
