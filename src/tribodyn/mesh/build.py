@@ -151,10 +151,8 @@ def mesh_table(
     force_law: bool | None = False,
     progress: Progress = SILENT,
 ) -> MeshTable:
-    """Compute the tooth contact with these settings at one speed and torque, as :func:`build`.
-
-    ``force_law`` None replaces the law by its tangent at the load.
-    """
+    """Compute the tooth contact with these settings at one speed and torque, as :func:`build`."""
+    # force_law None: its tangent at the load in its place.
     operation = (pinion_speed, pinion_torque)
     loaded = loaded_mesh(
         pair, settings, operation, steps=steps, force_law=force_law, progress=progress

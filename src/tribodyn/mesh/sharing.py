@@ -341,11 +341,8 @@ def teeth_of(
 def shared_load_columns(
     teeth: Teeth, shared: SharedLoad, film: FilmSprings | None, *, force_law: bool | None
 ) -> dict[str, Any]:
-    """Columns of the mesh table that follow from teeth and films under load, its own copies.
-
-    Without a ``force_law`` (None) its ramp is the tangent at the load, which costs nothing.
-    """
-    if force_law is None:
+    """Columns of the mesh table that follow from teeth and films under load, its own copies."""
+    if force_law is None:  # the tangent at the load, which costs nothing
         first = shared.transmission_error - np.ravel(teeth.force) / shared.tangent
         ramps = first[:, None], shared.tangent[:, None]
     else:

@@ -195,10 +195,7 @@ class ContactEquations:
 def close_contacts(
     compiled: Compiled, extra: Array, still: Array | None = None
 ) -> tuple[ClosedStructure, Mask]:
-    """Structure with closed contacts, and those closed at rest in the position ``still``.
-
-    ``extra`` (m, n) forces act too.
-    """
+    """Structure with closed contacts, and those closed at rest; ``extra`` (m, n) forces act too."""
     system, nodes = compiled.system, compiled.nodes
     coordinates = structure_coordinates(compiled)
     inverse = coordinates.inverse

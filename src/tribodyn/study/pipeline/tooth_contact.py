@@ -76,9 +76,9 @@ def mesh_of(
 ) -> MeshTable:
     """Compute the tooth contact of a case over one mesh cycle.
 
-    A rehearsal has few phases and a film by formula: it only has to raise the input errors. With
-    ``about_load`` the force law is computed only where the mesh law of the case needs it.
+    A rehearsal has few phases and a film by formula: it only has to raise the input errors.
     """
+    # about_load: the force law is its tangent, unless the case needs all of it.
     from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
 
