@@ -13,6 +13,7 @@ positive speed turns y towards z.
 | ``structure``, ``reduction`` | matrices of all parts but the meshes, full and reduced |
 | ``assembly`` | equations of motion |
 | ``modes`` | natural frequencies, and which parts store the energy |
+| ``planetary`` | planetary stages: kinematics, phases, plane model, load sharing |
 | ``graph`` | speeds, torques, clock, directions, places and masses that follow from it |
 """
 
@@ -29,6 +30,12 @@ from tribodyn.machine.housing import Housing
 from tribodyn.machine.machine import Machine, Operation
 from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.modes import MachineModes, machine_modes
+from tribodyn.machine.planetary.kinematics import PlanetaryKinematics, planetary_kinematics
+from tribodyn.machine.planetary.load_sharing import LoadShares, load_shares
+from tribodyn.machine.planetary.mode_types import planetary_mode_types
+from tribodyn.machine.planetary.phases import HarmonicExcitation, MeshPhases, mesh_phases
+from tribodyn.machine.planetary.plane_model import planetary_plane_model
+from tribodyn.machine.planetary.positions import PlanetaryPositions, planetary_positions
 from tribodyn.machine.reduction import machine_structure, reduce_structure
 from tribodyn.machine.rolling.ball_bearing import AngularContactBallBearing, DeepGrooveBallBearing
 from tribodyn.machine.rolling.bearing_types import ROLLING_BEARINGS
@@ -60,8 +67,10 @@ __all__ = [
     "FaceLaw",
     "Gear",
     "GearBody",
+    "HarmonicExcitation",
     "Housing",
     "Kinematics",
+    "LoadShares",
     "Machine",
     "MachineModes",
     "MachineStructure",
@@ -69,8 +78,11 @@ __all__ = [
     "MeshBalance",
     "MeshDirection",
     "MeshLoad",
+    "MeshPhases",
     "Operation",
     "Placement",
+    "PlanetaryKinematics",
+    "PlanetaryPositions",
     "Reduction",
     "RollingElementBearing",
     "Section",
@@ -81,8 +93,14 @@ __all__ = [
     "StaticBalance",
     "TaperedRollerBearing",
     "face_laws",
+    "load_shares",
     "machine_modes",
     "machine_structure",
+    "mesh_phases",
+    "planetary_kinematics",
+    "planetary_mode_types",
+    "planetary_plane_model",
+    "planetary_positions",
     "reduce_structure",
     "static_balance",
     "system",

@@ -1,0 +1,195 @@
+"""Static loads of the planets with errors of pins and teeth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from inspect import signature
+from typing import Any
+
+import numpy as np
+
+from tribodyn.dynamics.equations.system import System
+from tribodyn.errors import Argument, ComputationError, InputError, Problem, did_you_mean
+from tribodyn.machine.mesh import mean_over_phase
+from tribodyn.machine.planetary.plane_model import CENTRAL, planetary_plane_model
+from tribodyn.types import Array, Mask
+
+#: Weak springs to the last position, over the largest stiffness; iterations, and the change of
+#: forces over the mean at which they end.
+_WEAK, _ROUNDS, _DONE = 1e-8, 200, 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class LoadShares:
+    """Static loads of the planets of a stage.
+
+    Parameters
+    ----------
+    force : (N,) array
+        Force of the sun mesh of every planet, which its ring mesh transmits too, along the line of
+        action; negative while the stage is driven backwards [N].
+    share : (N,) array
+        Force over the mean of all planets.
+    displacement : mapping of str to (float, float)
+        Displacement of carrier, ring and sun along x and y [m]. Where a floating member
+        can move without any force, its position is one of many.
+    """
+
+    force: Array
+    share: Array
+    displacement: dict[str, tuple[float, float]]
+
+    @property
+    def load_factor(self) -> float:
+        """Mesh load factor K_gamma: greatest load of a planet over the mean."""
+        return float(self.share.max())
+
+    @property
+    def unloaded(self) -> tuple[int, ...]:
+        """Planets without load, counted from 1."""
+        return tuple((np.flatnonzero(self.share == 0.0) + 1).tolist())
+
+
+def load_shares(**stage: Any) -> LoadShares:
+    """Compute the static loads of the planets of a stage; planets may lose contact.
+
+    Parameters
+    ----------
+    **stage
+        Arguments of :func:`planetary_plane_model`, with ``force_per_planet`` [N], and
+        ``pin_errors`` or ``thickness_errors`` [m]. Of functions of the mesh phase the mean counts.
+
+    Raises
+    ------
+    InputError
+        If an argument is wrong or ``force_per_planet`` is 0.
+    ComputationError
+        If no equilibrium exists within the iterations.
+
+    Notes
+    -----
+    The rotation of a planet, on which nothing acts but its two meshes, makes both forces equal: a
+    planet is one spring between sun, ring and pin that only presses. Weights and
+    centrifugal forces are not included.
+
+    Examples
+    --------
+    >>> data = dict(
+    ...     carrier_mass=5.43, carrier_inertia=6.29, ring_mass=2.35, ring_inertia=3.0,
+    ...     sun_mass=0.4, sun_inertia=0.39, planet_mass=0.66, planet_inertia=0.61,
+    ...     sun_mesh_stiffness=5e8, ring_mesh_stiffness=5e8, pin_stiffness=1e8,
+    ...     carrier_support=1e8, ring_support=1e8, sun_support=1e3, ring_torsional_support=1e9,
+    ...     sun_pressure_angle=np.radians(24.6), ring_pressure_angle=np.radians(24.6))
+    >>> shares = load_shares(planets=4, pin_errors=[30e-6, 0.0, 0.0, 0.0], force_per_planet=3000.0,
+    ...                      **data)
+    >>> shares.share.round(3), round(shares.load_factor, 3)
+    (array([0.877, 1.123, 0.877, 1.123]), 1.123)
+    """
+    _check_names(stage)
+    load = stage.get("force_per_planet", 0.0)
+    system = planetary_plane_model(**stage)
+    if not load:
+        what, why = "force_per_planet is 0", "Shares are those of a load"
+        remedy = "Give the mean force of a mesh along its line of action in N"
+        raise InputError(what, Argument("force_per_planet"), why, remedy)
+    spring, along, error = _planet_springs(system)
+    # Backwards the opposite flanks press.
+    sense = 1.0 if load > 0.0 else -1.0
+    force, position = _equilibrium(system, spring, sense * along, sense * error)
+    central = position[:9].reshape(3, 3)
+    displacement = {
+        name: (float(row[0]), float(row[1])) for name, row in zip(CENTRAL, central, strict=True)
+    }
+    return LoadShares(sense * force + 0.0, force / force.mean(), displacement)
+
+
+def _check_names(stage: dict[str, Any]) -> None:
+    """Refuse unknown and missing arguments of the plane model."""
+    arguments = signature(planetary_plane_model).parameters
+    needed = [name for name, each in arguments.items() if each.default is each.empty]
+    why = "load_shares takes the arguments of planetary_plane_model"
+    problems = [
+        Problem(
+            f"{name} is unknown", Argument(name), why, did_you_mean(name, arguments, "Remove it")
+        )
+        for name in stage
+        if name not in arguments
+    ]
+    if missing := [name for name in needed if name not in stage]:
+        what = f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
+        problems.append(Problem(what, "load_shares()", why, "Give them by their names"))
+    if problems:
+        raise InputError(problems)
+
+
+def _planet_springs(system: System) -> tuple[Array, Array, Array]:
+    """Stiffness, direction and error of every planet between sun, ring and pin."""
+    count = len(system.contacts) // 2
+    values = [
+        (mean_over_phase(contact.stiffness), mean_over_phase(contact.error), contact.direction)
+        for contact in system.contacts
+    ]
+    stiffness, error = (np.array([value[i] for value in values]) for i in (0, 1))
+    direction = np.array([np.asarray(value[2]) for value in values])
+    sun, ring = slice(0, count), slice(count, None)
+    spring = 1.0 / (1.0 / stiffness[sun] + 1.0 / stiffness[ring])
+    return spring, direction[sun] + direction[ring], error[sun] + error[ring]
+
+
+def _equilibrium(system: System, spring: Array, along: Array, error: Array) -> tuple[Array, Array]:
+    """Forces of the planets and the position at rest."""
+    # The energy is convex. Weak springs to the last position hold what is free to move; their
+    # forces vanish as the position settles.
+    matrix, load = np.asarray(system.stiffness), np.asarray(system.force)
+    # The rotation of a planet does nothing in the sum of its two meshes.
+    free = [i for i in range(system.size) if i < 9 or i % 3 != 2]
+    matrix, load, along = matrix[np.ix_(free, free)], load[free], along[:, free]
+    weak = _WEAK * float(np.diag(matrix).max()) * np.eye(len(free))
+    position, last = np.zeros(len(free)), np.full(spring.size, np.inf)
+    for _ in range(_ROUNDS):
+        position = _loaded_position(matrix + weak, load + weak @ position, spring, along, error)
+        force = spring * np.maximum(along @ position - error, 0.0)
+        if np.abs(force - last).max() <= _DONE * force.mean():
+            break
+        last = force
+    else:
+        what, why = "the loads of the planets do not settle", f"{_ROUNDS} iterations were made"
+        raise ComputationError(what, "load_shares", why, "Check the supports and the errors")
+    full = np.zeros(system.size)
+    full[free] = position
+    return force, full
+
+
+def _loaded_position(
+    matrix: Array, load: Array, spring: Array, along: Array, error: Array
+) -> Array:
+    """Position of least energy, by Newton's method with halved steps over the set in contact."""
+    every = spring > 0.0
+    position = np.asarray(
+        np.linalg.solve(*_linear(matrix, load, spring, along, error, every)), dtype=float
+    )
+
+    def energy(at: Array) -> float:
+        pressed = np.maximum(along @ at - error, 0.0)
+        return float(0.5 * at @ matrix @ at - load @ at + 0.5 * spring @ pressed**2)
+
+    for _ in range(_ROUNDS):
+        closed = along @ position > error
+        target = np.linalg.solve(*_linear(matrix, load, spring, along, error, closed))
+        if np.array_equal(along @ target > error, closed):
+            return np.asarray(target)
+        step, start = 1.0, energy(position)
+        while energy(position + step * (target - position)) >= start and step > 1e-9:
+            step *= 0.5
+        if step <= 1e-9:  # a flank that touches without force
+            break
+        position = position + step * (target - position)
+    return np.asarray(position)
+
+
+def _linear(
+    matrix: Array, load: Array, spring: Array, along: Array, error: Array, closed: Mask
+) -> tuple[Array, Array]:
+    """Stiffness matrix and load with the springs of the loaded planets."""
+    active = spring * closed
+    return matrix + (along.T * active) @ along, load + (active * error) @ along

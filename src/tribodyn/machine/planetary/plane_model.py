@@ -1,0 +1,337 @@
+"""Plane lumped model of a planetary stage, after Lin and Parker."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.checks import require_number, require_whole
+from tribodyn.dynamics.equations.entry import Entry, varies
+from tribodyn.dynamics.equations.system import Contact, System
+from tribodyn.dynamics.linear.natural_modes import natural_modes
+from tribodyn.errors import Argument, InputError, real_numbers, require_between, require_positive
+from tribodyn.machine.planetary.phases import MeshPhases
+from tribodyn.machine.planetary.positions import read_angles
+from tribodyn.types import Array
+
+#: Central members, in the order of their coordinates.
+CENTRAL = ("carrier", "ring", "sun")
+
+#: One entry for the meshes of all planets, or a list with one for each planet.
+MeshEntry = Entry | Sequence[Entry]
+
+
+def planetary_plane_model(
+    *,
+    planets: int,
+    carrier_mass: float,
+    carrier_inertia: float,
+    ring_mass: float,
+    ring_inertia: float,
+    sun_mass: float,
+    sun_inertia: float,
+    planet_mass: ArrayLike,
+    planet_inertia: ArrayLike,
+    sun_mesh_stiffness: MeshEntry,
+    ring_mesh_stiffness: MeshEntry,
+    pin_stiffness: ArrayLike,
+    carrier_support: float,
+    ring_support: float,
+    sun_support: float,
+    carrier_torsional_support: float = 0.0,
+    ring_torsional_support: float = 0.0,
+    sun_torsional_support: float = 0.0,
+    sun_pressure_angle: float,
+    ring_pressure_angle: float,
+    angles: ArrayLike | None = None,
+    phases: MeshPhases | None = None,
+    force_per_planet: float = 0.0,
+    pin_errors: ArrayLike = 0.0,
+    thickness_errors: ArrayLike = 0.0,
+    sun_mesh_error: MeshEntry = 0.0,
+    ring_mesh_error: MeshEntry = 0.0,
+    mesh_gap: float = 0.0,
+    damping_ratio: float = 0.0,
+    carrier_speed: float = 0.0,
+) -> System:
+    """Build the plane model of a spur planetary stage in the frame of its carrier.
+
+    Coordinates are x, y and u of carrier, ring, sun and every planet: u is the rotation times the
+    base radius, of the carrier times the radius of the pins. The first planet is on the x axis
+    where its angle is 0; rotations and angles are positive from x to y. Contacts are the sun
+    meshes of all planets, then their ring meshes. Arguments of the planets are one
+    value for all of them, or a list with one for each.
+
+    Parameters
+    ----------
+    planets : int
+        Number of planets N.
+    carrier_mass, carrier_inertia, ring_mass, ring_inertia, sun_mass, sun_inertia : float
+        Masses, and moments of inertia over the square of the base radius, of the carrier over
+        that of the radius of the pins [kg].
+    planet_mass, planet_inertia : float or (N,) array
+        Mass, and moment of inertia over the square of the base radius [kg].
+    sun_mesh_stiffness, ring_mesh_stiffness : float, function or list of N of these
+        Stiffness along the line of action [N/m]; functions take the phase of their own mesh.
+    pin_stiffness : float or (N,) array
+        Radial stiffness between a planet and the carrier [N/m].
+    carrier_support, ring_support, sun_support : float
+        Stiffness of the supports along x and y [N/m]; 0 lets the member float.
+    carrier_torsional_support, ring_torsional_support, sun_torsional_support : float
+        Torsional stiffness over the square of the radius of u [N/m]; 0 lets the member turn.
+    sun_pressure_angle, ring_pressure_angle : float
+        Working pressure angles [rad].
+    angles : (N,) array, optional
+        Angles of the planets [rad]; those of ``phases``, or equally spaced, by default.
+    phases : MeshPhases, optional
+        Phases of the meshes, from :func:`mesh_phases`; needed where an entry is a function.
+    force_per_planet : float
+        Mean force of every mesh along its line of action [N]. Positive while the sun drives
+        towards greater angles or brakes the other way. The torque acts on members without torsional
+        support; the supports react on the others.
+    pin_errors : float or (N,) array
+        Distance by which a pin is ahead of its place, towards greater angles [m].
+    thickness_errors : float or (N,) array
+        Excess of the base tooth thickness of a planet [m]; each of its flanks has half of it.
+    sun_mesh_error, ring_mesh_error : float, function or list of N of these
+        Displacement errors, subtracted from the compressions [m].
+    mesh_gap : float
+        Half of the dead zone of every mesh [m]. At 0 the flanks never separate.
+    damping_ratio : float
+        Damping of every mode over its critical value [1].
+    carrier_speed : float
+        Speed of the carrier, for the Coriolis and centripetal terms of its frame [rad/s].
+
+    Returns
+    -------
+    System
+        Names are ``carrier_x, carrier_y, carrier_u, ring_x, ..., planet1_x, ...``.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, a list does not have N values, or an entry is a function and
+        ``phases`` is missing.
+
+    Notes
+    -----
+    Supports are equal in x and y. Source: Lin and Parker, Journal of Vibration and
+    Acoustics 121 (1999) 316; their planets have radial and tangential coordinates, which
+    gives the same frequencies.
+
+    Examples
+    --------
+    >>> from tribodyn.dynamics import natural_modes
+    >>> stage = planetary_plane_model(
+    ...     planets=3, carrier_mass=5.43, carrier_inertia=6.29, ring_mass=2.35, ring_inertia=3.0,
+    ...     sun_mass=0.4, sun_inertia=0.39, planet_mass=0.66, planet_inertia=0.61,
+    ...     sun_mesh_stiffness=5e8, ring_mesh_stiffness=5e8, pin_stiffness=1e8,
+    ...     carrier_support=1e8, ring_support=1e8, sun_support=1e8, ring_torsional_support=1e9,
+    ...     sun_pressure_angle=np.radians(24.6), ring_pressure_angle=np.radians(24.6))
+    >>> natural_modes(stage).frequency[[1, 3]].round(2)
+    array([ 743.16, 1102.42])
+    """
+    count = require_whole("planets", planets)
+    carrier = (carrier_mass, carrier_inertia, carrier_support, carrier_torsional_support)
+    ring = (ring_mass, ring_inertia, ring_support, ring_torsional_support)
+    sun = (sun_mass, sun_inertia, sun_support, sun_torsional_support)
+    central = np.array([_member(*each) for each in zip(CENTRAL, (carrier, ring, sun), strict=True)])
+    masses = _masses(central[:, [0, 0, 1]], planet_mass, planet_inertia, count)
+    alpha = float(sun_pressure_angle), float(ring_pressure_angle)
+    axes = _Directions(_angles(count, angles, phases), *alpha)
+    pins = _of_planets("pin_stiffness", pin_stiffness, count, "N/m", positive=True)
+    stiffness = np.diag(np.append(central[:, [2, 2, 3]], np.zeros(3 * count)))
+    for along in (axes.radial, axes.tangential):
+        stiffness += (along.T * pins) @ along
+    load = _load(require_number("force_per_planet", force_per_planet), count, alpha, central[:, 3])
+    load += (pins * _of_planets("pin_errors", pin_errors, count, "m")) @ axes.tangential
+    thick = _of_planets("thickness_errors", thickness_errors, count, "m")
+    require_between("mesh_gap", mesh_gap, 0.0, 1.0, "m")
+    sun_values, ring_values = (
+        (sun_mesh_stiffness, sun_mesh_error),
+        (ring_mesh_stiffness, ring_mesh_error),
+    )
+    contacts = _contacts("sun", axes.sun, sun_values, thick, mesh_gap, phases)
+    contacts += _contacts("ring", axes.ring, ring_values, thick, mesh_gap, phases)
+    system = _system(
+        masses, stiffness, load, contacts, require_number("carrier_speed", carrier_speed)
+    )
+    require_between("damping_ratio", damping_ratio, 0.0, 2.0)
+    return replace(system, damping=_damping(system, damping_ratio)) if damping_ratio else system
+
+
+def _masses(central: Array, planet_mass: ArrayLike, planet_inertia: ArrayLike, count: int) -> Array:
+    mass = _of_planets("planet_mass", planet_mass, count, "kg", positive=True)
+    inertia = _of_planets("planet_inertia", planet_inertia, count, "kg", positive=True)
+    return np.concatenate([central.reshape(-1), np.stack([mass, mass, inertia], 1).reshape(-1)])
+
+
+def _member(name: str, values: tuple[float, float, float, float]) -> tuple[float, ...]:
+    """Mass, inertia, support and torsional support of a central member, within their limits."""
+    for key, value in zip(("mass", "inertia"), values, strict=False):
+        require_positive(f"{name}_{key}", value, "kg")
+    for key, value in zip(("support", "torsional_support"), values[2:], strict=True):
+        require_between(f"{name}_{key}", value, 0.0, 1e30, "N/m")
+    return tuple(map(float, values))
+
+
+def _contacts(
+    member: str,
+    along: Array,
+    entries: tuple[MeshEntry, MeshEntry],
+    thickness: Array,
+    gap: float,
+    phases: MeshPhases | None,
+) -> list[Contact]:
+    """Meshes of the sun or the ring with every planet."""
+    count = thickness.size
+    stiffness = _entries(f"{member}_mesh_stiffness", entries[0], count, phases, positive=True)
+    error = _entries(f"{member}_mesh_error", entries[1], count, phases)
+    offset = np.zeros(count) if phases is None else getattr(phases, f"{member}_offset")
+    return [
+        Contact(
+            direction=along[i],
+            stiffness=stiffness[i],
+            error=_less(error[i], 0.5 * float(thickness[i])),
+            gap=float(gap),
+            offset=float(offset[i]),
+        )
+        for i in range(count)
+    ]
+
+
+class _Directions:
+    """Derivatives of the compressions and of the pin displacements, (N, n) each."""
+
+    def __init__(self, angles: Array, sun: float, ring: float) -> None:
+        for name, alpha in (("sun_pressure_angle", sun), ("ring_pressure_angle", ring)):
+            remedy = "Give radians: 20 deg is 0.349066"
+            require_between(name, alpha, 0.0, 0.25 * np.pi, "rad", remedy=remedy)
+        count = angles.size
+        shape = count, 9 + 3 * count
+        self.radial, self.tangential, self.sun, self.ring = (np.zeros(shape) for _ in range(4))
+        rows = np.arange(count)
+        carrier, ring_x, sun_x = 0, 3, 6
+
+        def relative(to: Array, member: int, angle: Array, sign: float) -> None:
+            """Displacement of a member along ``angle``, less that of the planet."""
+            for axis, part in enumerate((np.cos(angle), np.sin(angle))):
+                to[:, member + axis] = sign * part
+                to[rows, 9 + 3 * rows + axis] = -sign * part
+
+        relative(self.radial, carrier, angles, -1.0)
+        relative(self.tangential, carrier, angles + 0.5 * np.pi, -1.0)
+        self.tangential[:, carrier + 2] = -1.0
+        for to, member, angle, turn in (
+            (self.sun, sun_x, angles - sun, 1.0),
+            (self.ring, ring_x, angles + ring, -1.0),
+        ):
+            relative(to, member, angle + 0.5 * np.pi, 1.0)
+            to[:, member + 2] = 1.0
+            to[rows, 11 + 3 * rows] = turn
+
+
+def _angles(count: int, angles: ArrayLike | None, phases: MeshPhases | None) -> Array:
+    if phases is None:
+        return read_angles(count, angles)
+    if phases.angles.size != count:
+        what = f"phases has {phases.angles.size} planets, and planets = {count}"
+        remedy = f"Give mesh_phases(..., planets={count})"
+        raise InputError(what, Argument("phases"), "They belong to the same stage", remedy)
+    if angles is not None and not np.allclose(read_angles(count, angles), phases.angles, atol=1e-9):
+        what, why = "angles differ from those of phases", "Every planet has one angle"
+        raise InputError(what, Argument("angles"), why, "Leave angles out, or correct one of them")
+    return phases.angles
+
+
+def _of_planets(
+    name: str, value: ArrayLike, count: int, unit: str, *, positive: bool = False
+) -> Array:
+    values = real_numbers(Argument(name), value, f"a number [{unit}], or one for each planet")
+    if values.shape not in ((), (count,)):
+        what = f"{name} has the shape {values.shape}, and there are {count} planets"
+        why = "It is one value for all planets, or a list with one for each"
+        raise InputError(what, Argument(name), why, f"Give 1 or {count} numbers in {unit}")
+    if positive:
+        require_positive(name, values, unit)
+    require_between(name, values, -1e30, 1e30, unit)
+    return np.broadcast_to(values, (count,))
+
+
+def _entries(
+    name: str, entry: Any, count: int, phases: MeshPhases | None, *, positive: bool = False
+) -> list[Entry]:
+    """Entries of the meshes of all planets; numbers become floats."""
+    one_each = isinstance(entry, list | tuple) or np.ndim(entry) == 1
+    entries = list(entry) if one_each else [entry] * count
+    if len(entries) != count:
+        what = f"{name} has {len(entries)} entries, and there are {count} planets"
+        why = "It is one entry for all planets, or a list with one for each"
+        raise InputError(what, Argument(name), why, f"Give 1 or {count} entries")
+    if phases is None and any(map(callable, entries)):
+        why = "Its meshes have phases that follow from the numbers of teeth"
+        remedy = "Give phases=mesh_phases(sun_teeth=..., ring_teeth=..., planets=...)"
+        raise InputError(
+            f"{name} is a function, and phases is missing", Argument(name), why, remedy
+        )
+    unit = "N/m" if positive else "m"
+    return [
+        value if callable(value) else float(_of_planets(name, value, 1, unit, positive=positive)[0])
+        for value in entries
+    ]
+
+
+def _less(error: Any, thickness: float) -> Entry:
+    """Error of a mesh, less the excess thickness of the flank of the planet."""
+    if not varies(error):
+        return float(error) - thickness
+    if thickness == 0.0:
+        return error  # type: ignore[no-any-return]
+    function: Callable[[Array], Any] = error
+    return lambda phase: function(phase) - thickness
+
+
+def _load(force: float, count: int, alpha: tuple[float, float], held: Array) -> Array:
+    """Forces on the members that are free to turn; supports react on the others."""
+    if force and held.all():
+        what = f"force_per_planet = {force:.6g} N, and no member is free to turn"
+        why = "Carrier, ring and sun have torsional supports, so that no torque can act"
+        remedy = "Set the torsional support of the driving member to 0"
+        raise InputError(what, Argument("force_per_planet"), why, remedy)
+    load = np.zeros(9 + 3 * count)
+    turning = np.array([-np.cos(alpha).sum(), 1.0, 1.0])
+    load[[2, 5, 8]] = count * force * turning * (held == 0.0)
+    return load
+
+
+def _system(
+    masses: Array, stiffness: Array, load: Array, contacts: list[Contact], speed: float
+) -> System:
+    """System in a frame that turns, with Coriolis and centripetal terms."""
+    x = np.arange(0, masses.size, 3)
+    gyroscopic = np.zeros_like(stiffness)
+    gyroscopic[x, x + 1] = -2.0 * speed * masses[x]
+    gyroscopic[x + 1, x] = 2.0 * speed * masses[x]
+    stiffness[x, x] -= speed**2 * masses[x]
+    stiffness[x + 1, x + 1] -= speed**2 * masses[x]
+    members = [*CENTRAL, *(f"planet{i + 1}" for i in range(x.size - 3))]
+    return System(
+        mass=np.diag(masses),
+        damping=np.zeros_like(stiffness),
+        stiffness=stiffness,
+        force=load,
+        contacts=contacts,
+        names=[f"{member}_{axis}" for member in members for axis in "xyu"],
+        gyroscopic=gyroscopic if speed else None,
+    )
+
+
+def _damping(system: System, ratio: float) -> Array:
+    """Damping matrix that gives every mode at rest the same damping ratio."""
+    modes = natural_modes(replace(system, gyroscopic=None))
+    momentum = np.asarray(system.mass) @ modes.shape.T
+    return np.asarray((momentum * (4.0 * np.pi * ratio * modes.frequency)) @ momentum.T)
