@@ -23,7 +23,7 @@ from tribodyn.errors import (
     require_between,
     require_positive,
 )
-from tribodyn.gear import SpurPair
+from tribodyn.gear import CylindricalPair
 from tribodyn.types import Array, Mask
 
 
@@ -36,9 +36,11 @@ class Kinematics:
     pinion_curvature_radius : array
         Radius of curvature of the pinion's flank [m].
     wheel_curvature_radius : array
-        Radius of curvature of the wheel's flank [m].
+        Radius of curvature of the wheel's flank [m]; negative for a ring. Both radii are those of
+        the transverse section.
     equivalent_radius : array
-        Product over sum of the two radii [m].
+        Radius of relative curvature in the normal section [m]: product over sum of the two radii,
+        over the cosine of the base helix angle.
     pinion_surface_speed : array
         Speed of the contact point along the pinion's flank, omega_pinion rho_pinion [m/s].
     wheel_surface_speed : array
@@ -70,11 +72,11 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class PathOfContact:
-    """Path of contact of a spur pair; made by :func:`path_of_contact`.
+    """Path of contact of a cylindrical pair; made by :func:`path_of_contact`.
 
     Parameters
     ----------
-    pair : SpurPair
+    pair : CylindricalPair
         The pair in mesh.
     A : float
         ``path`` where a tooth pair enters contact [m].
@@ -94,7 +96,7 @@ class PathOfContact:
     Source: ISO 21771, path of contact and its points A to E.
     """
 
-    pair: SpurPair
+    pair: CylindricalPair
     A: float
     B: float
     C: float
@@ -114,8 +116,8 @@ class PathOfContact:
 
     @cached_property
     def pairs(self) -> int:
-        """Largest number of tooth pairs in contact at a time."""
-        return math.ceil(self.contact_ratio - _ROUNDING)
+        """Largest number of tooth pairs in contact at a time, anywhere on the face."""
+        return math.ceil(self.contact_ratio + self.pair.overlap_ratio - _ROUNDING)
 
     @cached_property
     def roll_angles(self) -> dict[str, float]:
@@ -133,8 +135,10 @@ class PathOfContact:
         -------
         tuple of float
             Sorted phases in [0, 1): 0 where a pair enters, the fraction of the contact ratio where
-            a pair leaves, and where a pair passes the pitch point. Phases closer than 1e-12 are
-            one.
+            a pair leaves, and where a pair passes the pitch point. The line of a helical pair
+            enters until the overlap ratio and leaves from the transverse to the total contact
+            ratio, which are the kinks of the total length; it passes the pitch point gradually.
+            Phases closer than 1e-12 are one.
 
         Examples
         --------
@@ -144,10 +148,10 @@ class PathOfContact:
         >>> [round(phase, 4) for phase in path_of_contact(pair).event_phases()]
         [0.0, 0.6052, 0.8268]
         """
-        ratio = self.contact_ratio
+        ratio, overlap = self.contact_ratio, self.pair.overlap_ratio
         pitch_point = pitch_point_age(self)
-        events = [0.0, ratio % 1.0]
-        if 0.0 <= pitch_point < ratio:
+        events = [0.0, overlap % 1.0, ratio % 1.0, (ratio + overlap) % 1.0]
+        if overlap == 0.0 and 0.0 <= pitch_point < ratio:
             events.append(pitch_point % 1.0)
         phases = [0.0]
         for phase in sorted(events):
@@ -156,7 +160,7 @@ class PathOfContact:
         return tuple(phases)
 
     def pair_paths(self, phase: ArrayLike, side: str = "right") -> tuple[Array, Mask]:
-        """Positions of all tooth pairs at mesh phases.
+        """Positions of all tooth pairs at mesh phases, at the end of the face that enters first.
 
         Parameters
         ----------
@@ -179,7 +183,53 @@ class PathOfContact:
         InputError
             If a phase is not finite or the side is unknown.
         """
+        path, in_contact = self.face_paths(phase, 0.0, side)
+        return path[..., 0], in_contact[..., 0]
+
+    def face_paths(
+        self, phase: ArrayLike, entry_distance: ArrayLike, side: str = "right"
+    ) -> tuple[Array, Mask]:
+        """Positions of all tooth pairs at mesh phases and places on the face.
+
+        Parameters
+        ----------
+        phase : array
+            Mesh phase, shape (n,), as for :meth:`pair_paths`.
+        entry_distance : float or array
+            Distances across the face from the end that enters contact first [m], shape (slices,):
+            see :meth:`tribodyn.gear.CylindricalPair.entry_distance`.
+        side : str
+            Which limit is meant at an event, as for :meth:`pair_paths`.
+
+        Returns
+        -------
+        tuple of array
+            ``path`` of each pair in each slice [m] and whether it is in contact, both of shape
+            (n, pairs, slices). A line of contact lies at
+            ``(phase + pair) base pitch - entry distance * tan(base helix angle)`` from A; where
+            it has not entered yet it lies before A.
+
+        Raises
+        ------
+        InputError
+            If a phase or a distance is not finite, or the side is unknown.
+
+        Notes
+        -----
+        Source: ISO 21771, lines of contact in the plane of action.
+
+        Examples
+        --------
+        >>> from tribodyn.gear import cylindrical_pair
+        >>> pair = cylindrical_pair(pinion_teeth=27, wheel_teeth=51, normal_module=4.5e-3,
+        ...                         normal_pressure_angle=math.radians(20.0),
+        ...                         helix_angle=math.radians(21.0), pinion_face_width=50e-3)
+        >>> path, in_contact = path_of_contact(pair).face_paths(0.5, [0.0, 25e-3, 50e-3])
+        >>> in_contact[0].tolist()
+        [[True, False, False], [False, True, True], [False, False, False]]
+        """
         require_between("phase", phase, -math.inf, math.inf)
+        require_between("entry_distance", entry_distance, -math.inf, math.inf, "m")
         turned = np.atleast_1d(np.asarray(phase, dtype=float))
         if side == "right":
             turned = turned - np.floor(turned)
@@ -188,10 +238,14 @@ class PathOfContact:
         else:
             why = 'an event has two sides: "left" and "right"'
             raise InputError(f'side = "{side}"', Argument("side"), why, 'Write "left" or "right"')
-        travelled = turned[:, None] + np.arange(self.pairs)
-        limit = self.contact_ratio + (_ROUNDING if side == "left" else -_ROUNDING)
-        path = self.A + self.direction * travelled * self.pair.base_pitch
-        return path, travelled < limit
+        place = np.atleast_1d(np.asarray(entry_distance, dtype=float))
+        lag = place * (math.tan(self.pair.base_helix_angle) / self.pair.base_pitch)
+        rounding = _ROUNDING if side == "left" else -_ROUNDING
+        travelled = (turned[:, None] + np.arange(self.pairs))[..., None] - lag
+        in_contact = (travelled < self.contact_ratio + rounding) & (
+            (travelled > rounding) | (lag == 0.0)
+        )
+        return self.A + self.direction * travelled * self.pair.base_pitch, in_contact
 
     def sliding_direction(self, path: ArrayLike, side: str | None = None) -> Array:
         """Sign of the sliding speed, one-sided at the pitch point if wanted.
@@ -246,8 +300,9 @@ class PathOfContact:
 
         Notes
         -----
-        u_i = omega_i rho_i. The sliding speed is (omega_pinion + omega_wheel) (path - C), the
-        same difference without cancellation. Source: ISO 21771, sliding speed.
+        u_i = omega_i rho_i, where speed and radius of a ring are negative. The sliding speed is
+        (omega_pinion + omega_wheel) (path - C), the same difference without cancellation. Source:
+        ISO 21771, sliding speed.
         """
         require_between("path", path, -math.inf, math.inf, "m")
         require_positive("pinion_speed", pinion_speed, "rad/s")
@@ -256,14 +311,17 @@ class PathOfContact:
         )
         length = self.pair.line_of_action_length
         wheel_radius, wheel_speed = length - pinion_radius, speed / self.pair.ratio
-        direction = self.sliding_direction(pinion_radius)
+        direction, cosine = (
+            self.sliding_direction(pinion_radius),
+            math.cos(self.pair.base_helix_angle),
+        )
         distance = np.abs(pinion_radius - self.C)
         sliding = direction * distance * (speed + wheel_speed)
         entrainment = 0.5 * (speed * pinion_radius + wheel_speed * wheel_radius)
         return Kinematics(
             pinion_curvature_radius=pinion_radius,
             wheel_curvature_radius=wheel_radius,
-            equivalent_radius=pinion_radius * wheel_radius / length,
+            equivalent_radius=pinion_radius * wheel_radius / (length * cosine),
             pinion_surface_speed=speed * pinion_radius,
             wheel_surface_speed=wheel_speed * wheel_radius,
             sliding_speed=sliding,
@@ -273,12 +331,12 @@ class PathOfContact:
         )
 
 
-def path_of_contact(pair: SpurPair) -> PathOfContact:
-    """Find the path of contact of a spur pair.
+def path_of_contact(pair: CylindricalPair) -> PathOfContact:
+    """Find the path of contact of a cylindrical pair.
 
     Parameters
     ----------
-    pair : SpurPair
+    pair : CylindricalPair
         The pair; its driver decides which end of the path is A.
 
     Notes
@@ -360,12 +418,12 @@ def equal_share(contact: PathOfContact, path: Array) -> Array:
     return share
 
 
-def gear_loss_factor(pair: SpurPair, share: Callable[[Array], Array] | None = None) -> float:
+def gear_loss_factor(pair: CylindricalPair, share: Callable[[Array], Array] | None = None) -> float:
     """Gear loss factor H_V by integration over the path of contact.
 
     Parameters
     ----------
-    pair : SpurPair
+    pair : CylindricalPair
         The pair.
     share : callable, optional
         Load share of a tooth pair as a function of its ``path`` [m]; equal sharing by default.

@@ -2,13 +2,15 @@
 
 | module | content |
 | --- | --- |
-| `curves` | involute and fillet, the two curves of a tooth |
+| `curves` | involute and fillet, the curves of a tooth |
 | `tooth_form` | the basic rack, and the tooth that it cuts: circles, thickness, flank and fillet |
-| `spur_gear` | a gear with a body: values in their range, a tooth that can be made |
+| `cylindrical_gear` | a gear with a body: values in their range, a tooth that can be made |
 | `outline` | the outline of a tooth and of a gear as points |
 | `mass_properties` | material, mass and moment of inertia |
 | `mesh_geometry` | what follows from two tooth forms and a centre distance |
-| `spur_pair` | two gears that can run together |
+| `contact_lines` | overlap of two faces, and length of the lines of contact |
+| `cylindrical_pair` | two gears that can run together |
+| `pair_checks` | why two gears cannot run together |
 | `pair_factory` | a pair from the figures of a drawing |
 | `modification` | modifications and deviations of the flanks of a gear, also as a map |
 | `flank_gap` | the gap that modified flanks, pitch deviations and run-out leave |
@@ -16,6 +18,9 @@
 """
 
 from tribodyn.arguments import guard
+from tribodyn.gear.contact_lines import FaceGeometry
+from tribodyn.gear.cylindrical_gear import CylindricalGear, SpurGear
+from tribodyn.gear.cylindrical_pair import CylindricalPair, SpurPair
 from tribodyn.gear.flank_gap import (
     flank_gap,
     hunting_period,
@@ -49,14 +54,15 @@ from tribodyn.gear.mesh_geometry import (
 )
 from tribodyn.gear.modification import FlankModification, ProfileMap
 from tribodyn.gear.outline import gear_outline, half_tooth, tooth_outline
-from tribodyn.gear.pair_factory import spur_pair
-from tribodyn.gear.spur_gear import SpurGear
-from tribodyn.gear.spur_pair import SpurPair
+from tribodyn.gear.pair_factory import cylindrical_pair, spur_pair
 from tribodyn.gear.tooth_form import BasicRack, ToothForm
 
 __all__ = [
     "BasicRack",
+    "CylindricalGear",
+    "CylindricalPair",
     "EaseOff",
+    "FaceGeometry",
     "FlankModification",
     "FlankRange",
     "HypoidBlank",
@@ -71,6 +77,7 @@ __all__ = [
     "SpurPair",
     "ToothContact",
     "ToothForm",
+    "cylindrical_pair",
     "default_relief_length",
     "flank_gap",
     "flank_ranges",

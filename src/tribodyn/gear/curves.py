@@ -1,9 +1,10 @@
-"""The two curves of a tooth: the involute, and the fillet that the rack's tip round cuts.
+"""The curves of a tooth: the involute, and the fillet that the rack's tip round cuts.
 
 The rack rolls without slip on the reference circle. Wherever its tip round cuts, the common
 normal passes through the rolling point, so that the angle between this normal and the reference
 tangent is a parameter free of singular points: pi/2 at the root circle, down to the pressure
-angle where the round ends and the straight flank of the rack begins.
+angle where the round ends and the straight flank of the rack begins. In the transverse section of a
+helical gear the tip round is an ellipse, wider along the rack. The fillet of a ring is an arc.
 """
 
 from __future__ import annotations
@@ -72,10 +73,19 @@ class Trochoid:
     tip_radius: float  #: radius of the rack's tip round [m]
     center_offset: float  #: [m]
     center_depth: float
+    stretch: float = 1.0  #: width of the tip round along the rack over its height
+
+    @property
+    def _excess(self) -> float:
+        return self.stretch**2 - 1.0
+
+    def _width(self, normal_angle: Any) -> Any:
+        return np.sqrt(1.0 + self._excess * np.cos(normal_angle) ** 2)
 
     def _reach(self, normal_angle: Any) -> Array:
         """Distance from the rolling point to the cutting point along the normal [m]."""
-        return np.asarray(self.center_depth / np.sin(normal_angle) + self.tip_radius, dtype=float)
+        height = self.tip_radius / self._width(normal_angle)
+        return np.asarray(self.center_depth / np.sin(normal_angle) + height, dtype=float)
 
     def radius(self, normal_angle: Any) -> Array:
         """Radius of the fillet."""
@@ -87,7 +97,10 @@ class Trochoid:
     def half_tooth_angle(self, normal_angle: Any) -> Array:
         """Angle between the tooth axis and the fillet."""
         reach = self._reach(normal_angle)
-        rolled = self.center_depth / np.tan(normal_angle) - self.center_offset
+        offset = self.center_offset + (
+            self.tip_radius * self._excess * np.cos(normal_angle) / self._width(normal_angle)
+        )
+        rolled = self.center_depth / np.tan(normal_angle) - offset
         from_space = np.arctan2(
             reach * np.cos(normal_angle), self.reference_radius - reach * np.sin(normal_angle)
         )
@@ -96,9 +109,11 @@ class Trochoid:
 
     def squared_radius_slope(self, normal_angle: Any) -> Array:
         """Derivative of the squared radius by the angle of the normal."""
-        pull = self.reference_radius * self.tip_radius + (
-            self._reach(normal_angle) * self.center_depth / np.sin(normal_angle) ** 2
+        cube, reach = self._width(normal_angle) ** 3, self._reach(normal_angle)
+        pull = self.reference_radius * self.tip_radius * (self.stretch**2 / cube) + (
+            reach * self.center_depth / np.sin(normal_angle) ** 2
         )
+        pull = pull - reach * (self.tip_radius * self._excess * np.sin(normal_angle) / cube)
         slope: Array = -2.0 * np.cos(normal_angle) * pull
         return slope
 
@@ -111,6 +126,53 @@ class Trochoid:
     def undercuts(self) -> bool:
         """Whether the straight flank reaches past the base tangent point, so that it undercuts."""
         return self.flank_end_reach > self.reference_radius * math.sin(self.pressure_angle)
+
+
+@dataclass(frozen=True)
+class RootArc:
+    """Root fillet of a ring: an arc that touches the flank and the root circle."""
+
+    # Its parameter is the angle between its normal and the circumference at its centre: pi/2 at
+    # the root circle, down to the pressure angle of its centre at the flank.
+    arc_radius: float  #: radius of the arc [m]
+    center_radius: float  #: distance of its centre from the axis of the ring [m]
+    center_angle: float  #: angle of its centre from the axis of the tooth [rad]
+    end_angle: float  #: parameter at the flank [rad]
+    undercuts: bool = False
+
+    def radius(self, normal_angle: Any) -> Array:
+        """Radius of the fillet."""
+        out = self.center_radius + self.arc_radius * np.sin(normal_angle)
+        return np.asarray(np.hypot(self.arc_radius * np.cos(normal_angle), out))
+
+    def half_tooth_angle(self, normal_angle: Any) -> Array:
+        """Angle between the tooth axis and the fillet."""
+        out = self.center_radius + self.arc_radius * np.sin(normal_angle)
+        across = self.arc_radius * np.cos(normal_angle)
+        return np.asarray(self.center_angle - np.arctan2(across, out))
+
+    def squared_radius_slope(self, normal_angle: Any) -> Array:
+        """Derivative of the squared radius by the angle of the normal."""
+        return np.asarray(2.0 * self.center_radius * self.arc_radius * np.cos(normal_angle))
+
+
+def root_arc(
+    root_radius: float, base_radius: float, base_half_angle: float, teeth: int, arc_radius: float
+) -> RootArc:
+    """Root fillet of a ring with this radius, or the full round of its tooth space if smaller."""
+
+    def arc(radius: float) -> RootArc:
+        center = root_radius - radius
+        roll = math.sqrt(max(center**2 - base_radius**2, 0.0)) / base_radius
+        # A parallel curve of the involute is an involute: it turns by radius / base radius.
+        turned = base_half_angle + radius / base_radius + roll - math.atan(roll)
+        return RootArc(radius, center, turned, math.atan(roll))
+
+    def fits(radius: float) -> float:
+        return math.pi / abs(teeth) - arc(radius).center_angle
+
+    full = arc_radius if fits(arc_radius) >= 0.0 else _bisect(fits, 0.0, arc_radius)
+    return arc(full)
 
 
 def _bisect(function: Callable[[float], float], low: float, high: float) -> float:

@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_one_shape
 from tribodyn.errors import require_positive
+from tribodyn.gear.cylindrical_gear import SpurGear
+from tribodyn.gear.cylindrical_pair import SpurPair
 from tribodyn.gear.mesh_geometry import FlankRange, default_relief_length, flank_ranges
 from tribodyn.gear.modification import FlankModification
-from tribodyn.gear.spur_gear import SpurGear
-from tribodyn.gear.spur_pair import SpurPair
 from tribodyn.types import Array
 
 
@@ -75,7 +75,7 @@ def tooth_positions(gear: SpurGear) -> Array:
         single = np.array(modification.single_pitch_deviation)
         places = np.cumsum(single - single.mean())
         return np.asarray(places - places[0])
-    return np.zeros(gear.teeth)
+    return np.zeros(abs(gear.teeth))
 
 
 def pitch_gap(pair: SpurPair, cycle: ArrayLike, pair_index: ArrayLike = 0) -> Array:
@@ -116,7 +116,7 @@ def pitch_gap(pair: SpurPair, cycle: ArrayLike, pair_index: ArrayLike = 0) -> Ar
     """
     number = np.asarray(cycle, dtype=np.int64) - np.asarray(pair_index, dtype=np.int64)
     driving, driven = (
-        tooth_positions(gear)[number % gear.teeth] for gear in (pair.driving, pair.driven)
+        tooth_positions(gear)[number % abs(gear.teeth)] for gear in (pair.driving, pair.driven)
     )
     return np.asarray(driving - driven)
 
@@ -156,7 +156,7 @@ def run_out_gap(pair: SpurPair, pinion_rotation: ArrayLike) -> Array:
     gap = np.zeros(turned.shape)
     for gear in (pair.pinion, pair.wheel):
         modification = gear.modification
-        angle = turned * (pair.pinion.teeth / gear.teeth) - modification.run_out_phase
+        angle = turned * (pair.pinion.teeth / abs(gear.teeth)) - modification.run_out_phase
         gap = gap - 0.5 * modification.run_out * np.cos(angle)
     return gap
 
@@ -184,8 +184,8 @@ def profile_gap(
     gear : SpurGear
         Gear with its modification.
     curvature_radius : float or array [m]
-        Radius of curvature of the flank at the contact. Off the used flank the value at its end
-        holds.
+        Radius of curvature of the flank at the contact, negative for a ring. Off the used flank
+        the value at its end holds.
     flank : FlankRange
         Used flank of the gear.
     relief_length : float [m]
@@ -289,8 +289,9 @@ def flank_gap(
     pair : SpurPair
         The pair, with the modifications of its gears and its misalignment.
     pinion_curvature_radius, wheel_curvature_radius : float or array [m]
-        Radii of curvature of both flanks at the contact: ``path`` and the length of the line of
-        action less ``path``, or those of :func:`tribodyn.contact.extended_contact`.
+        Radii of curvature of both flanks at the contact, negative for a ring: ``path`` and the
+        length of the line of action less ``path``, or those of
+        :func:`tribodyn.contact.extended_contact`.
     face_position : float or array [m]
         Place along the face from its middle, within the common face width.
 
@@ -335,6 +336,6 @@ def flank_gap(
         gap = gap + profile_gap(gear, radius, flank, length) + lead_gap(gear, face)
         chart = gear.modification.profile_map
         if chart is not None:
-            inside = np.clip(np.asarray(radius, dtype=float), *flank)
+            inside = np.abs(np.clip(np.asarray(radius, dtype=float), *flank))
             gap = gap - chart.at(inside, face, base_radius=gear.base_radius)
     return np.asarray(gap)

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tribodyn.errors import require_between, require_positive
-from tribodyn.gear.spur_gear import SpurGear
+from tribodyn.gear.cylindrical_gear import SpurGear
 from tribodyn.gear.tooth_form import ToothForm
 
 
@@ -72,7 +72,7 @@ class MassProperties:
 
 
 def section_moments(form: ToothForm) -> tuple[float, float]:
-    """Area and polar moment of area of the toothed section without a bore.
+    """Area and polar moment of area of the toothed section: no bore; of a ring the space inside.
 
     Parameters
     ----------
@@ -87,8 +87,9 @@ def section_moments(form: ToothForm) -> tuple[float, float]:
     Notes
     -----
     The root disc, plus over the tooth height the integral of the half tooth angle over the
-    squared radius. Gauss-Legendre quadrature on fillet and involute apart, where the integrands
-    are smooth, so that the error is that of rounding. Source: polar area integral.
+    squared radius; for a ring, whose hole is the section, less that integral. Gauss-Legendre
+    quadrature on fillet and involute apart, where the integrands are smooth, so that the error is
+    that of rounding. Source: polar area integral.
 
     Examples
     --------
@@ -101,7 +102,7 @@ def section_moments(form: ToothForm) -> tuple[float, float]:
     curve, start = form.trochoid, form.form_normal_angle
     middle, half = 0.5 * (math.pi / 2.0 + start), 0.5 * (math.pi / 2.0 - start)
     angle = middle + half * _NODES
-    # The fillet rises with a falling normal angle, hence the sign.
+    # The fillet leaves the root circle with a falling normal angle, hence the sign.
     fillet_weight = -half * _WEIGHTS * curve.squared_radius_slope(angle)
     fillet_radius, fillet_half = curve.radius(angle), curve.half_tooth_angle(angle)
 
@@ -109,14 +110,14 @@ def section_moments(form: ToothForm) -> tuple[float, float]:
     roll = 0.5 * (high + low) + 0.5 * (high - low) * _NODES
     flank_weight = (high - low) * _WEIGHTS * roll * form.base_radius**2
     flank_radius = form.base_radius * np.hypot(1.0, roll)
-    flank_half = form.base_half_angle - (roll - np.arctan(roll))
+    flank_half = form.base_half_angle - form.sign * (roll - np.arctan(roll))
 
     tooth_area = fillet_weight @ fillet_half + flank_weight @ flank_half
     tooth_polar = fillet_weight @ (fillet_half * fillet_radius**2) + flank_weight @ (
         flank_half * flank_radius**2
     )
-    area = math.pi * form.root_radius**2 + form.teeth * float(tooth_area)
-    polar = 0.5 * math.pi * form.root_radius**4 + form.teeth * float(tooth_polar)
+    area = math.pi * form.root_radius**2 + abs(form.teeth) * float(tooth_area)
+    polar = 0.5 * math.pi * form.root_radius**4 + abs(form.teeth) * float(tooth_polar)
     return area, polar
 
 
@@ -137,7 +138,8 @@ def mass_properties(gear: SpurGear, density: float) -> MassProperties:
 
     Notes
     -----
-    The solid is the toothed section less the bore over the face width. Source: polar area
+    The solid is the toothed section less the bore, of a ring the disc of its rim less the hole,
+    over the face width: a helix changes neither. Source: polar area
     integral, see :func:`section_moments`.
 
     Examples
@@ -149,10 +151,10 @@ def mass_properties(gear: SpurGear, density: float) -> MassProperties:
     """
     require_positive("density", density, "kg/m^3")
     area, polar = section_moments(gear)
-    bore = 0.5 * gear.bore_diameter
-    line_density = density * gear.face_width
-    mass = line_density * (area - math.pi * bore**2)
-    inertia = line_density * (polar - 0.5 * math.pi * bore**4)
+    rim = gear.rim_radius
+    line_density = gear.sign * density * gear.face_width
+    mass = line_density * (area - math.pi * rim**2)
+    inertia = line_density * (polar - 0.5 * math.pi * rim**4)
     return MassProperties(
         mass=mass if gear.mass is None else gear.mass,
         moment_of_inertia=inertia if gear.moment_of_inertia is None else gear.moment_of_inertia,

@@ -1,4 +1,10 @@
-"""Geometry of two tooth forms at a centre distance, without checks that the pair can run."""
+"""Geometry of two tooth forms at a centre distance, without checks that the pair can run.
+
+Formulas are those of ISO 21771 with its signs: a ring has a negative number of teeth, and what
+follows from it (the ratio, the length of the line of action, the radius of curvature of the ring)
+is negative too, so that every formula is the one of an external pair. The centre distance is
+positive, as on a drawing.
+"""
 
 from __future__ import annotations
 
@@ -9,22 +15,33 @@ from typing import Any, NamedTuple
 
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear.curves import inverse_involute, involute
-from tribodyn.gear.tooth_form import ToothForm
+from tribodyn.gear.tooth_form import ToothForm, transverse_pressure_angle
+
+
+def _reference_distance(teeth_sum: int, normal_module: float, helix_angle: float) -> float:
+    """Distance at which the reference circles touch [m]."""
+    return 0.5 * abs(teeth_sum) * (normal_module / math.cos(helix_angle))
 
 
 def operating_pressure_angle(
-    teeth_sum: int, normal_module: float, normal_pressure_angle: float, center_distance: float
+    teeth_sum: int,
+    normal_module: float,
+    normal_pressure_angle: float,
+    center_distance: float,
+    helix_angle: float = 0.0,
 ) -> float:
-    """Pressure angle at the operating pitch circles: cos(alpha_wt) = a_0 cos(alpha) / a.
+    """Pressure angle at the operating pitch circles: cos(alpha_wt) = a_0 cos(alpha_t) / a.
 
     Parameters
     ----------
     teeth_sum : int
-        Sum of the numbers of teeth.
+        Sum of the numbers of teeth; those of a ring are negative.
     normal_module, normal_pressure_angle : float [m], [rad]
         Module, and pressure angle of the rack.
     center_distance : float
-        Distance of the axes [m].
+        Distance of the axes [m], positive.
+    helix_angle : float
+        Helix angle at the reference cylinders [rad].
 
     Returns
     -------
@@ -34,7 +51,8 @@ def operating_pressure_angle(
     Raises
     ------
     InputError
-        If the centre distance is not greater than the sum of the base radii.
+        If the centre distance is not greater than the sum of the base radii (of an internal pair,
+        their difference).
 
     Notes
     -----
@@ -46,13 +64,14 @@ def operating_pressure_angle(
     0.391631
     """
     require_positive("center_distance", center_distance, "m")
-    reference = 0.5 * teeth_sum * normal_module
-    cosine = reference * math.cos(normal_pressure_angle) / center_distance
+    reference = _reference_distance(teeth_sum, normal_module, helix_angle)
+    angle = transverse_pressure_angle(normal_pressure_angle, helix_angle)
+    cosine = reference * math.cos(angle) / center_distance
     if cosine >= 1.0:
         raise InputError(
             f"center_distance = {center_distance * 1e3:.6g} mm",
             where=Argument("center_distance"),
-            why="It must exceed the sum of the base radii, "
+            why=f"It must exceed the {'difference' if teeth_sum < 0 else 'sum'} of the base radii, "
             f"{cosine * center_distance * 1e3:.6g} mm",
             remedy=f"The reference centre distance is {reference * 1e3:.6g} mm",
         )
@@ -64,7 +83,11 @@ _ROUNDING = 1e-9
 
 
 def zero_backlash_center_distance(
-    teeth_sum: int, normal_module: float, normal_pressure_angle: float, shift_sum: float
+    teeth_sum: int,
+    normal_module: float,
+    normal_pressure_angle: float,
+    shift_sum: float,
+    helix_angle: float = 0.0,
 ) -> float:
     """Centre distance at which both flanks of the teeth touch.
 
@@ -74,11 +97,13 @@ def zero_backlash_center_distance(
         As for :func:`operating_pressure_angle`, in [m] and [rad].
     shift_sum : float
         Sum of the profile shift coefficients.
+    helix_angle : float
+        Helix angle at the reference cylinders [rad].
 
     Returns
     -------
     float
-        Centre distance [m].
+        Centre distance [m], positive.
 
     Raises
     ------
@@ -87,27 +112,33 @@ def zero_backlash_center_distance(
 
     Notes
     -----
-    inv(alpha_wt) = inv(alpha) + 2 (x_1 + x_2) tan(alpha) / (z_1 + z_2). Source: ISO 21771.
+    inv(alpha_wt) = inv(alpha_t) + 2 (x_1 + x_2) tan(alpha_n) / (z_1 + z_2). Source: ISO 21771.
 
     Examples
     --------
     >>> round(zero_backlash_center_distance(40, 4.5e-3, math.radians(20.0), 0.3532) * 1e3, 3)
     91.5
     """
-    angle = normal_pressure_angle
-    value = involute(angle) + 2.0 * shift_sum * math.tan(angle) / teeth_sum
+    angle = transverse_pressure_angle(normal_pressure_angle, helix_angle)
+    tangent = math.tan(normal_pressure_angle)
+    value = involute(angle) + 2.0 * shift_sum * tangent / teeth_sum
     if value < 0.0:
-        least = -involute(angle) * teeth_sum / (2.0 * math.tan(angle))
+        limit = -involute(angle) * teeth_sum / (2.0 * tangent)
         what = f"sum of the profile shift coefficients = {shift_sum:.6g}"
-        why = f"No centre distance without play exists below a sum of {least:.6g}"
-        remedy = "Increase a shift, or give the centre distance"
+        side, change = ("above", "Reduce") if teeth_sum < 0 else ("below", "Increase")
+        why = f"No centre distance without play exists {side} a sum of {limit:.6g}"
+        remedy = f"{change} a shift, or give the centre distance"
         raise InputError(what, Argument("profile_shift_coefficient"), why, remedy)
-    reference = 0.5 * teeth_sum * normal_module
+    reference = _reference_distance(teeth_sum, normal_module, helix_angle)
     return reference * math.cos(angle) / math.cos(inverse_involute(value))
 
 
 def tip_shortening_coefficient(
-    teeth_sum: int, normal_module: float, shift_sum: float, center_distance: float
+    teeth_sum: int,
+    normal_module: float,
+    shift_sum: float,
+    center_distance: float,
+    helix_angle: float = 0.0,
 ) -> float:
     """Shortening of both addenda that keeps the bottom clearance of the rack.
 
@@ -119,12 +150,15 @@ def tip_shortening_coefficient(
         Sum of the profile shift coefficients.
     center_distance : float
         Distance of the axes [m].
+    helix_angle : float
+        Helix angle at the reference cylinders [rad].
 
     Returns
     -------
     float
         k = x_1 + x_2 - (a - a_0)/m; zero where this is negative, because at a large centre
-        distance the clearance is ample and the teeth are not lengthened.
+        distance the clearance is ample and the teeth are not lengthened; zero for an internal
+        pair, whose clearance does not shrink.
 
     Notes
     -----
@@ -135,7 +169,9 @@ def tip_shortening_coefficient(
     >>> round(tip_shortening_coefficient(40, 4.5e-3, 0.8635 - 0.5103, 91.5e-3), 6)
     0.019867
     """
-    reference = 0.5 * teeth_sum * normal_module
+    if teeth_sum < 0:
+        return 0.0
+    reference = _reference_distance(teeth_sum, normal_module, helix_angle)
     return max(shift_sum - (center_distance - reference) / normal_module, 0.0)
 
 
@@ -169,35 +205,71 @@ class MeshGeometry:
 
     @cached_property
     def ratio(self) -> float:
-        """Gear ratio z_wheel / z_pinion, at least one."""
+        """Gear ratio z_wheel / z_pinion: at least one, negative for an internal pair."""
         return self.wheel.teeth / self.pinion.teeth
+
+    @property
+    def is_internal(self) -> bool:
+        """Whether the wheel is a ring."""
+        return self.wheel.is_ring
 
     @cached_property
     def base_pitch(self) -> float:
-        """Distance of neighbouring flanks along the line of action [m]."""
+        """Distance of neighbouring flanks along the transverse line of action [m]."""
         return self.pinion.base_pitch
 
     @cached_property
+    def helix_angle(self) -> float:
+        """Helix angle at the reference cylinders [rad]."""
+        return self.pinion.helix_angle
+
+    @cached_property
+    def base_helix_angle(self) -> float:
+        """Helix angle at the base cylinders [rad]."""
+        return self.pinion.base_helix_angle
+
+    @cached_property
+    def transverse_pressure_angle(self) -> float:
+        """Pressure angle at the reference circles in the transverse section [rad]."""
+        return self.pinion.transverse_pressure_angle
+
+    @cached_property
     def operating_pressure_angle(self) -> float:
-        """Pressure angle at the operating pitch circles [rad]."""
+        """Pressure angle at the operating pitch circles, in the transverse section [rad]."""
         return operating_pressure_angle(
             self.pinion.teeth + self.wheel.teeth,
             self.pinion.normal_module,
             self.pinion.normal_pressure_angle,
             self.center_distance,
+            self.helix_angle,
         )
+
+    @property
+    def working_transverse_pressure_angle(self) -> float:
+        """Pressure angle at the operating pitch circles, by its name in ISO 21771 [rad]."""
+        return self.operating_pressure_angle
+
+    @cached_property
+    def working_helix_angle(self) -> float:
+        """Helix angle at the operating pitch cylinders [rad]."""
+        cosine = math.cos(self.operating_pressure_angle)
+        return math.atan(math.tan(self.base_helix_angle) / cosine)
 
     @cached_property
     def line_of_action_length(self) -> float:
-        """Distance of the two base tangent points, a sin(alpha_wt) [m]."""
-        return self.center_distance * math.sin(self.operating_pressure_angle)
+        """Distance of the base tangent points, a sin(alpha_wt); negative for an internal pair [m].
+
+        It is the sum of the radii of curvature of both flanks, where that of a ring is negative.
+        """
+        length = self.center_distance * math.sin(self.operating_pressure_angle)
+        return self.wheel.sign * length
 
     @cached_property
     def path_limits(self) -> tuple[float, float]:
         """Ends of the path of contact as ``path`` [m]: at the wheel's tip, at the pinion's tip."""
         wheel_reach = self.wheel.roll_angle(self.wheel.tip_radius) * self.wheel.base_radius
         pinion_reach = self.pinion.roll_angle(self.pinion.tip_radius) * self.pinion.base_radius
-        return self.line_of_action_length - wheel_reach, pinion_reach
+        return self.line_of_action_length - self.wheel.sign * wheel_reach, pinion_reach
 
     @cached_property
     def transverse_contact_ratio(self) -> float:
@@ -231,11 +303,12 @@ class MeshGeometry:
             self.pinion.normal_module,
             self.pinion.profile_shift_coefficient + self.wheel.profile_shift_coefficient,
             self.center_distance,
+            self.helix_angle,
         )
 
 
 class FlankRange(NamedTuple):
-    """Used part of a flank, in radii of curvature of the involute.
+    """Used part of a flank, in radii of curvature of the involute; those of a ring are negative.
 
     Parameters
     ----------

@@ -21,7 +21,8 @@ def _flank(form: ToothForm, points: int) -> tuple[Array, Array]:
     """Radius and half tooth angle along the involute, from the form circle to the tip circle."""
     ends = form.roll_angle(form.form_radius), form.roll_angle(form.tip_radius)
     roll = np.linspace(*ends, points)
-    return form.base_radius * np.hypot(1.0, roll), form.base_half_angle - (roll - np.arctan(roll))
+    half = form.base_half_angle - form.sign * (roll - np.arctan(roll))
+    return form.base_radius * np.hypot(1.0, roll), half
 
 
 def _cartesian(radius: Array, angle: Array) -> Array:
@@ -41,8 +42,9 @@ def half_tooth(gear: ToothForm, points: int = 200) -> tuple[Array, Array]:
     Returns
     -------
     tuple of array
-        Height above the gear axis along the tooth axis [m], shape (points,), increasing from the
-        root circle to the tip corner; and half thickness across the tooth axis [m], same shape.
+        Height above the gear axis along the tooth axis [m], shape (points,), from the root circle
+        to the tip corner: increasing, but decreasing for a ring, whose tip is inside; and half
+        thickness across the tooth axis [m], same shape.
 
     Raises
     ------
@@ -74,7 +76,7 @@ def half_tooth(gear: ToothForm, points: int = 200) -> tuple[Array, Array]:
 
 
 def tooth_outline(gear: ToothForm, points: int = 200) -> Array:
-    """Outline of one tooth with its fillets, tip upwards.
+    """Outline of a tooth with its fillets in the transverse section; that of a ring points inwards.
 
     Parameters
     ----------
@@ -115,7 +117,7 @@ def tooth_outline(gear: ToothForm, points: int = 200) -> Array:
     on_fillet = (half - 2 * arc) // 2
     fillet = _fillet(gear, on_fillet + 1)
     flank = _flank(gear, half - 2 * arc - on_fillet)
-    pitch_angle = math.pi / gear.teeth
+    pitch_angle = math.pi / abs(gear.teeth)
     root_angle = np.linspace(pitch_angle, fillet[1][0], arc, endpoint=False)
     tip_angle = np.linspace(0.0, flank[1][-1], arc, endpoint=False)[::-1]
     radius = np.concatenate(
@@ -160,7 +162,7 @@ def gear_outline(gear: ToothForm, points: int = 200) -> Array:
     (2, 3961)
     """
     tooth = tooth_outline(gear, points)[:, :-1]
-    turn = 2.0 * math.pi / gear.teeth * np.arange(gear.teeth)
+    turn = 2.0 * math.pi / abs(gear.teeth) * np.arange(abs(gear.teeth))
     cosine, sine = np.cos(turn)[:, None], np.sin(turn)[:, None]
     x = cosine * tooth[0] - sine * tooth[1]
     y = sine * tooth[0] + cosine * tooth[1]

@@ -19,7 +19,8 @@ def distance_to_rack_tooth(form: ToothForm, x: Array, depth: Array) -> Array:
     corner_depth = dedendum - rounding
     width = math.pi / 4.0 * module - dedendum * math.tan(angle)
     corner_x = width - rounding * (1.0 - math.sin(angle)) / math.cos(angle)
-    dx, dy = np.abs(x) - corner_x, depth - corner_depth
+    # The rack is straight: its normal section is its transverse one, narrower by the helix angle.
+    dx, dy = np.abs(x) * math.cos(form.helix_angle) - corner_x, depth - corner_depth
     along_flank = dx * math.sin(angle) - dy * math.cos(angle)
     to_flank = dx * math.cos(angle) + dy * math.sin(angle)
     around_corner = (dx > 0.0) & (along_flank < 0.0)
@@ -61,7 +62,10 @@ CASES = {
     "tip round centred on the reference circle": (20, 20.0, 0.87, 23.5, BasicRack(), 0.0),
     "full round": (20, 20.0, 0.0, 22.0, BasicRack(1.0, 1.4, 0.5), 0.0),
     "thinned": (20, 20.0, 0.0, 22.0, BasicRack(), 0.1),
+    "helical": (27, 20.0, 0.2, 31.2, BasicRack(), 0.0),
+    "helical, undercut and thinned": (8, 20.0, 0.0, 12.2, BasicRack(), 0.03),
 }
+HELIX = {"helical": 21.0, "helical, undercut and thinned": 35.0}
 
 
 def form_of(case: str) -> ToothForm:
@@ -74,6 +78,7 @@ def form_of(case: str) -> ToothForm:
         tip_diameter=tip,
         rack=rack,
         tooth_thinning=thinning,
+        helix_angle=math.radians(HELIX.get(case, 0.0)),
     )
 
 

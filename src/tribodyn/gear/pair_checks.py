@@ -1,15 +1,15 @@
-"""Two spur gears in mesh, with checks that they can run and that modifications fit the flanks."""
+"""Reasons why two cylindrical gears cannot run together, or why a modification does not fit."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TypeVar
 
 from tribodyn.errors import Argument, InputError, Problem, warn
+from tribodyn.gear.contact_lines import FaceGeometry
+from tribodyn.gear.curves import involute
+from tribodyn.gear.cylindrical_gear import HANDS, GearData
 from tribodyn.gear.mesh_geometry import (
     FlankRange,
     MeshGeometry,
@@ -22,11 +22,8 @@ from tribodyn.gear.modification import (
     ProfileMap,
     amount_problems,
 )
-from tribodyn.gear.spur_gear import SpurGear
 from tribodyn.gear.tooth_form import ToothForm
-from tribodyn.types import Array
 
-_Path = TypeVar("_Path", float, Array)
 #: Negative play over the module that printed, hence rounded, shift coefficients may leave.
 ROUNDING_TOLERANCE = 0.002
 #: Negative play over the module above which the rounding is worth a warning.
@@ -35,151 +32,45 @@ ROUNDING_WARNING = 0.0005
 _SLACK = 1e-6
 
 
-@dataclass(frozen=True)
-class SpurPair(MeshGeometry):
-    """External spur gear pair: two gears, their centre distance, and the driver.
-
-    Parameters
-    ----------
-    pinion, wheel : SpurGear
-        The gear with the smaller or equal number of teeth, and the other, of the same module and
-        pressure angle.
-    center_distance : float
-        Distance of the axes [m].
-    driver : str
-        ``"pinion"`` or ``"wheel"``.
-    misalignment : float
-        Difference of the gap over the common face width [m] that the position of the axes makes;
-        positive where the gap is wider at positive ``face_position``.
-
-    Raises
-    ------
-    InputError
-        Listing every reason why the two gears cannot run together, or why a modification does not
-        fit the flank that is used.
-
-    Warns
-    -----
-    ModelWarning
-        ``undercut`` when a gear is undercut below its used flank, which runs but is weaker;
-        ``flank-interference-rounding`` when rounded shift coefficients leave a negative play
-        of more than 0.0005 modules.
-
-    Notes
-    -----
-    Source: ISO 21771, cylindrical gear pairs. Positions on the line of action are called
-    ``path``: the distance from the pinion's base tangent point, whichever gear drives.
-
-    Examples
-    --------
-    >>> import math
-    >>> from tribodyn.gear import spur_pair
-    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
-    ...                  normal_pressure_angle=math.radians(20.0), pinion_face_width=50e-3)
-    >>> pair
-    SpurPair(z 20/30, m 4 mm, a 100 mm, contact ratio 1.605, pinion drives)
-    """
-
-    pinion: SpurGear
-    wheel: SpurGear
-    center_distance: float
-    driver: str = "pinion"
-    misalignment: float = 0.0
-
-    def __post_init__(self) -> None:
-        problems = match_problems(self.pinion, self.wheel, self.driver) or mesh_problems(self)
-        problems = problems or [*misalignment_problems(self.misalignment), *_fit_problems(self)]
-        if problems:
-            raise InputError(problems)
-        _warn_of_limits(self)
-
-    def __repr__(self) -> str:
-        """One line with units."""
-        return (
-            f"SpurPair(z {self.pinion.teeth}/{self.wheel.teeth}, "
-            f"m {self.pinion.normal_module * 1e3:g} mm, a {self.center_distance * 1e3:g} mm, "
-            f"contact ratio {self.transverse_contact_ratio:.4g}, {self.driver} drives)"
-        )
-
-    @cached_property
-    def driving(self) -> SpurGear:
-        """The gear that drives."""
-        return self.pinion if self.driver == "pinion" else self.wheel
-
-    def driving_radius(self, path: _Path) -> _Path:
-        """Radius of curvature of the driving flank at positions on the line of action [m].
-
-        Parameters
-        ----------
-        path : float or array
-            Distance from the pinion's base tangent point [m].
-
-        Returns
-        -------
-        float or array
-            Distance from the base tangent point of the driving gear [m].
-        """
-        return path if self.driver == "pinion" else self.line_of_action_length - path
-
-    @property
-    def driven_gear(self) -> str:
-        """Name of the driven gear."""
-        return "wheel" if self.driver == "pinion" else "pinion"
-
-    @cached_property
-    def driven(self) -> SpurGear:
-        """The gear that is driven."""
-        return self.wheel if self.driver == "pinion" else self.pinion
-
-    @cached_property
-    def common_face_width(self) -> float:
-        """Face width in contact [m]."""
-        return min(self.pinion.face_width, self.wheel.face_width)
-
-    @cached_property
-    def has_profile_modification(self) -> bool:
-        """Whether the gap of a flank changes over its profile."""
-        return any(gear.modification.changes_profile for gear in (self.pinion, self.wheel))
-
-    @cached_property
-    def has_lead_modification(self) -> bool:
-        """Whether the gap changes over the face width."""
-        leads = any(gear.modification.changes_lead for gear in (self.pinion, self.wheel))
-        return leads or self.misalignment != 0.0
-
-    @cached_property
-    def has_pitch_deviation(self) -> bool:
-        """Whether tooth pairs differ by pitch deviations."""
-        return any(gear.modification.changes_pitch for gear in (self.pinion, self.wheel))
-
-    @cached_property
-    def has_run_out(self) -> bool:
-        """Whether a gear turns about an axis that is not its own."""
-        return any(gear.modification.run_out != 0.0 for gear in (self.pinion, self.wheel))
-
-    @cached_property
-    def teeth_differ(self) -> bool:
-        """Whether one mesh cycle differs from the next."""
-        return any(gear.modification.teeth_differ for gear in (self.pinion, self.wheel))
-
-    @cached_property
-    def has_modification(self) -> bool:
-        """Whether the flanks differ from ideally placed involutes."""
-        shape = self.has_profile_modification or self.has_lead_modification
-        return shape or self.teeth_differ
-
-
-def match_problems(pinion: ToothForm, wheel: ToothForm, driver: str) -> list[Problem]:
-    """Problems of two gears that cannot form a pair."""
-    problems = []
-    if pinion.teeth > wheel.teeth:
-        what = f"the pinion has {pinion.teeth} teeth, the wheel {wheel.teeth}"
+def teeth_problems(pinion: GearData, wheel: GearData) -> list[Problem]:
+    """Problems of numbers of teeth that make no pair."""
+    what = f"the pinion has {pinion.teeth} teeth, the wheel {wheel.teeth}"
+    if pinion.is_ring:
+        why = "Only the wheel of a pair may be a ring (negative number of teeth)"
+        return [Problem(what, Argument("teeth", "pinion"), why, "Exchange the two gears")]
+    if wheel.is_ring and pinion.teeth >= -wheel.teeth:
+        why = "The gear inside of a ring has fewer teeth than the ring"
+        remedy = f"Reduce the pinion below {-wheel.teeth} teeth, or use a larger ring"
+        return [Problem(what, Argument("teeth", "pinion"), why, remedy)]
+    if pinion.teeth > abs(wheel.teeth):
         why = "The pinion is the gear with fewer teeth, whichever drives"
         remedy = 'Exchange the two gears and set driver to "wheel" if the larger one drives'
-        problems.append(Problem(what, Argument("teeth", "pinion"), why, remedy))
+        return [Problem(what, Argument("teeth", "pinion"), why, remedy)]
+    return []
+
+
+def _hand_problems(pinion: GearData, wheel: GearData) -> list[Problem]:
+    fitting = mating_hand(pinion.hand, wheel.teeth)
+    if not pinion.helix_angle or wheel.hand == fitting:
+        return []
+    kind, hands = ("an internal", "equal") if wheel.is_ring else ("an external", "opposite")
+    what = f"the pinion is {pinion.hand}-handed, the wheel {wheel.hand}-handed"
+    why = f"Helical gears of {kind} pair on parallel shafts have {hands} hands"
+    return [Problem(what, Argument("hand", "wheel"), why, f'Make the wheel "{fitting}"')]
+
+
+def mating_hand(hand: str, wheel_teeth: int) -> str:
+    """Hand of a wheel that runs with a pinion of this hand on a parallel shaft."""
+    return hand if wheel_teeth < 0 or hand not in HANDS else HANDS[1 - HANDS.index(hand)]
+
+
+def match_problems(pinion: GearData, wheel: GearData, driver: str) -> list[Problem]:
+    """Problems of two gears that cannot form a pair."""
+    problems = [*teeth_problems(pinion, wheel), *_hand_problems(pinion, wheel)]
     for name, unit, factor in (
         ("normal_module", "mm", 1e3),
         ("normal_pressure_angle", "deg", math.degrees(1.0)),
+        ("helix_angle", "deg", math.degrees(1.0)),
     ):
         values = getattr(pinion, name), getattr(wheel, name)
         if not math.isclose(*values, rel_tol=1e-12):
@@ -205,43 +96,88 @@ def _used_flanks(mesh: MeshGeometry) -> Iterator[tuple[str, str, ToothForm, Toot
     yield "wheel", "pinion", mesh.wheel, mesh.pinion, mesh.line_of_action_length - last
 
 
-def _interference(mesh: MeshGeometry) -> list[Problem]:
-    """The tip of each gear must meet involute on its mate, not base circle nor fillet."""
-    problems = []
+def _interference(mesh: MeshGeometry) -> Iterator[tuple[bool, Problem]]:
+    """Tips that pass the base tangent point of the mate (True), or meet its fillet (False)."""
     for name, mate_name, gear, mate, least in _used_flanks(mesh):
-        form = gear.roll_angle(gear.form_radius) * gear.base_radius
+        form = gear.sign * gear.roll_angle(gear.form_radius) * gear.base_radius
         if least >= form - 1e-6 * gear.normal_module:
             continue
-        largest = 2e3 * math.hypot(mate.base_radius, max(mesh.line_of_action_length - form, 0.0))
-        if least < 0.0:
+        reach = max(mate.sign * (mesh.line_of_action_length - form), 0.0)
+        limit = f"{2e3 * math.hypot(mate.base_radius, reach):.6g} mm"
+        passed = least < 0.0 and not gear.is_ring
+        if passed:
             why = f"It passes the base tangent point of the {name} by {-least * 1e3:.6g} mm"
         else:
             end = "undercut removes flank" if gear.undercut else "fillet reaches"
+            used = f"{2e3 * math.hypot(gear.base_radius, least):.6g} mm"
+            used = f"up to the diameter {used}" if gear.is_ring else f"from the diameter {used} on"
             why = (
-                f"It needs the {name}'s flank from the diameter "
-                f"{2e3 * math.hypot(gear.base_radius, least):.6g} mm on, but its {end} up to "
-                f"{2e3 * gear.form_radius:.6g} mm"
+                f"It needs the {name}'s flank {used}, but its {end} "
+                f"{'down' if gear.is_ring else 'up'} to {2e3 * gear.form_radius:.6g} mm"
             )
-        problems.append(
+        change, bound = ("Increase", "more") if mate.is_ring else ("Reduce", "less")
+        yield (
+            passed,
             Problem(
                 what=f"interference: the tip diameter of the {mate_name} is "
                 f"{mate.tip_diameter * 1e3:.6g} mm",
                 where=Argument("tip_diameter", mate_name),
                 why=why,
-                remedy=f"Reduce it to {largest:.6g} mm or less, or shift the {name} outwards",
-            )
+                remedy=f"{change} it to {limit} or {bound}, or shift the {name} outwards",
+            ),
         )
-    return problems
+
+
+def tip_play(mesh: MeshGeometry) -> float:
+    """Play along the ring's tip circle where the tips of an internal pair pass each other [m]."""
+    # Source: Colbourne (1987), tip interference of internal gears.
+    distance = mesh.center_distance
+    inner, outer = mesh.pinion.tip_radius, mesh.wheel.tip_radius
+    cosines = (
+        (outer**2 - distance**2 - inner**2) / (2.0 * distance * inner),
+        (distance**2 + outer**2 - inner**2) / (2.0 * distance * outer),
+    )
+    if max(map(abs, cosines)) >= 1.0:
+        return math.inf
+    angles = [
+        math.acos(cosine) + involute(gear.pressure_angle_at(gear.tip_radius))
+        for cosine, gear in zip(cosines, (mesh.pinion, mesh.wheel), strict=True)
+    ]
+    working = involute(mesh.operating_pressure_angle)
+    turned = (angles[0] - working) / abs(mesh.ratio)
+    return outer * (turned - angles[1] + working)
+
+
+def _tip_interference(mesh: MeshGeometry) -> list[Problem]:
+    """The tips of an internal pair must pass each other beyond the path of contact."""
+    play = tip_play(mesh)
+    if play >= 0.0:
+        return []
+    pinion, ring = mesh.pinion, mesh.wheel
+    return [
+        Problem(
+            what=f"tip interference: the tips of pinion and ring overlap by {-play * 1e3:.6g} mm "
+            "beyond the path of contact",
+            where=Argument("teeth", "wheel"),
+            why=f"{pinion.teeth} teeth are too many for a ring of {-ring.teeth} with the tip "
+            f"diameters {pinion.tip_diameter * 1e3:.6g} and {ring.tip_diameter * 1e3:.6g} mm",
+            remedy="Use fewer teeth on the pinion, shorter tips, or a larger profile shift of the "
+            "pinion and a smaller one of the ring",
+        )
+    ]
 
 
 def _clearance(mesh: MeshGeometry) -> list[Problem]:
     problems = []
+    sign = mesh.wheel.sign
     for name, mate_name, gear, mate in (
         ("pinion", "wheel", mesh.pinion, mesh.wheel),
         ("wheel", "pinion", mesh.wheel, mesh.pinion),
     ):
-        clearance = mesh.center_distance - gear.tip_radius - mate.root_radius
+        reach = gear.sign * gear.tip_radius + mate.sign * mate.root_radius
+        clearance = sign * mesh.center_distance - reach
         if clearance <= 0.0:
+            change = "Increase" if gear.is_ring else "Reduce"
             problems.append(
                 Problem(
                     what=f"the bottom clearance at the {name}'s tip is {clearance * 1e3:.6g} mm",
@@ -249,26 +185,38 @@ def _clearance(mesh: MeshGeometry) -> list[Problem]:
                     why=f"Tip diameter {gear.tip_diameter * 1e3:.6g} mm and the {mate_name}'s root "
                     f"diameter {2e3 * mate.root_radius:.6g} mm overlap at the centre distance "
                     f"{mesh.center_distance * 1e3:.6g} mm",
-                    remedy="Reduce the tip diameter or increase the centre distance",
+                    remedy=f"{change} the tip diameter or "
+                    f"{'reduce' if sign < 0 else 'increase'} the centre distance",
                 )
             )
     return problems
 
 
-def _contact_ratio(mesh: MeshGeometry) -> list[Problem]:
-    ratio = mesh.transverse_contact_ratio
-    if ratio >= 1.0:
+def _contact_ratio(mesh: FaceGeometry) -> list[Problem]:
+    ratio, name = mesh.transverse_contact_ratio, "transverse"
+    if mesh.helix_angle:
+        ratio, name = mesh.total_contact_ratio, f"transverse contact ratio {ratio:.6g} and total"
+    if ratio >= 1.0 and mesh.transverse_contact_ratio > 0.0:
         return []
-    what = f"transverse contact ratio {ratio:.6g}"
+    change = "Reduce the ring's and increase the pinion's tip diameter"
     remedy = "Increase the tip diameters or reduce the centre distance"
-    return [Problem(what, why="Below 1 the contact is lost between two tooth pairs", remedy=remedy)]
+    return [
+        Problem(
+            what=f"{name} contact ratio {ratio:.6g}",
+            why="Below 1 the contact is lost between two tooth pairs",
+            remedy=change if mesh.is_internal else remedy,
+        )
+    ]
 
 
 def fitting_center_distance(mesh: MeshGeometry) -> float | None:
-    """Least centre distance for the tooth thicknesses where the given one is too small."""
+    """Centre distance without play where the teeth interfere at the actual one; None elsewhere."""
     pinion, wheel, module = mesh.pinion, mesh.wheel, mesh.pinion.normal_module
-    with suppress(InputError):
+    try:
         if mesh.geometric_backlash >= -ROUNDING_TOLERANCE * module:
+            return None
+    except InputError:
+        if mesh.is_internal:  # The distance is too small there, not too large.
             return None
     with suppress(InputError):
         return zero_backlash_center_distance(
@@ -276,22 +224,24 @@ def fitting_center_distance(mesh: MeshGeometry) -> float | None:
             module,
             pinion.normal_pressure_angle,
             pinion.generating_shift_coefficient + wheel.generating_shift_coefficient,
+            pinion.helix_angle,
         )
     return None
 
 
 def too_close(mesh: MeshGeometry, fitting: float) -> Problem:
     """Problem of interfering flanks, with the centre distance that fits."""
+    least, change = ("most", "Reduce") if mesh.is_internal else ("least", "Increase")
     return Problem(
-        what=f"the centre distance must be at least {fitting * 1e3:.6g} mm for these tooth "
+        what=f"the centre distance must be at {least} {fitting * 1e3:.6g} mm for these tooth "
         f"thicknesses; {mesh.center_distance * 1e3:.6g} mm is given and the flanks interfere",
         where=Argument("center_distance"),
         why=f"Both flanks touch at {fitting * 1e3:.6g} mm already",
-        remedy="Increase the centre distance or reduce a profile shift",
+        remedy=f"{change} the centre distance or reduce a profile shift",
     )
 
 
-def mesh_problems(mesh: MeshGeometry) -> list[Problem]:
+def mesh_problems(mesh: FaceGeometry) -> list[Problem]:
     """Problems of two gears that cannot run together."""
     fitting = fitting_center_distance(mesh)
     if fitting is not None:
@@ -303,7 +253,12 @@ def mesh_problems(mesh: MeshGeometry) -> list[Problem]:
         return list(error.problems)
     problems = _clearance(mesh)
     if all(form.tip_radius > form.base_radius for form in (mesh.pinion, mesh.wheel)):
-        problems += [*_interference(mesh), *_contact_ratio(mesh)]
+        # The fillets of an internal pair are those of other tools: they are only warned of.
+        internal = mesh.is_internal
+        problems += [fault for passed, fault in _interference(mesh) if passed or not internal]
+        problems += _contact_ratio(mesh)
+        if mesh.is_internal and not problems:
+            problems += _tip_interference(mesh)
     return problems
 
 
@@ -334,10 +289,11 @@ def _length_problems(
 
 
 def _map_problems(
-    name: str, chart: ProfileMap, gear: SpurGear, flank: FlankRange, face_width: float
+    name: str, chart: ProfileMap, gear: GearData, flank: FlankRange, face_width: float
 ) -> list[Problem]:
     problems, where = [], Argument("modification.profile_map", name)
     low, high = chart.limits(gear.base_radius)
+    flank = FlankRange(*sorted(map(abs, flank)))
     slack = _SLACK * flank.length
     if low > flank.lowest + slack or high < flank.highest - slack:
         needed, covered = (f"{a * 1e3:.6g} to {b * 1e3:.6g} mm" for a, b in (flank, (low, high)))
@@ -359,7 +315,7 @@ def _map_problems(
     return problems
 
 
-def _fit_problems(pair: SpurPair) -> list[Problem]:
+def fit_problems(pair: FaceGeometry) -> list[Problem]:
     """Problems of modifications that do not fit the used flanks."""
     problems = []
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}
@@ -371,7 +327,7 @@ def _fit_problems(pair: SpurPair) -> list[Problem]:
     return problems
 
 
-def _warn_of_limits(mesh: MeshGeometry) -> None:
+def warn_of_limits(mesh: MeshGeometry) -> None:
     """Warn of a pair close to a limit."""
     module, play = mesh.pinion.normal_module, mesh.geometric_backlash
     if play < -ROUNDING_WARNING * module:
@@ -382,8 +338,11 @@ def _warn_of_limits(mesh: MeshGeometry) -> None:
             "coefficients and counts as zero. Give the shifts with more digits",
             stacklevel=4,
         )
+    for _, fault in _interference(mesh):
+        what = fault.what.replace("interference", "contact on a fillet")
+        warn("fillet-contact", f"{what}. {fault.why}. {fault.remedy}", stacklevel=4)
     for name, _, gear, _, least in _used_flanks(mesh):
-        if gear.undercut:
+        if gear.undercut and not mesh.is_internal:
             used = math.hypot(gear.base_radius, max(least, 0.0))
             warn(
                 "undercut",
