@@ -16,7 +16,7 @@ from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.dynamics.running_up.run_up import run_up
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile, speed_ramp
 from tribodyn.dynamics.running_up.run_up_result import RunUp
-from tribodyn.dynamics.structure.force_law import MeshForce, follow_load, law_contacts
+from tribodyn.dynamics.structure.force_law import MeshForce, follow_load, law_contact, law_contacts
 from tribodyn.dynamics.structure.fzg12 import FZG12_LIGHT, FZG12_MESH_FREQUENCY, FZG12_NAMES, fzg12
 from tribodyn.dynamics.structure.gear_pair import SPUR6_NAMES, TORSIONAL_NAMES, spur6, torsional
 from tribodyn.dynamics.structure.hypoid14 import HYPOID14_NAMES, HypoidSupports, hypoid14
@@ -81,6 +81,7 @@ __all__ = [
     "fzg12",
     "harmonic_balance",
     "hypoid14",
+    "law_contact",
     "law_contacts",
     "natural_modes",
     "recommended_steps",

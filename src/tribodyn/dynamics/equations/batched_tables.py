@@ -51,7 +51,7 @@ def _structure(system: System) -> Hashable:
     contacts = system.contacts
     if len(contacts) != 1 or system.frictions or varies(system.force) or system.cycles > 1:
         return None
-    if varies(contacts[0].direction) or contacts[0].offset:
+    if varies(contacts[0].direction) or contacts[0].offset or np.size(contacts[0].ramp_gap):
         return None
     parts = system.mass, system.rate_matrix, system.stiffness, system.balance, contacts[0].direction
     numbers = tuple(None if part is None else np.asarray(part).tobytes() for part in parts)
@@ -97,6 +97,8 @@ def evaluate_batch(systems: Sequence[System], grid: Grid, memory: Memory = new_m
         weight=step_weights(grid),
         friction_direction=np.zeros((grid.steps, 3, 0, size)),
         friction_coefficients=np.zeros((grid.steps, 3, 0, 1)),
+        ramp_stiffness=np.zeros((*shape, 1, 0)),
+        ramp_gap=np.zeros((*shape, 1, 0)),
     )
     if np.any(unrepeated(nodes.stiffness) < 0.0):
         for number in range(len(systems)):

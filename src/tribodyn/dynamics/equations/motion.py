@@ -15,7 +15,7 @@ import numpy as np
 
 from tribodyn.arrays.products import times
 from tribodyn.dynamics.equations.grid import Grid, unrepeated
-from tribodyn.dynamics.equations.nodes import Nodes, friction_force
+from tribodyn.dynamics.equations.nodes import Nodes, friction_force, ramp_force
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
 
@@ -141,6 +141,8 @@ def forces(
         in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
         contact = np.abs(side) * scales.stiffness * rows.stiffness * (d - side * gap)
         contact = contact + ((side != 0.0) | in_gap) * scales.damping * rows.damping * rate
+    if rows.ramp_gap.shape[-1]:
+        contact = contact + ramp_force(rows, d)
     total = times(scales.force * unrepeated(rows.force, 1) + extra, inverse) - elastic
     total -= damped
     if scales is _SAME:

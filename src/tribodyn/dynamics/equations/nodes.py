@@ -9,7 +9,7 @@ load share that depend on the tooth force become one polynomial for each row of 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from tribodyn.dynamics.equations.grid import (
     system_events,
     unrepeated,
 )
-from tribodyn.dynamics.equations.system import LoadFriction, System, no_direction
+from tribodyn.dynamics.equations.system import Contact, LoadFriction, System, no_direction
 from tribodyn.errors import InputError, real_numbers
 from tribodyn.types import Array, Index, Mask
 
@@ -31,19 +31,31 @@ _PROBE = 37
 
 def coefficient_count(where: str, friction: LoadFriction) -> int:
     """Number of coefficients of one row."""
-    coefficients = friction.coefficients
+    return _row_length(where, friction.coefficients)
+
+
+def _row_length(where: str, entry: Any, least: int = 1) -> int:
+    """Number of values of an entry at one phase."""
     probe = (np.arange(_PROBE) + 0.5) / _PROBE
-    values = real_numbers(
-        where, coefficients(probe) if callable(coefficients) else coefficients, "rows of numbers"
-    )
+    values = real_numbers(where, entry(probe) if callable(entry) else entry, "rows of numbers")
     shape = values.shape
-    if callable(coefficients) and _PROBE in shape:
+    if callable(entry) and _PROBE in shape:
         shape = tuple(np.delete(shape, shape.index(_PROBE)).tolist())
-    if len(shape) > 1 or 0 in shape:
-        why = f"A row of coefficients for each mesh phase: ({_PROBE}, m) for {_PROBE} phases"
+    if len(shape) > 1 or (shape and shape[0] < least):
+        why = f"A row of numbers for each mesh phase: ({_PROBE}, m) for {_PROBE} phases"
         remedy = "Return a row of numbers for each phase that is passed to the function"
         raise InputError(f"{where} returns the shape {values.shape}", where, why, remedy)
     return int(shape[0]) if shape else 1
+
+
+def ramp_count(where: str, contact: Contact) -> int:
+    """Number of ramps of a contact."""
+    names = ("ramp_stiffness", "ramp_gap")
+    count, gaps = (_row_length(f"{where}.{name}", getattr(contact, name), 0) for name in names)
+    if count != gaps:
+        what, why = f"{count} stiffnesses and {gaps} gaps", "Every ramp has a stiffness and a gap"
+        raise InputError(what, f"{where}.ramp_gap", why, "Give as many gaps as stiffnesses")
+    return count
 
 
 def friction_directions(system: System, rows: RowEvaluator) -> Array:
@@ -141,6 +153,23 @@ class Nodes(NamedTuple):
     weight: Array
     friction_direction: Array
     friction_coefficients: Array
+    ramp_stiffness: Array  #: (..., contacts, m)
+    ramp_gap: Array
+
+
+def springs(nodes: Nodes) -> tuple[Array, Array]:
+    """Stiffness and gap of the first spring and the ramps of each contact, (..., contacts, m)."""
+    if not nodes.ramp_gap.shape[-1]:
+        return nodes.stiffness[..., None], nodes.gap[..., None]
+    first = ((nodes.stiffness, nodes.ramp_stiffness), (nodes.gap, nodes.ramp_gap))
+    stiffness, gap = (np.concatenate((a[..., None], b), axis=-1) for a, b in first)
+    return stiffness, gap
+
+
+def ramp_force(nodes: Nodes, deflection: Array) -> Array:
+    """Force of the ramps of every contact at a compression (..., contacts)."""
+    beyond = np.maximum(np.abs(deflection)[..., None] - nodes.ramp_gap, 0.0)
+    return np.asarray(np.sign(deflection) * (nodes.ramp_stiffness * beyond).sum(axis=-1))
 
 
 def evaluate_nodes(system: System, grid: Grid) -> Nodes:
@@ -202,7 +231,28 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
         weight=np.full(shape, 1.0 / rows.nodes.size),
         friction_direction=friction_directions(system, rows),
         friction_coefficients=friction_coefficients(system, rows),
+        **_ramps(system, rows),
     )
+
+
+def _ramps(system: System, rows: RowEvaluator) -> dict[str, Array]:
+    """Stiffness and gap of the ramps of all contacts, filled up with ramps that carry nothing."""
+    counts = [ramp_count(f"contacts[{j}]", each) for j, each in enumerate(system.contacts)]
+    most = max(counts, default=0)
+    out: dict[str, Array] = {}
+    for name, filler in (("ramp_stiffness", 0.0), ("ramp_gap", 1.0)):
+        still = np.full((len(counts), most), filler)
+        table = np.broadcast_to(still, (*rows.nodes.shape, *still.shape))
+        for j, contact in enumerate(system.clocked_contacts):
+            if counts[j]:
+                table = table if table.flags.writeable else table.copy()
+                where = f"contacts[{j}].{name}"
+                table[:, :, j, : counts[j]] = rows.values(where, getattr(contact, name), counts[j])
+        if table.min(initial=0.0) < 0.0:
+            what, why = f"{name} = {table.min():.6g}", "Ramps add stiffness beyond a dead zone"
+            raise InputError(what, f"Contact.{name}", why, "Give no negative values")
+        out[name] = table
+    return out
 
 
 def combined(operation: Callable[[Array, Array], Array], first: Array, second: Array) -> Array:

@@ -19,6 +19,7 @@ from tribodyn.arrays.workspace import Memory, new_memory
 from tribodyn.dynamics.equations.entry import varies as depends_on_phase
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events, unrepeated
 from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes
+from tribodyn.dynamics.equations.ramps import refuse_ramps
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask
 
@@ -319,6 +320,7 @@ def _flattened(
     memory: Memory = new_memory,
 ) -> tuple[_Terms, Program]:
     """Terms of a system or of a batch, and the program without its rows."""
+    refuse_ramps(system)
     size, contacts = system.size, len(system.contacts)
     slots = lay_out(size, contacts, len(system.frictions) + (contacts if split else 0))
     terms = _Terms(nodes.phase.shape, pattern)

@@ -56,12 +56,20 @@ class Contact:
         Mesh cycles of this contact in one period of the clock.
     offset : float
         Mesh phase of this contact when the clock starts, in [0, 1).
+    ramp_stiffness, ramp_gap : (m,) array or function
+        Ramps of a force law: stiffnesses that are added beyond further half dead zones [N/m], [m];
+        functions return (p, m). Harmonic balance and the modal engine take them.
 
     Raises
     ------
     InputError
         If an event or the offset lies outside [0, 1), the direction is zero, or ``cycles`` is not
         a whole number of at least 1.
+
+    Notes
+    -----
+    With ramps the spring force is ``k g(d, gap) + sum_m k_m g(d, gap_m)``, where ``g(d, gap)`` is
+    the compression beyond a half dead zone. The damping acts where the first spring does.
 
     Examples
     --------
@@ -79,6 +87,8 @@ class Contact:
     damping_in_gap: bool = False
     cycles: int = 1
     offset: float = 0.0
+    ramp_stiffness: Entry = ()
+    ramp_gap: Entry = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
@@ -323,7 +333,9 @@ class System:
 
 
 _MATRICES = ("mass", "damping", "stiffness")
-_CONTACT_ENTRIES = ("direction", "stiffness", "damping", "error", "gap", "friction")
+_CONTACT_ENTRIES = (
+    "direction", "stiffness", "damping", "error", "gap", "friction", "ramp_stiffness", "ramp_gap"
+)  # fmt: skip
 _FRICTION_ENTRIES = ("direction", "coefficients")
 #: Inverses of mass matrices: a study builds the same structure many times.
 _inverses: Memo[Array] = Memo(8)

@@ -23,6 +23,7 @@ from tribodyn.dynamics.equations.nodes import (
     friction_force,
     friction_tangent,
     lowest_of_each_law,
+    springs,
 )
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
@@ -44,6 +45,8 @@ class Rows(NamedTuple):
     push: Array  #: force along the basis per contact force, (p or 1, contacts, s)
     rub: Array  #: force along the basis per friction that follows its load, (p or 1, f, s)
     load: Array  #: external force along the basis, (p or 1, s)
+    stiffness: Array  #: of the first spring and the ramps of each contact, (p, contacts, m)
+    gap: Array  #: half dead zones of the same
 
     def at(self, index: Index) -> Rows:
         """Some of the rows."""
@@ -88,7 +91,7 @@ class ContactEquations:
     events: Array  #: these events [-]
     along: Array  #: basis of compressions in coordinates of unit mass (n, r)
     push: Array  #: basis of forces (n, s)
-    dead: Mask
+    dead: Mask  #: springs with a dead zone (contacts, m)
     damped_in_gap: Mask
     steps: int
 
@@ -102,18 +105,23 @@ class ContactEquations:
         closed: Mask | None = None,
     ) -> Law:
         """Contact forces at rows, for motions and rates (p, r)."""
-        # excess (contacts,): damping on both sides of every contact; closed (contacts,): contacts
+        # excess (contacts,): damping on both sides of every contact; closed (contacts, m): springs
         # that stay closed, all others open, whatever the motion.
         nodes = rows.nodes
         d = components(rows.along, y) - nodes.error
         speed = components(rows.along, rate) + frequency * (
             components(rows.along_slope, y) - nodes.error_slope
         )
-        side = sides(d, nodes.gap, self.dead) if closed is None else np.where(closed, 1.0, 0.0 * d)
-        touching = side != 0.0
-        stiffness = np.where(touching, nodes.stiffness, 0.0)
-        damping = np.where(touching | self.damped_in_gap, nodes.damping, 0.0) + excess
-        contact = stiffness * (d - side * nodes.gap) + damping * speed
+        every = d[..., None]
+        if closed is None:
+            side = sides(every, rows.gap, self.dead)
+        else:
+            side = np.where(closed, 1.0, 0.0 * every)
+        springs = np.where(side != 0.0, rows.stiffness, 0.0)
+        stiffness = springs.sum(axis=-1)
+        touching = (side[..., 0] != 0.0) | self.damped_in_gap
+        damping = np.where(touching, nodes.damping, 0.0) + excess
+        contact = (springs * (every - side * rows.gap)).sum(axis=-1) + damping * speed
         push = rows.push
         force = rows.load - _pushed(push, contact)
         if self.system.frictions:
@@ -127,7 +135,7 @@ class ContactEquations:
         rising = outer(push, stiffness, rows.along)
         if np.any(rows.along_slope):
             rising = rising + frequency * outer(push, damping, rows.along_slope)
-        return Law(d, contact, side, force, rising, outer(push, damping, rows.along), push)
+        return Law(d, contact, side[..., 0], force, rising, outer(push, damping, rows.along), push)
 
     def breaks(
         self,
@@ -161,11 +169,11 @@ class ContactEquations:
         return Breaks(step % self.steps, fraction, jump, weight[:, None] * jump, tangent)
 
     def _crossings(self, law: Law, frequency: float, y: Array, rate: Array, edge: float) -> Breaks:
-        clearance = edge * law.compression - self.rows.nodes.gap
+        clearance = edge * law.compression[..., None] - self.rows.gap
         inside = (clearance > 0.0) & self.dead
-        step, contact = np.nonzero(inside != np.roll(inside, -1, axis=0))
+        step, contact, spring = np.nonzero(inside != np.roll(inside, -1, axis=0))
         after = (step + 1) % self.steps
-        begin, end = clearance[step, contact], clearance[after, contact]
+        begin, end = clearance[step, contact, spring], clearance[after, contact, spring]
         fraction = begin / (begin - end)
         rows = self.rows.at(step)
         each = np.arange(step.size)
@@ -181,9 +189,10 @@ class ContactEquations:
             - of_contact(rows.nodes.error_slope)
         )
         opening = np.where(end > begin, 1.0, -1.0)
-        damped = np.where(self.damped_in_gap[contact], 0.0, of_contact(rows.nodes.damping))
+        steady = self.damped_in_gap[contact] | (spring > 0)
+        damped = np.where(steady, 0.0, of_contact(rows.nodes.damping))
         jump = opening * damped * speed
-        bend = opening * edge * of_contact(rows.nodes.stiffness) * (end - begin)
+        bend = opening * edge * rows.stiffness[each, contact, spring] * (end - begin)
         bernoulli = fraction * (fraction - 1.0) + 1.0 / 6.0
         total = (0.5 - fraction) * jump + 0.5 * bernoulli * bend
         slope = edge * (jump - (fraction - 0.5) * bend) / (end - begin)
@@ -205,14 +214,15 @@ def close_contacts(
     along = _basis([nodes.direction, nodes.direction_slope], inverse)
     push = _basis(pushes, inverse)
     still = static_start(compiled)[: system.size] if still is None else still
-    clearance = np.einsum("rs,rsj->j", nodes.weight, compression(nodes, still) - nodes.gap)
-    closed = lowest_of_each_law(nodes) | (clearance > 0.0)
+    stiffness, gap = springs(nodes)
+    pressed = compression(nodes, still)[..., None] - gap
+    closed = np.einsum("rs,rsjm->jm", nodes.weight, pressed) > 0.0
+    closed[:, 0] |= lowest_of_each_law(nodes)
     into_along = _distinct(nodes.direction) @ (inverse.T @ along)
     into_push = _distinct(nodes.force_direction) @ (inverse.T @ push)
-    means = [
-        outer(into_push, np.where(closed, part, 0.0)[:, 0], into_along)
-        for part in (nodes.stiffness, nodes.damping)
-    ]
+    carried = np.where(closed, stiffness, 0.0).sum(axis=-1)
+    damped = np.where(closed[:, 0], nodes.damping, 0.0)
+    means = [outer(into_push, part[:, 0], into_along) for part in (carried, damped)]
     shifts = [np.tensordot(nodes.weight.sum(axis=1), part, 1) for part in means]
     return ClosedStructure(system, coordinates, push, along, *shifts), closed
 
@@ -237,14 +247,21 @@ def contact_equations(system: System, structure: ClosedStructure, steps: int) ->
             _distinct(part.force_direction) @ into_push,
             _distinct(part.friction_direction) @ into_push,
             _distinct(part.force) @ into_push,
+            *(values[:, 0] for values in springs(part)),
         )
 
     in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
     left, right = (rows(Nodes(*(values[jumping] for values in part))) for part in (before, after))
     at = rows(nodes)
     return ContactEquations(
-        system, at, left, right, points[jumping], *bases, has_gap(nodes), in_gap, steps
+        system, at, left, right, points[jumping], *bases, with_dead_zone(nodes), in_gap, steps
     )
+
+
+def with_dead_zone(nodes: Nodes) -> Mask:
+    """Springs that have a dead zone (contacts, m)."""
+    ramps = nodes.ramp_stiffness.any(axis=(0, 1))
+    return np.concatenate((has_gap(nodes)[:, None], ramps), axis=1)
 
 
 def _distinct(values: Array) -> Array:

@@ -59,7 +59,7 @@ class Prepared:
 
     system: System
     structure: ClosedStructure
-    closed: Mask  #: contacts that are closed at rest (contacts,)
+    closed: Mask  #: springs that are closed at rest (contacts, m)
     start: Array  #: static equilibrium (n,)
     grids: dict[int, Compiled]
     samples: dict[int, ContactEquations] = field(default_factory=dict)
@@ -264,7 +264,7 @@ def _solve(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -
     if best.error <= tolerance:
         return best
     contacts = residual.contacts
-    critical = contacts.rows.nodes.stiffness.mean(axis=0)
+    critical = contacts.rows.stiffness.sum(axis=-1).mean(axis=0)
     critical = critical / (np.pi * residual.frequency * contacts.system.cycles)
     point = y
     for part in (*_ADDED, 0.0):

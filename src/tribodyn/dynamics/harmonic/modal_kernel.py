@@ -5,9 +5,10 @@ over the step through its beginning, middle and end: the step is exact for this 
 forces at its middle and end follow from the motion of the contacts there by fixed-point iteration.
 A step in which a contact opens or closes ends there and goes on with the new side.
 
-All entries of a node of the grid are one row: stiffness, damping, error, rate of the error, gap of
-every contact, then directions of compression, their rates, of push, then the load, the directions
-of frictions and their coefficients.
+All entries of a node of the grid are one row: stiffnesses of the springs of every contact, its
+damping, error, rate of the error, gaps of its springs, then directions of compression, their rates,
+of push, then the load, the directions of frictions and their coefficients. The springs of a contact
+are the first one and its ramps, as many as the contact with the most has; each has its side.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ class Modes(NamedTuple):
 class Contacts(NamedTuple):
     """Contacts and frictions that do not vary."""
 
-    dead: Index  #: whether each contact has a dead zone
+    dead: Index  #: whether each spring has a dead zone (contacts, springs)
     damped_in_gap: Array
     members: Array  #: contacts that each friction follows (f, contacts)
     load: Array  #: of each friction (f,)
@@ -71,7 +72,7 @@ class Buffers(NamedTuple):
     motion: Array  #: (4 r,)
     last: Array
     contact: Array  #: contact forces
-    side: Array
+    side: Array  #: of the springs (contacts, springs)
     deflection: Array  #: at the three nodes (3, contacts)
 
 
@@ -152,8 +153,11 @@ def _law(
 ) -> None:
     """Forces on the closed structure at a node, from the motion at ``at`` and its rate."""
     s, r = modes.input.shape[1], modes.output.shape[0]
-    count, frictions = contacts.dead.size, contacts.load.size
-    along, slope = 5 * count, (5 + r) * count
+    (count, springs), frictions = contacts.dead.shape, contacts.load.size
+    damping = count * springs
+    error, gap = damping + count, damping + 3 * count
+    along = gap + count * springs
+    slope = along + r * count
     push = slope + r * count
     load = push + s * count
     rub = load + s
@@ -168,15 +172,17 @@ def _law(
             )
         w.u[first + i] = total
     for j in range(count):
-        d, rate = -row[2 * count + j], -row[3 * count + j]
+        d, rate = -row[error + j], -row[error + count + j]
         for o in range(r):
             direction = row[along + j * r + o]
             d += direction * motion[at + o]
             rate += direction * motion[at + r + o] + row[slope + j * r + o] * motion[at + o]
-        side = w.side[j]
-        force = abs(side) * row[j] * (d - side * row[4 * count + j])
-        if side != 0.0 or contacts.damped_in_gap[j] != 0.0:
-            force += row[count + j] * rate
+        force = 0.0
+        for k in range(springs):
+            side = w.side[j, k]
+            force += abs(side) * row[j * springs + k] * (d - side * row[gap + j * springs + k])
+        if w.side[j, 0] != 0.0 or contacts.damped_in_gap[j] != 0.0:
+            force += row[damping + j] * rate
         w.contact[j] = force
         w.deflection[node, j] = d
         for i in range(s):
@@ -233,16 +239,26 @@ def _settle(modes: Modes, contacts: Contacts, weights: Weights, w: Buffers, scal
 
 
 @nb.njit(**INNER)
+def _clear(contacts: Contacts, w: Buffers, node: int, j: int, k: int) -> float:
+    """Clearance of a spring from the edge of its side, at a node; infinite without dead zone."""
+    count, springs = contacts.dead.shape
+    if not contacts.dead[j, k]:
+        return np.inf
+    d, side = w.deflection[node, j], w.side[j, k]
+    gap: float = w.rows[node, count * (springs + 3) + j * springs + k]
+    return side * d - gap if side != 0.0 else gap - abs(d)
+
+
+@nb.njit(**INNER)
 def _clearance(contacts: Contacts, w: Buffers, node: int, worst: Index) -> float:
-    """Least clearance of a contact from the edge of its side, at a node."""
-    least, count = np.inf, contacts.dead.size
-    for j in range(count):
-        if contacts.dead[j]:
-            d, gap, side = w.deflection[node, j], w.rows[node, 4 * count + j], w.side[j]
-            clear = side * d - gap if side != 0.0 else gap - abs(d)
+    """Least clearance of a spring from the edge of its side, at a node."""
+    least = np.inf
+    for j in range(contacts.dead.shape[0]):
+        for k in range(contacts.dead.shape[1]):
+            clear = _clear(contacts, w, node, j, k)
             if clear < least:
                 least = clear
-                worst[0] = j
+                worst[0], worst[1] = j, k
     return least
 
 
@@ -294,8 +310,8 @@ def _divide(
     start: Array, scale: float, reach: float, trace: Trace, sums: Array,
 ) -> int:  # fmt: skip
     """A step in which contacts open or close; returns the reason of a failure."""
-    r, count = modes.output.shape[0], contacts.dead.size
-    tau, worst = 0.0, np.zeros(1, dtype=np.int64)
+    r = modes.output.shape[0]
+    tau, worst = 0.0, np.zeros(2, dtype=np.int64)
     for _ in range(_CHANGES):
         if not _try(
             modes, contacts, table, tau, 1.0, (1.0 - tau) * width, weights, w, start, scale
@@ -330,12 +346,12 @@ def _divide(
         _accept(modes, weights, w, (at - tau) * width, sums)
         start[:] = w.motion[2 * r :]
         tau = at
-        for j in range(count):
-            if contacts.dead[j]:
-                d, gap, side = w.deflection[2, j], w.rows[2, 4 * count + j], w.side[j]
-                clear = side * d - gap if side != 0.0 else gap - abs(d)
-                if clear <= 2.0 * _TOUCHING * reach or j == worst[0]:
-                    w.side[j] = 0.0 if side != 0.0 else (1.0 if d > 0.0 else -1.0)
+        for j in range(contacts.dead.shape[0]):
+            for k in range(contacts.dead.shape[1]):
+                last = j == worst[0] and k == worst[1]
+                if last or _clear(contacts, w, 2, j, k) <= 2.0 * _TOUCHING * reach:
+                    away = 1.0 if w.deflection[2, j] > 0.0 else -1.0
+                    w.side[j, k] = 0.0 if w.side[j, k] != 0.0 else away
                     trace.report[3] += 1.0
         if 1.0 - tau < 1e-13:
             return 0
@@ -362,7 +378,7 @@ def _build(digest: str) -> Any:
         # (steps,): steps after an event; start (2 r,): motion at the contacts and its rate.
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         s, r, m = modes.input.shape[1], modes.output.shape[0], modes.values.size
-        count, steps, length = contacts.dead.size, table.shape[0], table.shape[2]
+        (count, springs), steps, length = contacts.dead.shape, table.shape[0], table.shape[2]
         wide = widths.size + 1
         decay, force = np.empty((wide, 2, m)), np.empty((wide, 2, 3 * s, m))
         motion, direct = np.empty((wide, 2, m, 4 * r)), np.empty((wide, 4 * r, 3 * s))
@@ -371,14 +387,15 @@ def _build(digest: str) -> Any:
         partial = Weights(decay[wide - 1], force[wide - 1], motion[wide - 1], direct[wide - 1])
         w = Buffers(
             z, np.empty((3, length)), np.empty(3 * s), np.empty(4 * r), np.empty(4 * r),
-            np.empty(4 * r), np.empty(count), np.ones(count), np.empty((3, count)),
+            np.empty(4 * r), np.empty(count), np.ones((count, springs)), np.empty((3, count)),
         )  # fmt: skip
-        sums, worst = np.zeros((2, s)), np.zeros(1, dtype=np.int64)
+        sums, worst = np.zeros((2, s)), np.zeros(2, dtype=np.int64)
         switching, scale, reach = False, 0.0, 0.0
         for o in range(r):
             scale = max(scale, abs(start[o]))
         for j in range(count):
-            switching |= contacts.dead[j] != 0
+            for k in range(springs):
+                switching |= contacts.dead[j, k] != 0
         recorded = trace.modes.shape[0] > 0
         if recorded:
             trace.modes[0], trace.sums[0] = w.z, sums
@@ -392,10 +409,12 @@ def _build(digest: str) -> Any:
                 _begin(modes, contacts, w, start)
                 if switching and restart[step]:
                     for j in range(count):
-                        d, gap = w.deflection[0, j], w.rows[0, 4 * count + j]
-                        reach = max(reach, abs(d), gap)
-                        if contacts.dead[j]:
-                            w.side[j] = 1.0 if d > gap else (-1.0 if d < -gap else 0.0)
+                        d = w.deflection[0, j]
+                        reach = max(reach, abs(d), w.rows[0, (springs + 3) * count + j * springs])
+                        for k in range(springs):
+                            gap = w.rows[0, (springs + 3) * count + j * springs + k]
+                            if contacts.dead[j, k]:
+                                w.side[j, k] = 1.0 if d > gap else (-1.0 if d < -gap else 0.0)
                     _begin(modes, contacts, w, start)
                 iterations = _settle(modes, contacts, weights, w, scale)
                 trace.report[4] += iterations

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.nodes import Nodes, springs
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
-from tribodyn.dynamics.harmonic.contact_equations import close_contacts
+from tribodyn.dynamics.harmonic.contact_equations import close_contacts, with_dead_zone
 from tribodyn.dynamics.harmonic.modal_kernel import (
     CHATTER,
     UNSETTLED,
@@ -58,9 +58,8 @@ class ModalMotion:
         members = np.zeros((len(frictions), count))
         for f, friction in enumerate(frictions):
             members[f, list(friction.contacts)] = 1.0
-        gaps = np.any(compiled.nodes.gap > 0.0, axis=(0, 1))
         self.contacts = Contacts(
-            gaps.astype(np.int64),
+            with_dead_zone(compiled.nodes).astype(np.int64),
             np.array([float(contact.damping_in_gap) for contact in system.contacts]),
             members,
             np.array([friction.load for friction in frictions], dtype=float),
@@ -74,12 +73,13 @@ class ModalMotion:
         structure, system = self.structure, self.compiled.system
         inverse = structure.coordinates.inverse.T
         into_along, into_push = inverse @ structure.along, inverse @ structure.push
+        stiffness, gap = springs(nodes)
         parts = [
-            nodes.stiffness,
+            stiffness,
             nodes.damping,
             nodes.error,
             nodes.error_slope,
-            nodes.gap,
+            gap,
             nodes.direction @ into_along,
             nodes.direction_slope @ into_along,
             nodes.force_direction @ into_push,
@@ -131,7 +131,8 @@ class ModalMotion:
         rows[..., self._rates] *= frequency
         width = self.modes.input.shape[1]
         if extra.any():
-            at = (5 + 2 * structure.along.shape[1] + width) * len(self.contacts.dead)
+            count, each = self.contacts.dead.shape
+            at = (3 + 2 * each + 2 * structure.along.shape[1] + width) * count
             rows[..., at : at + width] += extra @ structure.coordinates.inverse.T @ structure.push
         widths, kind = np.unique(np.round(grid.width, 15), return_inverse=True)
         z = self._left @ state

@@ -61,7 +61,7 @@ class Residual:
         self.receptances[-1] = 0.0  # the highest harmonic has no phase
         self._differentiate = 1j * self.omega[:, None]
         self._differentiate[-1] = 0.0
-        self.excess = np.zeros(contacts.dead.size)  #: additional damping [N*s/m]
+        self.excess = np.zeros(len(contacts.dead))  #: additional damping [N*s/m]
 
     def rate(self, y: Array) -> Array:
         """Derivative of a motion (steps, r) by time."""
@@ -74,7 +74,7 @@ class Residual:
         return np.asarray(np.fft.irfft(spectrum[..., 0], len(force), axis=0))
 
     def at(self, y: Array, closed: Mask | None = None) -> State:
-        """Evaluate a motion; ``closed`` (contacts,) fixes the contacts that are closed."""
+        """Evaluate a motion; ``closed`` (contacts, m) fixes the springs that are closed."""
         motion = self.frequency, y, self.rate(y), self.excess, closed
         rate, contacts = motion[2], self.contacts
         law = contacts.law(contacts.rows, *motion)

@@ -21,6 +21,7 @@ from tribodyn.dynamics.equations.nodes import (
     push_with_friction,
     sampled,
 )
+from tribodyn.dynamics.equations.ramps import split_ramps
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_between
 from tribodyn.record import Record, quantity, record
@@ -53,6 +54,7 @@ class LinearSystem:
 
 def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
     """Replace every contact by the spring and the damper that act at the static load."""
+    system = split_ramps(system)
     nodes, weight = _rows(system, phase)
     closed, push = _at_rest(system, nodes)
     along, rub = nodes.direction, combined(np.subtract, push, nodes.direction)

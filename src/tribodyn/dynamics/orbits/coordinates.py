@@ -24,6 +24,7 @@ from tribodyn.dynamics.equations.nodes import (
     friction_secant,
     lowest_of_each_law,
     push_with_friction,
+    springs,
 )
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, warn
@@ -194,22 +195,29 @@ _ROUNDS = 50
 def static_start(compiled: Compiled) -> Array:
     """State at rest under the mean loads, every contact on its driving flank."""
     nodes = compiled.nodes
-    lowest = lowest_of_each_law(nodes)
-    carrying = nodes.stiffness
-    position = _equilibrium(compiled, carrying)
+    lowest = lowest_of_each_law(nodes)[:, None]
+    stiffness, gap = springs(nodes)
+    lowest = np.pad(lowest, ((0, 0), (0, stiffness.shape[-1] - 1)))  # no ramp is the lowest
+    carrying = stiffness
+    position = _equilibrium(compiled, carrying, gap)
     for _ in range(0 if lowest.all() else _ROUNDS):
-        beyond = compression(nodes, position) > nodes.gap
-        closed = np.where(lowest | beyond, nodes.stiffness, 0.0)
+        beyond = compression(nodes, position)[..., None] > gap
+        closed = np.where(lowest | beyond, stiffness, 0.0)
         if np.array_equal(closed, carrying):
             break
         carrying = closed
-        position = _equilibrium(compiled, carrying)
+        position = _equilibrium(compiled, carrying, gap)
     return np.concatenate((position, np.zeros(compiled.system.size)))
 
 
-def _equilibrium(compiled: Compiled, carrying: Array) -> Array:
-    """Position at rest with the stiffness (steps, 3, contacts) of the closed contacts."""
+def _equilibrium(compiled: Compiled, carrying: Array, gap: Array) -> Array:
+    """Position at rest with the stiffness (steps, 3, contacts, m) of the closed springs."""
     system, nodes = compiled.system, compiled.nodes
+    if carrying.shape[-1] > 1:  # one spring per contact that carries what all of them do
+        pressed, carrying = (carrying * gap).sum(axis=-1), carrying.sum(axis=-1)
+        nodes = nodes._replace(gap=pressed / np.where(carrying > 0.0, carrying, 1.0))
+    else:
+        carrying = carrying[..., 0]
     position = balanced_position(system, nodes, carrying, nodes.force_direction)
     for _ in range(_ROUNDS if system.frictions else 0):
         load = carried_load(system, carrying * (compression(nodes, position) - nodes.gap))

@@ -96,6 +96,74 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
     >>> [each.damping for each in law_contacts(Contact([1.0], 0.0, damping=900.0, gap=5e-5), law)]
     [900.0, 0.0]
     """
+    half, lowest = _half_backlash(contact, law), law.lowest
+    ramps = [
+        replace(
+            contact,
+            stiffness=law.over_phase(law.knot_stiffness[:, column]),
+            gap=law.over_phase(half + law.knot_deflection[:, column]),
+            damping=contact.damping if column == lowest else 0.0,
+        )
+        for column in range(law.knot_stiffness.shape[1])
+    ]
+    carrying = [ramps[column] for column in _upper_ramps(law)]
+    if lowest is not None:
+        return (ramps[lowest], *carrying)
+    opening = law.over_phase(half + law.knot_first_touch)
+    return (replace(contact, stiffness=0.0, gap=opening), *carrying)
+
+
+def law_contact(contact: Contact, law: MeshForceLaw) -> Contact:
+    """Replace the stiffness of a contact by a force law: one contact with ramps.
+
+    Parameters
+    ----------
+    contact : Contact
+        As for :func:`law_contacts`.
+    law : MeshForceLaw
+        Force over the compression beyond the backlash, at every mesh phase.
+
+    Returns
+    -------
+    Contact
+        Its force is the sum of those of :func:`law_contacts`. Harmonic balance and the modal engine
+        take it: a force law costs them hardly more than a spring.
+
+    Raises
+    ------
+    InputError
+        As :func:`law_contacts`.
+
+    Examples
+    --------
+    >>> from tribodyn.mesh import MeshForceLaw, phase_grid
+    >>> places, stiffness = np.tile([0.0, 1e-5], (17, 1)), np.tile([2e8, 1e8], (17, 1))
+    >>> law = MeshForceLaw(phase_grid((0.0,), 16), places, stiffness)
+    >>> law_contact(Contact([1.0], 0.0, gap=5e-5), law).ramp_gap(0.25)
+    array([6.e-05])
+    """
+    half, lowest, upper = _half_backlash(contact, law), law.lowest, _upper_ramps(law)
+    if lowest is None:
+        stiffness: Entry = 0.0
+        gap = law.over_phase(half + law.knot_first_touch)
+    else:
+        stiffness = law.over_phase(law.knot_stiffness[:, lowest])
+        gap = law.over_phase(half + law.knot_deflection[:, lowest])
+    ramps: dict[str, Entry] = {}
+    if upper:
+        ramps["ramp_stiffness"] = law.over_phase(law.knot_stiffness[:, upper])
+        ramps["ramp_gap"] = law.over_phase(half + law.knot_deflection[:, upper])
+    return replace(contact, stiffness=stiffness, gap=gap, **ramps)
+
+
+def _upper_ramps(law: MeshForceLaw) -> list[int]:
+    """Columns of the ramps that carry, less the lowest one."""
+    carrying = np.flatnonzero(law.knot_stiffness.any(axis=0)).tolist()
+    return [column for column in carrying if column != law.lowest]
+
+
+def _half_backlash(contact: Contact, law: MeshForceLaw) -> float:
+    """Half of the backlash, in which the teeth are not clamped."""
     if callable(contact.gap) or np.ndim(contact.gap):
         what = "gap is not a constant"
         why = "It is half of the backlash; the law defines where each ramp begins"
@@ -111,25 +179,7 @@ def law_contacts(contact: Contact, law: MeshForceLaw) -> tuple[Contact, ...]:
             why="The teeth would be clamped between both flanks",
             remedy=f"Give a backlash of at least {-2e6 * first:.4g} um",
         )
-    lowest = law.lowest
-    ramps = [
-        replace(
-            contact,
-            stiffness=law.over_phase(law.knot_stiffness[:, column]),
-            gap=law.over_phase(half + law.knot_deflection[:, column]),
-            damping=contact.damping if column == lowest else 0.0,
-        )
-        for column in range(law.knot_stiffness.shape[1])
-    ]
-    opening = law.over_phase(half + law.knot_first_touch)
-    carrying = [
-        ramp
-        for column, ramp in enumerate(ramps)
-        if column != lowest and np.any(law.knot_stiffness[:, column])
-    ]
-    if lowest is not None:
-        return (ramps[lowest], *carrying)
-    return (replace(contact, stiffness=0.0, gap=opening), *carrying)
+    return half
 
 
 def follow_load(system: System, friction: MeshFriction) -> System:
