@@ -32,7 +32,7 @@ from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.modes import MachineModes, machine_modes
 from tribodyn.machine.planetary.kinematics import PlanetaryKinematics, planetary_kinematics
 from tribodyn.machine.planetary.load_sharing import LoadShares, load_shares
-from tribodyn.machine.planetary.mode_types import planetary_mode_types
+from tribodyn.machine.planetary.modes import PlanetaryModes, planetary_modes
 from tribodyn.machine.planetary.phases import HarmonicExcitation, MeshPhases, mesh_phases
 from tribodyn.machine.planetary.plane_model import planetary_plane_model
 from tribodyn.machine.planetary.positions import PlanetaryPositions, planetary_positions
@@ -82,6 +82,7 @@ __all__ = [
     "Operation",
     "Placement",
     "PlanetaryKinematics",
+    "PlanetaryModes",
     "PlanetaryPositions",
     "Reduction",
     "RollingElementBearing",
@@ -98,7 +99,7 @@ __all__ = [
     "machine_structure",
     "mesh_phases",
     "planetary_kinematics",
-    "planetary_mode_types",
+    "planetary_modes",
     "planetary_plane_model",
     "planetary_positions",
     "reduce_structure",

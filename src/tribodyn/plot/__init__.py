@@ -22,6 +22,7 @@ from tribodyn.plot.gear.hypoid_motion import hypoid_kinematics
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.machine.forces import machine_forces
+from tribodyn.plot.machine.front_view import planetary_modes
 from tribodyn.plot.machine.modes import machine_campbell, machine_modes
 from tribodyn.plot.machine.orders import machine_orders
 from tribodyn.plot.machine.power import machine_power
@@ -146,6 +147,7 @@ __all__ = [
     "parameter_map",
     "path_of_contact",
     "phase_portrait",
+    "planetary_modes",
     "poincare",
     "power_flow",
     "recording",

@@ -6,6 +6,6 @@
 | ``positions`` | where planets can be assembled, and how close neighbours are |
 | ``phases`` | phases of all meshes, and which modes their harmonics excite |
 | ``plane_model`` | equations of motion in the plane, after Lin and Parker |
-| ``mode_types`` | which modes are rotational, translational or modes of the planets |
+| ``modes`` | which modes are rotational, translational or modes of the planets |
 | ``load_sharing`` | static loads of the planets with errors of pins and teeth |
 """

@@ -139,8 +139,8 @@ def mesh_phases(
     Notes
     -----
     The sun mesh of a planet at ``psi`` lags by ``z_s psi/(2 pi)``, its ring mesh by
-    ``-z_r psi/(2 pi)``, both modulo 1 and from the first planet. Source: Parker and Lin, Mechanism
-    and Machine Theory 39 (2004) 1125.
+    ``-z_r psi/(2 pi)``, both modulo 1 and from the first planet. Source: Parker
+    and Lin (2004).
 
     Examples
     --------

@@ -119,9 +119,8 @@ def planetary_plane_model(
 
     Notes
     -----
-    Supports are equal in x and y. Source: Lin and Parker, Journal of Vibration and
-    Acoustics 121 (1999) 316; their planets have radial and tangential coordinates, which
-    gives the same frequencies.
+    Supports are equal in x and y. Source: Lin and Parker (1999), whose planets have radial and
+    tangential coordinates, which gives the same frequencies.
 
     Examples
     --------

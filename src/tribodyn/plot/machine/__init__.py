@@ -1,1 +1,1 @@
-"""Figures of machines: side view, power, natural modes, orders, forces on bearings."""
+"""Figures of machines: side and front view, power, natural modes, orders, forces on bearings."""

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from known_planetary import ALPHA, FREQUENCIES, LIN_PARKER
-from tribodyn.dynamics import natural_modes
+from tribodyn.dynamics import System, natural_modes
 from tribodyn.errors import InputError
-from tribodyn.machine import planetary_mode_types, planetary_plane_model
+from tribodyn.machine import planetary_modes, planetary_plane_model
 
 NO_SUPPORTS = {
     "carrier_support": 0.0, "ring_support": 0.0, "sun_support": 0.0, "ring_torsional_support": 0.0,
@@ -15,19 +15,17 @@ NO_SUPPORTS = {
 
 @pytest.mark.parametrize("planets", [3, 4])
 def test_printed_frequencies_with_their_types_and_multiplicities(planets):
-    modes = natural_modes(planetary_plane_model(planets=planets, **LIN_PARKER))
-    types = np.array(planetary_mode_types(modes))
+    modes = planetary_modes(planetary_plane_model(planets=planets, **LIN_PARKER))
     times = {"rotational": 1, "translational": 2, "planet": planets - 3}
     for kind, printed in FREQUENCIES[planets].items():
         expected = np.repeat(printed, times[kind])
-        np.testing.assert_allclose(modes.frequency[types == kind], expected, rtol=0, atol=0.0051)
-    assert "mixed" not in types
+        np.testing.assert_allclose(modes.of_type(kind), expected, rtol=0, atol=0.0051)
+    assert "mixed" not in modes.types
 
 
 def test_five_planets_have_planet_modes_twice():
-    modes = natural_modes(planetary_plane_model(planets=5, **LIN_PARKER))
-    types = np.array(planetary_mode_types(modes))
-    planet = modes.frequency[types == "planet"]
+    modes = planetary_modes(planetary_plane_model(planets=5, **LIN_PARKER))
+    planet = modes.of_type("planet")
     np.testing.assert_allclose(planet[0::2], planet[1::2], rtol=1e-9)
     # Modes of the planets alone do not depend on their number.
     printed = FREQUENCIES[4]["planet"]
@@ -36,9 +34,9 @@ def test_five_planets_have_planet_modes_twice():
 
 def test_unequal_spacing_mixes_the_types():
     angles = 2 * np.pi / 78 * np.array([0, 19, 39, 60])
-    modes = natural_modes(planetary_plane_model(planets=4, angles=angles, **LIN_PARKER))
-    types = planetary_mode_types(modes)
-    assert types.count("mixed") > 12
+    modes = planetary_modes(planetary_plane_model(planets=4, angles=angles, **LIN_PARKER))
+    assert modes.types.count("mixed") > 12
+    np.testing.assert_allclose(modes.angles, angles, atol=1e-9)
     printed = FREQUENCIES[4]["translational"][0]
     assert modes.frequency[2] - modes.frequency[1] > 1.0  # the pair of translations has split
     assert modes.frequency[1] < printed < modes.frequency[2]
@@ -97,7 +95,7 @@ def test_planets_may_differ_from_each_other():
     data = LIN_PARKER | {"planet_mass": [0.66, 0.66, 0.70], "pin_stiffness": [1e8, 1e8, 1e8]}
     stage = planetary_plane_model(planets=3, **data)
     assert np.diag(np.asarray(stage.mass))[9::3].tolist() == [0.66, 0.66, 0.70]
-    assert "mixed" in planetary_mode_types(natural_modes(stage))
+    assert "mixed" in planetary_modes(stage).types
 
 
 @pytest.mark.parametrize(
@@ -119,8 +117,11 @@ def test_wrong_data_are_refused_by_name(changes, message):
         planetary_plane_model(**{"planets": 3, **LIN_PARKER, **changes})
 
 
-def test_only_modes_of_a_plane_model_have_types():
-    from tribodyn.dynamics import System
+def test_modes_are_exported_with_their_types():
+    data = planetary_modes(planetary_plane_model(planets=3, **LIN_PARKER)).to_xarray()
+    assert data.frequency.where(data.type == "rotational", drop=True).size == 6
 
+
+def test_only_modes_of_a_plane_model_have_types():
     with pytest.raises(InputError, match="coordinates are q0"):
-        planetary_mode_types(natural_modes(System([[1.0]], [[0.0]], [[1.0]], [0.0])))
+        planetary_modes(System([[1.0]], [[0.0]], [[1.0]], [0.0]))

@@ -1,0 +1,118 @@
+"""Natural modes of a planetary stage and their types."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.linear.natural_modes import natural_modes
+from tribodyn.errors import Argument, InputError
+from tribodyn.machine.planetary.plane_model import CENTRAL
+from tribodyn.record import Record, quantity, record
+from tribodyn.types import Array, ComplexArray
+
+ModeType = Literal["rotational", "translational", "planet", "mixed"]
+
+#: Amplitude over that of the mode below which a central member is at rest.
+_AT_REST = 1e-6
+
+
+@record
+class PlanetaryModes(Record):
+    """Natural modes of a planetary stage with their types.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the coordinates.
+    angles : (N,) array
+        Angles of the planets [rad].
+    frequency : (n,) array
+        Natural frequencies, rising [Hz].
+    types : tuple of str
+        Type of each mode: ``rotational`` where carrier, ring and sun only turn, ``translational``
+        where they only translate, ``planet`` where they are at rest, ``mixed`` where they turn and
+        translate.
+    shape : (n, n) array
+        One mode per row, with unit modal mass [kg^-1/2].
+    """
+
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
+    angles: Array = quantity("planet", unit="rad")
+    frequency: Array = quantity("mode", unit="Hz")
+    types: tuple[ModeType, ...] = quantity("mode", axis=True, name="type")
+    shape: Array | ComplexArray = quantity("mode", "coordinate", unit="kg^-1/2")
+
+    def of_type(self, mode_type: ModeType) -> Array:
+        """Natural frequencies of all modes of a type, rising [Hz]."""
+        return np.asarray(self.frequency[np.array(self.types) == mode_type])
+
+    def __repr__(self) -> str:
+        """One line."""
+        counts = {each: self.types.count(each) for each in dict.fromkeys(self.types)}
+        listed = ", ".join(f"{count} {each}" for each, count in counts.items())
+        return f"PlanetaryModes({self.angles.size} planets, {listed})"
+
+
+def planetary_modes(system: System) -> PlanetaryModes:
+    """Compute the natural modes of a plane model and classify them by their shapes.
+
+    Parameters
+    ----------
+    system : System
+        Model of :func:`planetary_plane_model`.
+
+    Raises
+    ------
+    InputError
+        If the system is another one.
+
+    Notes
+    -----
+    Equal planets at equal spacing have 6 rotational modes, 6 pairs of translational ones and, from
+    4 planets on, 3 groups of N - 3 modes of the planets. A member is at rest where its amplitude,
+    weighted by the root of its mass, is below 1e-6 of the mode. Source: Lin and Parker (1999).
+
+    Examples
+    --------
+    >>> import tribodyn as td
+    >>> stage = td.machine.planetary_plane_model(
+    ...     planets=4, carrier_mass=5.43, carrier_inertia=6.29, ring_mass=2.35, ring_inertia=3.0,
+    ...     sun_mass=0.4, sun_inertia=0.39, planet_mass=0.66, planet_inertia=0.61,
+    ...     sun_mesh_stiffness=5e8, ring_mesh_stiffness=5e8, pin_stiffness=1e8,
+    ...     carrier_support=1e8, ring_support=1e8, sun_support=1e8, ring_torsional_support=1e9,
+    ...     sun_pressure_angle=np.radians(24.6), ring_pressure_angle=np.radians(24.6))
+    >>> modes = td.machine.planetary_modes(stage)
+    >>> modes
+    PlanetaryModes(4 planets, 6 rotational, 12 translational, 3 planet)
+    >>> modes.of_type("planet").round(2)
+    array([1808.18, 5963.76, 6981.71])
+    """
+    expected = tuple(f"{member}_{axis}" for member in CENTRAL for axis in "xyu")
+    if tuple(system.names[:9]) != expected:
+        what = f"the coordinates are {', '.join(system.names[:3])}, ..."
+        why = f"A plane model begins with {', '.join(expected[:3])}"
+        remedy = "Give a system of planetary_plane_model"
+        raise InputError(what, Argument("system"), why, remedy)
+    modes = natural_modes(system)
+    amplitude = np.sqrt(np.abs(modes.kinetic_share[:, :9]))
+    turns = amplitude[:, 2::3].max(axis=1) > _AT_REST
+    moves = np.maximum(amplitude[:, 0::3], amplitude[:, 1::3]).max(axis=1) > _AT_REST
+    types: dict[tuple[bool, bool], ModeType] = {
+        (True, False): "rotational",
+        (False, True): "translational",
+        (False, False): "planet",
+        (True, True): "mixed",
+    }
+    # The pins couple the rotation of the carrier with the tangential motion of each planet.
+    along_x, along_y = np.asarray(system.stiffness)[2, 9:].reshape(-1, 3)[:, :2].T
+    angles = np.arctan2(along_x, -along_y) % (2.0 * np.pi)
+    return PlanetaryModes(
+        names=modes.names,
+        angles=np.where(angles > 2.0 * np.pi - 1e-9, 0.0, angles),
+        frequency=modes.frequency,
+        types=tuple(types[bool(t), bool(m)] for t, m in zip(turns, moves, strict=True)),
+        shape=modes.shape,
+    )
