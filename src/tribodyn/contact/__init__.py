@@ -3,11 +3,19 @@
 | module | content |
 | --- | --- |
 | `path` | positions of tooth pairs on the line of action, and motion of their flanks |
+| `face_contacts` | lines of contact of helical gears in slices of the face width |
 | `separation` | separation of the teeth before and after the path of contact |
 | `hertz` | half width and pressure of a line contact, half axes of an elliptical one |
 """
 
 from tribodyn.arguments import guard
+from tribodyn.contact.face_contacts import (
+    FaceContacts,
+    checked_slices,
+    entry_distance,
+    face_contacts,
+    face_positions,
+)
 from tribodyn.contact.hertz import (
     HertzEllipse,
     HertzLine,
@@ -26,13 +34,18 @@ from tribodyn.contact.separation import ExtendedContact, extended_contact
 
 __all__ = [
     "ExtendedContact",
+    "FaceContacts",
     "HertzEllipse",
     "HertzLine",
     "Kinematics",
     "PathOfContact",
+    "checked_slices",
     "effective_modulus",
+    "entry_distance",
     "equal_share",
     "extended_contact",
+    "face_contacts",
+    "face_positions",
     "gear_loss_factor",
     "hertz_ellipse",
     "hertz_line",

@@ -19,6 +19,7 @@ from tribodyn.dynamics.running_up.run_up_result import RunUp
 from tribodyn.dynamics.structure.force_law import MeshForce, follow_load, law_contact, law_contacts
 from tribodyn.dynamics.structure.fzg12 import FZG12_LIGHT, FZG12_MESH_FREQUENCY, FZG12_NAMES, fzg12
 from tribodyn.dynamics.structure.gear_pair import SPUR6_NAMES, TORSIONAL_NAMES, spur6, torsional
+from tribodyn.dynamics.structure.helical12 import HELICAL12_NAMES, SpatialSupports, helical12
 from tribodyn.dynamics.structure.hypoid14 import HYPOID14_NAMES, HypoidSupports, hypoid14
 from tribodyn.dynamics.structure.shafts import (
     Body,
@@ -40,6 +41,7 @@ __all__ = [
     "FZG12_LIGHT",
     "FZG12_MESH_FREQUENCY",
     "FZG12_NAMES",
+    "HELICAL12_NAMES",
     "HYPOID14_NAMES",
     "SPUR6_NAMES",
     "STRUCTURES",
@@ -67,6 +69,7 @@ __all__ = [
     "Resonance",
     "Response",
     "RunUp",
+    "SpatialSupports",
     "SpecialPoint",
     "SpeedProfile",
     "SpeedSweep",
@@ -80,6 +83,7 @@ __all__ = [
     "forced_response",
     "fzg12",
     "harmonic_balance",
+    "helical12",
     "hypoid14",
     "law_contact",
     "law_contacts",

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import Kinematics, path_of_contact
+from tribodyn.contact.face_contacts import SLICES
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ModelWarning, collected, require_positive, warn
 from tribodyn.friction import FrictionParts, TribologicalContact, pitch_point
@@ -37,6 +38,7 @@ from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness import MODELS
+from tribodyn.stiffness.loaded.face_problem import has_slices
 from tribodyn.types import Array, Mask
 
 
@@ -81,7 +83,8 @@ def build(
         Magnitude of the torque on the pinion.
     steps : int
         Wanted number of phase intervals, at least 16; by default 512, or 1024 where pairs are
-        solved together, which begin to carry at phases that are no events.
+        solved together, which begin to carry at phases that are no events, or 96 where contacts
+        are slices of lines, which enter and leave gradually.
     force_law : bool
         Fit the force law of pairs that are springs of their own too, whose stiffness may grow
         with their load; else it is their stiffness times the deflection. That of pairs which are
@@ -246,8 +249,17 @@ def table_of(
         friction_law=settings.friction_law,
         film_model=settings.film_model,
         film_stiffness_kind=settings.film["stiffness"],
+        **_face_columns(cycle),
         **columns,
     )
+
+
+def _face_columns(cycle: MeshCycle) -> dict[str, Array]:
+    """Where the contacts are on the face, if they are slices of it."""
+    slices = cycle.slices
+    if slices is None:
+        return {}
+    return {"face_position": slices.face_position, "contact_width": slices.width}
 
 
 def loaded_mesh(
@@ -308,21 +320,22 @@ def _cached_teeth(*arguments: Any) -> tuple[MeshCycle, Teeth, list[ModelWarning]
 
 
 @lru_cache(maxsize=8)
-def _cycle(pair: Gears, steps: int) -> MeshCycle:
-    """Pairs over the mesh cycle, cached: the same object under every load."""
-    return mesh_cycle(path_of_contact(pair), steps)
+def _cycle(pair: Gears, steps: int, slices: int) -> MeshCycle:
+    """Contacts over the mesh cycle, cached: the same object under every load."""
+    return mesh_cycle(path_of_contact(pair), steps, slices)
 
 
 def _loaded_teeth(
     pair: Gears, model: ToothModel, torque: float, steps: int, loading: Array | None = None
 ) -> tuple[MeshCycle, Teeth]:
-    cycle = _cycle(pair, steps)
-    places = (cycle.grid.phase, cycle.path, cycle.in_contact)
+    cycle = _cycle(pair, steps, SLICES if has_slices(pair, MODELS[model.name]) else 0)
     over = 1.0 if loading is None else loading[:, None]
-    return cycle, teeth_of(cycle.contact, places, model, torque / pair.pinion.base_radius, over)
+    return cycle, teeth_of(cycle, model, torque / pair.pinion.base_radius, over)
 
 
 def _steps(pair: Gears, model: str) -> int:
+    if has_slices(pair, MODELS[model]):
+        return 96
     together = MODELS[model].coupled or pair.has_modification
     return 1024 if together else 512
 

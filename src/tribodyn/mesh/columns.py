@@ -60,7 +60,7 @@ class MeshColumns(Record):
     load_share : array (n, pairs)
         Part of the total normal force on the pair.
     normal_force : array (n, pairs) [N]
-        Quasi-static force on the pair.
+        Quasi-static force on the pair along the transverse line of action.
     load_per_width : array (n, pairs) [N/m]
         Normal force over the common face width.
     hertz_pressure : array (n, pairs) [Pa]
@@ -118,6 +118,11 @@ class MeshColumns(Record):
         film is in series with the teeth: there they are the same.
     tooth_transmission_error : array (n,) [m] or None
         Static transmission error of the teeth alone; None as above.
+    face_position : array (pairs,) [m] or None
+        Where the contacts are slices of lines of contact: the middle of each slice, from the
+        middle of the face. Slices of one pair follow each other.
+    contact_width : array (n, pairs) [m] or None
+        Face width of each slice that is on the path of contact.
     film_offset : float [m]
         Distance before perfect rigid flanks touch at which the first oil film in series begins to
         carry; ``static_transmission_error`` and the force law are counted from there.
@@ -170,6 +175,8 @@ class MeshColumns(Record):
     tooth_transmission_error: Array | None = quantity(
         "knot", of="static_transmission_error", default=None
     )
+    face_position: Array | None = quantity("pair", default=None)
+    contact_width: Array | None = quantity("knot", "pair", of="face_width", default=None)
     film_offset: float = fact(default=0.0)
 
     def __post_init__(self) -> None:
@@ -207,6 +214,16 @@ class MeshColumns(Record):
     def base_radius_wheel(self) -> float:
         """Lever of the normal force on the wheel: for spur gears the base radius [m]."""
         return lever(self.direction, "wheel_theta", self.grid)
+
+    @property
+    def line_force_ratio(self) -> float:
+        """Force along the normal of the flanks over its transverse part, ``1/cos(beta_b)``.
+
+        Friction acts under the force along the normal; ``normal_force``, ``load_share`` and the
+        stiffnesses of helical gears count the part along the transverse line of action.
+        """
+        gears = self.gears
+        return 1.0 if gears is None else 1.0 / math.cos(gears.pair.base_helix_angle)
 
     @property
     def mesh_frequency(self) -> float:
@@ -263,7 +280,7 @@ class MeshColumns(Record):
         if part is None:
             return None
         if self.friction_direction is None:
-            return self.by_share(self.sliding_direction * part)
+            return self.by_share(self.sliding_direction * part * self.line_force_ratio)
         each = (part * self.load_share)[:, :, None] * self.friction_direction
         return column_of(each.sum(axis=1), "pinion_x")
 
@@ -293,7 +310,7 @@ class MeshColumns(Record):
 
     @property
     def _directed_friction(self) -> Array:
-        return self.sliding_direction * self.friction_coefficient
+        return self.sliding_direction * self.friction_coefficient * self.line_force_ratio
 
     @cached_property
     def _last_touch(self) -> tuple[int, int]:

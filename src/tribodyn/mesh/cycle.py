@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from tribodyn.contact import Kinematics, PathOfContact, effective_modulus, hertz_line
+from tribodyn.contact import (
+    FaceContacts,
+    Kinematics,
+    PathOfContact,
+    effective_modulus,
+    face_contacts,
+    hertz_line,
+)
 from tribodyn.contact.path import pitch_point_age
 from tribodyn.ehl import FILM_MODELS, moes_central
 from tribodyn.ehl.steady.batch import Films
@@ -27,11 +35,24 @@ class MeshCycle:
     grid: PhaseGrid  #: knots on the mesh phase, twice at each event
     path: Array  #: position of each contact on the line of action [m]
     in_contact: Mask  #: whether the pair is in contact
+    slices: FaceContacts | None = None  #: of the lines of contact, where contacts are slices
 
     @cached_property
     def age(self) -> Array:
-        """Mesh cycles since the pair entered, of the touching pairs."""
+        """Mesh cycles since the pair entered, at the place of each touching contact on the path."""
         return np.asarray(self._aged(self.grid.phase))
+
+    @cached_property
+    def stiffness_length(self) -> Array | float:
+        """Length of each touching contact that a film over it is as stiff as [m].
+
+        The length of a slice of an inclined line is its width over ``cos(beta_b)``; along the
+        transverse line of action its stiffness is ``cos(beta_b)^2`` of that along the normal.
+        """
+        pair = self.contact.pair
+        if self.slices is None:
+            return pair.common_face_width
+        return np.asarray(self.slices.width[self.in_contact] * math.cos(pair.base_helix_angle))
 
     @cached_property
     def side(self) -> Array:
@@ -39,11 +60,16 @@ class MeshCycle:
         return np.asarray(self._aged(self.grid.middle))
 
     def _aged(self, phase: Array) -> Array:
+        if self.slices is not None:
+            travel = self.contact.direction * (self.path[self.in_contact] - self.contact.A)
+            return np.asarray(travel / self.contact.pair.base_pitch)
         return (phase[:, None] + np.arange(self.path.shape[1]))[self.in_contact]
 
     @cached_property
     def sliding_direction(self) -> Array:
-        """Sign of the sliding speed of the touching pairs, never zero."""
+        """Sign of the sliding speed of the touching pairs; never zero, but for slices at C."""
+        if self.slices is not None:
+            return self.contact.sliding_direction(self.path[self.in_contact])
         middle = self.contact.pair_paths(self.grid.middle)[0]
         return self.contact.sliding_direction(middle[self.in_contact])
 
@@ -58,9 +84,12 @@ class MeshCycle:
         return self.contact.kinematics(self.path[self.in_contact], speed)
 
 
-def mesh_cycle(contact: PathOfContact, steps: int) -> MeshCycle:
-    """Place all tooth pairs over one mesh cycle."""
+def mesh_cycle(contact: PathOfContact, steps: int, slices: int = 0) -> MeshCycle:
+    """Place all tooth pairs over one mesh cycle, cut into slices of the face if there are any."""
     grid = phase_grid(contact.event_phases(), steps)
+    if slices:
+        contacts = face_contacts(contact, grid.phase, slices, grid.middle)
+        return MeshCycle(contact, grid, contacts.path, contacts.in_contact, contacts)
     middle, in_contact = contact.pair_paths(grid.middle)
     # Advance from the middle of the segment, so that both of its ends keep its pairs.
     path = (
@@ -78,12 +107,13 @@ class PairsInContact:
     entrainment_speed: Array  #: HALF the sum of the surface speeds [m/s]
     lubricant: Lubricant  #: oil at working temperature
     effective_modulus: float  #: ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2`` [Pa]
-    common_face_width: float  #: length of the contact line [m]
+    length: Array | float  #: of the contact line, as far as the stiffness of a film goes [m]
 
     def some(self, index: Index) -> PairsInContact:
         """A part of these contacts."""
         return replace(
             self,
+            length=self.length if np.ndim(self.length) == 0 else np.asarray(self.length)[index],
             age=self.age[index],
             equivalent_radius=self.equivalent_radius[index],
             entrainment_speed=self.entrainment_speed[index],
@@ -106,7 +136,7 @@ class PairsInContact:
             self.entrainment_speed,
             self.lubricant,
             self.effective_modulus,
-            length=self.common_face_width,
+            length=self.length,
             **options,
         )
 
@@ -120,7 +150,7 @@ class PairsInContact:
             "central_film": film,
             "minimum_film": film,
             "film_pressure": hertz.maximum_pressure,
-            "film_stiffness": self.common_face_width * load_per_width / film,
+            "film_stiffness": self.length * load_per_width / film,
         }
 
 
@@ -134,7 +164,7 @@ def pairs_in_contact(
         entrainment_speed=motion.entrainment_speed,
         lubricant=lubricant,
         effective_modulus=effective_modulus(material, material),
-        common_face_width=cycle.contact.pair.common_face_width,
+        length=cycle.stiffness_length,
     )
 
 

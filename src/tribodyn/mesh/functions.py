@@ -49,6 +49,9 @@ class MeshFunctions:
         there is none.
     error : callable, optional
         Transmission error without load, taken off the compression [m].
+    spatial_direction, spatial_friction : callable, optional
+        Direction and friction of cylindrical gears over twelve coordinates (phases, 12), see
+        :func:`tribodyn.dynamics.helical12`.
     """
 
     stiffness: Callable[[Array | float], Array]
@@ -63,6 +66,8 @@ class MeshFunctions:
     direction: Callable[[Array], Array] | None = None
     friction: Callable[[Array], Array] | None = None
     error: Callable[[Array], Array] | None = None
+    spatial_direction: Callable[[Array], Array] | None = None
+    spatial_friction: Callable[[Array], Array] | None = None
 
     def tangent_error(self, phase: Array | float) -> Array:
         """Error that makes the tangent stiffness deflect like the force law at the nominal load.

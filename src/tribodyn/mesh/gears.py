@@ -1,21 +1,30 @@
-"""The gears behind a mesh table: spur gears, or none if another program made the table."""
+"""The gears behind a mesh table, and how its force acts on them in a plane and in space.
+
+Coordinates of a gear in space: ``x`` across the line of action in the direction of the surface
+speeds, ``y`` along the line of action, ``z`` along the axes in the sense of the pinion's rotation,
+the rotations about x and y, and the rotation about its axis, positive in its running sense.
+"""
 
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict, dataclass
 from functools import cached_property, lru_cache
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from tribodyn.contact import path_of_contact
+from tribodyn.contact import entry_distance, path_of_contact
 from tribodyn.contact.path import pitch_point_age
 from tribodyn.errors import InputError, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.nomenclature import GEARS
 from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.mesh.columns import MeshColumns
 
 #: Coordinates of a gear pair: across and along the line of action, and the angle of each gear.
 COORDINATES = tuple(f"{gear}_{way}" for gear in GEARS for way in ("x", "y", "theta"))
@@ -87,6 +96,11 @@ class GearData:
         age = pitch_point_age(contact)
         return float(age) if 0.0 <= age < contact.contact_ratio else None
 
+    def entry_delay(self, slices: int) -> Array:
+        """Mesh cycles between the entry of a pair and that of each slice of the face (s,)."""
+        distance = entry_distance(path_of_contact(self.pair), slices)
+        return distance * math.tan(self.pair.base_helix_angle) / self.pair.base_pitch
+
     def written(self) -> str:
         """The gears as text for a file."""
         return json.dumps(asdict(self.pair))
@@ -114,3 +128,53 @@ def _read_modification(values: dict[str, Any]) -> FlankModification:
     """Modification of a gear; tables from before there were any have none."""
     chart = values.pop("profile_map", None)
     return FlankModification(profile_map=ProfileMap(**chart) if chart else None, **values)
+
+
+def load_center(mesh: MeshColumns) -> tuple[Array, Array, Array]:
+    """Centre of the load: transverse radii of curvature of both gears, face position (n,) [m]."""
+    face = mesh.face_position
+    on_face = np.zeros(mesh.path.shape) if face is None else np.broadcast_to(face, mesh.path.shape)
+    columns = mesh.pinion_curvature_radius, mesh.wheel_curvature_radius, on_face
+    first, second, middle = (mesh.by_share(column) for column in columns)
+    return first, second, middle
+
+
+def axial_ratio(mesh: MeshColumns) -> float:
+    """Axial force on the wheel over the transverse force on it, driven by the pinion."""
+    pair = mesh.gear_pair
+    return (-1.0 if pair.hand == "right" else 1.0) * math.tan(pair.base_helix_angle)
+
+
+def spatial_columns(mesh: MeshColumns) -> dict[str, Array]:
+    """Direction and friction (n, 12) of a mesh over the coordinates of both gears.
+
+    With the place ``r`` of the load from the axis of a gear, its force per transverse force is
+    ``n = s (0, 1, a)`` on the wheel and ``-n`` on the pinion, ``s = -1`` where the wheel drives,
+    and the moments are ``r x n``. Source: statics; ISO 21771, base helix angle.
+    """
+    first, second, face = load_center(mesh)
+    sense = 1.0 if mesh.driver == "pinion" else -1.0
+    lean, zero = axial_ratio(mesh), np.zeros(face.size)
+    radii = mesh.base_radius_pinion, mesh.base_radius_wheel
+    levers = [np.full(face.size, radius) for radius in radii]
+    towards = sense * np.ones(face.size)
+    direction = (
+        *(zero, towards, lean * towards),
+        *(face - sense * first * lean, -towards * lean * levers[0], towards * levers[0]),
+        *(zero, -towards, -lean * towards),
+        *(-face - sense * second * lean, -towards * lean * levers[1], -towards * levers[1]),
+    )
+    across, couple = mesh.friction_sum, sense * _friction_couple(mesh)
+    turns = mesh.friction_moment_pinion, mesh.friction_moment_wheel
+    friction = (
+        *(across, zero, zero, zero, -couple, turns[0]),
+        *(-across, zero, zero, zero, couple, -turns[1]),
+    )
+    return {"direction": np.stack(direction, axis=1), "friction": np.stack(friction, axis=1)}
+
+
+def _friction_couple(mesh: MeshColumns) -> Array:
+    """Moment of friction about the line of action, over the force of the mesh (n,) [m]."""
+    if mesh.face_position is None:
+        return np.zeros(mesh.phase.size)
+    return mesh.by_share(mesh._directed_friction * mesh.face_position)

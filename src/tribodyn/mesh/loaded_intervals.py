@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.mesh.face.lines import pair_column
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.types import Array
 
@@ -65,10 +66,9 @@ def _joined(intervals: list[Interval]) -> list[Interval]:
 
 def teeth_shares(mesh: MeshColumns) -> tuple[Array, Array]:
     """Load shares of the pairs on the path (n, pairs) and of tip corners (n, 2), films left out."""
-    share, corner = mesh.tooth_load_share, mesh.tooth_corner_share
-    if share is None or corner is None:
-        return mesh.load_share, mesh.corner_share
-    return share, corner
+    if mesh.tooth_load_share is None or mesh.tooth_corner_share is None:
+        return pair_column(mesh, "load_share")[0], mesh.corner_share
+    return pair_column(mesh, "tooth_load_share")[0], mesh.tooth_corner_share
 
 
 def loaded_ages(mesh: MeshColumns, shares: tuple[Array, Array]) -> list[Interval]:

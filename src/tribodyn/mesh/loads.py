@@ -10,12 +10,18 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
+from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.steady.batch import Films
-from tribodyn.errors import ComputationError, quiet, warn
+from tribodyn.errors import ComputationError, InputError, quiet, warn
 from tribodyn.friction import PitchPoint, TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film.film_columns import smallest_film
-from tribodyn.mesh.film.film_lookup import FilmLookup, OutsideTableError, look_up_film
+from tribodyn.mesh.film.film_lookup import (
+    FilmLookup,
+    OutsideTableError,
+    look_up_film,
+    shared_films,
+)
 from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
 from tribodyn.mesh.film.path_film import FilmAt, FormulaFilm, PathFilm, film_of
 from tribodyn.mesh.sharing import LEAST_SHARE, FilmSprings, SharedLoad, Teeth, ToothContact
@@ -43,12 +49,35 @@ def quasi_static_loads(
     progress: Progress,
 ) -> Loads:
     """Share the load among the pairs and find their films."""
+    if cycle.slices is not None and FILM_MODELS[settings.film_model].method:
+        with shared_films(persistent=True):
+            return _under_load(
+                cycle, teeth, settings, _film_of_slices(settings, cycle, teeth, pairs)
+            )
     if (tabled := look_up_film(settings, cycle, teeth, pairs)) is not None:
         # What the table cannot settle, films of its own may.
         with suppress(OutsideTableError, ComputationError):
             return _under_load(cycle, teeth, settings, tabled)
     film = film_of(settings, cycle, teeth, pairs, speed, progress)
     return _under_load(cycle, teeth, settings, film)
+
+
+def _film_of_slices(
+    settings: ToothContact, cycle: MeshCycle, teeth: Teeth, pairs: PairsInContact
+) -> FilmLookup:
+    """Films of slices, from a table of solved contacts over load and speed."""
+    film = look_up_film(settings, cycle, teeth, pairs)
+    if film is None:
+        law = settings.friction_law
+        raise InputError(
+            f'film.model = "{settings.film_model}" with friction.law = "{law}"',
+            where="film of slices of the lines of contact",
+            why="Slices interpolate their films in a table of solved contacts, which has film "
+            "thicknesses and stiffnesses, but neither the pressures that this law shears nor the "
+            'stiffness "seed"',
+            remedy="Choose a friction law by formula, or a film by formula",
+        )
+    return film
 
 
 def _under_load(
@@ -226,7 +255,7 @@ def _settle_distances(
     teeth: Teeth, film_at: FilmAt, share: Array, where: Callable[[int, int], str]
 ) -> SharedLoad:
     """The same for films that keep a distance: Newton's method, as each spring is a tangent."""
-    least = LEAST_SHARE * teeth.normal_force / float(teeth.problem.widths.sum())
+    least = LEAST_SHARE * teeth.normal_force / teeth.face_width
     for _ in range(_STEPS):
         load = np.maximum(teeth.load_per_width * share, least)
         shared = teeth.shared_load(_springs(teeth, load, film_at))
@@ -284,7 +313,7 @@ def _springs(teeth: Teeth, load_per_width: Array, film_at: FilmAt) -> FilmSpring
     if not film_at.keeps_distance:
         return FilmSprings(stiffness, None)
     # The straight line with this slope through distance and load of the film.
-    force = load * float(teeth.problem.widths.sum())
+    force = load * np.broadcast_to(teeth.problem.face_widths, on_path.shape)[on_path]
     lead[on_path] = np.asarray(film.film_distance) + force / stiffness[on_path]
     return FilmSprings(stiffness, lead)
 

@@ -15,13 +15,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.contact import PathOfContact
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import require_between, warn
 from tribodyn.friction.base import STEEL_BODIES
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
+from tribodyn.mesh.cycle import MeshCycle
 from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
+from tribodyn.stiffness.loaded.face_problem import slice_stiffness
 from tribodyn.stiffness.loaded.problem import Equilibrium
 from tribodyn.stiffness.model import usable_stiffness
 from tribodyn.types import Array, Mask
@@ -154,7 +155,7 @@ class Teeth:
     def _shared(self, film: FilmSprings | None) -> SharedLoad:
         problem = self.with_film(film)
         solved = self._dry_equilibrium if film is None else problem.at_loads(self._totals)
-        force = np.einsum("s,psn->pn", problem.widths, solved.load[0])
+        force = problem.forces(solved.load[0])
         inner = force[:, 1:-1] if self._extended else force
         on_path = np.where(self.in_contact, inner, 0.0)
         deflection = solved.approach[0] - problem.least_gap
@@ -185,7 +186,7 @@ class Teeth:
         problem = self.with_film(film)
         law = self._dry_law if film is None else force_ramps(problem, self.normal_force)
         place, slope, error = law
-        if error > (LARGEST_ERROR if problem.widths.size == 1 else LARGEST_GRADUAL_ERROR):
+        if error > (LARGEST_GRADUAL_ERROR if problem.has_slices else LARGEST_ERROR):
             warn(
                 "force-law",
                 f"the force law of the mesh is {100.0 * error:.2g} % off the loaded tooth "
@@ -234,17 +235,25 @@ class Teeth:
 
     @property
     def load_per_width(self) -> Array | float:
-        """That force per face width [N/m]."""
-        return self.force / float(self.problem.widths.sum())
+        """That force per face width of each pair, as far as it touches [N/m]."""
+        widths = self.problem.face_widths
+        return self.force / np.where(widths > 0.0, widths, np.inf)
 
     @property
     def least_load(self) -> float:
         """Load for which film and friction of a pair are found at least [N/m]."""
-        return self.least_share * self.normal_force / float(self.problem.widths.sum())
+        return self.least_share * self.normal_force / self.face_width
+
+    @property
+    def face_width(self) -> float:
+        """Face width in contact [m]."""
+        return self.problem.places.contact.pair.common_face_width
 
     @cached_property
     def bends(self) -> tuple[float, ...]:
         """Mesh phases, no events, at which a pair begins or ceases to carry."""
+        if self.problem.places.is_sliced:
+            return ()
         carries = self._dry_equilibrium.load[0].any(axis=1)
         phase = self.problem.places.phase
         turns = (carries[1:] != carries[:-1]).any(axis=1) & (np.diff(phase) > 0.0)
@@ -253,11 +262,15 @@ class Teeth:
     @cached_property
     def maximum_single_pair_stiffness(self) -> float:
         """Greatest stiffness of one pair that carries the whole force alone [N/m]."""
-        compliance, width = self.problem.compliance, float(self.problem.widths.sum())
-        bending = np.diagonal(compliance.structure, axis1=1, axis2=2)
-        local = compliance.local - compliance.logarithm * np.log(self.normal_force / width)
-        alone = width / (bending + local)
-        return float(alone[self.problem.places.on_path].max())
+        places, compliance = self.problem.places, self.problem.compliance
+        pairs = np.unique(places.number, return_inverse=True)[1]
+        # A pair that is cut into slices carries the same load per width in each of them.
+        together = np.where(pairs[:, None] == pairs, compliance.structure, 0.0).sum(axis=2)
+        local = compliance.local - compliance.logarithm * np.log(
+            self.normal_force / self.face_width
+        )
+        alone = np.where(places.on_path, self.problem.face_widths / (together + local), 0.0)
+        return float(max(alone[:, pairs == pair].sum(axis=1).max() for pair in np.unique(pairs)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -286,7 +299,7 @@ class SpringTeeth(Teeth):
                 break
             carries = carries & (force >= 0.0)
         share = force / self.force
-        load = force / problem.widths.sum()
+        load = force / np.where(problem.face_widths > 0.0, problem.face_widths, np.inf)
         no_corners = np.zeros((deflection.size, 2))
         return SharedLoad(each, share, no_corners, deflection, problem.tangent_at(load))
 
@@ -307,21 +320,20 @@ class SpringTeeth(Teeth):
 
 
 def teeth_of(
-    contact: PathOfContact,
-    places: tuple[Array, Array, Mask],
+    cycle: MeshCycle,
     settings: ToothModel,
     normal_force: float,
     loading: Array | float = 1.0,
 ) -> Teeth:
     """Teeth of a mesh by the stiffness model of the settings, whose stiffness is that at 1."""
     model, options = settings.name, dict(settings.options)
-    chosen, pair = MODELS[model], contact.pair
-    phase, path, in_contact = places
+    chosen, pair = MODELS[model], cycle.contact.pair
+    in_contact, mesh_phase = cycle.in_contact, cycle.grid.phase
     model_options = {**chosen.options, **options}
     problem = mesh_problem(
         pair,
         provider=model,
-        places=places,
+        places=cycle.slices or (mesh_phase, cycle.path, in_contact),
         total_force=normal_force,
         extended_contact=bool(model_options.get("extended_contact", False)),
         material=settings.material,
@@ -331,10 +343,13 @@ def teeth_of(
         return Teeth(in_contact, normal_force, problem, loading=loading)
     if chosen.influence is None:
         bending = np.diagonal(problem.compliance.structure, axis1=1, axis2=2)
-        stiffness = np.where(in_contact, pair.common_face_width / bending, 0.0)
+        stiffness = np.where(in_contact, problem.face_widths / bending, 0.0)
+    elif cycle.slices is not None:
+        parts = chosen, pair, settings.material, cycle.slices, normal_force, options
+        stiffness = slice_stiffness(*parts)
     else:
-        each = chosen(pair, settings.material, path, in_contact, phase, normal_force, **options)
-        stiffness = usable_stiffness(each, in_contact, model)
+        mesh = pair, settings.material, cycle.path, in_contact, mesh_phase, normal_force
+        stiffness = usable_stiffness(chosen(*mesh, **options), in_contact, model)
     return SpringTeeth(in_contact, normal_force, problem, stiffness, loading=loading)
 
 
@@ -384,7 +399,9 @@ def force_ramps(problem: ContactProblem, total_force: float) -> tuple[Array, Arr
     approach = first + _LOOKED_AT[:, None] * (last.approach[0] - first)
     force = problem.at_approach(approach)[0]
     counts = (force >= _RANGE[0] * total_force) & (force <= _RANGE[1] * total_force)
-    kinks = _kinks(problem, approach[-1])
+    # Slices of a line come into play one after the other, so that no kink is left.
+    no_kinks = np.zeros((first.size, 0)), np.zeros((first.size, 0))
+    kinks = no_kinks if problem.places.is_sliced else _kinks(problem, approach[-1])
     chosen = [0, _LOOKED_AT.size // 2, _LOOKED_AT.size - 1]
     while True:
         points = np.concatenate([approach[chosen].T, kinks[0]], axis=1)

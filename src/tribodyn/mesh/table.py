@@ -5,19 +5,25 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from os import PathLike
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.mesh.columns import MeshColumns, whole_stiffness
+from tribodyn.mesh.face.lines import slice_count
+from tribodyn.mesh.face.maps import face_load_factor, face_map
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
+from tribodyn.mesh.gears import load_center, spatial_columns
 from tribodyn.mesh.grid import PhaseFunction
 from tribodyn.mesh.loaded_intervals import contact_ratio, teeth_shares
 from tribodyn.mesh.storage import FORMAT, FORMAT_WITHOUT_GEARS, stored_values, write_csv
 from tribodyn.record import Labels, Parts, figure_method, record
 from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    import xarray
 
 
 @record
@@ -69,6 +75,40 @@ class MeshTable(MeshColumns):
         return contact_ratio(self.grid, *teeth_shares(self))
 
     @property
+    def face_load_factor(self) -> float | None:
+        """Greatest over mean load per face width, each over the mesh cycle; None of whole pairs."""
+        return face_load_factor(self)
+
+    @property
+    def load_face_position(self) -> Array:
+        """Centre of the load on the face, which moves to and fro over the mesh cycle (n,) [m]."""
+        return load_center(self)[2]
+
+    def over_face(self, column: str) -> xarray.DataArray:
+        """Values of a tooth pair over the path of contact and the face width.
+
+        Parameters
+        ----------
+        column : str
+            Name of a column over knots and pairs.
+
+        Returns
+        -------
+        xarray.DataArray (face_position, path)
+            In SI; of whole pairs, as of spur gears, the face has one row.
+
+        Raises
+        ------
+        InputError
+            If there is no such column.
+        """
+        from xarray import DataArray
+
+        chart = face_map(self, column)
+        places = {"face_position": chart.face_position, "path": chart.path}
+        return DataArray(chart.values, coords=places, name=column)
+
+    @property
     def film_mesh_stiffness(self) -> Array | None:
         """Stiffness of the films of all loaded pairs together (n,) [N/m]; None if not in series.
 
@@ -97,7 +137,7 @@ class MeshTable(MeshColumns):
     def mean_friction_power(self) -> float:
         """Mean over the cycle of the sliding power lost in the quasi-static mesh [W]."""
         losses = self.by_share(self.friction_coefficient * np.abs(self.sliding_speed))
-        return float(self.grid.mean(losses)) * self.total_normal_force
+        return float(self.grid.mean(losses)) * self.total_normal_force * self.line_force_ratio
 
     @property
     def mean_mesh_stiffness_tangent(self) -> float:
@@ -174,6 +214,11 @@ class MeshTable(MeshColumns):
         values = getattr(self, column, None)
         if values is None or age is None:
             return None
+        if self.face_position is not None:
+            slices = slice_count(self)
+            age += self.gears.entry_delay(slices)[slices // 2]
+            at = self.at(column, age % 1.0)[int(age) * slices + slices // 2]
+            return float(at)
         # The event that is nearest: its phase and this one may differ by rounding.
         phases = np.array(self.event_phases)
         event = int(np.argmin(np.abs((phases - age + 0.5) % 1.0 - 0.5)))
@@ -202,7 +247,15 @@ class MeshTable(MeshColumns):
             total_normal_force=self.total_normal_force,
             force_law=self.force_law,
             **self._foreign_functions(),
+            **self._spatial_functions(),
         )
+
+    def _spatial_functions(self) -> dict[str, PhaseFunction]:
+        """Direction and friction of cylindrical gears in space."""
+        if self.gears is None:
+            return {}
+        columns = spatial_columns(self)
+        return {f"spatial_{name}": PhaseFunction(self.grid, c) for name, c in columns.items()}
 
     def _foreign_functions(self) -> dict[str, PhaseFunction]:
         """Directions and error of their own, which tables of other programs may have."""

@@ -46,6 +46,8 @@ class StiffnessModel(Model):
     influence : callable, optional
         ``influence(gear, material, *, reference)``: the structure of one gear, of models that
         know it; these carry contacts anywhere on the flank, and deviations of the flanks.
+    over_face : bool
+        Whether that structure is known over the face width, so that slices act on each other.
     coupled : bool
         Whether pairs act on each other through the gear bodies; such a model is always solved
         by the loaded tooth contact.
@@ -61,6 +63,7 @@ class StiffnessModel(Model):
     function: Callable[..., Array]
     options: Mapping[str, Any]
     influence: Callable[..., GearInfluence] | None = None
+    over_face: bool = False
     coupled: bool = False
     source: str = ""
     meaning: str = ""

@@ -178,7 +178,9 @@ def springs(*stiffness):
     each = np.array([stiffness])
     gaps = np.zeros((1, 1, each.size))
     compliance = Compliance(independent_compliance(each, 1.0), np.zeros(each.shape), 0.0)
-    problem = ContactProblem(types.SimpleNamespace(contact=None), compliance, gaps, np.ones(1))
+    contact = types.SimpleNamespace(pair=types.SimpleNamespace(common_face_width=1.0))
+    places = types.SimpleNamespace(contact=contact)
+    problem = ContactProblem(places, compliance, gaps, np.ones((1, 1, 1)))
     return SpringTeeth(each > 0.0, 1e5, problem, each)
 
 

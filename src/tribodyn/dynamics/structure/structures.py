@@ -15,6 +15,7 @@ import numpy as np
 
 from tribodyn.dynamics.structure.fzg12 import fzg12
 from tribodyn.dynamics.structure.gear_pair import spur6, torsional
+from tribodyn.dynamics.structure.helical12 import SpatialSupports, helical12
 from tribodyn.dynamics.structure.hypoid14 import HypoidSupports, hypoid14
 from tribodyn.model import REQUIRED, Model, Option, Registry, number
 
@@ -274,6 +275,66 @@ def _fzg12(
         shaft_damping=[shafts[f"shaft{number}_damping"] for number in (1, 2)],
         bearing_stiffness=[stiffness[1], stiffness[1], stiffness[0], stiffness[0]],
         bearing_damping=[discs[1], wheels[1], wheels[0], discs[0]],
+        **gears.contact,
+    )
+
+
+def _spatial_options() -> dict[str, Option]:
+    """Options of gears that move in space: those of :class:`SpatialSupports`."""
+    usual, absent = SpatialSupports(), "That model keeps the gears in one plane"
+    springs = {
+        "bearing_stiffness": ("bearing_stiffness", "of the supports across the axis of each gear"),
+        "axial_bearing_stiffness": ("bearing_stiffness", "of the supports along the axis"),
+        "tilting_stiffness": ("shaft_stiffness", "of the supports against tilting of each gear"),
+    }
+    options = {
+        name: number(
+            float(np.asarray(getattr(usual, name))[0]),
+            1.0,
+            1e13,
+            _GUARD,
+            of=of,
+            meaning=f"stiffness {purpose}",
+            absent=absent,
+            pair=True,
+        )
+        for name, (of, purpose) in springs.items()
+    }
+    options["diametral_moment_of_inertia"] = number(
+        None,
+        1e-14,
+        1e7,
+        _GUARD,
+        of="moment_of_inertia",
+        meaning="moment of inertia of each gear about an axis perpendicular to its own; half the "
+        "polar one where left out",
+        absent=absent,
+        pair=True,
+    )
+    options["bearing_damping_ratio"] = number(
+        usual.bearing_damping_ratio,
+        0.0,
+        2.0,
+        "supports lie between 0.01 and 0.1",
+        meaning="damping of each support over its critical value",
+        absent=absent,
+    )
+    return options
+
+
+@STRUCTURES.define(
+    "helical-12dof",
+    options=_spatial_options(),
+    gears=("spur",),
+    meaning="both gears move along three axes, turn and tilt on supports of their own",
+)
+def _helical12(gears: Gearing, **options: Any) -> System:
+    return helical12(
+        gears.mesh,
+        mass=gears.mass,
+        moment_of_inertia=gears.moment_of_inertia,
+        torque=gears.torque,
+        supports=SpatialSupports(**options),
         **gears.contact,
     )
 

@@ -258,7 +258,7 @@ class LoadedFilms:
             return Films(central, minimum, pressure, film_stiffness)
         solved, power = self._distance
         distance = solved * (load_per_width / self.loads.of_contacts) ** -power
-        film_stiffness = self.pairs.common_face_width * load_per_width / (power * distance)
+        film_stiffness = self.pairs.length * load_per_width / (power * distance)
         return Films(central, minimum, pressure, film_stiffness, film_distance=distance)
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:

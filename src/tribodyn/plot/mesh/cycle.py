@@ -6,12 +6,14 @@ This module needs the mesh table alone, so that a table can be plotted without i
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.mesh.face.lines import middle_delay, pair_column
 from tribodyn.mesh.loaded_intervals import loaded_ages, sharing_parts, teeth_shares
 from tribodyn.plot.gear.path import mesh_marks, number_word, pair_ages, roll_angle_of
 from tribodyn.plot.theme.labels import display_unit, displayed
@@ -39,9 +41,9 @@ def cycles(phase: Array, values: Array, repeats: int = CYCLES) -> Curve:
 
 def pair_life(mesh: MeshTable, column: str) -> Curve:
     """Age and values of a column for a tooth pair from entry to exit."""
-    values = getattr(mesh, column)
-    ages = mesh.phase[:, None] + np.arange(values.shape[1])
-    touching = mesh.in_contact.T
+    values, in_contact = pair_column(mesh, column)
+    ages = mesh.phase[:, None] + np.arange(values.shape[1]) - middle_delay(mesh)
+    touching = in_contact.T
     return ages.T[touching], values.T[touching]
 
 
@@ -67,7 +69,7 @@ def pair_lives(mesh: MeshTable, column: str) -> list[Curve]:
     """Curves of all tooth pairs in contact within the plotted cycles, with zeros at both ends."""
     age, values = closed_life(mesh, column)
     lives = []
-    for start in range(1 - mesh.in_contact.shape[1], CYCLES):
+    for start in range(-math.floor(age[-1]), CYCLES + math.ceil(-age[0])):
         inside = (age + start >= 0.0) & (age + start <= CYCLES)
         lives.append((age[inside] + start, values[inside]))
     return lives

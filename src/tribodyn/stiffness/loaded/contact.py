@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -10,17 +10,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.contact import path_of_contact
+from tribodyn.contact import (
+    FaceContacts,
+    checked_slices,
+    face_contacts,
+    face_positions,
+    path_of_contact,
+)
+from tribodyn.contact.face_contacts import SLICES
 from tribodyn.errors import (
     Argument,
     InputError,
-    ModelWarning,
     collected,
     require_positive,
-    warn,
 )
-from tribodyn.gear import Material, SpurGear, SpurPair
+from tribodyn.gear import Material, SpurPair
 from tribodyn.model import NO_OPTIONS
+from tribodyn.stiffness.loaded.face_problem import has_slices, sliced_problem
+from tribodyn.stiffness.loaded.influences import gear_influences
 from tribodyn.stiffness.loaded.problem import (
     Compliance,
     ContactPlaces,
@@ -38,7 +45,6 @@ from tribodyn.stiffness.loaded.problem import (
 )
 from tribodyn.stiffness.loaded.result import LoadedContact
 from tribodyn.stiffness.model import MODELS, StiffnessModel, usable_stiffness
-from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
 
@@ -52,12 +58,7 @@ def compliance_of(
 ) -> Compliance:
     """Compliance of the teeth at given places by a named model."""
     if model.influence is not None:
-        reference = {**model.options, **options}["reference"]
-        pinion, wheel = (
-            _influence(model.influence, gear, material, reference)
-            for gear in (pair.pinion, pair.wheel)
-        )
-        structure = coupled_compliance(pinion, wheel, places)
+        structure = coupled_compliance(*gear_influences(pair, material, model, options), places)
         return Compliance(structure, *local_coefficients(material, places))
     stiffness = model(
         pair, material, places.path, places.on_path, places.phase, total_force, **options
@@ -65,22 +66,6 @@ def compliance_of(
     checked = usable_stiffness(stiffness, places.on_path, model.name)
     structure = independent_compliance(checked, pair.common_face_width)
     return Compliance(structure, np.zeros(places.path.shape), 0.0)
-
-
-def _influence(*arguments: Any) -> GearInfluence:
-    """Structure of a gear by a model, which is the same under every load."""
-    influence, model_warnings = _cached_influence(*arguments)
-    for warning in model_warnings:
-        warn(warning.code, warning.message, stacklevel=4)
-    return influence
-
-
-@lru_cache(maxsize=8)
-def _cached_influence(
-    model: Callable[..., GearInfluence], gear: SpurGear, material: Material, reference: str
-) -> tuple[GearInfluence, list[ModelWarning]]:
-    with collected() as model_warnings:
-        return model(gear, material, reference=reference), model_warnings
 
 
 def contact_problem(
@@ -125,20 +110,24 @@ def contact_problem(
     >>> problem.gaps.shape
     (2, 1, 4)
     """
-    model = MODELS[provider]
+    model, contact = MODELS[provider], path_of_contact(pair)
+    if has_slices(pair, model):
+        contacts = face_contacts(contact, phase, checked_slices(slices, SLICES))
+        parts = pair, material, contacts, total_force, model, options
+        return sliced_problem(*parts)
     extended = extended_contact and model.influence is not None
-    contact = path_of_contact(pair)
     places = contact_places(contact, phase, extended=extended)
     compliance = compliance_of(pair, material, places, total_force, model, options)
     widths = slice_widths(contact, slices)
-    return ContactProblem(places, compliance, slice_gaps(places, widths.size), widths)
+    gaps = slice_gaps(places, face_positions(contact, widths.size)[:, None])
+    return ContactProblem(places, compliance, gaps, widths[None, :, None])
 
 
 def mesh_problem(
     pair: SpurPair,
     *,
     provider: str,
-    places: tuple[Array, Array, Mask],
+    places: tuple[Array, Array, Mask] | FaceContacts,
     total_force: float,
     extended_contact: bool,
     material: Material,
@@ -152,8 +141,9 @@ def mesh_problem(
     ----------
     pair, provider
         As for :func:`contact_problem`.
-    places : tuple
-        Phase (p,), path (p, n) [m] and whether each pair is between A and E (p, n).
+    places : tuple or FaceContacts
+        Phase (p,), path (p, n) [m] and whether each pair is between A and E (p, n); or slices of
+        the lines of contact.
     total_force : float [N]
         Normal force of all pairs.
     extended_contact : bool
@@ -175,10 +165,14 @@ def mesh_problem(
     >>> phase = np.array([0.0, 1.0])
     >>> places = phase, *path_of_contact(pair).pair_paths(phase)
     >>> mesh_problem(pair, provider="analytic", places=places, total_force=2000.0,
-    ...     extended_contact=False, material=Material(), options={"reference": "rim"}).gaps.shape
+    ...     extended_contact=False, material=Material(),
+    ...     options={"reference": "rim"}).gaps.shape
     (2, 1, 2)
     """
     model, contact = MODELS[provider], path_of_contact(pair)
+    if isinstance(places, FaceContacts):
+        parts = pair, material, places, total_force, model, options
+        return sliced_problem(*parts, teeth_alike=True)
     phase, path, touching = places
     if extended_contact and model.influence is not None:
         where = extended_places(contact, phase, path)
@@ -186,8 +180,8 @@ def mesh_problem(
         where = on_path_places(contact, phase, path, touching)
     compliance = compliance_of(pair, material, where, total_force, model, options)
     widths = slice_widths(contact, None)
-    gaps = slice_gaps(where, widths.size, teeth_alike=True)
-    return ContactProblem(where, compliance, gaps, widths)
+    gaps = slice_gaps(where, face_positions(contact, widths.size)[:, None], teeth_alike=True)
+    return ContactProblem(where, compliance, gaps, widths[None, :, None])
 
 
 def contact_settings(
@@ -294,7 +288,7 @@ def loaded_contact(
     totals = np.atleast_1d(torques) / pair.pinion.base_radius
     problem, equilibrium = _solved(pair, totals, film_stiffness, settings)
     shape = torques.shape
-    places, pairs = problem.places, equilibrium.load.shape[-1]
+    places = problem.places
     load = equilibrium.load.reshape(*shape, *equilibrium.load.shape[1:])
     measured_from = {**MODELS[provider].options, **settings["options"]}.get(
         "reference", "as measured"
@@ -311,9 +305,7 @@ def loaded_contact(
         wheel_curvature_radius=places.wheel_curvature_radius,
         gap=problem.gaps.min(axis=1),
         transmission_error=equilibrium.approach.reshape(*shape, places.phase.size),
-        normal_force=np.einsum("s,...psn->...pn", problem.widths, load).reshape(
-            *shape, places.phase.size, pairs
-        ),
+        normal_force=problem.forces(load),
         load_per_width=load,
         mesh_stiffness_tangent=equilibrium.tangent.reshape(*shape, places.phase.size),
     )

@@ -165,7 +165,7 @@ def _total_force(
     """Force and tangent stiffness of all slices at an approach, into ``sums``."""
     sums[0] = 0.0
     sums[1] = 0.0
-    for s in range(width.size):
+    for s in range(width.shape[0]):
         status = _slice(n, C, A, B, gaps[s], delta, f[s], a, b, place)
         if status != 0:
             return status
@@ -174,8 +174,9 @@ def _total_force(
             b[r] = 1.0
         _eliminate(m, a, b)
         for r in range(m):
-            sums[0] += width[s] * f[s, int(place[r])]
-            sums[1] += width[s] * b[r]
+            i = int(place[r])
+            sums[0] += width[s, i] * f[s, i]
+            sums[1] += width[s, i] * b[r]
     return 0
 
 
@@ -198,7 +199,10 @@ def _approach(
     n, low, high = A.size, gaps.min(), np.inf
     delta = start
     if not delta > low:
-        delta = low + total / width.sum() * (C[0, 0] + A[0])
+        widest = 0.0
+        for i in range(n):
+            widest = max(widest, width[:, i].sum())
+        delta = low + total / widest * (C[0, 0] + A[0])
     for _ in range(_OUTER_STEPS):
         status = _total_force(n, C, A, B, gaps, width, delta, f, a, b, place, sums)
         if status == 2 and delta - low > 1e-9 * (abs(delta) + abs(low)):
@@ -243,7 +247,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
     ) -> Any:
         """Solve every phase at every total load, in the order of the loads."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        n, slices = A.shape[1], width.size
+        n, slices = A.shape[1], width.shape[1]
         a, b, place, sums = np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2)
         f = np.empty((slices, n))
         for p in range(A.shape[0]):
@@ -253,7 +257,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                 if flag[0] != 0:
                     return STOPPED
                 start, status = _approach(
-                    C[p], A[p], B, gaps[p], width, totals[t, p], start, f, a, b, place, sums
+                    C[p], A[p], B, gaps[p], width[p], totals[t, p], start, f, a, b, place, sums
                 )
                 if status != 0:
                     return status
@@ -279,7 +283,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
     ) -> Any:
         """Force and tangent stiffness (D, P) of every phase at every approach ``delta`` (D, P)."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        n, slices = A.shape[1], width.size
+        n, slices = A.shape[1], width.shape[1]
         a, b, place, sums = np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2)
         f = np.empty((slices, n))
         for p in range(A.shape[0]):
@@ -288,7 +292,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                 if flag[0] != 0:
                     return STOPPED
                 status = _total_force(
-                    n, C[p], A[p], B, gaps[p], width, delta[d, p], f, a, b, place, sums
+                    n, C[p], A[p], B, gaps[p], width[p], delta[d, p], f, a, b, place, sums
                 )
                 if status != 0:
                     return status

@@ -53,7 +53,7 @@ def _pair_stiffness(name: str) -> Callable[..., Array]:
             options=options,
         )
         equilibrium = problem.at_loads(np.array([state.normal_force]))
-        force = np.einsum("s,psn->pn", problem.widths, equilibrium.load[0])
+        force = problem.forces(equilibrium.load[0])
         if force.shape != state.in_contact.shape:
             force = force[:, 1:-1]
         deflection = equilibrium.approach[0] - problem.least_gap

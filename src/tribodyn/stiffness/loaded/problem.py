@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.contact import PathOfContact, extended_contact
+from tribodyn.contact import PathOfContact, checked_slices, extended_contact
 from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.gear import Material, flank_gap, hunting_period, pitch_gap, run_out_gap
 from tribodyn.interrupt import stoppable
@@ -44,9 +44,20 @@ class ContactPlaces:
         return np.asarray(self.separation == 0.0)
 
     @property
+    def is_sliced(self) -> bool:
+        """Whether several contacts are slices of one pair."""
+        return bool(np.unique(self.number).size < self.number.size)
+
+    @property
     def direction(self) -> int:
         """Sense in which contacts move along the path: 1 when the pinion drives, -1 otherwise."""
         return self.contact.direction
+
+    def some(self, pairs: slice) -> ContactPlaces:
+        """Places of some of these pairs."""
+        columns = ("path", "separation", "pinion_curvature_radius", "wheel_curvature_radius")
+        chosen = {name: getattr(self, name)[:, pairs] for name in columns}
+        return replace(self, number=self.number[pairs], **chosen)
 
 
 def contact_places(contact: PathOfContact, phase: ArrayLike, *, extended: bool) -> ContactPlaces:
@@ -102,7 +113,6 @@ def _radii(contact: PathOfContact, pinion: Array, wheel: Array, possible: Mask) 
 
 #: Slices of a face width over which flanks vary; the middle one is in the middle of the face.
 _SLICES = 21
-_MOST_SLICES = 1001
 
 
 def mesh_period(contact: PathOfContact) -> int:
@@ -111,28 +121,26 @@ def mesh_period(contact: PathOfContact) -> int:
 
 
 def slice_widths(contact: PathOfContact, slices: int | None) -> Array:
-    """Widths of the slices of the common face."""
+    """Widths of the slices of the common face of a pair whose contacts are parallel to its axes."""
     pair = contact.pair
-    count = (_SLICES if pair.has_lead_modification else 1) if slices is None else slices
-    if not 1 <= count <= _MOST_SLICES:
-        why = f"The face width is cut into 1 to {_MOST_SLICES} slices"
-        remedy = "Omit it: the default is 21 where flanks vary over the face width"
-        raise InputError(f"slices = {count}", Argument("slices"), why, remedy)
+    count = checked_slices(slices, _SLICES if pair.has_lead_modification else 1)
     return np.full(count, pair.common_face_width / count)
 
 
-def slice_gaps(places: ContactPlaces, slices: int, *, teeth_alike: bool = False) -> Array:
-    """Gap of each pair in each slice, in the line-of-action measure."""
+def slice_gaps(places: ContactPlaces, face_position: Array, *, teeth_alike: bool = False) -> Array:
+    """Gap of each pair in each slice, in the line-of-action measure.
+
+    The face positions have the shape (s, 1) where pairs have all slices, or (1, n).
+    """
     pair = places.contact.pair
-    middles = ((np.arange(slices) + 0.5) / slices - 0.5) * pair.common_face_width
-    gaps = np.repeat(places.separation[:, None, :], slices, axis=1)
+    gaps = np.repeat(places.separation[:, None, :], face_position.shape[0], axis=1)
     if not pair.has_modification:
         return gaps
     flank = flank_gap(
         pair,
         places.pinion_curvature_radius[:, None, :],
         places.wheel_curvature_radius[:, None, :],
-        middles[:, None],
+        face_position,
     )
     gaps = gaps + flank
     if not teeth_alike and pair.teeth_differ:
@@ -164,7 +172,7 @@ def coupled_compliance(pinion: GearInfluence, wheel: GearInfluence, places: Cont
     return total
 
 
-def independent_compliance(stiffness: Array, face_width: float) -> Array:
+def independent_compliance(stiffness: Array, face_width: Array | float) -> Array:
     """Compliance of pairs that know nothing of each other."""
     touching = stiffness > 0.0
     diagonal = np.where(touching, face_width / np.where(touching, stiffness, 1.0), 1.0)
@@ -231,8 +239,8 @@ class ContactProblem:
         Of the teeth.
     gaps : array (p, s, n) [m]
         Separation of each pair in each slice without load.
-    widths : array (s,) [m]
-        Face widths of the slices.
+    widths : array (p or 1, s, n or 1) [m]
+        Face width over which each pair touches in each slice, zero where it does not.
     """
 
     places: ContactPlaces
@@ -246,14 +254,14 @@ class ContactProblem:
         Parameters
         ----------
         film_stiffness : array (p, n) [N/m]
-            Stiffness of the film of each pair over the whole face width; infinite without film.
+            Stiffness of the film of each pair in all slices; infinite without film.
         lead : array (p, n) [m], optional
             Distance before its flanks meet at which the film of each pair begins to carry. The
             approach is then counted from where the first film of all phases does.
         """
         structure = self.compliance.structure.copy()
         pairs = np.arange(structure.shape[1])
-        structure[:, pairs, pairs] += self.widths.sum() / film_stiffness
+        structure[:, pairs, pairs] += self.face_widths / film_stiffness
         gaps = self.gaps
         if lead is not None:
             gaps = gaps - lead[:, None] + self.film_offset(lead)
@@ -273,6 +281,20 @@ class ContactProblem:
             Approaches of :meth:`with_film` are larger by it than those from the rigid flanks.
         """
         return float(self.gaps.min() - (self.gaps - lead[:, None]).min())
+
+    @property
+    def has_slices(self) -> bool:
+        """Whether a pair may touch on a part of the face width alone."""
+        return self.widths.shape[1] > 1 or self.places.is_sliced
+
+    @property
+    def face_widths(self) -> Array:
+        """Face width over which each pair touches in all slices together (p or 1, n or 1) [m]."""
+        return np.asarray(self.widths.sum(axis=1))
+
+    def forces(self, load_per_width: Array) -> Array:
+        """Force on each pair (..., p, n) [N] from its loads per width (..., p, s, n) [N/m]."""
+        return np.asarray((self.widths * load_per_width).sum(axis=-2))
 
     @property
     def least_gap(self) -> Array:
@@ -303,7 +325,7 @@ class ContactProblem:
         )
         forces = np.asarray(totals, dtype=float).reshape(count, -1)
         each = np.ascontiguousarray(np.broadcast_to(forces, (count, phases)))
-        self._call(solve_loads, count, self.widths, each, *equilibrium)
+        self._call(solve_loads, count, self._each_width, each, *equilibrium)
         return equilibrium
 
     def at_approach(self, approach: Array) -> tuple[Array, Array]:
@@ -330,8 +352,13 @@ class ContactProblem:
 
         approaches = self._of_phases("approach", approach, 2)
         total, tangent = np.empty(approaches.shape), np.empty(approaches.shape)
-        self._call(solve_deflections, approaches.shape[0], self.widths, approaches, total, tangent)
+        arguments = self._each_width, approaches, total, tangent
+        self._call(solve_deflections, approaches.shape[0], *arguments)
         return total, tangent
+
+    @property
+    def _each_width(self) -> Array:
+        return np.ascontiguousarray(np.broadcast_to(self.widths, self.gaps.shape))
 
     def tangent_at(self, load_per_width: Array) -> Array:
         """Tangent stiffness of a single slice under given loads of its pairs.
@@ -353,7 +380,7 @@ class ContactProblem:
         slope = np.where(both_carry, parts.structure, 0.0)
         slope[:, pairs, pairs] += np.where(carries, local, 1.0)
         rates = np.linalg.solve(slope, carries[..., None].astype(float))[..., 0]
-        return np.asarray(self.widths.sum() * (rates * carries).sum(axis=1))
+        return np.asarray((self.face_widths * rates * carries).sum(axis=1))
 
     def pickups(self, most: Array) -> Array:
         """Approach at which each pair begins to carry.

@@ -1,0 +1,59 @@
+"""Columns of whole tooth pairs from those of their slices over the face width."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribodyn.types import Array, Mask
+
+if TYPE_CHECKING:
+    from tribodyn.mesh.columns import MeshColumns
+
+#: Columns of which a pair has the sum over its slices; others are those in the middle of the face.
+SUMMED = frozenset(
+    (
+        "film_stiffness",
+        "load_share",
+        "normal_force",
+        "stiffness",
+        "tooth_load_share",
+        "tooth_stiffness",
+    )
+)
+
+
+def slice_count(mesh: MeshColumns) -> int:
+    """Slices of each pair; 1 where the contacts are whole pairs."""
+    face = mesh.face_position
+    return 1 if face is None else int(np.unique(face).size)
+
+
+def by_pair(values: Array, slices: int) -> Array:
+    """Values (..., pairs, slices) of contacts (..., pairs * slices)."""
+    return values.reshape(*values.shape[:-1], -1, slices)
+
+
+def pair_column(mesh: MeshColumns, column: str) -> tuple[Array, Mask]:
+    """Values of whole pairs (n, pairs), and which pairs are in contact there.
+
+    Forces and stiffnesses are sums over the slices, in contact wherever a slice is; other values
+    are those in the middle of the face.
+    """
+    values, slices = np.asarray(getattr(mesh, column)), slice_count(mesh)
+    if slices == 1:
+        return values, mesh.in_contact
+    each, touching = by_pair(values, slices), by_pair(mesh.in_contact, slices)
+    if column in SUMMED:
+        return np.nansum(each, axis=2), touching.any(axis=2)
+    middle = slices // 2
+    return each[:, :, middle], touching[:, :, middle]
+
+
+def middle_delay(mesh: MeshColumns) -> float:
+    """Mesh cycles between the entry of a pair and that of its slice in the middle of the face."""
+    if mesh.face_position is None or mesh.gears is None:
+        return 0.0
+    slices = slice_count(mesh)
+    return float(mesh.gears.entry_delay(slices)[slices // 2])

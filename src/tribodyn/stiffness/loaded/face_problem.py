@@ -1,0 +1,147 @@
+"""Loaded tooth contact over path and face: slices of the lines of contact of helical gears.
+
+Slices are contacts of their own with their own place on both flanks. They act on each other
+through the teeth where the model knows the face width; of plane models each slice is a thin gear
+of its own, whose pairs act on each other within the slice alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from tribodyn.contact import FaceContacts
+from tribodyn.gear import Material, SpurPair
+from tribodyn.stiffness.loaded.influences import gear_influences
+from tribodyn.stiffness.loaded.problem import (
+    FAR,
+    Compliance,
+    ContactPlaces,
+    ContactProblem,
+    coupled_compliance,
+    independent_compliance,
+    local_coefficients,
+    slice_gaps,
+)
+from tribodyn.stiffness.model import StiffnessModel, usable_stiffness
+from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.types import Array
+
+
+def has_slices(pair: SpurPair, model: StiffnessModel) -> bool:
+    """Whether a pair is solved by slices of its lines of contact."""
+    return model.over_face or pair.base_helix_angle != 0.0
+
+
+def sliced_problem(
+    pair: SpurPair,
+    material: Material,
+    contacts: FaceContacts,
+    total_force: float,
+    model: StiffnessModel,
+    options: Mapping[str, Any],
+    *,
+    teeth_alike: bool = False,
+) -> ContactProblem:
+    """Loaded tooth contact of all slices, which share the approach of the gears.
+
+    Between A and E alone: tip corners that would touch beyond the path are left out.
+    """
+    places = face_places(contacts)
+    parts = face_compliance(pair, material, contacts, places, total_force, model, options)
+    gaps = slice_gaps(places, contacts.face_position[None], teeth_alike=teeth_alike)
+    return ContactProblem(places, parts, gaps, contacts.width[:, None])
+
+
+def face_places(contacts: FaceContacts) -> ContactPlaces:
+    """Places of all slices; those off the path of contact are far apart."""
+    contact, on_path = contacts.contact, contacts.in_contact
+    low, high = sorted((contact.A, contact.E))
+    path = np.clip(contacts.path, low, high)
+    return ContactPlaces(
+        contact=contact,
+        phase=contacts.phase,
+        number=contacts.number,
+        path=contacts.path,
+        separation=np.where(on_path, 0.0, FAR),
+        pinion_curvature_radius=path,
+        wheel_curvature_radius=contact.pair.line_of_action_length - path,
+    )
+
+
+def thin_slices(
+    pinion: GearInfluence, wheel: GearInfluence, contacts: FaceContacts, places: ContactPlaces
+) -> Array:
+    """Compliance of slices of which each is a thin spur gear (p, c, c)."""
+    phases, count = places.path.shape
+    total = np.zeros((phases, count, count))
+    for k in range(contacts.slices):
+        one = slice(k, None, contacts.slices)
+        total[:, one, one] = coupled_compliance(pinion, wheel, places.some(one))
+    return total
+
+
+def local_of_slices(material: Material, places: ContactPlaces) -> tuple[Array, float]:
+    """Local compression of each slice along the transverse line of action.
+
+    The compression along the normal is that of a line contact under the load per length of the
+    line, which equals the transverse load per face width; along the line of action it is larger
+    by ``1/cos(beta_b)``.
+    """
+    cosine = math.cos(places.contact.pair.base_helix_angle)
+    local, logarithm = local_coefficients(material, places)
+    # Across the line the flanks are less curved and the teeth thinner than in the transverse plane.
+    local = local + 3.0 * logarithm * math.log(cosine)
+    return local / cosine, logarithm / cosine
+
+
+def slice_stiffness(
+    model: StiffnessModel,
+    pair: SpurPair,
+    material: Material,
+    contacts: FaceContacts,
+    normal_force: float,
+    options: Mapping[str, Any],
+) -> Array:
+    """Stiffness of each slice by a model of pairs, as that part of a spur pair (p, c)."""
+    count, stiffness = contacts.slices, np.zeros(contacts.path.shape)
+    for k in range(count):
+        one = slice(k, None, count)
+        on_path = contacts.in_contact[:, one]
+        phase = (contacts.phase - contacts.delay[k]) % 1.0
+        each = model(pair, material, contacts.path[:, one], on_path, phase, normal_force, **options)
+        checked = usable_stiffness(each, on_path, model.name)
+        stiffness[:, one] = checked * contacts.width[:, one] / pair.common_face_width
+    return stiffness
+
+
+def face_compliance(
+    pair: SpurPair,
+    material: Material,
+    contacts: FaceContacts,
+    places: ContactPlaces,
+    total_force: float,
+    model: StiffnessModel,
+    options: Mapping[str, Any],
+) -> Compliance:
+    """Compliance of all slices by a named model."""
+    if model.influence is None:
+        stiffness = slice_stiffness(model, pair, material, contacts, total_force, options)
+        structure = independent_compliance(stiffness, contacts.width)
+        return Compliance(structure, np.zeros(places.path.shape), 0.0)
+    gears = gear_influences(pair, material, model, options)
+    local = local_of_slices(material, places)
+    if not model.over_face:
+        return Compliance(thin_slices(*gears, contacts, places), *local)
+    edges = np.linspace(-0.5, 0.5, contacts.slices + 1) * pair.common_face_width
+    shape = contacts.phase.size, -1, contacts.slices
+    radii = places.pinion_curvature_radius, places.wheel_curvature_radius
+    structure = np.zeros((*places.path.shape, places.path.shape[1]))
+    for gear, radius, sense in zip(gears, radii, (1, -1), strict=True):
+        gear.sliced(edges).fill(structure, radius.reshape(shape), sense * places.direction)
+    # Where a part of a slice alone is on the path of contact, its load per width acts on less.
+    structure *= (contacts.width / np.diff(edges)[contacts.slice])[:, None, :]
+    return Compliance(structure, *local)
