@@ -12,7 +12,7 @@ from tribodyn.arguments import guard
 from tribodyn.contact.face_contacts import (
     FaceContacts,
     checked_slices,
-    entry_distance,
+    entry_delay,
     face_contacts,
     face_positions,
 )
@@ -41,7 +41,7 @@ __all__ = [
     "PathOfContact",
     "checked_slices",
     "effective_modulus",
-    "entry_distance",
+    "entry_delay",
     "equal_share",
     "extended_contact",
     "face_contacts",

@@ -71,9 +71,7 @@ class FaceContacts:
     @cached_property
     def delay(self) -> Array:
         """Mesh cycles between the entry of a pair and that of each of its slices (s,)."""
-        return entry_distance(self.contact, self.slices) * (
-            math.tan(self.contact.pair.base_helix_angle) / self.contact.pair.base_pitch
-        )
+        return entry_delay(self.contact, self.slices)
 
     @property
     def in_contact(self) -> Mask:
@@ -86,10 +84,11 @@ def face_positions(contact: PathOfContact, slices: int) -> Array:
     return ((np.arange(slices) + 0.5) / slices - 0.5) * contact.pair.common_face_width
 
 
-def entry_distance(contact: PathOfContact, slices: int) -> Array:
-    """Distance of the middles of equal slices from the end of the face that enters first [m]."""
-    first_end = 1.0 if contact.pair.hand == "right" else -1.0
-    return 0.5 * contact.pair.common_face_width - first_end * face_positions(contact, slices)
+def entry_delay(contact: PathOfContact, slices: int) -> Array:
+    """Mesh cycles between the entry of a pair and that of each of equal slices of the face (s,)."""
+    pair = contact.pair
+    distance = pair.entry_distance(face_positions(contact, slices))
+    return np.asarray(distance * math.tan(pair.base_helix_angle) / pair.base_pitch)
 
 
 def checked_slices(slices: int | None, default: int) -> int:
@@ -134,7 +133,7 @@ def face_contacts(
     pair = contact.pair
     width = pair.common_face_width
     slope = math.tan(pair.base_helix_angle)
-    zeta = entry_distance(contact, slices)
+    zeta = pair.entry_distance(face_positions(contact, slices))
     # Whole phases are the end of the cycle before, as knots of a mesh cycle have it.
     turned = phase - np.floor(phase)
     turned = np.where((turned == 0.0) & (phase > 0.0), 1.0, turned)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from tribodyn.contact import entry_distance, path_of_contact
+from tribodyn.contact import entry_delay, path_of_contact
 from tribodyn.contact.path import pitch_point_age
 from tribodyn.errors import InputError, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
@@ -98,8 +98,7 @@ class GearData:
 
     def entry_delay(self, slices: int) -> Array:
         """Mesh cycles between the entry of a pair and that of each slice of the face (s,)."""
-        distance = entry_distance(path_of_contact(self.pair), slices)
-        return distance * math.tan(self.pair.base_helix_angle) / self.pair.base_pitch
+        return entry_delay(path_of_contact(self.pair), slices)
 
     def written(self) -> str:
         """The gears as text for a file."""

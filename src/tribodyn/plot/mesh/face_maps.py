@@ -11,13 +11,19 @@ from tribodyn.plot.gear.path import pair_letters, roll_label
 from tribodyn.plot.mesh.cycle import table_drawing
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import event_lines
-from tribodyn.plot.theme.style import SEQUENTIAL, figure
+from tribodyn.plot.theme.style import PINION, WHEEL, figure
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
 
 #: Columns of the maps, and their quantities where these are called differently.
-_COLUMNS = ("load_per_width", "hertz_pressure", "central_film", "film_ratio", "friction_coefficient")
+_COLUMNS = (
+    "load_per_width",
+    "hertz_pressure",
+    "central_film",
+    "film_ratio",
+    "friction_coefficient",
+)
 _QUANTITIES = {"central_film": "film_thickness"}
 _NAMES = {
     "load_per_width": "Load per length",
@@ -26,6 +32,7 @@ _NAMES = {
     "film_ratio": "Film ratio",
     "friction_coefficient": "Friction coefficient",
 }
+_COLORS = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
 #: Height of a map, of the gap between two, and of what surrounds them [px].
 _HEIGHT, _GAP, _AROUND = 190, 40, 150
 
@@ -74,7 +81,7 @@ def face_maps(mesh: MeshTable) -> Any:
                 "y": displayed("face_position", chart.face_position),
                 "z": values,
                 "yaxis": f"y{suffix}",
-                "colorscale": SEQUENTIAL,
+                "colorscale": _COLORS,
                 "colorbar": {
                     "title": {"text": label, "side": "right"},
                     "y": sum(domain) / 2.0,
