@@ -192,7 +192,7 @@ class FilmModel(Model):
         lubricant: Lubricant,
         effective_modulus: float,
         *,
-        length: float = 1.0,
+        length: ArrayLike = 1.0,
         progress: Progress = SILENT,
         **options: Any,
     ) -> Films:
@@ -205,7 +205,7 @@ class FilmModel(Model):
             speeds.
         lubricant, effective_modulus : Lubricant, float [Pa]
             Oil at working temperature; ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
-        length : float [m]
+        length : float or array [m]
             Length of the contact line, for the film stiffness.
         progress : Progress
             Receives the number of solved contacts.
@@ -253,7 +253,7 @@ class FilmModel(Model):
         slope = exponent(*arguments, **model_options) if callable(exponent) else exponent
         stiffness = None
         if central is not None and slope is not None:
-            stiffness = -length * np.asarray(load_per_width) / (slope * central)
+            stiffness = -np.asarray(length) * np.asarray(load_per_width) / (slope * central)
         return Films(central, minimum, None, stiffness)
 
 

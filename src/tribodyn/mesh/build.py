@@ -254,7 +254,7 @@ def table_of(
     )
 
 
-def _face_columns(cycle: MeshCycle) -> dict[str, Array]:
+def _face_columns(cycle: MeshCycle) -> dict[str, Any]:
     """Where the contacts are on the face, if they are slices of it."""
     slices = cycle.slices
     if slices is None:
@@ -330,7 +330,9 @@ def _loaded_teeth(
 ) -> tuple[MeshCycle, Teeth]:
     cycle = _cycle(pair, steps, SLICES if has_slices(pair, MODELS[model.name]) else 0)
     over = 1.0 if loading is None else loading[:, None]
-    return cycle, teeth_of(cycle, model, torque / pair.pinion.base_radius, over)
+    places = (cycle.grid.phase, cycle.path, cycle.in_contact)
+    force = torque / pair.pinion.base_radius
+    return cycle, teeth_of(cycle.contact, places, model, force, over, cycle.slices)
 
 
 def _steps(pair: Gears, model: str) -> int:

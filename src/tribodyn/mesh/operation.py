@@ -23,6 +23,8 @@ from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, figure_method, quantity, record
+from tribodyn.stiffness import MODELS
+from tribodyn.stiffness.loaded.face_problem import has_slices
 from tribodyn.types import Array, Mask
 
 #: Positions for the models that have no such option.
@@ -158,6 +160,7 @@ def film_over_operation(
     require_between("composite_roughness", composite_roughness, 0.0, 1e-4, "m")
     model = FILM_MODELS[film_model]
     options = model.complete(film_options)
+    require_whole_pairs(pair, stiffness_model)
     contact = path_of_contact(pair)
     places = path_positions(contact, options.get("positions", _POSITIONS))
     path = contact.A + contact.direction * places.age * pair.base_pitch
@@ -196,6 +199,17 @@ def film_over_operation(
         entrainment_speed=motion.entrainment_speed,
         **_masked(as_columns(films, composite_roughness), touches),
     )
+
+
+def require_whole_pairs(pair: Gears, stiffness_model: str) -> None:
+    """Raise for contacts that are slices of lines: their places are not those of one path."""
+    if has_slices(pair, MODELS[stiffness_model]):
+        raise InputError(
+            "the contacts of this mesh are slices of the lines of contact",
+            where="maps over torque and speed of one tooth pair",
+            why="They follow one tooth pair along one path; a helical pair has as many as slices",
+            remedy="Build the mesh table of each operating point: tribodyn.mesh.build, or a sweep",
+        )
 
 
 def _masked(columns: dict[str, Array], touches: Mask) -> dict[str, Array]:
@@ -386,6 +400,7 @@ def comprehensive_stiffness(
     """
     speeds, torques = one_or_more(pinion_speed=pinion_speed, pinion_torque=pinion_torque)
     _check_kind(film_model, kind)
+    require_whole_pairs(pair, stiffness_model)
     settings = ToothContact(
         material=material,
         lubricant=lubricant,

@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.contact import FaceContacts, PathOfContact
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import require_between, warn
 from tribodyn.friction.base import STEEL_BODIES
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.cycle import MeshCycle
 from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
 from tribodyn.stiffness.loaded.face_problem import slice_stiffness
 from tribodyn.stiffness.loaded.problem import Equilibrium
@@ -320,20 +320,22 @@ class SpringTeeth(Teeth):
 
 
 def teeth_of(
-    cycle: MeshCycle,
+    contact: PathOfContact,
+    places: tuple[Array, Array, Mask],
     settings: ToothModel,
     normal_force: float,
     loading: Array | float = 1.0,
+    slices: FaceContacts | None = None,
 ) -> Teeth:
     """Teeth of a mesh by the stiffness model of the settings, whose stiffness is that at 1."""
     model, options = settings.name, dict(settings.options)
-    chosen, pair = MODELS[model], cycle.contact.pair
-    in_contact, mesh_phase = cycle.in_contact, cycle.grid.phase
+    chosen, pair = MODELS[model], contact.pair
+    phase, path, in_contact = places
     model_options = {**chosen.options, **options}
     problem = mesh_problem(
         pair,
         provider=model,
-        places=cycle.slices or (mesh_phase, cycle.path, in_contact),
+        places=slices or places,
         total_force=normal_force,
         extended_contact=bool(model_options.get("extended_contact", False)),
         material=settings.material,
@@ -344,12 +346,12 @@ def teeth_of(
     if chosen.influence is None:
         bending = np.diagonal(problem.compliance.structure, axis1=1, axis2=2)
         stiffness = np.where(in_contact, problem.face_widths / bending, 0.0)
-    elif cycle.slices is not None:
-        parts = chosen, pair, settings.material, cycle.slices, normal_force, options
+    elif slices is not None:
+        parts = chosen, pair, settings.material, slices, normal_force, options
         stiffness = slice_stiffness(*parts)
     else:
-        mesh = pair, settings.material, cycle.path, in_contact, mesh_phase, normal_force
-        stiffness = usable_stiffness(chosen(*mesh, **options), in_contact, model)
+        each = chosen(pair, settings.material, path, in_contact, phase, normal_force, **options)
+        stiffness = usable_stiffness(each, in_contact, model)
     return SpringTeeth(in_contact, normal_force, problem, stiffness, loading=loading)
 
 

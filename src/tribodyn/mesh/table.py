@@ -212,7 +212,7 @@ class MeshTable(MeshColumns):
         """
         age = None if self.gears is None else self.gears.pitch_point_age
         values = getattr(self, column, None)
-        if values is None or age is None:
+        if values is None or age is None or self.gears is None:
             return None
         if self.face_position is not None:
             slices = slice_count(self)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tribodyn.types import Array, Mask
 
@@ -30,23 +31,19 @@ def slice_count(mesh: MeshColumns) -> int:
     return 1 if face is None else int(np.unique(face).size)
 
 
-def by_pair(values: Array, slices: int) -> Array:
+def by_pair(values: NDArray[Any], slices: int) -> NDArray[Any]:
     """Values (..., pairs, slices) of contacts (..., pairs * slices)."""
     return values.reshape(*values.shape[:-1], -1, slices)
 
 
 def pair_column(mesh: MeshColumns, column: str) -> tuple[Array, Mask]:
-    """Values of whole pairs (n, pairs), and which pairs are in contact there.
-
-    Forces and stiffnesses are sums over the slices, in contact wherever a slice is; other values
-    are those in the middle of the face.
-    """
+    """Values of whole pairs (n, pairs), and which pairs are in contact there."""
     values, slices = np.asarray(getattr(mesh, column)), slice_count(mesh)
     if slices == 1:
         return values, mesh.in_contact
     each, touching = by_pair(values, slices), by_pair(mesh.in_contact, slices)
     if column in SUMMED:
-        return np.nansum(each, axis=2), touching.any(axis=2)
+        return np.nansum(each, axis=2), np.asarray(touching.any(axis=2))
     middle = slices // 2
     return each[:, :, middle], touching[:, :, middle]
 

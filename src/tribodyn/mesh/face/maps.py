@@ -23,11 +23,7 @@ class FaceMap(NamedTuple):
 
 
 def face_map(mesh: MeshColumns, column: str, points: int = 101) -> FaceMap:
-    """Values of a column over path and face, from the passage of a tooth pair.
-
-    Each slice meets every place of the path once while the pair passes; values between the phases
-    of the table are interpolated linearly. Of whole pairs, as of spur gears, the face has one row.
-    """
+    """Values of a column over path and face, which every slice of a tooth pair passes once."""
     values, slices = getattr(mesh, column, None), slice_count(mesh)
     if not isinstance(values, np.ndarray) or values.shape != mesh.path.shape:
         what = f'the mesh table has no column "{column}" over its contacts'
@@ -53,8 +49,5 @@ def face_load(mesh: MeshColumns) -> Array:
 
 
 def face_load_factor(mesh: MeshColumns) -> float | None:
-    """Greatest over mean load per face width, each over the mesh cycle; None of whole pairs.
-
-    Source: ISO 6336-1, K_H_beta, its definition.
-    """
+    """Greatest over mean load per width, each over the mesh cycle: K_H_beta after ISO 6336-1."""
     return None if mesh.face_position is None else float(face_load(mesh).max())

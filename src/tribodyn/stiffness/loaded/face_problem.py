@@ -46,10 +46,7 @@ def sliced_problem(
     *,
     teeth_alike: bool = False,
 ) -> ContactProblem:
-    """Loaded tooth contact of all slices, which share the approach of the gears.
-
-    Between A and E alone: tip corners that would touch beyond the path are left out.
-    """
+    """Loaded tooth contact of all slices between A and E, without tip corners beyond the path."""
     places = face_places(contacts)
     parts = face_compliance(pair, material, contacts, places, total_force, model, options)
     gaps = slice_gaps(places, contacts.face_position[None], teeth_alike=teeth_alike)
@@ -85,12 +82,9 @@ def thin_slices(
 
 
 def local_of_slices(material: Material, places: ContactPlaces) -> tuple[Array, float]:
-    """Local compression of each slice along the transverse line of action.
-
-    The compression along the normal is that of a line contact under the load per length of the
-    line, which equals the transverse load per face width; along the line of action it is larger
-    by ``1/cos(beta_b)``.
-    """
+    """Local compression of each slice along the transverse line of action."""
+    # Along the normal it is that of a line contact under the load per length of the line, which
+    # equals the transverse load per face width; along the line of action 1/cos(beta_b) of that.
     cosine = math.cos(places.contact.pair.base_helix_angle)
     local, logarithm = local_coefficients(material, places)
     # Across the line the flanks are less curved and the teeth thinner than in the transverse plane.

@@ -13,10 +13,12 @@ from tribodyn.stiffness.model import StiffnessModel
 
 def gear_influences(
     pair: SpurPair, material: Material, model: StiffnessModel, options: Mapping[str, Any]
-) -> list[Any]:
+) -> tuple[Any, Any]:
     """Structure of pinion and wheel by a model that knows it, the same under every load."""
     reference = {**model.options, **options}["reference"]
-    return [_influence(model.influence, gear, material, reference) for gear in pair.gears.values()]
+    gears = pair.gears.values()
+    pinion, wheel = (_influence(model.influence, gear, material, reference) for gear in gears)
+    return pinion, wheel
 
 
 def _influence(*arguments: Any) -> Any:

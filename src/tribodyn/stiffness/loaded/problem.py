@@ -128,10 +128,7 @@ def slice_widths(contact: PathOfContact, slices: int | None) -> Array:
 
 
 def slice_gaps(places: ContactPlaces, face_position: Array, *, teeth_alike: bool = False) -> Array:
-    """Gap of each pair in each slice, in the line-of-action measure.
-
-    The face positions have the shape (s, 1) where pairs have all slices, or (1, n).
-    """
+    """Gap of each pair in each slice (p, s, n); face positions (s, 1), or (1, n) of slices."""
     pair = places.contact.pair
     gaps = np.repeat(places.separation[:, None, :], face_position.shape[0], axis=1)
     if not pair.has_modification:
