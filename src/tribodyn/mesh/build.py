@@ -272,10 +272,8 @@ def loaded_mesh(
     loading: Array | None = None,
     progress: Progress = SILENT,
 ) -> LoadedMesh:
-    """Share the load at a speed and a torque of the pinion among the pairs; find their films.
-
-    ``loading`` is the force of all pairs at each knot over that of the torque alone.
-    """
+    """Share the load at a speed and a torque of the pinion among the pairs; find their films."""
+    # loading: the force of all pairs at each knot over that of the torque alone.
     pinion_speed, pinion_torque = operation
     require_positive("pinion_speed", pinion_speed, "rad/s")
     require_positive("pinion_torque", pinion_torque, "N*m")
@@ -290,10 +288,7 @@ def loaded_mesh(
 def teeth_under_load(
     pair: Gears, settings: ToothContact, torque: float, steps: int | None, loading: Array | None
 ) -> tuple[MeshCycle, Teeth]:
-    """Teeth under load over one mesh cycle, cached across speeds and oils.
-
-    The result is the same object for equal pair, tooth model, torque and number of steps.
-    """
+    """Teeth under load over one mesh cycle, the same object for equal arguments."""
     usual = _steps(pair, settings.stiffness_model)  # registers the models of others, too
     steps = steps or usual
     arguments = (pair, settings.teeth, torque, steps)

@@ -44,11 +44,9 @@ class MeshCycle:
 
     @cached_property
     def stiffness_length(self) -> Array | float:
-        """Length of each touching contact that a film over it is as stiff as [m].
-
-        The length of a slice of an inclined line is its width over ``cos(beta_b)``; along the
-        transverse line of action its stiffness is ``cos(beta_b)^2`` of that along the normal.
-        """
+        """Length of each touching contact, as far as the stiffness of its film goes [m]."""
+        # The line of a slice is 1/cos(beta_b) as long as the slice is wide; along the transverse
+        # line of action a film is cos(beta_b)^2 as stiff as along the normal.
         pair = self.contact.pair
         if self.slices is None:
             return pair.common_face_width

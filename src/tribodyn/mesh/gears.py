@@ -145,12 +145,10 @@ def axial_ratio(mesh: MeshColumns) -> float:
 
 
 def spatial_columns(mesh: MeshColumns) -> dict[str, Array]:
-    """Direction and friction (n, 12) of a mesh over the coordinates of both gears.
-
-    With the place ``r`` of the load from the axis of a gear, its force per transverse force is
-    ``n = s (0, 1, a)`` on the wheel and ``-n`` on the pinion, ``s = -1`` where the wheel drives,
-    and the moments are ``r x n``. Source: statics; ISO 21771, base helix angle.
-    """
+    """Direction and friction (n, 12) of a mesh over the coordinates of both gears."""
+    # With the place r of the load from the axis of a gear, its force per transverse force is
+    # n = s (0, 1, a) on the wheel and -n on the pinion, s = -1 where the wheel drives, and the
+    # moments are r x n.
     first, second, face = load_center(mesh)
     sense = 1.0 if mesh.driver == "pinion" else -1.0
     lean, zero = axial_ratio(mesh), np.zeros(face.size)
