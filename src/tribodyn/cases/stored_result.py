@@ -17,8 +17,8 @@ from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.machine.stored import MOTION, read_machine
 from tribodyn.study.pipeline.assembly import damping_of, system_of
 from tribodyn.study.pipeline.result import Result
-from tribodyn.study.pipeline.save import RESULT_FILES
-from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.save import MACHINE_FILES, RESULT_FILES
+from tribodyn.study.pipeline.summary_figures import in_order, is_figure
 
 if TYPE_CHECKING:
     import xarray
@@ -68,7 +68,7 @@ Give the directory that tribodyn run or Result.save wrote.
 
     folder = Path(directory)
     if (folder / MOTION).is_file():
-        return read_machine(folder, load_case)
+        return read_machine(folder, load_case, read_summary)
     summary = read_summary(folder)
     case = load_case(folder / "case.toml")
     mesh = MeshTable.load(folder / "mesh.nc")
@@ -119,7 +119,8 @@ def _compare(folder: Path, summary: Mapping[str, float], data: xarray.Dataset) -
 
 def read_summary(folder: Path) -> dict[str, float]:
     """Figures of a saved result, from a directory that holds all of its files."""
-    lacking = [name for name in RESULT_FILES[:-1] if not (folder / name).is_file()]
+    files = MACHINE_FILES if (folder / MOTION).is_file() else RESULT_FILES
+    lacking = [name for name in files[:-1] if not (folder / name).is_file()]
     if lacking:
         why = f"It holds no {lacking[0]}" if folder.is_dir() else "There is no such directory"
         raise InputError("this is no result", str(folder), why, _REMEDY)
@@ -133,12 +134,12 @@ def read_summary(folder: Path) -> dict[str, float]:
         figures = {name: float(value) for name, value in entries.items()}
         if wrong := [n for n, v in figures.items() if not np.isfinite(v)]:
             raise ValueError(f"It has {wrong[0]} = {figures[wrong[0]]}")
-        if unknown := [name for name in figures if name not in SUMMARY]:
+        if unknown := [name for name in figures if not is_figure(name)]:
             raise ValueError(f"It has a figure that this version does not know, {unknown[0]}")
     except (OSError, TypeError, ValueError, RecursionError) as error:
         remedy = "Compute the case again"
         raise InputError("cannot be read", str(place), str(error), remedy) from None
-    return {name: figures[name] for name in SUMMARY if name in figures}
+    return {name: figures[name] for name in in_order(figures)}
 
 
 def _friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:

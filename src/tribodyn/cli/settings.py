@@ -91,7 +91,7 @@ def changed_case(name_or_path: str, settings: Sequence[str]) -> Case:
     case = changed_any_case(name_or_path, settings)
     if isinstance(case, MachineCase):
         why = "This command computes one pair of gears"
-        remedy = "tribodyn run, check and modes take machines"
+        remedy = "Machines: tribodyn run, check, modes, sweep, run-up and compare"
         raise InputError("this is a machine of several shafts", name_or_path, why, remedy)
     return case
 

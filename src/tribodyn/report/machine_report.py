@@ -14,11 +14,10 @@ from tribodyn.drawing import report_of
 from tribodyn.errors import InputError
 from tribodyn.machine import machine_modes
 from tribodyn.model import Option
-from tribodyn.plot.theme.labels import engineering, readable
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.figure_blocks import Block, block_of_figure
 from tribodyn.report.html import embedded_figures, plotly_script, template, text_of
-from tribodyn.report.numbers import Number
+from tribodyn.report.numbers import Number, describe
 from tribodyn.report.provenance import operating_point, provenance, version
 from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
 from tribodyn.study.case.values import FaultError, read_value
@@ -30,11 +29,10 @@ from tribodyn.study.machine.modes import (
     structure_at_rest,
 )
 from tribodyn.study.machine.stored import HOUSING
-from tribodyn.study.machine.summary import figure_of
 from tribodyn.study.machine.tables import OperationTable
 from tribodyn.study.pipeline.save import write_file
+from tribodyn.study.pipeline.summary_figures import by_topic
 from tribodyn.study.pipeline.summary_labels import in_words
-from tribodyn.units import convert
 
 if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
@@ -61,17 +59,8 @@ _MOST_CARDS = 12
 
 
 def _number(key: str, value: float, digits: int = 5) -> Number:
-    figure = figure_of(key)
-    shown = convert(float(value), figure.unit, figure.display_unit)
-    return Number(
-        key,
-        in_words(key.rpartition(".")[2]),
-        *engineering(shown, readable(figure.display_unit), digits),
-        f"{value:.6g}",
-        readable(figure.unit),
-        figure.meaning,
-        figure.topic,
-    )
+    """A figure of a part, under the heading of the part."""
+    return replace(describe(key, value, digits), label=in_words(key.rpartition(".")[2]))
 
 
 def _cards(summary: dict[str, float]) -> list[Number]:
@@ -84,9 +73,7 @@ def _cards(summary: dict[str, float]) -> list[Number]:
     cards = []
     for key in keys[:_MOST_CARDS]:
         card = _number(key, summary[key], 4)
-        part = key.split(".")[1] if key.startswith("meshes.") else ""
-        label = f"{card.label}, mesh {part}" if part else card.label
-        cards.append(Number(**{**vars(card), "label": label}))
+        cards.append(replace(card, label=in_words(key)) if key.startswith("meshes.") else card)
     return cards
 
 
@@ -114,17 +101,13 @@ def render_machine_report(result: MachineResult) -> str:
         HTML with embedded scripts, styles and data. User texts are escaped.
     """
     summary, blocks = result.summary(), _blocks(result)
-    rows_by_topic: dict[str, list[Number]] = {}
-    for key, value in summary.items():
-        row = _number(key, value)
-        rows_by_topic.setdefault(row.topic, []).append(row)
     return str(
         template("template.html.j2").render(
             title=result.case.title,
             version=version(),
             operating_point=operating_point(result.case),
             cards=_cards(summary),
-            rows=[row for part in rows_by_topic.values() for row in part],
+            rows=[_number(k, summary[k]) for keys in by_topic(summary).values() for k in keys],
             modes=mode_rows(result.modes),
             modes_head=MODES_HEAD,
             modes_text="About the static load, at the speed of the case, with the mean stiffness "

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tribodyn.plot.theme.labels import display_unit, displayed, engineering, readable, significant
-from tribodyn.study.pipeline.summary import SUMMARY, by_topic
+from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
 from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.study.studies.modes import ORDERS, Mode, mode_rows
 from tribodyn.units import convert
@@ -50,7 +50,7 @@ class Number:
 
 def describe(name: str, value: float, digits: int = 5) -> Number:
     """Format a summary figure with label, units and meaning."""
-    figure = SUMMARY[name]
+    figure = figure_of(name)
     value_in_unit = convert(float(value), figure.unit, figure.display_unit)
     return Number(
         name,

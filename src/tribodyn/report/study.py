@@ -18,7 +18,7 @@ from tribodyn.report.provenance import operating_point, provenance, version
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.save import write_file
-from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.pipeline.summary_labels import in_words
 
 if TYPE_CHECKING:
@@ -75,7 +75,6 @@ def write_sweep_report(sweep: Sweep, path: str | os.PathLike[str]) -> Path:
 def _sweep_page(sweep: Sweep) -> _Page:
     """Figures, cards, warnings and table of a sweep."""
     names = sweep.displayed_figures()
-    caption = plot.sweep.caption_of(sweep)
     failed = [point for point in sweep.points if point.failed]
     notices = list(dict.fromkeys(point.failed for point in failed))
     if not sweep.complete:
@@ -86,10 +85,7 @@ def _sweep_page(sweep: Sweep) -> _Page:
     return _Page(
         kind="sweep",
         lead=repr(sweep)[6:-1],
-        blocks=[
-            block_of_figure(n, in_words(n), sweep.plot(n), caption if n == names[0] else "")
-            for n in names
-        ],
+        blocks=_sweep_blocks(sweep, names),
         varied=[axis.key for axis in sweep.axes],
         notice_heading="Warnings",
         cards=[("Values", f"{len(sweep.points)}"), ("Failed", f"{len(failed)}")],
@@ -100,16 +96,28 @@ def _sweep_page(sweep: Sweep) -> _Page:
     )
 
 
+def _sweep_blocks(sweep: Sweep, names: Sequence[str]) -> list[Block]:
+    """Figures of a sweep: the levels of all parts of a machine in one, others one by one."""
+    if not plot.machine_sweep.missing(sweep):
+        figure, text = plot.machine_sweep, plot.machine_sweep.caption_of(sweep)
+        return [block_of_figure(figure.name, figure.heading, figure.sketch(sweep), text)]
+    caption = plot.sweep.caption_of(sweep)
+    return [
+        block_of_figure(n, in_words(n), sweep.plot(n), caption if n == names[0] else "")
+        for n in names
+    ]
+
+
 def _sweep_table(sweep: Sweep, names: Sequence[str]) -> tuple[list[str], list[list[str]]]:
     """Head and first rows of the table of a sweep: axis values, results and failures."""
     head = [_headed(axis.name, axis.display_unit) for axis in sweep.axes]
-    head += [_headed(in_words(name), SUMMARY[name].display_unit) for name in names]
+    head += [_headed(in_words(name), figure_of(name).display_unit) for name in names]
     rows = []
     for point in sweep.points[:_ROWS]:
         keys = zip(sweep.axes, point.values, strict=True)
         cells = [axis.show(value).partition(" ")[0] for axis, value in keys]
         results = [
-            SUMMARY[n].show(point.figures[n]).partition(" ")[0] if n in point.figures else ""
+            figure_of(n).show(point.figures[n]).partition(" ")[0] if n in point.figures else ""
             for n in names
         ]
         rows.append([*cells, *results, point.failed])

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from tribodyn import plot
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study import write_bifurcation_report, write_study_report
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine_studies.levels import MachineLevels
     from tribodyn.study.studies.bifurcation import Findings
 
 #: Rows of the table of a run-up.
@@ -175,14 +178,21 @@ def relief_report_data(case: Case, torque: Sequence[Any] | None, gears: str) -> 
 
 
 def run_up_report_data(
-    case: Case, ends: Any, duration: float, down: bool = False, progress: Progress = SILENT
+    case: Case | MachineCase,
+    ends: Any,
+    duration: float,
+    down: bool = False,
+    progress: Progress = SILENT,
 ) -> StudyReportData:
     """Vibration levels over the speed of a run-up."""
     from tribodyn.analysis import overall_level
+    from tribodyn.study.machine_studies.levels import MachineLevels
     from tribodyn.study.studies.run_up import run_up
     from tribodyn.units import convert
 
     run = run_up(case, ends, duration, down=down, progress=progress)
+    if isinstance(run, MachineLevels):
+        return _levels_report_data(run)
     level = overall_level(run, "contact_force")
     picked = range(0, level.rms.size, max(1, level.rms.size // _ROWS))
     rpm = convert(1.0, "rad/s", "rpm") * level.speed
@@ -191,6 +201,38 @@ def run_up_report_data(
     facts = {"speed": level.speed.tolist(), "rms_mesh_force": level.rms.tolist()}
     head = ["Speed [rpm]", "Mesh force, rms [N]"]
     return StudyReportData(run, figures, [f"{_title(figures[0])}."], head, rows, facts)
+
+
+def _levels_report_data(run: MachineLevels) -> StudyReportData:
+    """Levels of a machine over the speed, and the harmonics of meshes behind them."""
+    from tribodyn.units import convert
+
+    rpm = convert(1.0, "rad/s", "rpm") * run.speed
+    figures = [
+        figure_with_caption(each, run) for each in (plot.machine_levels, plot.machine_level_lines)
+    ]
+    head = ["Speed [rpm]", *(f"Mesh force of {name}, rms [N]" for name in run.mesh)]
+    head += [f"Housing at {name}, rms [m/s^2]" for name in run.node]
+    columns = np.hstack((run.mesh_force, run.acceleration))
+    rows = [
+        [f"{rpm[k]:.5g}", *(f"{value:.4g}" for value in columns[k])]
+        for k in range(0, rpm.size, max(1, rpm.size // _ROWS))
+    ]
+    met = [
+        f"{each.mesh} x {each.harmonic} meets mode {each.mode} ({each.frequency:.5g} Hz) at "
+        f"{convert(each.speed, 'rad/s', 'rpm'):.5g} rpm"
+        for each in run.resonances
+    ]
+    statements = [f"{_title(picture)}." for picture in figures]
+    statements += [f"{'; '.join(met)}."] if met else []
+    facts = {
+        "speed": run.speed.tolist(),
+        "rms_mesh_force": dict(zip(run.mesh, run.mesh_force.T.tolist(), strict=True)),
+        "rms_radial_force": dict(zip(run.bearing, run.bearing_force.T.tolist(), strict=True)),
+        "rms_acceleration": dict(zip(run.node, run.acceleration.T.tolist(), strict=True)),
+        "resonances": [each._asdict() for each in run.resonances],
+    }
+    return StudyReportData(run, figures, statements, head, rows, facts)
 
 
 def losses_report_data(
@@ -245,8 +287,6 @@ def film_report_data(
     case: Case, torque: Any = None, speed: Any = None, progress: Progress = SILENT
 ) -> StudyReportData:
     """Minimum film and lubrication regime over torque and speed."""
-    import numpy as np
-
     from tribodyn.study.studies.losses import STEPS
     from tribodyn.study.studies.static import film_over_operation
     from tribodyn.units import convert

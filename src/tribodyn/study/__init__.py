@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.modes import MachineCampbell
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult, MachineResult
+    from tribodyn.study.machine_studies.levels import MachineLevels
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
@@ -50,6 +51,7 @@ __all__ = [
     "LoadResult",
     "MachineCampbell",
     "MachineCase",
+    "MachineLevels",
     "MachineMotion",
     "MachineResult",
     "Result",
@@ -92,6 +94,7 @@ _NAMES = {
     "machine.modes": "MachineCampbell",
     "machine.motion": "MachineMotion",
     "machine.result": "LoadResult MachineResult",
+    "machine_studies.levels": "MachineLevels",
     "pipeline.result": "Result",
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",

@@ -11,7 +11,7 @@ import numpy as np
 from tribodyn.errors import Argument, InputError, shortened
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.pipeline.result import Result
-from tribodyn.study.pipeline.summary import SUMMARY, by_topic
+from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
 
 #: Relative difference below which figures count as equal.
 _TOLERANCE = 1e-9
@@ -56,7 +56,7 @@ def difference_rows(
     for topic, names in by_topic(figures).items():
         yield [topic, *("" for _ in next(iter(figures.values()))), ""]
         for name in names:
-            cells = ["-" if v is None else SUMMARY[name].show(v) for v in figures[name]]
+            cells = ["-" if v is None else figure_of(name).show(v) for v in figures[name]]
             yield [f"  {name}", *cells, relative_change(figures[name][0], figures[name][-1])]
 
 
@@ -85,7 +85,8 @@ class ResultComparison(Record):
         parts = Parts({}, {"result": (("result",), list(self.names), {})}, {})
         for name, row in self.figures.items():
             numbers = [np.nan if value is None else value for value in row]
-            attributes = {"units": SUMMARY[name].unit or "1", "long_name": SUMMARY[name].meaning}
+            figure = figure_of(name)
+            attributes = {"units": figure.unit or "1", "long_name": figure.meaning}
             parts.variables[name] = (("result",), numbers, attributes)
         return parts
 

@@ -161,8 +161,8 @@ def test_every_key_of_the_summary_has_a_meaning_and_a_unit(result):
 
 
 def test_commands_for_pairs_name_those_for_machines(capsys):
-    assert command("sweep", "two-stage-spur", "operation.speed=1000..2000 rpm:3") == 2
-    assert "tribodyn run, check and modes take machines" in capsys.readouterr().err
+    assert command("harris", "two-stage-spur") == 2
+    assert "Machines: tribodyn run, check, modes, sweep" in capsys.readouterr().err
 
 
 def test_check_shows_speeds_and_torques(capsys):

@@ -45,7 +45,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     from tribodyn.study.pipeline.cautions import case_cautions
     from tribodyn.study.pipeline.preview import operating_figures
     from tribodyn.study.pipeline.run import rehearse
-    from tribodyn.study.pipeline.summary import summary_rows
+    from tribodyn.study.pipeline.summary_figures import summary_rows
 
     ready = changed_any_case(case, set_ or [])
     if isinstance(ready, MachineCase):
@@ -73,7 +73,7 @@ def _check_machine(case: MachineCase, json: bool) -> None:
         rehearse_machine,
         warn_of_period,
     )
-    from tribodyn.study.machine.summary import summary_rows
+    from tribodyn.study.pipeline.summary_figures import summary_rows
 
     with collected() as warnings:
         rehearse_machine(case)

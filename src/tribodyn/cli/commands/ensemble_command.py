@@ -52,8 +52,8 @@ def ensemble(
     from tribodyn.plot.signals.bands import banded
     from tribodyn.report.figure_blocks import sections_of
     from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
-    from tribodyn.study import SUMMARY
     from tribodyn.study import ensemble as compute
+    from tribodyn.study.pipeline.summary_figures import figure_of
     from tribodyn.uncertainty import bootstrap_band
 
     ready, target = prepare_study("ensemble", case, out, set_, force)
@@ -73,7 +73,7 @@ def ensemble(
         names = ("middle", "low", "high", "mean_low", "mean_high")
         facts[name] = dict(zip(names, map(float, ends), strict=True))
         if high > low:
-            rows.append([name, *(SUMMARY[name].show(float(end)) for end in ends)])
+            rows.append([name, *(figure_of(name).show(float(end)) for end in ends)])
     statements = [f"{len(result.value)} variants over {', '.join(map(str, result.input))}"]
     statements += [f"{key} = {text}" for key, text in ready.uncertain.items()]
     figures = [figure_with_caption(spread, result)]

@@ -189,7 +189,9 @@ def run_up(
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.study_report_data import run_up_report_data
 
-    ready, target = prepare_study("run-up", case, out, set_, force)
+    target = out if out is not None else Path(f"{Path(case).stem}-run-up")
+    ready = changed_any_case(case, set_ or [])
+    check_place(target, force)
     with progress_bar() as progress:
         answer = run_up_report_data(ready, read_ends(between), duration, down, progress)
     finish("run-up", ready, target, answer, force, json)

@@ -12,7 +12,7 @@ from tribodyn.cli.settings import (
     Flag,
     Force,
     Settings,
-    changed_case,
+    changed_any_case,
     check_place,
     read_ranges,
 )
@@ -54,7 +54,7 @@ def sweep(
     """
     target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)
-    ready = changed_case(case, set_ or [])
+    ready = changed_any_case(case, set_ or [])
     names = _summary_names(show)
 
     def compute(**checkpointing: Any) -> Sweep:
@@ -108,17 +108,18 @@ def _summary_names(show: str) -> list[str]:
     """Return the requested summary figures; refuse unknown ones before anything is computed."""
     from tribodyn.errors import InputError, did_you_mean
     from tribodyn.study.pipeline.summary import SUMMARY
+    from tribodyn.study.pipeline.summary_figures import is_figure
 
     names = [name.strip() for name in show.split(",") if name.strip()]
     for name in names:
-        if name not in SUMMARY:
+        if not is_figure(name):
             remedy = did_you_mean(name, SUMMARY, "See: tribodyn check and run")
             raise InputError(f'there is no figure "{name}"', "--show", "", remedy)
     return names
 
 
 def _show(result: Sweep, names: Sequence[str], as_json: bool) -> None:
-    from tribodyn.study.pipeline.summary import SUMMARY
+    from tribodyn.study.pipeline.summary_figures import figure_of
 
     if as_json:
         units = {axis.key: axis.unit for axis in result.axes}
@@ -127,6 +128,8 @@ def _show(result: Sweep, names: Sequence[str], as_json: bool) -> None:
     rows: list[list[str]] = [[*(axis.name for axis in result.axes), *names, ""]]
     for point in result.points:
         keys: list[Any] = [a.show(v) for a, v in zip(result.axes, point.values, strict=True)]
-        figures = [SUMMARY[n].show(point.figures[n]) if n in point.figures else "-" for n in names]
+        figures = [
+            figure_of(n).show(point.figures[n]) if n in point.figures else "-" for n in names
+        ]
         rows.append([*keys, *figures, f"failed: {point.failed}" if point.failed else ""])
     say(f"{result.case.title}\n{table(rows)}")

@@ -11,7 +11,7 @@ from tribodyn.drawing import drawing
 from tribodyn.plot.theme.labels import axis_label, displayed, engineering, readable, rounded
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, marked
-from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.pipeline.summary_labels import in_a_sentence, in_words
 from tribodyn.units import convert
 
@@ -144,12 +144,13 @@ def _key_label(name: str) -> str:
     return label[:1].upper() + label[1:]
 
 
-def _axis_text(axis: Axis) -> str:
+def axis_text(axis: Axis) -> str:
+    """Label of an axis with its unit."""
     unit = readable(axis.display_unit)
     return f"{_key_label(axis.name)} [{unit}]" if unit else _key_label(axis.name)
 
 
-def _value_text(axis: Axis, value: Any) -> str:
+def value_text(axis: Axis, value: Any) -> str:
     """Format a value of an axis for a title or a legend."""
     number, _, unit = axis.show(value).partition(" ")
     if not axis.numeric:
@@ -159,7 +160,7 @@ def _value_text(axis: Axis, value: Any) -> str:
 
 def _values(study: Sweep, name: str) -> tuple[Any, str]:
     """Return a summary figure in its display unit, and that unit."""
-    quantity = SUMMARY[name]
+    quantity = figure_of(name)
     factor = convert(1.0, quantity.unit, quantity.display_unit) if quantity.unit else 1.0
     return study[name] * factor, readable(quantity.display_unit)
 
@@ -170,7 +171,7 @@ def _case_title(study: Sweep, name: str, values: Any, unit: str) -> str:
         return f"No run has this result; {failed} failed"
     place = np.unravel_index(int(np.nanargmax(values)), values.shape)
     where = ", ".join(
-        _value_text(axis, axis.values[at]) for axis, at in zip(study.axes, place, strict=True)
+        value_text(axis, axis.values[at]) for axis, at in zip(study.axes, place, strict=True)
     )
     lost = f"; {failed} of {values.size} failed" if failed else ""
     greatest = " ".join(engineering(float(np.nanmax(values)), unit, 4)).rstrip()
@@ -203,7 +204,7 @@ def _case_curves(study: Sweep, values: Any, unit: str) -> list[Trace]:
     others = list(product(*(range(len(axis.values)) for axis in study.axes[1:])))
     for number, place in enumerate(others):
         pairs = zip(study.axes[1:], place, strict=True)
-        name = ", ".join(_value_text(axis, axis.values[at]) for axis, at in pairs) or "figure"
+        name = ", ".join(value_text(axis, axis.values[at]) for axis, at in pairs) or "figure"
         column: Any = (slice(None), *place)
         color = _COLORS[number % len(_COLORS)]
         traces += _marked(x, values[column], study.failed[column], name, color, unit)
@@ -229,8 +230,8 @@ def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
         {
             "height": 460,
             "hovermode": "closest",
-            "xaxis": {"title": {"text": _axis_text(first)}},
-            "yaxis": {"title": {"text": _axis_text(second)}},
+            "xaxis": {"title": {"text": axis_text(first)}},
+            "yaxis": {"title": {"text": axis_text(second)}},
         },
     )
 
@@ -266,7 +267,7 @@ def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Any:
     if curves > _CURVES and values.ndim == 2 and all(axis.numeric for axis in study.axes):
         return _map(study, values, label, unit, title)
     panel = Panel(label, _case_curves(study, values, unit), height=1.6)
-    sketch = stack(title, _axis_text(study.axes[0]), [panel])
+    sketch = stack(title, axis_text(study.axes[0]), [panel])
     varied = ", ".join(_key_label(axis.name) for axis in study.axes[1:])
     sketch.layout["legend"] |= {"title": {"text": varied, "font": {"size": 13}}}
     return sketch

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from copy import copy
 from functools import cached_property
 from inspect import Signature
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem
@@ -43,6 +43,9 @@ from tribodyn.study.case.values import (
     with_typed_keys,
 )
 from tribodyn.study.case.write import case_rows, case_table, case_toml
+
+if TYPE_CHECKING:
+    from tribodyn.model import Option
 
 #: Attributes derived from the tables, which are not pickled.
 _DERIVED = {
@@ -227,6 +230,21 @@ class Case(CaseData, case=True):
             if value in spec.names():
                 chosen[key] = value
         return chosen
+
+    def option_of(self, key: str) -> Option | None:
+        """Unit and range of a key.
+
+        Parameters
+        ----------
+        key : str
+            Dotted, such as ``"operation.torque"``.
+
+        Returns
+        -------
+        Option or None
+            None where the case has no such key.
+        """
+        return spec_of(self, key)
 
     def to_toml(self) -> str:
         """Write the complete commented case file; it reads back to an equal case.

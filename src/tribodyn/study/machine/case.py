@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from copy import copy, deepcopy
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.machine import Bearing, Gear, Housing, Machine, Mesh, Operation, Shaft
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
-from tribodyn.study.case.user_input import Source, unsound
+from tribodyn.study.case.user_input import Source, spread_problem, unsound, without_spread
 from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.pair_cases import (
@@ -23,6 +23,7 @@ from tribodyn.study.machine.pair_cases import (
     SHARED,
     helical_problem,
     mesh_tables,
+    option_of,
     pair_case,
 )
 from tribodyn.study.machine.read_parts import (
@@ -46,9 +47,15 @@ from tribodyn.study.machine.tables import (
 )
 from tribodyn.study.machine.user_tables import (
     changed_tables,
+    default_assumptions,
+    machine_toml,
     stated_assumptions,
+    user_values,
+    with_spreads,
 )
-from tribodyn.study.machine.write import machine_toml
+
+if TYPE_CHECKING:
+    from tribodyn.model import Option
 
 _GROUPS = ("shafts", "bearings", "gears", "meshes")
 _TOP = (
@@ -129,8 +136,9 @@ class MachineCase:
         if unreadable := list(unsound(data)):
             raise InputError(origin.place(unreadable))
         self.source = source
-        self.data: dict[str, Any] = deepcopy(data) if source is not None else in_si(data)
-        problems: KeyedProblems = []
+        tables = deepcopy(data) if source is not None else in_si(data)
+        self.uncertain: dict[str, str]  #: spread of values by key, such as ``"4e8 N/m +- 10 %"``
+        self.data, self.uncertain, problems = without_spread(tables)
         unknown_keys("", data, _TOP, problems)
         self.title: str = str(data.get("title", "Machine"))
         self.origin: str | None = data.get("origin")
@@ -161,6 +169,7 @@ class MachineCase:
                 self.pair(name, self.operating_point)
         except InputError as error:
             raise InputError(self._placed(error)) from None
+        self._check_spreads(origin)
 
     def _add_shafts(self, shafts: dict[str, Any]) -> None:
         """A shaft that only its gears name is a rigid one."""
@@ -254,6 +263,20 @@ class MachineCase:
         if problems:
             raise InputError((self.source or Source()).place(problems))
 
+    def _check_spreads(self, origin: Source) -> None:
+        """Refuse spreads beyond the range of their key, and of keys that have no number."""
+        problems: KeyedProblems = []
+        for key, text in self.uncertain.items():
+            option = self.option_of(key)
+            problem = None if option is None else spread_problem(option, key, text)
+            if option is None or option.kind not in ("number", "integer"):
+                what, why = f"{key} = {text}", "Only numbers of the machine have a spread"
+                problem = Problem(what, "", why, "Give one value")
+            if problem is not None:
+                problems.append((key, problem))
+        if problems:
+            raise InputError(origin.place(problems))
+
     def _placed(self, error: InputError) -> list[Problem]:
         """Problems of a machine with the lines of its parts."""
         source = self.source or Source()
@@ -271,25 +294,32 @@ class MachineCase:
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
         """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
-        texts = {
-            f"shafts.{n}": ("rigid", "a shaft without sections")
-            for n, shaft in self.shafts.items()
-            if shaft.is_rigid
-        }
-        texts |= {
-            f"bearings.{n}": ("1e9 N/m", "a bearing without stiffness or type is stiff")
-            for n, bearing in self.bearings.items()
-            if bearing.is_default
-        }
-        texts |= {
-            f"bearings.{name}.{key}": (value, why)
-            for name, bearing in self.bearings.items()
-            for key, value, why in _estimates(getattr(bearing.rolling, "assumptions", ()))
-        }
-        if self.housing is None:
-            texts["housing"] = ("rigid", "without [housing]")
-        defaults = (Assumption(k, value, "default", why) for k, (value, why) in texts.items())
-        return (*stated_assumptions(self.data), *defaults)
+        return (*stated_assumptions(self.data), *default_assumptions(self))
+
+    def values(self) -> Iterator[tuple[str, Any]]:
+        """Iterate over the values of the case file.
+
+        Yields
+        ------
+        tuple of str and object
+            Dotted key and value in SI; texts as they are, of files their names.
+        """
+        return user_values(self)
+
+    def option_of(self, key: str) -> Option | None:
+        """Unit and range of a key.
+
+        Parameters
+        ----------
+        key : str
+            Dotted, such as ``"bearings.A.radial_stiffness"``.
+
+        Returns
+        -------
+        Option or None
+            None where the machine has no such key.
+        """
+        return option_of(self, key)
 
     @property
     def meshes(self) -> tuple[str, ...]:
@@ -411,7 +441,8 @@ class MachineCase:
             As for a case file.
         """
         source = (self.source or Source()).with_replaced(changes, by or "replace:")
-        return MachineCase(source, **changed_tables(self.data, changes, by=by))
+        tables = with_spreads(self.data, self.uncertain)
+        return MachineCase(source, **changed_tables(tables, changes, by=by))
 
     @property
     def housing_files(self) -> dict[str, str]:
@@ -442,7 +473,7 @@ class MachineCase:
 
     def to_toml(self) -> str:
         """Write the case file; it reads back to an equal case."""
-        return machine_toml(self.data)
+        return machine_toml(with_spreads(self.data, self.uncertain))
 
     def __repr__(self) -> str:
         """One line."""
@@ -450,14 +481,6 @@ class MachineCase:
         parts = repr(self.machine()).removeprefix("Machine(").removesuffix(")")
         loads = f", {count} load case{'s' * (count != 1)}" if count else ""
         return f'MachineCase("{self.title}": {parts}{loads})'
-
-
-def _estimates(texts: Iterable[str]) -> Iterator[tuple[str, str, str]]:
-    """Key, value and reason of estimates such as ``balls = 8, estimated: usual filling``."""
-    for text in texts:
-        key, _, value_and_reason = text.partition(" = ")
-        value, _, why = value_and_reason.partition(", ")
-        yield key, value, why
 
 
 def _constant_law(law: Any) -> dict[str, Any]:

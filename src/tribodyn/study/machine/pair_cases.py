@@ -4,15 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import Problem
+from tribodyn.errors import Problem, did_you_mean
+from tribodyn.machine import ROLLING_BEARINGS
 from tribodyn.study.case import gears
 from tribodyn.study.case.case import Case
+from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.sections import Dynamics
 from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.case.values import Plain
+from tribodyn.study.machine.read_parts import rolling_options
+from tribodyn.study.machine.tables import TABLES, MeshDynamics
+
+if TYPE_CHECKING:
+    from tribodyn.model import Option
+    from tribodyn.study.machine.case import MachineCase
 
 #: Tables of models that hold for all meshes, and that a mesh may have for itself.
 SHARED = ("material", "lubricant", "film", "stiffness", "friction")
@@ -118,3 +126,62 @@ def helical_problem(body: Mapping[str, Any], ring: str | None) -> Problem | None
     why = "The tooth contact of external spur gears is computed; other teeth need their stiffness"
     remedy = 'Give the mesh its stiffness along the line of action: stiffness = "5e8 N/m"'
     return Problem(what, "", why, remedy)
+
+
+def option_of(case: MachineCase, key: str) -> Option | None:
+    """Option of a dotted key of a machine: of a part, or of the models of its teeth."""
+    if "." not in key:
+        return None
+    group, *names, name = key.split(".")
+    table = _table(case.data, [group, *names])
+    rolling = table.get("type") if group == "bearings" and table is not None else None
+    options = rolling_options(ROLLING_BEARINGS[rolling]) if rolling in ROLLING_BEARINGS else {}
+    if name in options:
+        return options[name]
+    part, of_parts = TABLES.get(group), group in ("shafts", "bearings", "gears", "meshes")
+    if of_parts and table is None:
+        return None
+    if part is not None and len(names) == of_parts:
+        option = part.spec(name) or (MeshDynamics.spec(name) if group == "meshes" else None)
+        if option is not None:
+            return option
+    pair_key = _pair_key(case, group, names, name)
+    return spec_of(*pair_key) if pair_key else None
+
+
+def unknown_key(case: MachineCase, key: str) -> Problem:
+    """Problem of a key that a machine does not have, with the nearest one that it has."""
+    keys = [
+        f"{group}.{part}.{name}"
+        for group in ("shafts", "bearings", "gears", "meshes")
+        for part in case.data.get(group, {})
+        for name in TABLES[group].fields
+    ]
+    keys += [f"operation.{name}" for name in TABLES["operation"].fields]
+    keys += [name for name, _ in case.values()]
+    what, why = f'there is no key "{key}"', "Keys of a machine name the part and its value"
+    remedy = 'Write, for example, "bearings.A.radial_stiffness" or "operation.speed"'
+    return Problem(what, "", why, did_you_mean(key, list(dict.fromkeys(keys)), remedy))
+
+
+def _table(data: Mapping[str, Any], path: list[str]) -> Mapping[str, Any] | None:
+    """Table at a path; None where it is not given."""
+    value: Any = data
+    for name in path:
+        value = value.get(name) if isinstance(value, Mapping) else None
+    return value if isinstance(value, Mapping) else None
+
+
+def _pair_key(
+    case: MachineCase, group: str, names: list[str], name: str
+) -> tuple[Case, str] | None:
+    """Pair of gears that has a value of the machine, and its key there."""
+    for mesh in case.meshes_with_teeth:
+        pair, gears = case.pair(mesh, case.operating_point), case.data["meshes"][mesh]["gears"]
+        if group in (*SHARED, "dynamics"):
+            return pair, ".".join((group, *names, name))
+        if group == "meshes" and names[:1] == [mesh]:
+            return pair, ".".join([*(names[1:] or ["dynamics"]), name])
+        if group == "gears" and names and names[0] in gears:
+            return pair, ".".join(("gears", _ROLES[gears.index(names[0])], *names[1:], name))
+    return None

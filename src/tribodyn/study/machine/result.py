@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.drawing import draw, write_report_of
 from tribodyn.record import html_table
-from tribodyn.study.machine.summary import summary_of, summary_rows
+from tribodyn.study.machine.summary import summary_of
 from tribodyn.study.pipeline.save import new_directory
+from tribodyn.study.pipeline.summary_figures import summary_rows
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
@@ -27,16 +28,18 @@ if TYPE_CHECKING:
 
 
 #: Steps per cycle of the fastest mesh.
-_STEPS = 128
+STEPS = 128
 
 
 def steady_motion(
     structure: MachineStructure, system: System, start: Response | None = None
 ) -> Response:
-    """Motion of a machine over one period of its clock."""
+    """Motion of a machine over one period of its clock; a start fits if its coordinates do."""
     from tribodyn.dynamics import harmonic_balance
 
-    return harmonic_balance(system, structure.machine.clock.frequency, steps=_STEPS, start=start)
+    if start is not None and start.names != tuple(system.names):
+        start = None
+    return harmonic_balance(system, structure.machine.clock.frequency, steps=STEPS, start=start)
 
 
 @dataclass(frozen=True, eq=False)

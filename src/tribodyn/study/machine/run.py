@@ -68,7 +68,7 @@ def run_machine(
         warn_of_period(case.machine())
         of_meshes: list[MeshWarning] = []
         points = (case.operating_point, *case.load_cases)
-        results = [_under_load(case, load, progress, of_meshes) for load in points]
+        results = [run_load(case, load, progress, of_meshes) for load in points]
         warn_of_meshes(of_meshes)
     unique = {str(warning): warning for warning in caught}
     for warning in unique.values():
@@ -76,15 +76,20 @@ def run_machine(
     return MachineResult(case, results[0], tuple(results[1:]), tuple(unique.values()))
 
 
-def _under_load(
-    case: MachineCase, load: LoadCase, progress: Progress, of_meshes: list[MeshWarning]
+def run_load(
+    case: MachineCase,
+    load: LoadCase,
+    progress: Progress,
+    of_meshes: list[MeshWarning],
+    start: Response | None = None,
 ) -> LoadResult:
+    """Compute a machine under one load; its motion is searched from that of a similar one."""
     balanced = balanced_machine(case, load, progress)
     of_meshes += balanced.warnings
     progress.start(f"Motion: {load.name}")
     structure = structure_of(case, balanced.static.linearized())
     system = system_of(structure)
-    response = steady_motion(structure, system)
+    response = steady_motion(structure, system, start)
     progress.finish()
     motion = machine_motion(structure, response)
     return LoadResult(load, structure, *balanced[:3], system, motion, response)

@@ -51,7 +51,11 @@ def write_machine(result: MachineResult, place: Path) -> None:
         write_dataset(stored, place / _motion_file(number))
 
 
-def read_machine(folder: Path, load_case: Callable[[Path], Any]) -> MachineResult:
+def read_machine(
+    folder: Path,
+    load_case: Callable[[Path], Any],
+    read_summary: Callable[[Path], dict[str, float]],
+) -> MachineResult:
     """Read the result of a machine; its matrices are assembled again, its motion is stored."""
     from threadpoolctl import threadpool_limits
 
@@ -59,7 +63,7 @@ def read_machine(folder: Path, load_case: Callable[[Path], Any]) -> MachineResul
     try:
         _check_files(folder, json.loads(data.attrs["files"]))
         case: MachineCase = load_case(folder / "case.toml")
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        summary = read_summary(folder)
         with collected(), threadpool_limits(1, "blas"):
             loads = [
                 _read_load(case, load, folder, number, summary)

@@ -220,11 +220,13 @@ class MotionTable(Section):
     )
 
 
-_TABLES: dict[str, type[Section]] = {
+#: Tables by group of parts.
+TABLES: dict[str, type[Section]] = {
     "shafts": ShaftTable,
     "bearings": BearingTable,
     "gears": GearTable,
     "meshes": MeshTable,
+    "housing": HousingTable,
     "operation": OperationTable,
     "load_cases": LoadCaseTable,
     "dynamics": MotionTable,
@@ -234,7 +236,7 @@ _TABLES: dict[str, type[Section]] = {
 def unit_of(path: tuple[str, ...]) -> str:
     """SI unit of the key of a machine at a path; empty for a pure number or a text."""
     *tables, name = path
-    kind: type[Section] | None = _TABLES.get(path[0])
+    kind: type[Section] | None = TABLES.get(path[0])
     if path[0] == "shafts" and name == "sections":
         return "m"
     if path[0] == "meshes" and len(tables) == 3:

@@ -16,7 +16,8 @@ from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.pipeline.computed import Computed
 from tribodyn.study.pipeline.response_series import parts_of, stored, to_csv
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.study.pipeline.summary import summarize, summary_rows
+from tribodyn.study.pipeline.summary import summarize
+from tribodyn.study.pipeline.summary_figures import summary_rows
 from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.validated_files import write_dataset
 

@@ -81,24 +81,6 @@ SUMMARY: dict[str, SummaryFigure] = _read()
 MEASURES: Registry[Measure] = Registry("summary figure", "tribodyn.summary")
 
 
-def by_topic(names: Iterable[str]) -> dict[str, list[str]]:
-    """Names of figures under their topics, both in the order of :data:`SUMMARY`."""
-    selected, topics = set(names), dict[str, list[str]]()
-    for name, figure in SUMMARY.items():
-        if name in selected:
-            topics.setdefault(figure.topic, []).append(name)
-    return topics
-
-
-def summary_rows(values: Mapping[str, float]) -> list[tuple[str, str, str, str]]:
-    """Topic, name, value with unit and meaning of each figure, by topic."""
-    return [
-        (topic, name, SUMMARY[name].show(values[name]), SUMMARY[name].meaning)
-        for topic, names in by_topic(values).items()
-        for name in names
-    ]
-
-
 def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measure], Measure]:
     """Decorate a function of a result to make it a figure of every summary.
 

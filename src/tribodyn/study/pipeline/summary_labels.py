@@ -39,6 +39,23 @@ _ENDINGS = (
 )
 
 
+#: A figure of a part of a machine: load case, kind of part, its name, figure.
+_OF_PART = re.compile(
+    r"(?:load_cases\.(.+?)\.)?(machine|meshes|shafts|bearings|housing)\.(?:(.+)\.)?([^.]+)"
+)
+_KINDS = {"meshes": "mesh ", "shafts": "shaft ", "bearings": "bearing ", "housing": "housing at "}
+
+
+def _split(name: str) -> tuple[str, list[str]]:
+    """Name of a figure without its part, and the part and the load case in words."""
+    match = _OF_PART.fullmatch(name)
+    if match is None:
+        return name, []
+    load, kind, part, figure = match.groups()
+    where = [f"{_KINDS[kind]}{part}"] if part else []
+    return figure, [*where, *([f"load case {load}"] if load else [])]
+
+
 def _parts(name: str) -> tuple[str, str, list[tuple[str, str]]]:
     """Split a name into statistic, quantity and endings, each as in a row and in a sentence."""
     ends: list[tuple[str, str]] = []
@@ -55,16 +72,19 @@ def _parts(name: str) -> tuple[str, str, list[tuple[str, str]]]:
 
 def in_words(name: str) -> str:
     """Return the label of a summary figure for a row, the quantity first."""
+    name, where = _split(name)
     if name in _LABELS:
-        return _LABELS[name]
+        return ", ".join([_LABELS[name], *where])
     statistic, quantity, ends = _parts(name)
-    qualifiers = [statistic, *(row for row, _ in ends)]
+    qualifiers = [statistic, *(row for row, _ in ends), *where]
     return ", ".join([quantity[:1].upper() + quantity[1:], *filter(None, qualifiers)])
 
 
 def in_a_sentence(name: str) -> str:
     """Return the label of a summary figure within a sentence, the statistic first."""
+    name, where = _split(name)
     if name in _LABELS:
-        return _LABELS[name][:1].lower() + _LABELS[name][1:]
+        return " of ".join([_LABELS[name][:1].lower() + _LABELS[name][1:], *where])
     statistic, quantity, ends = _parts(name)
-    return " ".join(filter(None, [statistic, quantity, *(within for _, within in ends)]))
+    text = " ".join(filter(None, [statistic, quantity, *(within for _, within in ends)]))
+    return " of ".join([text, *where])

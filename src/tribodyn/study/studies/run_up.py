@@ -14,19 +14,22 @@ from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.first_use import compile_in_parallel
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine_studies.over_speed import machine_run_up, machine_speed_sweep
 from tribodyn.study.studies.case_grid import varied
 from tribodyn.study.studies.study_axes import read_axes
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp, SpeedSweep, System
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine_studies.levels import MachineLevels
 
 
 _SPEED = "operation.speed"
 
 
 def run_up(
-    case: Case,
+    case: Case | MachineCase,
     between: tuple[Any, Any] | None = None,
     duration: float = 10.0,
     *,
@@ -36,12 +39,12 @@ def run_up(
     samples: int = 128,
     steps: int | None = None,
     progress: Progress = SILENT,
-) -> RunUp:
+) -> RunUp | MachineLevels:
     """Simulate a case while its speed rises at a constant rate and optionally falls again.
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     between : tuple
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
@@ -63,9 +66,12 @@ def run_up(
 
     Returns
     -------
-    RunUp
+    RunUp or MachineLevels
         Its speed is that of the gear whose speed the case gives. Outputs are the forces of the
         supports, where there are any. The inertia of the prescribed acceleration loads the teeth.
+        A machine has the levels of each period of its clock, without this inertia; its teeth, film
+        and gyroscopic moments are those of the mean speed (``tables``, ``samples`` and ``steps``
+        are of pairs).
 
     Raises
     ------
@@ -82,7 +88,10 @@ def run_up(
     from tribodyn.dynamics import run_up as compute
     from tribodyn.dynamics import speed_ramp
 
-    low, high = _ends(case, between)
+    low, high = _ends(between)
+    if isinstance(case, MachineCase):
+        options = {"down": down, "hold": hold, "progress": progress}
+        return machine_run_up(case, (low, high), duration, **options)
     count = int(tables)
     if count != tables or count < 1:
         what = f"tables = {tables}"
@@ -113,7 +122,7 @@ def speed_systems(
     return systems, members[-1].mesh.mesh_frequency / float(speeds[-1])
 
 
-def _ends(case: Case, between: tuple[Any, Any] | None) -> tuple[float, float]:
+def _ends(between: tuple[Any, Any] | None) -> tuple[float, float]:
     """Return the lowest and highest speed in SI, checked like the key of the case."""
     if between is None or len(between) != 2:
         why = "A run-up goes from one speed to another"
@@ -166,19 +175,19 @@ def _rotation(case: Case, system: System, per_speed: float) -> Any:
 
 
 def speed_sweep(
-    case: Case,
+    case: Case | MachineCase,
     between: tuple[Any, Any],
     points: int = 60,
     *,
     tables: int = 4,
     progress: Progress = SILENT,
     **options: Any,
-) -> SpeedSweep:
+) -> SpeedSweep | MachineLevels:
     """Follow the steady motion of a case over its speed, up and down, with its jumps.
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     between : tuple
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
@@ -192,8 +201,10 @@ def speed_sweep(
 
     Returns
     -------
-    SpeedSweep
-        Its speed is that of the gear whose speed the case gives; bearing forces are outputs.
+    SpeedSweep or MachineLevels
+        Its speed is that of the gear whose speed the case gives; bearing forces are outputs. A
+        machine has the levels of the motion at every speed, upwards only, each with its own teeth;
+        ``tables`` and the options are of pairs.
 
     Raises
     ------
@@ -216,6 +227,8 @@ def speed_sweep(
         )
     (axis,) = read_axes(case, {_SPEED: (*between, points)})
     speeds = np.array(axis.values, dtype=float)
+    if isinstance(case, MachineCase):
+        return machine_speed_sweep(case, speeds, progress)
     nodes = np.geomspace(speeds[0], speeds[-1], tables) if tables > 1 else [speeds.mean()]
     with locate_errors(case), collected():
         systems, per_speed = speed_systems(case, nodes, progress)

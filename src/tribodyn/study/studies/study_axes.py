@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError
-from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.section import section_at
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.values import FaultError, Plain, read_value
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.pair_cases import unknown_key
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -81,7 +82,9 @@ def ends_of(case: Case, key: str, ends: Sequence[Any], *, by: str = "") -> tuple
 
 def member_value(case: Case, key: str, value: Any, by: str) -> Any:
     """Read a value of one key; conflicts with other keys are found when it is computed."""
-    spec = spec_of(case, key)
+    spec = case.option_of(key)
+    if spec is None and isinstance(case, MachineCase):
+        raise InputError(replace(unknown_key(case, key), where=_location(by)))
     if spec is None and section_at(tuple(key.split("."))) is not None:
         remedy = f"Name one of its keys, such as {key}.{_first_key(case, key)}"
         raise InputError(f"{key} is a table", _location(by), "", remedy)
@@ -141,7 +144,7 @@ def read_axis(case: Case, key: str, entry: Any, by: str) -> Axis:
         what = f"{key} has {len(values)} value{'s' if not values else ''}"
         remedy = "Give more values, or change the one in the case itself"
         raise InputError(what, _location(by), "A sweep needs at least two", remedy)
-    spec = spec_of(case, key)
+    spec = case.option_of(key)
     unit, display_unit = (spec.unit, spec.display_unit) if spec else ("", "")
     return Axis(key, values, unit, display_unit)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 import os
 import pickle
@@ -21,6 +20,8 @@ from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.first_use import compile_in_parallel
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine_studies.points import machine_points
 from tribodyn.study.pipeline.run import (
     PendingRun,
     PreparedRun,
@@ -37,6 +38,9 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 Value = TypeVar("Value")
+#: Computes points of a grid by the values of the keys; prepares one of them.
+PointsAt = Callable[[Sequence[tuple[Any, ...]]], Sequence[SweepPoint]]
+CaseAt = Callable[..., PendingRun]
 
 #: Number of points from which a shared table of solved films costs less than separate films.
 _SHARED_FILM_POINTS = 4
@@ -44,7 +48,7 @@ _SHARED_FILM_POINTS = 4
 
 @with_old_names
 def sweep(
-    case: Case,
+    case: Case | MachineCase,
     over: str | Mapping[str, Any] = "operation.speed",
     between: tuple[Any, Any] | None = None,
     points: int = 40,
@@ -58,7 +62,7 @@ def sweep(
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     over : str or mapping
         Dotted key that varies; or several, each with ``(first, last, points)``, a tuple, or a
@@ -106,10 +110,16 @@ def sweep(
     axes = read_axes(case, _read_ranges(over, between, points), by=by)
     study = identity("sweep", case, [(axis.key, axis.values) for axis in axes])
 
-    pending_at = functools.partial(_pending_at, case, tuple(axis.key for axis in axes))
-    return Sweep(
-        case, axes, compute_points(axes, pending_at, study, partial, progress, checkpoints)
-    )
+    sources = _sources(case, tuple(axis.key for axis in axes))
+    return Sweep(case, axes, _compute(axes, *sources, study, partial, progress, checkpoints))
+
+
+def _sources(case: Case | MachineCase, keys: Sequence[str]) -> tuple[PointsAt, CaseAt | None]:
+    """What computes a case at values of its keys, and the pair whose kernels it needs first."""
+    if isinstance(case, MachineCase):
+        return partial(machine_points, case, keys), None
+    pending_at = partial(_pending_at, case, keys)
+    return partial(_points, pending_at), pending_at
 
 
 def _pending_at(case: Case, keys: Sequence[str], *values: Any) -> PendingRun:
@@ -125,6 +135,19 @@ def compute_points(
     checkpoints: Checkpoints | None,
 ) -> tuple[SweepPoint, ...]:
     """Compute every point of a grid in parallel, except those that the checkpoints hold."""
+    points_at = functools.partial(_points, pending_at)
+    return _compute(axes, points_at, pending_at, study, partial, progress, checkpoints)
+
+
+def _compute(
+    axes: tuple[Axis, ...],
+    points_at: PointsAt,
+    case_at: CaseAt | None,
+    study: Mapping[str, Any],
+    partial: bool,
+    progress: Progress,
+    checkpoints: Checkpoints | None,
+) -> tuple[SweepPoint, ...]:
     grid = list(product(*(axis.values for axis in axes)))
     checkpoints = (Checkpoints() if checkpoints is None else checkpoints).begin(study)
     done = {
@@ -141,7 +164,7 @@ def compute_points(
     try:
         # By the size of the grid: a resumed sweep has the same figures as an uninterrupted one.
         with shared_films() if len(grid) >= _SHARED_FILM_POINTS else nullcontext():
-            _over_points(pending_at, grid, done, progress, store)
+            _over_points(points_at, case_at, grid, done, progress, store)
     except KeyboardInterrupt:
         if not (partial and 0 in done):
             raise
@@ -150,12 +173,12 @@ def compute_points(
 
 
 def points_under(
-    case: Case, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
+    case: Case | MachineCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
 ) -> list[SweepPoint]:
     """Compute a case for several changes of the same keys; a failed point holds its reason."""
     done: dict[int, SweepPoint] = {}
-    pending_at = partial(_pending_at, case, tuple(changes[0]) if changes else ())
-    _over_points(pending_at, [tuple(change.values()) for change in changes], done, progress)
+    sources = _sources(case, tuple(changes[0]) if changes else ())
+    _over_points(*sources, [tuple(change.values()) for change in changes], done, progress)
     return [done[index] for index in range(len(changes))]
 
 
@@ -180,7 +203,8 @@ _POINTS_PER_PROCESS = 50
 
 
 def _over_points(
-    pending_at: Callable[..., PendingRun],
+    points_at: PointsAt,
+    case_at: CaseAt | None,
     grid: Sequence[tuple[Any, ...]],
     done: dict[int, SweepPoint],
     progress: Progress,
@@ -203,47 +227,48 @@ def _over_points(
                 done[index] = point
                 progress.advance()
 
-    first = _first_use(pending_at, places, partial(keep_group, 0))
+    first = _first_use(points_at, case_at, places, partial(keep_group, 0))
     del groups[:first], places[:first]
-    pickled = _pickled(pending_at)
+    pickled = _pickled(points_at)
     with helpers(len(remaining) // _POINTS_PER_PROCESS if pickled else 0) as workers:
         if pickled and workers.count:
-            workers.each(partial(_points, pending_at), pickled, places, keep_group)
+            workers.each(points_at, pickled, places, keep_group)
         else:
             numbers = range(len(groups))
-            in_threads(lambda i: keep_group(i, _points(pending_at, places[i])), numbers, count)
+            in_threads(lambda i: keep_group(i, points_at(places[i])), numbers, count)
 
 
 def _first_use(
-    pending_at: Callable[..., PendingRun],
+    points_at: PointsAt,
+    case_at: CaseAt | None,
     places: Sequence[Sequence[tuple[Any, ...]]],
     store: Callable[[Sequence[SweepPoint]], None],
 ) -> int:
     """Compute the first group alone if kernels must be compiled; return the number of groups."""
     # Groups in parallel threads or processes would all wait for the same kernels.
-    pending = _try(partial(pending_at, *places[0][0])) if places else None
+    pending = _try(partial(case_at, *places[0][0])) if places and case_at else None
     if not isinstance(pending, PendingRun):
         return 0
     study = "map" if len(places[0]) >= _BATCH else "run"
     with compile_in_parallel(pending.case, study) as compiles:
         if compiles:
-            store(_points(pending_at, places[0]))
+            store(points_at(places[0]))
     return int(compiles)
 
 
-def _pickled(pending_at: Callable[..., PendingRun]) -> bytes:
+def _pickled(points_at: PointsAt) -> bytes:
     """Pickle the function that a worker process calls; empty if it cannot be pickled."""
     if known_elsewhere():
         with suppress(pickle.PicklingError, AttributeError, TypeError):
-            return pickle.dumps(partial(_points_in_process, pending_at))
+            return pickle.dumps(partial(_points_in_process, points_at))
     return b""
 
 
 def _points_in_process(
-    pending_at: Callable[..., PendingRun], places: Sequence[tuple[Any, ...]]
-) -> list[SweepPoint]:
+    points_at: PointsAt, places: Sequence[tuple[Any, ...]]
+) -> Sequence[SweepPoint]:
     with shared_films(persistent=True):
-        return _points(pending_at, places)
+        return points_at(places)
 
 
 def _points(
@@ -270,9 +295,7 @@ def _point(
 ) -> SweepPoint:
     outcome = _try(partial(_figures, point)) if isinstance(point, PreparedRun) else point
     if isinstance(outcome, Exception):
-        first = outcome.problems[0]
-        location = str(first.where).removeprefix("replace: ")  # it is the sweep that replaces
-        return SweepPoint(values, {}, str(dataclasses.replace(first, where=location)))
+        return SweepPoint.of_failure(values, outcome)
     return SweepPoint(values, *outcome)
 
 

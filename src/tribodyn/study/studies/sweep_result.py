@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import prod
 from pathlib import Path
@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from tribodyn.aliases import with_old_names
 from tribodyn.drawing import draw, write_report_of
-from tribodyn.errors import InputError, did_you_mean
+from tribodyn.errors import InputError, TribodynError, did_you_mean
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.summary_figures import figure_of, in_order
 from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.study.studies.study_axes import Axis
 from tribodyn.types import Array
@@ -38,6 +38,15 @@ _MOTIONS = (
     "contact_loss_share",
 )
 _FILMS = ("central_film", "minimum_film_ratio", "mean_friction_coefficient")
+#: Figures of the parts of a machine: of all meshes, and of the bearing and the housing node
+#: with the largest.
+OF_PARTS = (
+    "rms_mesh_force",
+    "transmission_error_peak_to_peak",
+    "rms_radial_force",
+    "rms_acceleration",
+)
+_OF_ALL = OF_PARTS[:2]
 #: All of them.
 SHOWN = (*_MOTIONS, *_FILMS)
 #: Reason for values that an interrupted sweep did not reach.
@@ -52,6 +61,13 @@ class SweepPoint:
     figures: Mapping[str, float] = field(repr=False)  #: the summary
     failed: str = ""  #: why it failed
     warned: tuple[str, ...] = ()  #: codes of the warnings of the models
+
+    @classmethod
+    def of_failure(cls, values: tuple[Any, ...], error: TribodynError) -> SweepPoint:
+        """A value that cannot be computed."""
+        first = error.problems[0]
+        location = str(first.where).removeprefix("replace: ")  # it is the sweep that replaces
+        return cls(values, {}, str(replace(first, where=location)))
 
 
 @with_old_names
@@ -91,8 +107,7 @@ class Sweep(Record):
     @cached_property
     def figures(self) -> tuple[str, ...]:
         """Names of the computed figures, in the order of the summary."""
-        computed_names = {name for point in self.points for name in point.figures}
-        return tuple(name for name in SUMMARY if name in computed_names)
+        return tuple(in_order(name for point in self.points for name in point.figures))
 
     @cached_property
     def failed(self) -> NDArray[np.str_]:
@@ -151,8 +166,8 @@ class Sweep(Record):
                 names,
                 self[name],
                 {
-                    "units": SUMMARY[name].unit or "1",
-                    "long_name": SUMMARY[name].meaning,
+                    "units": figure_of(name).unit or "1",
+                    "long_name": figure_of(name).meaning,
                 },
             )
             for name in self.figures
@@ -175,7 +190,7 @@ class Sweep(Record):
         Parameters
         ----------
         figure : str
-            Name in the summary.
+            Name in the summary. The default of a machine is all levels of its parts.
         **options
             None are known.
 
@@ -183,6 +198,8 @@ class Sweep(Record):
         -------
         plotly.graph_objects.Figure
         """
+        if figure == "rms_mesh_force" and figure not in self.figures:
+            return draw(self, "machine_sweep", **options)  # each part has one
         return draw(self, figure=figure, **options)
 
     def to_pandas(self) -> Any:
@@ -213,7 +230,7 @@ class Sweep(Record):
         rows = [
             [
                 *(axis.show(value) for axis, value in zip(self.axes, point.values, strict=True)),
-                *(SUMMARY[n].show(point.figures[n]) if n in point.figures else "" for n in names),
+                *(figure_of(n).show(point.figures[n]) if n in point.figures else "" for n in names),
                 point.failed,
             ]
             for point in self.points
@@ -243,7 +260,17 @@ class Sweep(Record):
             self[name]  # raises an error that lists the figures
         film = any(axis.key.startswith(("film", "lubricant")) for axis in self.axes)
         usual = (*_MOTIONS, *(_FILMS if film else ()))
-        return list(names) or [name for name in usual if name in self.figures]
+        shown = [name for name in usual if name in self.figures]
+        return list(names) or shown or self._of_parts()
+
+    def _of_parts(self) -> list[str]:
+        """Figures of the parts of a machine that tables show."""
+        names = []
+        for figure in OF_PARTS:
+            parts = [name for name in self.figures if name.endswith(f".{figure}")]
+            worst = sorted(parts, key=lambda name: -float(np.nanmax(self[name])))
+            names += parts if figure in _OF_ALL else worst[:1]
+        return names
 
     def to_csv(self) -> str:
         """Write the finished points as comma-separated values in SI.
@@ -254,7 +281,7 @@ class Sweep(Record):
             One line for each value; units are in brackets in the first line.
         """
         units = {axis.key: axis.unit for axis in self.axes}
-        units |= {name: SUMMARY[name].unit for name in self.figures}
+        units |= {name: figure_of(name).unit for name in self.figures}
         names = [*units, "failed", "warnings"]
         head = [f"{n} [{units[n]}]" if units.get(n) else n for n in names]
         rows = (["" if row[name] is None else row[name] for name in names] for row in self.rows())

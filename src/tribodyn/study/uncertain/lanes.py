@@ -12,7 +12,8 @@ from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.errors import Argument, InputError, quiet
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.provenance import effective, spec_of
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.user_input import spread_problem
 from tribodyn.study.pipeline.motion import steps_of
@@ -22,7 +23,6 @@ from tribodyn.uncertainty import distribution, sample
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import LaneParameters
-    from tribodyn.study.case.case import Case
 
 #: Factor by which a lane takes fewer steps than a single motion (accurate to about 1e-6), and the
 #: smallest number of steps.
@@ -67,7 +67,7 @@ def distributions_of(case: Case, spread: Mapping[str, Any]) -> dict[str, Any]:
     """Distributions of keys of a case and of factors, each in the unit that it has there."""
     distributions = {}
     for key, text in spread.items():
-        spec = None if key in SCALES else spec_of(case, str(key))
+        spec = None if key in SCALES else case.option_of(str(key))
         if spec is None and key not in SCALES:
             # Raises an error that lists the keys.
             case.replace({str(key): text}, by="distributions")
@@ -112,8 +112,8 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
 
 def check_spread_key(case: Case, key: str, column: Array) -> None:
     """Raise if a key is no number of the case, or its least or greatest value is out of range."""
-    spec = spec_of(case, key)
-    value = effective(case).get(key)
+    spec = case.option_of(key)
+    value = effective(case).get(key) if isinstance(case, Case) else None
     if spec is None or isinstance(value, bool | str) or spec.kind == "file":
         where = Argument("distributions")
         what, why = f"{key} cannot be spread", "Numbers of the case can, and the factors "

@@ -1,0 +1,186 @@
+"""Levels of a machine over its speed or over another value, with the modes that meshes meet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.machine.orders import COLORS
+from tribodyn.plot.motion.sweeps import axis_text, value_text
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, Trace, line, marked
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.studies.sweep_result import OF_PARTS
+
+if TYPE_CHECKING:
+    from tribodyn.study.machine_studies.levels import MachineLevels, Resonance
+    from tribodyn.study.studies.sweep_result import Sweep
+    from tribodyn.types import Array
+
+#: Quantity and label of each panel.
+_PANELS = (
+    ("mesh_force", "Mesh force, rms"),
+    ("dynamic_transmission_error", "Transmission error,<br>peak to peak"),
+    ("bearing_force", "Radial bearing<br>force, rms"),
+    ("acceleration", "Housing, rms"),
+)
+#: Least distance of two named speeds over the range.
+_APART = 0.06
+#: Harmonics of a mesh by dash.
+_DASHES = ("solid", "dash", "dot", "dashdot")
+
+
+def _panels(x: Array, levels: Iterable[tuple[Sequence[str], Array]]) -> list[Panel]:
+    """One panel for each kind of level, with a curve for each part that has it."""
+    panels = []
+    for (quantity, label), (names, values) in zip(_PANELS, levels, strict=True):
+        if not len(names):
+            continue
+        unit, shown = display_unit(quantity), displayed(quantity, values)
+        traces = [
+            line(x, shown[:, k], name, COLORS[k % len(COLORS)], unit=unit)
+            for k, name in enumerate(names)
+        ]
+        panels.append(Panel(axis_label(quantity, label), traces, {"rangemode": "tozero"}))
+    return panels
+
+
+def _marks(met: Iterable[Resonance], x: Array | None = None) -> dict[str, Any]:
+    """Vertical lines where a mesh meets a mode; of those too near to be named the strongest."""
+    places: list[tuple[str, float]] = []
+    for each in met:
+        place = float(displayed("speed", each.speed))
+        if x is None or all(abs(place - other) > _APART * np.ptp(x) for _, other in places):
+            places.append((f"{each.mesh} x{each.harmonic}: mode {each.mode}", place))
+    return {**event_lines(places), "hovermode": "closest"}
+
+
+def _title(levels: Iterable[tuple[Sequence[str], Array]], x: Sequence[str]) -> str:
+    """Where the housing, or what there is, vibrates most."""
+    texts = ("Mesh", "The transmission error of mesh", "Bearing", "The housing at")
+    rows = zip(texts, _PANELS, levels, strict=True)
+    text, (quantity, _), (names, values) = [row for row in rows if len(row[2][0])][-1]
+    if not np.any(np.isfinite(values)):
+        return "No value has a motion"
+    at, part = np.unravel_index(int(np.nanargmax(values)), values.shape)
+    greatest = rounded(quantity, float(values[at, part]))
+    return f"{text} {names[part]} has the largest level at {x[int(at)]}: {greatest}"
+
+
+@drawing(
+    "machine_levels",
+    heading="Levels over the speed",
+    caption="Alternating mesh forces, transmission errors, radial bearing forces and accelerations "
+    "of the housing. Dotted lines are speeds at which a harmonic of a mesh meets a natural mode "
+    "that strains this mesh: the few with the largest amplitudes at the bearings.",
+    of="MachineLevels",
+    made_by="Call tribodyn.speed_sweep or tribodyn.run_up with a machine.",
+)
+def machine_levels(study: MachineLevels) -> Any:
+    """Draw the levels of all parts over the speed of the input."""
+    x = displayed("speed", study.speed)
+    levels = [
+        (study.mesh, study.mesh_force),
+        (study.mesh, study.transmission_error),
+        (study.bearing, study.bearing_force),
+        (study.node, study.acceleration),
+    ]
+    title = _title(levels, [rounded("speed", float(speed)) for speed in study.speed])
+    label = axis_label("speed", "Speed of the input")
+    return stack(title, label, _panels(x, levels), _marks(study.resonances, x))
+
+
+@drawing(
+    "machine_level_lines",
+    heading="Which mesh causes the level",
+    caption="Amplitudes at the harmonics of each mesh over the speed, in the colour of the mesh; "
+    "for bearings and housing the root of the sum of the squares over all of them.",
+    of="MachineLevels",
+    made_by="Call tribodyn.speed_sweep or tribodyn.run_up with a machine.",
+)
+def machine_level_lines(study: MachineLevels) -> Any:
+    """Draw the amplitudes at the mesh harmonics over the speed of the input."""
+    x, panels, largest = displayed("speed", study.speed), [], ""
+    signals = (
+        ("mesh_force", "Mesh forces", study.mesh_force_line),
+        ("bearing_force", "Radial bearing<br>forces", study.bearing_force_line),
+        ("acceleration", "Housing", study.acceleration_line),
+    )
+    for quantity, label, values in signals:
+        if not values.shape[2]:
+            continue
+        total, unit = np.sqrt((values**2).sum(axis=2)), display_unit(quantity)
+        shown, traces = displayed(quantity, total), []
+        for k, name in enumerate(study.line):
+            mesh, _, harmonic = name.rpartition(" x ")
+            dash = _DASHES[(int(harmonic) - 1) % len(_DASHES)]
+            color = COLORS[study.mesh.index(mesh) % len(COLORS)]
+            traces.append(line(x, shown[:, k], name, color, unit=unit, dash=dash, width=1.6))
+        panels.append(Panel(axis_label(quantity, label), traces, {"rangemode": "tozero"}))
+        if np.any(np.isfinite(total)):
+            at, k = np.unravel_index(int(np.nanargmax(total)), total.shape)
+            largest = (
+                f"{label.replace('<br>', ' ')}: the largest line is {study.line[k]} at "
+                f"{rounded('speed', float(study.speed[at]))}"
+            )
+    label = axis_label("speed", "Speed of the input")
+    return stack(largest or "No speed has a motion", label, panels, _marks(study.resonances, x))
+
+
+def _lack(study: Sweep) -> str:
+    if not isinstance(study.case, MachineCase):
+        return "It is the sweep of a pair of gears; draw one of its figures."
+    if len(study.axes) > 1:
+        return "It has several keys; draw one of its figures."
+    return "" if study.axes[0].numeric else "Its values are no numbers; draw one of its figures."
+
+
+@drawing(
+    "machine_sweep",
+    heading="Levels of the parts",
+    caption="Alternating mesh forces, transmission errors, radial bearing forces and accelerations "
+    "of the housing. Over the speed, dotted lines are where a harmonic of a mesh meets a natural "
+    "mode that strains this mesh. Crosses are values that failed.",
+    missing=_lack,
+    of="Sweep",
+    made_by='Call tribodyn.sweep(machine, "operation.speed", ("400 rpm", "3500 rpm"), 60).',
+)
+def machine_sweep(study: Sweep) -> Any:
+    """Draw the levels of all parts of a machine over the value that varies."""
+    (axis,) = study.axes
+    x, levels = axis.display_values(), []
+    for figure in OF_PARTS:
+        names = [name for name in study.figures if name.endswith(f".{figure}")]
+        parts = [name.partition(".")[2].removesuffix(f".{figure}") for name in names]
+        columns = np.stack([study[name] for name in names], axis=1) if names else np.zeros((1, 0))
+        levels.append((parts, columns))
+    panels = _panels(x, levels)
+    lost = np.array([bool(text) for text in study.failed])
+    if lost.any() and panels:
+        cross: Trace = marked(x[lost], np.zeros(lost.sum()), "failed", MUTED, size=8, symbol="x")
+        first = panels[0]
+        panels[0] = Panel(first.label, [*first.traces, cross], first.axis)
+    marks = _marks(_met(study) if axis.key == "operation.speed" else (), x)
+    title = _title(levels, [value_text(axis, value) for value in axis.values])
+    return stack(title, axis_text(axis), panels, marks)
+
+
+def _met(study: Sweep) -> list[Resonance]:
+    """Resonances within the speeds of a sweep, with the teeth at the operating point."""
+    from tribodyn.errors import TribodynError, quiet
+    from tribodyn.machine import machine_modes
+    from tribodyn.study.machine.modes import structure_at_rest
+    from tribodyn.study.machine_studies.levels import resonances
+
+    assert isinstance(study.case, MachineCase)
+    speeds = [abs(float(value)) for value in study.axes[0].values]
+    try:
+        with quiet():
+            modes = machine_modes(structure_at_rest(study.case))
+    except TribodynError:  # a sweep may start from a case that cannot be computed itself
+        return []
+    return resonances(modes, min(speeds), max(speeds))

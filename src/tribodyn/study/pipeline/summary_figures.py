@@ -1,0 +1,124 @@
+"""Unit, meaning and topic of every figure of a summary, of a pair or of the parts of a machine."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+from tribodyn.nomenclature import QUANTITIES
+from tribodyn.study.pipeline.summary import SUMMARY, SummaryFigure
+
+#: Figures of each kind of part: key, quantity that gives the unit (empty: a pure number), meaning.
+_KINDS: dict[str, dict[str, tuple[str, str]]] = {
+    "machine": {
+        "clock_frequency": ("frequency", "periods of the whole motion per second"),
+        "input_power": ("power", "power that enters by the input shaft"),
+        "friction_power": ("power", "power lost to the friction of all computed teeth"),
+        "efficiency": ("", "power that leaves over power that enters; losses of the teeth only"),
+        "output_torque": ("torque", "torque that the output delivers"),
+    },
+    "meshes": {
+        "mesh_frequency": ("mesh_frequency", "tooth engagements per second"),
+        "static_mesh_force": ("mesh_force", "force along the line of action at rest"),
+        "mean_mesh_force": ("mesh_force", "mean of the dynamic force"),
+        "rms_mesh_force": ("mesh_force", "root mean square of its alternating part"),
+        "peak_mesh_force": ("mesh_force", "greatest dynamic force"),
+        "minimum_mesh_force": ("mesh_force", "least dynamic force; zero where the flanks part"),
+        "dynamic_factor_peak": ("", "greatest dynamic force over its mean"),
+        "contact_loss_share": ("", "part of the time without contact on the driving flanks"),
+        "transmission_error_peak_to_peak": (
+            "dynamic_transmission_error",
+            "rotation of one gear against the other on the line of action, greatest less least",
+        ),
+        "static_transmission_error_peak_to_peak": (
+            "static_transmission_error",
+            "of the computed teeth at rest under the load",
+        ),
+        "mean_mesh_stiffness": ("mesh_stiffness", "mean over a mesh cycle"),
+        "misalignment": ("deflection", "of the flanks over the face, by deflected shafts"),
+        "face_load_factor": (
+            "",
+            "greatest over mean load along the face, of independent slices under this misalignment",
+        ),
+        "contact_ratio": ("", "transverse contact ratio under load"),
+        "mean_friction_coefficient": ("", "mean over the mesh cycle, weighted by load"),
+        "friction_power": ("power", "power lost to the friction of the teeth"),
+        "maximum_hertz_pressure": ("hertz_pressure", "greatest contact pressure of the teeth"),
+        "minimum_film_thickness": ("film_thickness", "least film of the computed teeth"),
+    },
+    "shafts": {
+        "speed": ("speed", "speed of the shaft, negative where it turns against x"),
+        "torque": ("torque", "torque that it transmits"),
+        "power": ("power", "power that it transmits"),
+        "largest_deflection": ("deflection", "greatest radial displacement at rest"),
+    },
+    "bearings": {
+        "mean_radial_force": ("bearing_force", "size of the mean radial force"),
+        "mean_axial_force": ("bearing_force", "mean force along the shaft"),
+        "rms_radial_force": ("bearing_force", "root mean square of the alternating radial force"),
+        "peak_radial_force": ("bearing_force", "greatest radial force"),
+        "radial_stiffness": ("bearing_stiffness", "mean of y and z at the working load"),
+        "maximum_pressure": ("hertz_pressure", "greatest pressure on a raceway"),
+    },
+    "housing": {
+        "rms_acceleration": (
+            "acceleration",
+            "root mean square of the acceleration, all directions",
+        ),
+        "peak_acceleration": ("acceleration", "greatest acceleration"),
+    },
+}
+_TOPICS = {
+    "machine": "Machine",
+    "meshes": "Mesh {0}",
+    "shafts": "Shaft {0}",
+    "bearings": "Bearing {0}",
+    "housing": "Housing at {0}",
+}
+#: A key of a load case, whose name may have dots.
+_OF_LOAD_CASE = re.compile(rf"load_cases\.(.+?)\.((?:{'|'.join(_KINDS)})\..+)")
+
+
+def figure_of(key: str) -> SummaryFigure:
+    """Unit, meaning and topic of a key of a summary; a KeyError if there is no such figure."""
+    if key in SUMMARY:
+        return SUMMARY[key]
+    match = _OF_LOAD_CASE.fullmatch(key)
+    prefix, part = (f"{match[1]}: ", match[2]) if match else ("", key)
+    kind, _, part_key = part.partition(".")
+    name, _, last = part_key.rpartition(".")
+    quantity, meaning = _KINDS[kind][last]
+    entry = QUANTITIES[quantity] if quantity else None
+    units = (entry.unit, entry.display_unit) if entry else ("", "")
+    return SummaryFigure(key, *units, meaning, prefix + _TOPICS[kind].format(name))
+
+
+def is_figure(key: str) -> bool:
+    """Whether a key is one of a summary."""
+    try:
+        return bool(figure_of(key))
+    except KeyError:
+        return False
+
+
+def in_order(names: Iterable[str]) -> list[str]:
+    """Names of figures of a pair in the order of :data:`SUMMARY`, others as they come."""
+    names = dict.fromkeys(names)
+    return [name for name in SUMMARY if name in names] + [n for n in names if n not in SUMMARY]
+
+
+def by_topic(names: Iterable[str]) -> dict[str, list[str]]:
+    """Names of figures under their topics."""
+    topics: dict[str, list[str]] = {}
+    for name in in_order(names):
+        topics.setdefault(figure_of(name).topic, []).append(name)
+    return topics
+
+
+def summary_rows(values: Mapping[str, float]) -> list[tuple[str, str, str, str]]:
+    """Topic, name, value with unit and meaning of each figure, by topic."""
+    return [
+        (topic, name, figure_of(name).show(values[name]), figure_of(name).meaning)
+        for topic, names in by_topic(values).items()
+        for name in names
+    ]
