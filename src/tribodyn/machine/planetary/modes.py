@@ -15,8 +15,12 @@ from tribodyn.types import Array, ComplexArray
 
 ModeType = Literal["rotational", "translational", "planet", "mixed"]
 
+Shape = Array | ComplexArray
+
 #: Amplitude over that of the mode below which a central member is at rest.
 _AT_REST = 1e-6
+#: Relative difference of frequencies that is rounding.
+_EQUAL = 1e-9
 
 
 @record
@@ -43,10 +47,21 @@ class PlanetaryModes(Record):
     angles: Array = quantity("planet", unit="rad")
     frequency: Array = quantity("mode", unit="Hz")
     types: tuple[ModeType, ...] = quantity("mode", axis=True, name="type")
-    shape: Array | ComplexArray = quantity("mode", "coordinate", unit="kg^-1/2")
+    shape: Shape = quantity("mode", "coordinate", unit="kg^-1/2")
 
     def of_type(self, mode_type: ModeType) -> Array:
-        """Natural frequencies of all modes of a type, rising [Hz]."""
+        """Select the natural frequencies of a type.
+
+        Parameters
+        ----------
+        mode_type : {"rotational", "translational", "planet", "mixed"}
+            Type of the modes.
+
+        Returns
+        -------
+        (m,) array
+            Rising [Hz].
+        """
         return np.asarray(self.frequency[np.array(self.types) == mode_type])
 
     def __repr__(self) -> str:
@@ -97,9 +112,9 @@ def planetary_modes(system: System) -> PlanetaryModes:
         remedy = "Give a system of planetary_plane_model"
         raise InputError(what, Argument("system"), why, remedy)
     modes = natural_modes(system)
-    amplitude = np.sqrt(np.abs(modes.kinetic_share[:, :9]))
-    turns = amplitude[:, 2::3].max(axis=1) > _AT_REST
-    moves = np.maximum(amplitude[:, 0::3], amplitude[:, 1::3]).max(axis=1) > _AT_REST
+    weight = np.sqrt(np.diag(np.asarray(system.mass)))[:9]
+    shape = _separated(modes.frequency, modes.shape, weight)
+    turns, moves = (np.abs(part).max(axis=1) > _AT_REST for part in _central(shape, weight))
     types: dict[tuple[bool, bool], ModeType] = {
         (True, False): "rotational",
         (False, True): "translational",
@@ -114,5 +129,26 @@ def planetary_modes(system: System) -> PlanetaryModes:
         angles=np.where(angles > 2.0 * np.pi - 1e-9, 0.0, angles),
         frequency=modes.frequency,
         types=tuple(types[bool(t), bool(m)] for t, m in zip(turns, moves, strict=True)),
-        shape=modes.shape,
+        shape=shape,
     )
+
+
+def _central(shape: Shape, weight: Array) -> tuple[Shape, Shape]:
+    """Rotations (m, 3) and translations (m, 6) of the central members in modes of unit mass."""
+    amplitude = shape[:, :9] * weight
+    return amplitude[:, 2::3], np.delete(amplitude, [2, 5, 8], axis=1)
+
+
+def _separated(frequency: Array, shape: Shape, weight: Array) -> Shape:
+    """Modes of one frequency in the combinations that have one type each, where they exist."""
+    shape = shape.copy()
+    first = np.flatnonzero(np.diff(frequency, prepend=-1.0) > _EQUAL * frequency)
+    for rows in np.split(np.arange(frequency.size), first[1:]):
+        still = rows
+        for part in (1, 0):  # those that translate first, then those that turn
+            left, size, _ = np.linalg.svd(_central(shape[still], weight)[part])
+            shape[still] = left.conj().T @ shape[still]
+            still = still[np.count_nonzero(size > _AT_REST) :]
+            if still.size < 2:
+                break
+    return shape

@@ -21,6 +21,9 @@ from tribodyn.types import Array
 #: Central members, in the order of their coordinates.
 CENTRAL = ("carrier", "ring", "sun")
 
+#: Largest error of a pin, a tooth or a mesh [m].
+_LARGEST_ERROR = 0.1
+
 #: One entry for the meshes of all planets, or a list with one for each planet.
 MeshEntry = Entry | Sequence[Entry]
 
@@ -257,7 +260,8 @@ def _of_planets(
         raise InputError(what, Argument(name), why, f"Give 1 or {count} numbers in {unit}")
     if positive:
         require_positive(name, values, unit)
-    require_between(name, values, -1e30, 1e30, unit)
+    else:
+        require_between(name, values, -_LARGEST_ERROR, _LARGEST_ERROR, unit)
     return np.broadcast_to(values, (count,))
 
 

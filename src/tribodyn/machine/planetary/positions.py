@@ -10,7 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import Argument, InputError, real_numbers, require_one_of, require_positive
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    real_numbers,
+    require_between,
+    require_one_of,
+    require_positive,
+)
 from tribodyn.types import Array
 
 PlanetType = Literal["single", "stepped", "meshed"]
@@ -88,10 +95,12 @@ def read_angles(planets: int, angles: ArrayLike | None) -> Array:
     if angles is None:
         return 2.0 * np.pi * np.arange(count) / count
     values = real_numbers(Argument("angles"), angles, "angles in rad")
-    if values.shape != (count,) or not np.all(np.abs(values) < 1e3):
-        what = f"angles has the shape {values.shape} for {count} planets, or is not finite"
+    if values.shape != (count,):
+        what = f"angles has the shape {values.shape} for {count} planets"
         remedy = "Give an angle in rad for each planet"
         raise InputError(what, Argument("angles"), "Every planet has one angle", remedy)
+    remedy = "Give radians: 120 deg is 2.0944"
+    require_between("angles", values, -4.0 * np.pi, 4.0 * np.pi, "rad", remedy=remedy)
     return np.array(values, dtype=float)
 
 

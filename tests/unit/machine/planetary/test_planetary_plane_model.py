@@ -42,6 +42,18 @@ def test_unequal_spacing_mixes_the_types():
     assert modes.frequency[1] < printed < modes.frequency[2]
 
 
+def test_modes_of_one_frequency_are_separated_by_their_type():
+    modes = planetary_modes(planetary_plane_model(planets=5, **(LIN_PARKER | NO_SUPPORTS)))
+    # Of 6 coordinates of each type 4 strain a pin radially or tangentially, or one of the meshes.
+    assert sorted(modes.types[:6]) == ["rotational"] * 2 + ["translational"] * 4
+    np.testing.assert_array_equal(modes.frequency[:6], 0.0)
+    assert modes.frequency[6] > 100.0
+    counts = {each: modes.types.count(each) for each in ("rotational", "translational", "planet")}
+    assert counts == {"rotational": 6, "translational": 12, "planet": 6}
+    mass = np.diag(planetary_plane_model(planets=5, **LIN_PARKER).mass)
+    np.testing.assert_allclose((modes.shape * mass) @ modes.shape.T, np.eye(24), atol=1e-9)
+
+
 def test_rigid_motions_and_the_ratio_of_the_stage_strain_nothing():
     """Base circles of a stage with two pressure angles; a wrong sign strains a mesh."""
     pins, sun_angle, ring_angle = 0.08, np.radians(24.0), np.radians(19.0)
@@ -108,6 +120,8 @@ def test_planets_may_differ_from_each_other():
         ({"sun_mesh_stiffness": [5e8, 5e8]}, "sun_mesh_stiffness has 2 entries"),
         ({"sun_mesh_stiffness": 0.0}, "sun_mesh_stiffness"),
         ({"planets": 0}, "planets"),
+        ({"pin_errors": [30.0, 0.0, 0.0]}, "pin_errors.*30.*0.1 m"),
+        ({"angles": [0.0, 120.0, 240.0]}, "angles.*120.*Give radians"),
         ({"force_per_planet": 1.0, "sun_torsional_support": 1.0, "carrier_torsional_support": 1.0},
          "no member is free to turn"),
     ],
