@@ -1,0 +1,258 @@
+"""Meshes whose contacts are slices of the lines of contact: limits, balances, closed forms."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tribodyn.contact import face_contacts, hertz_line, path_of_contact
+from tribodyn.ehl import FILM_MODELS
+from tribodyn.errors import InputError
+from tribodyn.gear import FlankModification, Material, cylindrical_pair
+from tribodyn.lubricant import Lubricant
+from tribodyn.mesh import build
+from tribodyn.stiffness import loaded_contact
+from tribodyn.stiffness.loaded.contact import contact_problem
+
+OIL = Lubricant(0.05, 880.0, 2e-8)
+TORQUE = 600.0
+
+
+def helical(helix=21.0, hand="right", width=50e-3, **changes):
+    arguments = {
+        "pinion_teeth": 27,
+        "wheel_teeth": 51,
+        "normal_module": 4.5e-3,
+        "normal_pressure_angle": math.radians(20.0),
+        "helix_angle": math.radians(helix),
+        "hand": hand,
+        "pinion_face_width": width,
+        "pinion_bore_diameter": 40e-3,
+        "wheel_bore_diameter": 70e-3,
+    }
+    return cylindrical_pair(**{**arguments, **changes})
+
+
+def table(pair, **changes):
+    arguments = {
+        "material": Material(),
+        "stiffness_model": "fe2d",
+        "lubricant": OIL,
+        "friction_law": "benedict-kelly",
+        "composite_roughness": 0.4e-6,
+        "film_model": "moes",
+        "pinion_speed": 150.0,
+        "pinion_torque": TORQUE,
+    }
+    return build(pair, **{**arguments, **changes})
+
+
+@pytest.mark.parametrize("driver", ["pinion", "wheel"])
+@pytest.mark.parametrize("hand", ["left", "right"])
+def test_slices_have_the_length_of_the_lines_of_contact(driver, hand):
+    pair = helical(hand=hand, driver=driver)
+    phase = np.linspace(0.0, 0.999, 37)
+    contacts = face_contacts(path_of_contact(pair), phase, 31)
+    length = contacts.width.sum(axis=1) / math.cos(pair.base_helix_angle)
+    assert length == pytest.approx(pair.contact_line_length(phase), rel=1e-12)
+    low, high = pair.path_limits
+    inside = contacts.path[contacts.in_contact]
+    assert inside.min() > low - 1e-12
+    assert inside.max() < high + 1e-12
+
+
+def test_a_right_hand_pinion_enters_at_the_far_end_of_its_axis():
+    for hand, end in (("right", 1.0), ("left", -1.0)):
+        contacts = face_contacts(path_of_contact(helical(hand=hand)), np.array([0.01]), 10)
+        youngest = contacts.width[0, :10]
+        assert np.sign(contacts.face_position[:10][youngest > 0.0]).tolist() == [end]
+
+
+@pytest.mark.parametrize("model", ["fe2d", "potential-energy", "iso6336", "weber"])
+def test_a_vanishing_helix_angle_gives_the_spur_pair(model):
+    options = {"stiffness_options": {"extended_contact": False}} if model == "fe2d" else {}
+    spur = table(helical(0.0), stiffness_model=model, steps=256, **options)
+    nearly = table(helical(1e-3), stiffness_model=model, steps=256, **options)
+    for name in (
+        "mean_mesh_stiffness",
+        "mean_mesh_stiffness_tangent",
+        "mean_friction_coefficient",
+        "mean_friction_power",
+        "contact_ratio_under_load",
+        "maximum_single_pair_stiffness",
+    ):
+        assert getattr(nearly, name) == pytest.approx(getattr(spur, name), rel=1e-3), name
+    for name in ("hertz_pressure", "load_per_width", "central_film", "film_stiffness"):
+        expected = spur.at_pitch_point(name)
+        expected = expected / 24 if name == "film_stiffness" else expected
+        assert nearly.at_pitch_point(name) == pytest.approx(expected, rel=1e-3)
+    swing = np.ptp(spur.static_transmission_error)
+    assert np.ptp(nearly.static_transmission_error) == pytest.approx(swing, rel=5e-3)
+
+
+def test_the_force_of_all_slices_is_the_torque_over_the_base_radius():
+    pair = helical()
+    mesh = table(pair)
+    force = TORQUE / pair.pinion.base_radius
+    assert mesh.normal_force.sum(axis=1) == pytest.approx(force, rel=1e-9)
+    carried = mesh.load_per_width * mesh.contact_width
+    assert carried.sum(axis=1) == pytest.approx(force, rel=1e-9)
+
+
+def test_twice_as_many_slices_move_stiffness_and_error_little():
+    pair = helical()
+    means, swings = [], []
+    for slices in (24, 48):
+        loaded = loaded_contact(pair, TORQUE, phases=32, slices=slices)
+        means.append(loaded.mesh_stiffness_secant.mean())
+        swings.append(loaded.peak_to_peak_transmission_error)
+    assert means[1] == pytest.approx(means[0], rel=5e-3)
+    assert swings[1] == pytest.approx(swings[0], abs=0.02 * np.max(swings) + 0.1e-6)
+
+
+def test_helix_slope_loads_independent_slices_as_the_closed_form_says():
+    """Full contact: K = 1 + F_beta c b/(2 F); partial contact: sqrt(2 F_beta c b/F)."""
+    straight = helical(1e-3)
+    for slope in (4e-6, 60e-6):
+        lead = FlankModification(lead_slope=slope)
+        pair = replace(straight, pinion=replace(straight.pinion, modification=lead))
+        mesh = table(pair, stiffness_model="iso6336", film_model="none")
+        force = TORQUE / pair.pinion.base_radius
+        line = mesh.grid.mean(table(straight, stiffness_model="iso6336").mesh_stiffness) / 50e-3
+        ratio = slope * line * 50e-3 / force
+        expected = 1.0 + 0.5 * ratio if ratio < 2.0 else math.sqrt(2.0 * ratio)
+        # The outermost slice is half of its width away from the end.
+        inner = expected - 0.5 * ratio / 24
+        if ratio > 2.0:
+            inner = expected * (1.0 - 0.25 * expected / 24)
+        assert mesh.face_load_factor == pytest.approx(inner, rel=1e-2)
+        assert expected > 1.02
+
+
+def test_the_film_of_a_slice_is_that_of_a_spur_contact():
+    mesh = table(helical())
+    knot, contact = np.argwhere(mesh.load_share > 0.01)[40]
+    pair = mesh.gear_pair
+    path = mesh.path[knot, contact]
+    wheel = pair.line_of_action_length - path
+    radius = path * wheel / pair.line_of_action_length / math.cos(pair.base_helix_angle)
+    speed = 0.5 * (150.0 * path + 150.0 / pair.ratio * wheel)
+    load = mesh.load_per_width[knot, contact]
+    modulus = Material().youngs_modulus / (1.0 - Material().poissons_ratio ** 2)
+    films = FILM_MODELS["moes"].films(load, radius, speed, OIL, modulus)
+    assert mesh.central_film[knot, contact] == pytest.approx(float(films.central_film), rel=1e-9)
+    pressure = hertz_line(load, radius, modulus).maximum_pressure
+    assert mesh.hertz_pressure[knot, contact] == pytest.approx(float(pressure), rel=1e-9)
+
+
+def test_friction_takes_the_power_that_its_moments_take():
+    mesh = table(helical())
+    force, speed = mesh.total_normal_force, mesh.pinion_speed
+    moments = mesh.friction_moment_pinion * speed - mesh.friction_moment_wheel * (
+        speed / mesh.gear_pair.ratio
+    )
+    assert mesh.grid.mean(moments) * force == pytest.approx(mesh.mean_friction_power, rel=1e-3)
+    straight = table(
+        helical(0.0, width=50e-3),
+        film_model="none",
+        friction_law="constant",
+        friction_options={"coefficient": 0.05},
+    )
+    leaning = table(
+        helical(),
+        film_model="none",
+        friction_law="constant",
+        friction_options={"coefficient": 0.05},
+    )
+    # The force along the normal is larger than its transverse part.
+    ratio = 1.0 / math.cos(leaning.gear_pair.base_helix_angle)
+    assert leaning.line_force_ratio == pytest.approx(ratio)
+    assert straight.line_force_ratio == 1.0
+
+
+def test_solved_films_of_slices_agree_with_their_formula():
+    pair = helical()
+    solved, formula = table(pair, film_model="newton"), table(pair, film_model="moes")
+    loaded = solved.load_share > 1e-3
+    part = solved.central_film[loaded] / formula.central_film[loaded]
+    assert 0.85 < np.nanmin(part) < np.nanmax(part) < 1.15
+
+
+def test_a_film_in_series_softens_the_mesh_of_slices():
+    pair = helical()
+    dry = table(pair)
+    wet = table(pair, film_options={"stiffness": "tangent"})
+    film, teeth = wet.film_mesh_stiffness, wet.tooth_mesh_stiffness
+    assert wet.mean_mesh_stiffness < dry.mean_mesh_stiffness
+    assert 1.0 / wet.mesh_stiffness == pytest.approx(1.0 / film + 1.0 / teeth, rel=2e-2)
+
+
+def test_a_law_that_shears_the_film_is_refused_for_slices():
+    with pytest.raises(InputError, match="Slices interpolate their films"):
+        table(helical(), film_model="newton", friction_law="ehl")
+
+
+def test_maps_over_the_face_follow_the_table():
+    mesh = table(helical())
+    chart = mesh.over_face("load_per_width")
+    assert chart.sizes["face_position"] == 24
+    assert float(chart.max()) == pytest.approx(mesh.load_per_width.max(), rel=2e-2)
+    radius = mesh.over_face("equivalent_radius")
+    expected = chart["path"] * (mesh.gear_pair.line_of_action_length - chart["path"])
+    expected = expected / mesh.gear_pair.line_of_action_length
+    expected = expected / math.cos(mesh.gear_pair.base_helix_angle)
+    # The path of slices at its ends is the middle of the part that is in contact.
+    inner = slice(5, -5)
+    assert radius.values[:, inner] == pytest.approx(
+        np.broadcast_to(expected, radius.shape)[:, inner], rel=2e-3
+    )
+    with pytest.raises(InputError, match="no column"):
+        mesh.over_face("mesh_stiffness")
+
+
+@pytest.mark.parametrize("driver", ["pinion", "wheel"])
+@pytest.mark.parametrize("hand", ["left", "right"])
+def test_force_and_moments_in_space_balance(driver, hand):
+    pair = helical(hand=hand, driver=driver)
+    mesh = table(pair)
+    direction = mesh.functions().spatial_direction(mesh.phase)
+    assert direction[:, [0, 1, 2]] == pytest.approx(-direction[:, [6, 7, 8]], abs=1e-12)
+    sense = 1.0 if driver == "pinion" else -1.0
+    lean = math.tan(pair.base_helix_angle) * (-1.0 if hand == "right" else 1.0)
+    assert direction[:, 2] == pytest.approx(sense * lean)
+    # Moments about the axis of the pinion, in the right-handed frame (-x, y, z) of driving pinions.
+    force = direction[:, 6:9] * np.array([-sense, 1.0, 1.0])
+    between = np.array(
+        [pair.pinion.base_radius + pair.wheel.base_radius, sense * pair.line_of_action_length, 0.0]
+    )
+    moments = [
+        direction[:, columns] * np.array([-sense, 1.0, turn])
+        for columns, turn in (([3, 4, 5], 1.0), ([9, 10, 11], -1.0))
+    ]
+    total = moments[0] + moments[1] + np.cross(between, force)
+    assert total == pytest.approx(np.zeros_like(total), abs=1e-9)
+
+
+def test_friction_in_space_balances():
+    mesh = table(helical())
+    friction, pair = mesh.functions().spatial_friction(mesh.phase), mesh.gear_pair
+    force = friction[:, 6:9] * np.array([-1.0, 1.0, 1.0])
+    between = np.array(
+        [pair.pinion.base_radius + pair.wheel.base_radius, pair.line_of_action_length, 0.0]
+    )
+    moments = [
+        friction[:, columns] * np.array([-1.0, 1.0, turn])
+        for columns, turn in (([3, 4, 5], 1.0), ([9, 10, 11], -1.0))
+    ]
+    total = moments[0] + moments[1] + np.cross(between, force)
+    assert total == pytest.approx(np.zeros_like(total), abs=1e-9)
+
+
+def test_slices_out_of_range_are_refused():
+    with pytest.raises(InputError, match="slices = 0"):
+        contact_problem(
+            helical(), phase=np.zeros(1), total_force=1e3, material=Material(), slices=0
+        )
