@@ -5,7 +5,7 @@ import pytest
 
 from known_planetary import LIN_PARKER
 from tribodyn.dynamics import harmonic_balance, steady_state
-from tribodyn.machine import mesh_phases, planetary_plane_model
+from tribodyn.machine import load_shares, mesh_phases, planetary_plane_model
 
 
 def stiffness(phase):
@@ -73,3 +73,16 @@ def test_time_integration_gives_the_same_motion():
     assert orbit.engine != balance.engine
     force = np.asarray(balance.contact_force)
     np.testing.assert_allclose(orbit.contact_force, force, rtol=0, atol=1e-4 * force.mean())
+
+
+@pytest.mark.parametrize(
+    "errors", [[60e-6, 0.0, 20e-6, 0.0, 0.0], [400e-6, 0.0, 60e-6, -20e-6, 0.0]]
+)
+def test_loads_at_rest_are_those_of_the_motion_with_constant_stiffness(errors):
+    """Harmonic balance with dead zones finds the planets that lose contact by other equations."""
+    data = {"planets": 5, "pin_errors": errors, "force_per_planet": 3000.0, **LIN_PARKER}
+    stage = planetary_plane_model(mesh_gap=200e-6, damping_ratio=0.05, **data)
+    force = np.asarray(harmonic_balance(stage, 500.0).contact_force).mean(axis=0)
+    shares = load_shares(**data)
+    np.testing.assert_allclose(force, np.tile(shares.force, 2), rtol=0, atol=1e-4)
+    assert (shares.unloaded == (1,)) == (max(errors) > 1e-4)
