@@ -380,11 +380,15 @@ def _travel_breaks(contact: PathOfContact) -> Array:
     """Travel from A, in base pitches, at which load share or sliding may change abruptly."""
     ratio, integers = contact.contact_ratio, np.arange(contact.pairs + 1)
     breaks = np.concatenate([integers, ratio - integers, [pitch_point_age(contact), ratio]])
+    if overlap := contact.pair.overlap_ratio:
+        breaks = np.concatenate(
+            [breaks, integers - overlap % 1.0, ratio + overlap % 1.0 - integers]
+        )
     return np.unique(np.clip(breaks, 0.0, ratio))
 
 
 def equal_share(contact: PathOfContact, path: Array) -> Array:
-    """Load share of a tooth pair when all pairs in contact carry the same.
+    """Load share of a tooth pair where all lines of contact carry the same per length.
 
     Parameters
     ----------
@@ -396,11 +400,13 @@ def equal_share(contact: PathOfContact, path: Array) -> Array:
     Returns
     -------
     array
-        One over the number of pairs in contact at that moment, same shape.
+        One over the number of pairs in contact at that moment, same shape. For a helical pair its
+        slices pass this place one after another, and this is the sum of what they carry there.
 
     Notes
     -----
-    Source: counting the positions that lie whole base pitches away on the path of contact.
+    Source: counting the positions that lie whole base pitches away on the path of contact; for
+    helical pairs the integral of face width over total length of the lines.
 
     Examples
     --------
@@ -413,8 +419,38 @@ def equal_share(contact: PathOfContact, path: Array) -> Array:
     array([0.5, 1. ])
     """
     travel = contact.direction * (np.asarray(path, dtype=float) - contact.A)
+    if contact.pair.overlap_ratio > 0.0:
+        return _helical_share(contact, travel / contact.pair.base_pitch)
     _, in_contact = contact.pair_paths((travel / contact.pair.base_pitch).ravel())
     share: Array = 1.0 / in_contact.sum(axis=1).reshape(travel.shape)
+    return share
+
+
+def _helical_share(contact: PathOfContact, age: Array) -> Array:
+    """Sum over the face of the load of a pair ``age`` cycles old, by equal load per length."""
+    pair, kinks = contact.pair, np.array([*contact.event_phases(), 1.0])
+    length = pair.contact_line_length(kinks)
+    first, last = length[:-1], length[1:]
+
+    def mean_inverse(first: Array, last: Array) -> Array:
+        """Mean of one over a length that changes linearly between two values."""
+        rise = last / first - 1.0
+        flat = np.abs(rise) < 1e-4
+        safe = np.where(flat, 1.0, rise)
+        series = 1.0 - 0.5 * rise * (1.0 - rise * 2.0 / 3.0)
+        return np.where(flat, series, np.log1p(safe) / safe) / first
+
+    sums = np.concatenate([[0.0], np.cumsum(np.diff(kinks) * mean_inverse(first, last))])
+
+    def integral(phase: Array) -> Array:
+        turns = np.floor(phase)
+        rest = phase - turns
+        start = np.clip(np.searchsorted(kinks, rest, side="right") - 1, 0, first.size - 1)
+        inside = mean_inverse(first[start], pair.contact_line_length(rest))
+        return turns * sums[-1] + sums[start] + (rest - kinks[start]) * inside
+
+    line = pair.common_face_width / (math.cos(pair.base_helix_angle) * pair.overlap_ratio)
+    share: Array = line * (integral(age + pair.overlap_ratio) - integral(age))
     return share
 
 
@@ -431,8 +467,9 @@ def gear_loss_factor(pair: CylindricalPair, share: Callable[[Array], Array] | No
     Returns
     -------
     float
-        H_V = 1/p_b times the integral from A to E of share |v_s| / v_b, where v_b is the speed
-        of the base circles. Mean friction coefficient times H_V is the lost part of the power.
+        H_V = 1/(p_b cos(beta_b)) times the integral from A to E of share |v_s| / v_b, where v_b is
+        the speed of the base circles. Mean friction coefficient times H_V is the lost part of the
+        power.
 
     Raises
     ------
@@ -468,4 +505,5 @@ def gear_loss_factor(pair: CylindricalPair, share: Callable[[Array], Array] | No
         remedy = "Return a finite share for every path between A and E"
         raise ComputationError(what, Argument("share"), why, remedy)
     motion = contact.kinematics(path, 1.0)
-    return float(weight @ (values * np.abs(motion.sliding_speed))) / pair.pinion.base_radius
+    lost = float(weight @ (values * np.abs(motion.sliding_speed))) / pair.pinion.base_radius
+    return lost / math.cos(pair.base_helix_angle)

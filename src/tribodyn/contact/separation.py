@@ -51,21 +51,25 @@ class _Corner(NamedTuple):
 
 
 def _curvature(gear: ToothForm, radius: float) -> float:
-    return gear.roll_angle(radius) * gear.base_radius
+    """Radius of curvature of the flank, negative for a ring."""
+    return gear.sign * gear.roll_angle(radius) * gear.base_radius
 
 
 def _corner(gear: ToothForm, mate: ToothForm, length: float, reach: Array) -> _Corner:
     """Corner of a gear's tip against its mate, with the gear's base tangent point as origin."""
-    tip, base, mate_base = _curvature(gear, gear.tip_radius), gear.base_radius, mate.base_radius
+    tip = _curvature(gear, gear.tip_radius)
+    # Radii of a ring are negative, so that the formulas are those of an external pair.
+    base, mate_base = gear.sign * gear.base_radius, mate.sign * mate.base_radius
     turned = (reach - tip) / base
     cosine, sine = np.cos(turned), np.sin(turned)
     along = tip * cosine + base * sine - length
     across = base + mate_base - (base * cosine - tip * sine)
     radius = np.hypot(along, across)
-    touched = np.sqrt(np.maximum(radius**2 - mate_base**2, 0.0))
+    touched = mate.sign * np.sqrt(np.maximum(radius**2 - mate_base**2, 0.0))
     # Difference of the polar angles about the mate's axis: its involute less the corner.
-    flank = (reach - length + touched) / mate_base - np.arctan2(touched, mate_base)
-    separation = mate_base * (flank - np.arctan2(along, across))
+    sign = mate.sign
+    flank = (reach - length + touched) / mate_base - np.arctan2(sign * touched, sign * mate_base)
+    separation = mate_base * (flank - np.arctan2(sign * along, sign * across))
     low = _curvature(mate, mate.form_radius) - _ROUNDING * mate.normal_module
     high = _curvature(mate, mate.tip_radius)
     possible = (touched >= low) & (touched <= high) & (turned < np.pi / 2.0)

@@ -71,8 +71,8 @@ def gear_loss_factor(pair: SpurPair, load_share: Callable[[Array], Array] | None
 def ohlendorf_loss_factor(pair: SpurPair) -> float:
     """Gear loss factor H_V in the closed form of Ohlendorf.
 
-    ``H_V = pi (u + 1)/(z_1 u) (1 - eps + eps_1^2 + eps_2^2)`` with the contact ratio eps and its
-    parts before and after the pitch point.
+    ``H_V = pi (u + 1)/(z_1 u cos beta_b) (1 - eps + eps_1^2 + eps_2^2)`` with the transverse
+    contact ratio eps and its parts before and after the pitch point; u is negative for a ring.
 
     Parameters
     ----------
@@ -82,8 +82,8 @@ def ohlendorf_loss_factor(pair: SpurPair) -> float:
     Returns
     -------
     float
-        H_V for equal sharing, exact where the pitch point lies among the positions of single
-        contact.
+        H_V for equal sharing, exact for spur gears where the pitch point lies among the positions
+        of single contact.
 
     Warns
     -----
@@ -115,6 +115,7 @@ def ohlendorf_loss_factor(pair: SpurPair) -> float:
             "which integrates.",
         )
     ratio = pair.ratio
+    factor /= math.cos(pair.base_helix_angle)
     return math.pi * (ratio + 1.0) / (pair.pinion.teeth * ratio) * factor
 
 
@@ -370,7 +371,7 @@ def gearbox_losses(
         raise InputError(what, Argument("gear"), why, "Give one value for each gear")
     lost: dict[str, Array] = {part: np.zeros(shape) for part in PARTS}
     lost["gear"] = np.array(np.broadcast_to(teeth, shape))
-    for name, turns in (("pinion", 1.0), ("wheel", 1.0 / pair.ratio)):
+    for name, turns in (("pinion", 1.0), ("wheel", 1.0 / abs(pair.ratio))):
         _require_oil(getattr(gearbox, name), lubricant, name)
         for row, column in np.ndindex(shape):
             turning = turns * float(speed[column])
@@ -417,7 +418,8 @@ def _oil_losses(
     """Churning and windage of one gear [W]."""
     depth, losses = getattr(gearbox, name).immersion, {}
     # The operating pitch circle: that is where the two gears roll on each other.
-    radius = pair.center_distance / (1.0 + pair.ratio) * (1.0 if name == "pinion" else pair.ratio)
+    ratio = 1.0 if name == "pinion" else pair.ratio
+    radius = abs(pair.center_distance / (1.0 + pair.ratio) * ratio)
     width = getattr(pair, name).face_width
     if depth > radius:
         why = f"The gear is immersed to at most its pitch radius, {1e3 * radius:.4g} mm"

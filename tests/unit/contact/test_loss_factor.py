@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tribodyn.contact import equal_share, gear_loss_factor, path_of_contact
 from tribodyn.errors import ComputationError
-from tribodyn.gear import BasicRack, SpurPair, spur_pair
+from tribodyn.gear import BasicRack, CylindricalPair, SpurPair, cylindrical_pair, spur_pair
 
 TALL = BasicRack(1.35, 1.6, 0.25)
 
@@ -87,3 +87,46 @@ def test_load_on_a_single_point_weighs_its_sliding() -> None:
 def test_share_without_a_value_is_an_error() -> None:
     with pytest.raises(ComputationError, match="load share"):
         gear_loss_factor(plain(), lambda path: np.full_like(path, np.nan))
+
+
+def helical(helix: float, width: float, wheel: int = 51) -> CylindricalPair:
+    return cylindrical_pair(
+        pinion_teeth=27,
+        wheel_teeth=wheel,
+        normal_module=4.5e-3,
+        normal_pressure_angle=math.radians(20.0),
+        helix_angle=math.radians(helix),
+        pinion_face_width=width,
+    )
+
+
+@pytest.mark.parametrize(("helix", "width", "wheel"), [(21.0, 50e-3, 51), (9.0, 60e-3, -90)])
+def test_loss_factor_of_a_helical_pair_by_slices(helix: float, width: float, wheel: int) -> None:
+    """Friction of equal line loads, summed over slices and phases without any closed form."""
+    pair = helical(helix, width, wheel)
+    contact = path_of_contact(pair)
+    places = (np.arange(400) + 0.5) / 400 * pair.common_face_width
+    path, in_contact = contact.face_paths((np.arange(800) + 0.5) / 800, places)
+    speed = np.abs(contact.kinematics(path, 1.0).sliding_speed) / pair.pinion.base_radius
+    mean = np.where(in_contact, speed, 0.0).sum(axis=(1, 2)) / in_contact.sum(axis=(1, 2))
+    expected = float(mean.mean()) / math.cos(pair.base_helix_angle)
+    assert gear_loss_factor(pair) == pytest.approx(expected, rel=3e-4)
+    shares = equal_share(contact, contact.A + np.linspace(0.05, 0.95, 9) * pair.base_pitch)
+    assert np.all((shares > 0.0) & (shares <= 1.0))
+
+
+def test_loss_factor_tends_to_that_of_the_spur_pair() -> None:
+    assert gear_loss_factor(helical(1e-4, 50e-3)) == pytest.approx(
+        gear_loss_factor(helical(0.0, 50e-3)), rel=1e-5
+    )
+
+
+def test_closed_form_of_a_whole_overlap() -> None:
+    """With a whole overlap ratio all lengths are equal, and the line load is constant."""
+    pair = helical(21.0, math.pi * 4.5e-3 / math.sin(math.radians(21.0)))
+    assert pair.overlap_ratio == pytest.approx(1.0, rel=1e-12)
+    approach = (path_of_contact(pair).C - pair.path_limits[0]) / pair.base_pitch
+    recess = pair.transverse_contact_ratio - approach
+    squares = (approach**2 + recess**2) / pair.transverse_contact_ratio
+    expected = math.pi * (1.0 + 27.0 / 51.0) / 27.0 * squares / math.cos(pair.base_helix_angle)
+    assert gear_loss_factor(pair) == pytest.approx(expected, rel=1e-9)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from tribodyn.contact import extended_contact
 from tribodyn.errors import InputError
-from tribodyn.gear import BasicRack, SpurGear, SpurPair, half_tooth, spur_pair
+from tribodyn.gear import BasicRack, SpurGear, SpurPair, cylindrical_pair, half_tooth, spur_pair
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -203,3 +204,62 @@ def test_a_corner_that_would_meet_the_fillet_is_impossible() -> None:
 def test_a_position_is_finite(path: float) -> None:
     with pytest.raises(InputError, match="path"):
         extended_contact(spur_pair(**FZG_A), path)
+
+
+RINGS: dict[str, dict[str, Any]] = {
+    "spur": {"pinion_teeth": 22, "wheel_teeth": -61, "helix_angle": 0.0},
+    "helical": {
+        "pinion_teeth": 21,
+        "wheel_teeth": -72,
+        "helix_angle": math.radians(15.0),
+        "pinion_profile_shift_coefficient": 0.2,
+        "wheel_profile_shift_coefficient": -0.1,
+    },
+}
+
+
+def ring_rotation_to_touch(pair: SpurPair, path: float) -> float:
+    """The same as :func:`rotation_to_touch` for a ring, whose tooth stands above the pinion's."""
+    base1, base2 = pair.pinion.base_radius, pair.wheel.base_radius
+    length = pair.line_of_action_length
+    centre = np.array([[length], [base1 - base2]])
+    half_angle = pair.pinion.base_half_angle - (path / base1 - math.atan(path / base1))
+    placed1 = turned(flank_points(pair.pinion), half_angle - math.atan(path / base1))
+    reach = path - length
+    half_angle = pair.wheel.base_half_angle + (reach / base2 - math.atan(reach / base2))
+    left = flank_points(pair.wheel) * np.array([[-1.0], [1.0]])
+    placed2 = turned(left[:, ::-1], -half_angle - math.atan(reach / base2))
+    about = placed1 - centre
+    radius1, angle1 = np.hypot(*about), np.arctan2(*about)
+    radius2, angle2 = np.hypot(*placed2), np.arctan2(*placed2)
+    inside = (radius1 >= radius2.min()) & (radius1 <= radius2.max())
+    gaps = np.interp(radius1[inside], radius2, angle2) - angle1[inside]
+    at_pinion = placed2 + centre
+    radius, angle = np.hypot(*at_pinion), np.arctan2(*at_pinion)
+    own_radius, own_angle = np.hypot(*placed1), np.arctan2(*placed1)
+    common = (radius >= own_radius.min()) & (radius <= own_radius.max())
+    back = angle[common] - np.interp(radius[common], own_radius, own_angle)
+    return min(float(gaps.min()) * base2, float(back.min()) * base1)
+
+
+@pytest.mark.parametrize("name", RINGS)
+@pytest.mark.parametrize("pitches", [0.05, 0.15])
+def test_outlines_of_an_internal_pair_meet_at_the_separation(name: str, pitches: float) -> None:
+    common = {"normal_module": 4e-3, "normal_pressure_angle": math.radians(20.0)}
+    pair = cylindrical_pair(**common, **RINGS[name], pinion_face_width=20e-3)
+    path = pair.path_limits[1] + pitches * pair.base_pitch
+    contact = extended_contact(pair, path)
+    assert bool(contact.possible)
+    assert float(contact.wheel_curvature_radius) < 0.0
+    expected = ring_rotation_to_touch(pair, path)
+    assert float(contact.separation) == pytest.approx(expected, rel=2e-3, abs=2e-8)
+    # Before the path the ring's tip would meet the pinion's fillet or nothing.
+    assert not bool(extended_contact(pair, pair.path_limits[0] - 1e-4).possible)
+    # A ring that is cut short touches early with its corner.
+    short = replace(pair, wheel=replace(pair.wheel, tip_diameter=pair.wheel.tip_diameter + 4e-3))
+    path = short.path_limits[0] - pitches * pair.base_pitch
+    early = extended_contact(short, path)
+    assert bool(early.possible)
+    assert float(early.separation) == pytest.approx(
+        ring_rotation_to_touch(short, path), rel=2e-3, abs=2e-8
+    )

@@ -49,7 +49,7 @@ class PitchPoint:
 
 
 def pitch_point(pair: SpurPair, pinion_speed: float, pinion_torque: float) -> PitchPoint:
-    """Loads and speeds of a spur pair at its pitch point.
+    """Loads and speeds of a cylindrical pair at its pitch point.
 
     Parameters
     ----------
@@ -82,8 +82,8 @@ def pitch_point(pair: SpurPair, pinion_speed: float, pinion_torque: float) -> Pi
     contact = path_of_contact(pair)
     motion = contact.kinematics(contact.C, pinion_speed)
     width = pair.common_face_width
-    radius = pair.center_distance / (1.0 + pair.ratio)
-    turned = 1.0 if pair.driver == "pinion" else pair.ratio
+    radius = abs(pair.center_distance / (1.0 + pair.ratio))
+    turned = 1.0 if pair.driver == "pinion" else abs(pair.ratio)
     return PitchPoint(
         load_per_width=pinion_torque / pair.pinion.base_radius / width,
         sum_velocity=2.0 * float(motion.entrainment_speed),
