@@ -48,6 +48,7 @@ class Option:
     low: float = -math.inf
     high: float = math.inf
     positive: bool = False  #: zero is refused although ``low`` is zero
+    signed: bool = False  #: a negative value of a size between the limits is accepted too
     pair: bool = False  #: a list of two, for both gears, is accepted too
     origin: str = ""  #: reason for the limits
     names: Names | None = None  #: allowed names of a choice

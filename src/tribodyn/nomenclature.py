@@ -65,6 +65,10 @@ _TABLE = """
 teeth | z | | | number of teeth
 normal_module | m_n | m | mm | module in the normal section | "4.5 mm"
 normal_pressure_angle | alpha_n | rad | deg | pressure angle of the basic rack | "20 deg"
+helix_angle | beta | rad | deg | helix angle at the reference cylinder; zero for spur gears | "21 deg"
+base_helix_angle | beta_b | rad | deg | helix angle at the base cylinder
+working_helix_angle | beta_w | rad | deg | helix angle at the operating pitch cylinder
+transverse_pressure_angle | alpha_t | rad | deg | pressure angle at the reference circle in the transverse section
 operating_pressure_angle | alpha_wt | rad | deg | pressure angle at the operating pitch circle
 center_distance | a | m | mm | distance between the two axes | "91.5 mm"
 profile_shift_coefficient | x | | | rack displacement divided by the module, positive outwards
@@ -77,11 +81,16 @@ tip_diameter | d_a | m | mm | diameter of the tip circle | "88.6 mm"
 root_diameter | d_f | m | mm | diameter of the root circle
 reference_diameter | d | m | mm | diameter of the reference circle
 bore_diameter | d_i | m | mm | diameter of the bore; zero for a solid gear | "30 mm"
+rim_diameter | | m | mm | outer diameter of a ring | "160 mm"
 base_radius | r_b | m | mm | radius of the base circle
+axial_pitch | p_x | m | mm | distance of neighbouring flanks along the axis
 base_pitch | p_b | m | mm | distance of neighbouring flanks along the line of action
 tip_shortening_coefficient | k | | | shortening of the addendum divided by the module
 tip_thickness | s_a | m | mm | tooth thickness at the tip circle
 transverse_contact_ratio | epsilon_alpha | | | length of the path of contact divided by the base pitch
+overlap_ratio | epsilon_beta | | | face width divided by the axial pitch
+total_contact_ratio | epsilon_gamma | | | sum of the transverse contact ratio and the overlap ratio
+contact_line_length | l | m | mm | length of all lines of contact together
 roll_angle | xi | rad | rad | roll angle of the driving gear, radius of curvature over base radius | "0.5 rad"
 curvature_radius | rho | m | mm | radius of curvature of a flank in the contact
 equivalent_radius | R | m | mm | reduced radius of curvature of the contact

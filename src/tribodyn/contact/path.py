@@ -226,7 +226,7 @@ class PathOfContact:
         ...                         helix_angle=math.radians(21.0), pinion_face_width=50e-3)
         >>> path, in_contact = path_of_contact(pair).face_paths(0.5, [0.0, 25e-3, 50e-3])
         >>> in_contact[0].tolist()
-        [[True, False, False], [False, True, True], [False, False, False]]
+        [[True, False, False], [True, True, True], [False, False, True]]
         """
         require_between("phase", phase, -math.inf, math.inf)
         require_between("entry_distance", entry_distance, -math.inf, math.inf, "m")

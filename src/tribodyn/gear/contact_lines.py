@@ -95,7 +95,7 @@ class FaceGeometry(MeshGeometry):
         ...                         normal_pressure_angle=math.radians(20.0),
         ...                         helix_angle=math.radians(10.0), pinion_face_width=74e-3)
         >>> [round(float(length) * 1e3, 2) for length in pair.contact_line_length([0.0, 0.5])]
-        [94.72, 136.97]
+        [102.69, 134.6]
         """
         require_between("phase", phase, -math.inf, math.inf)
         turned = np.asarray(phase, dtype=float)

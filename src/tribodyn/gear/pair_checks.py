@@ -130,7 +130,7 @@ def _interference(mesh: MeshGeometry) -> Iterator[tuple[bool, Problem]]:
 
 def tip_play(mesh: MeshGeometry) -> float:
     """Play along the ring's tip circle where the tips of an internal pair pass each other [m]."""
-    # Source: Colbourne (1987), tip interference of internal gears.
+    # Source: Colbourne, The geometry of involute gears, tip interference of internal gears.
     distance = mesh.center_distance
     inner, outer = mesh.pinion.tip_radius, mesh.wheel.tip_radius
     cosines = (

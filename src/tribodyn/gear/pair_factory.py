@@ -259,7 +259,7 @@ def cylindrical_pair(
     normal_pressure_angle : float
         Pressure angle of the rack in the normal section [rad], 10 to 30 degrees.
     helix_angle : float
-        Helix angle at the reference cylinders [rad], 0 to 45 degrees.
+        Helix angle at the reference cylinders [rad], 0 to 60 degrees.
     pinion_face_width, wheel_face_width : float [m]
         Widths of the toothings; that of the pinion by default.
     center_distance : float, optional

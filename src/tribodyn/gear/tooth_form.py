@@ -173,7 +173,7 @@ def range_problems(
 
 
 #: Helix angle above which gears are no longer used between parallel shafts [rad].
-_STEEPEST = math.radians(45.0) + 1e-12
+_STEEPEST = math.radians(60.0) + 1e-12
 
 
 def transverse_pressure_angle(normal_pressure_angle: float, helix_angle: float) -> float:
@@ -214,7 +214,7 @@ class ToothForm:
         Generating profile in the normal section. The root fillet of a ring is an arc of its tip
         radius that touches the flank and the root circle, or the full round of the space.
     helix_angle : float
-        Helix angle on the reference cylinder [rad], 0 (spur) to 45 degrees.
+        Helix angle on the reference cylinder [rad], 0 (spur) to 60 degrees.
 
     Raises
     ------

@@ -278,7 +278,7 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
     ({"center_distance": 40e-3}, "the centre distance must be at most 39 mm"),
     ({"center_distance": 36e-3}, "difference of the base radii, 36.648"),
     ({"center_distance": 38.5e-3, "backlash": 1e-4}, "Increase the centre distance to 38.852"),
-    ({"helix_angle": 0.9}, "helix_angle must be finite, at least 0 and at most 45 deg"),
+    ({"helix_angle": 1.1}, "helix_angle must be finite, at least 0 and at most 60 deg"),
     ({"hand": "down"}, "argument hand: hand = 'down'. A helix is right-handed or left-handed"),
 ]
 

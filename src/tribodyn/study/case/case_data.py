@@ -77,7 +77,7 @@ class CaseData(CaseTables):
     @property
     def gear_ratio(self) -> float:
         """Teeth of the wheel over teeth of the pinion."""
-        return self.gears.wheel.teeth / self.gears.pinion.teeth
+        return abs(self.gears.wheel.teeth / self.gears.pinion.teeth)
 
     @cached_property
     def gear_pair(self) -> SpurPair:

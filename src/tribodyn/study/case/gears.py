@@ -10,7 +10,7 @@ from typing import Any
 from tribodyn.errors import Problem
 from tribodyn.gear.hypoid.blank import HANDS, RANGES, hypoid_blank
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
-from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, numbers
+from tribodyn.model import REQUIRED, Option, choice, file_path, flag, integer, number, numbers
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
 from tribodyn.study.case.user_input import UserInput
@@ -91,7 +91,15 @@ class Gear(Section):
         "the range of ISO 1328-1",
         symbol="z",
         example="16",
-        meaning="number of teeth",
+        meaning="number of teeth, negative for a ring",
+        signed=True,
+    )
+    internal: bool = flag(False, meaning="whether the teeth are internal, as those of a ring")
+    hand: str | None = choice(
+        None,
+        ("right", "left"),
+        meaning="hand of the helix of this gear",
+        basis="the hand in [gears]",
     )
     profile_shift_coefficient: float = number(
         0.0, -3.0, 3.0, "shifts in use lie between -1 and 1.5", of="profile_shift_coefficient"
@@ -108,6 +116,9 @@ class Gear(Section):
         basis="the standard addendum less the tip shortening",
     )
     bore_diameter: float = number(0.0, 0.0, 20.0, _GUARD, of="bore_diameter")
+    rim_diameter: float | None = number(
+        None, 1e-4, 40.0, _GUARD, of="rim_diameter", basis="a rim of 3.5 modules"
+    )
     mass: float | None = number(None, 1e-7, 1e6, _GUARD, of="mass", basis="the solid gear")
     moment_of_inertia: float | None = number(
         None, 1e-14, 1e7, _GUARD, of="moment_of_inertia", basis="the solid gear"
@@ -141,6 +152,11 @@ class Gear(Section):
     modification: Modification | None = inner_table(
         Modification, "what the loaded flanks have that the involute has not", "none"
     )
+
+    @property
+    def tooth_count(self) -> int:
+        """Number of teeth, negative for a ring."""
+        return -abs(self.teeth) if self.internal else self.teeth
 
     @property
     def rms(self) -> float | None:
@@ -292,7 +308,15 @@ _ALSO_OF_HYPOID = ("composite_roughness", "roughness_rms", "roughness_ra")
 class Gears(Section):
     """The ``[gears]`` table."""
 
-    kind: str = choice("spur", ("spur", "hypoid", "table"), meaning="kind of gear pair")
+    kind: str = choice(
+        "spur",
+        {
+            "spur": "cylindrical gears, spur or helical, external or internal",
+            "hypoid": "hypoid or spiral bevel gears",
+            "table": "mesh table of another program",
+        },
+        meaning="kind of gear pair",
+    )
     table: str | None = file_path(
         meaning="mesh table of another program, as CSV or netCDF", example='"mesh.csv"'
     )
@@ -310,6 +334,15 @@ class Gears(Section):
         None, 1e-4, 10.0, _GUARD, of="center_distance", basis="the profile shifts, without backlash"
     )
     driver: str = choice(REQUIRED, ("pinion", "wheel"), meaning="the gear that drives")
+    helix_angle: float = number(
+        0.0, 0.0, math.radians(60.0), "the hand gives its sign", of="helix_angle"
+    )
+    hand: str | None = choice(
+        None,
+        ("right", "left"),
+        meaning="hand of the pinion's helix",
+        basis="the hand of a gear, right where none has one",
+    )
     composite_roughness: float | None = number(
         None,
         0.0,

@@ -209,6 +209,7 @@ def body(gear: str) -> tuple[str, ...]:
         "face_width",
         "tip_diameter",
         "bore_diameter",
+        "rim_diameter",
         "density",
     )
     return (*_PROFILE, *(f"gears.{gear}.{name}" for name in names), "material.density")
@@ -476,6 +477,8 @@ def derived_values(case: CaseData) -> dict[str, float]:
         values[f"gears.{name}.moment_of_inertia"] = solid.moment_of_inertia
         for end in ("tip_relief", "root_relief"):
             values[f"gears.{name}.modification.{end}_length"] = default_relief_length(pair)
+    if pair.is_internal:
+        values["gears.wheel.rim_diameter"] = 2.0 * pair.wheel.rim_radius
     values["gears.center_distance"] = pair.center_distance
     values["dynamics.backlash"] = case.backlash
     return _absent_from_case(case, values)

@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 def _gear_arguments(name: str, gear: Gear, other: Gear) -> dict[str, Any]:
     values = {key: getattr(gear, key) for key in _GEAR_ARGUMENTS}
+    values["teeth"] = gear.tooth_count
     values["face_width"] = gear.face_width if gear.face_width is not None else other.face_width
     return {f"{name}_{key}": value for key, value in values.items()}
 
 
 _GEAR_ARGUMENTS = (
-    "teeth",
     "profile_shift_coefficient",
     "tip_diameter",
     "bore_diameter",
@@ -115,16 +115,23 @@ def _built(
 
 
 def _spur_pair(gears: Gears, backlash: float | None, modified: _Modified) -> SpurPair:
-    from tribodyn.gear import BasicRack, spur_pair
+    from tribodyn.gear import BasicRack, cylindrical_pair
+    from tribodyn.gear.pair_checks import mating_hand
 
     rack = BasicRack(
         addendum_coefficient=gears.addendum_coefficient,
         dedendum_coefficient=gears.dedendum_coefficient,
         tip_radius_coefficient=gears.rack_tip_radius_coefficient,
     )
-    return spur_pair(
+    other = gears.wheel.hand
+    fitting = mating_hand(other, gears.wheel.tooth_count) if other else "right"
+    return cylindrical_pair(
         normal_module=gears.normal_module,
         normal_pressure_angle=gears.normal_pressure_angle,
+        helix_angle=gears.helix_angle,
+        hand=gears.hand or gears.pinion.hand or fitting,
+        wheel_hand=other,
+        wheel_rim_diameter=gears.wheel.rim_diameter,
         center_distance=gears.center_distance,
         driver=gears.driver,
         backlash=backlash,

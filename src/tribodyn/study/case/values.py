@@ -170,7 +170,8 @@ def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
 
 def _in_range(spec: Option, name: str, value: float, typed: Any) -> None:
     """Raise if a value is not finite or outside the limits of the field."""
-    outside = not (spec.low <= value <= spec.high) or (spec.positive and value == spec.low)
+    size = abs(value) if spec.signed else value
+    outside = not (spec.low <= size <= spec.high) or (spec.positive and value == spec.low)
     if not outside and math.isfinite(value):
         return
     entry = f"{name} = {written(typed)}"

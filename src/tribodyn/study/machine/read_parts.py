@@ -181,6 +181,7 @@ def read_gear(name: str, body: dict[str, Any], problems: KeyedProblems) -> Gear 
         return None
     names = ("shaft", "position", "teeth", "face_width", "mass", "moment_of_inertia")
     values = {k: getattr(table, k) for k in (*names, "transverse_moment_of_inertia")}
+    values["teeth"] = table.tooth_count
     part: Gear | None = built(key, lambda: Gear(**values), problems)
     return part
 

@@ -34,6 +34,20 @@ _AMOUNTS = (
     "run_out",
 )
 
+#: Figures of the geometry of helical and internal pairs alone.
+_OF_HELIX = (
+    "helix_angle",
+    "base_helix_angle",
+    "working_helix_angle",
+    "transverse_pressure_angle",
+    "working_transverse_pressure_angle",
+    "overlap_ratio",
+    "total_contact_ratio",
+    "least_contact_line_length",
+    "mean_contact_line_length",
+    "greatest_contact_line_length",
+)
+
 
 def geometry(case: Case) -> dict[str, float]:
     """Geometry, masses and inertias that follow from a case."""
@@ -53,7 +67,7 @@ def geometry(case: Case) -> dict[str, float]:
 def _of_spur(
     pair: SpurPair, density_pinion: float, density_wheel: float, backlash: float
 ) -> dict[str, float]:
-    """Geometry of a spur pair; a study uses it under many loads."""
+    """Geometry of a cylindrical pair; a study uses it under many loads."""
     from tribodyn.contact import gear_loss_factor, path_of_contact
 
     values = {
@@ -68,6 +82,10 @@ def _of_spur(
         "backlash": backlash,
         "gear_loss_factor": gear_loss_factor(pair),
     }
+    if pair.helix_angle:
+        values["axial_pitch"] = pair.axial_pitch
+    if pair.helix_angle or pair.is_internal:
+        values |= {name: getattr(pair, name) for name in _OF_HELIX}
     for place, angle in path_of_contact(pair).roll_angles.items():
         values[f"roll_angle_{place}"] = angle
     bodies = {

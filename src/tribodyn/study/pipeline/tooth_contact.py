@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, ModelWarning, collected, warn
+from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, collected, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import to_models
 from tribodyn.study.case.hypoid import mounting
@@ -92,6 +92,8 @@ def mesh_of(
         )
     if case.hypoid_flanks is not None:
         return hypoid_friction_of(case, load=load, rehearsal=rehearsal).table()
+    if problem := uncomputed_teeth(case):
+        raise InputError(problem)
     settings = contact_settings(case)
     if rehearsal:
         film = "none" if settings.film_model == "none" else "dowson-higginson"
@@ -111,6 +113,18 @@ def mesh_of(
         force_law=mesh_law_of(case) == "force-law" or (None if about_load else False),
         progress=progress,
     )
+
+
+def uncomputed_teeth(case: Case) -> Problem | None:
+    """Problem of teeth whose load distribution is not computed."""
+    pair = case.spur_pair
+    if pair is None or not (pair.helix_angle or pair.is_internal):
+        return None
+    kind = "helical" if pair.helix_angle else "internal"
+    what = f"the tooth contact of a pair with {kind} teeth"
+    why = "The load on its lines of contact is not computed; tribodyn check shows its geometry"
+    where = "gears.helix_angle" if pair.helix_angle else "gears.wheel.teeth"
+    return Problem(what, where, why, "Use external spur gears")
 
 
 def teeth_contact_ratio(case: Case) -> float | None:

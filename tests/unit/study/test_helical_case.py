@@ -1,0 +1,114 @@
+"""Helical and internal pairs in the case file and on the command line."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+import tribodyn as td
+from tribodyn.cli import call
+from tribodyn.errors import InputError
+from tribodyn.study.case.read import read_case
+
+CASE = """
+[gears]
+normal_module = "2 mm"
+normal_pressure_angle = "20 deg"
+helix_angle = "15 deg"
+driver = "pinion"
+[gears.pinion]
+teeth = 21
+face_width = "25 mm"
+profile_shift_coefficient = 0.2
+[gears.wheel]
+teeth = -72
+profile_shift_coefficient = -0.1
+[operation]
+speed = "3000 rpm"
+speed_of = "pinion"
+torque = "40 N*m"
+[dynamics]
+model = "torsional"
+"""
+
+
+@pytest.mark.parametrize("ring", ["teeth = -72", "teeth = 72\ninternal = true"])
+def test_check_reports_the_geometry_of_a_ring(
+    ring: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "ring.toml"
+    path.write_text(CASE.replace("teeth = -72", ring), "utf-8")
+    assert call(["check", str(path), "--json"]) == 0
+    streams = capsys.readouterr()
+    figures = json.loads(streams.out)
+    expected = {
+        "helix_angle": math.radians(15.0),
+        "transverse_pressure_angle": math.radians(20.646896),
+        "working_transverse_pressure_angle": math.radians(20.052474),
+        "base_helix_angle": math.radians(14.076095),
+        "transverse_contact_ratio": 1.708058,
+        "overlap_ratio": 1.029808,
+        "total_contact_ratio": 2.737866,
+        "tip_diameter_wheel": 145.47977e-3,
+        "least_contact_line_length": 43.49507e-3,
+        "gear_ratio": -72.0 / 21.0,
+    }
+    assert {name: figures[name] for name in expected} == pytest.approx(expected, rel=1e-6)
+    assert "[fillet-contact]" in streams.err
+
+
+def test_a_run_of_teeth_that_are_not_computed_is_refused() -> None:
+    case = read_case(CASE)
+    with pytest.raises(InputError, match=r"gears.helix_angle.*load on its lines of contact"):
+        td.run(case)
+
+
+def test_speeds_of_a_ring_are_positive() -> None:
+    case = read_case(CASE.replace('"pinion"\ntorque', '"wheel"\ntorque'))
+    assert case.pinion_speed == pytest.approx(100.0 * math.pi * 72.0 / 21.0)
+
+
+FAULTS = {
+    "pinion_hand": ('teeth = -72\nhand = "up"', r"gears.wheel.hand: .*Allowed: right, left"),
+    "contradiction": ("teeth = -72\ninternal = false", r"gears.wheel.teeth.*internal = false"),
+    "small": ("teeth = -3", r"gears.wheel.teeth: teeth = -3. Allowed: 5 to 1000"),
+    "inner": ("teeth = -20", r"the pinion has 21 teeth, the wheel -20. The gear inside of a ring"),
+    "rim": ('teeth = -72\nrim_diameter = "150 mm"', r"gears.wheel.rim_diameter: rim diameter 150"),
+}
+
+
+@pytest.mark.parametrize(("change", "text"), FAULTS.values(), ids=list(FAULTS))
+def test_faults_of_rings_name_the_key(change: str, text: str) -> None:
+    with pytest.raises(InputError, match=text):
+        read_case(CASE.replace("teeth = -72", change))
+
+
+def test_faults_of_the_pinion() -> None:
+    hands = CASE.replace("teeth = 21", 'teeth = 21\nhand = "right"')
+    with pytest.raises(InputError, match=r"gears.wheel.hand: .*have equal hands"):
+        read_case(hands.replace("teeth = -72", 'teeth = -72\nhand = "left"'))
+    with pytest.raises(
+        InputError, match=r"gears.hand: hand = .right. and hand = .left. are both given"
+    ):
+        read_case(
+            CASE.replace("teeth = 21", 'teeth = 21\nhand = "left"').replace(
+                '"15 deg"', '"15 deg"\nhand = "right"'
+            )
+        )
+    for change, text in (
+        ("teeth = 21\ninternal = true", "gears.pinion.internal: .*Only the wheel"),
+        ('teeth = 21\nrim_diameter = "9 cm"', "gears.pinion.rim_diameter: .*Only a ring"),
+    ):
+        with pytest.raises(InputError, match=text):
+            read_case(CASE.replace("teeth = 21", change))
+
+
+def test_hand_of_the_pinion_alone() -> None:
+    left = CASE.replace("teeth = 21", 'teeth = 21\nhand = "left"').replace("-72", "72")
+    pair = read_case(left).gear_pair
+    assert (pair.hand, pair.wheel.hand) == ("left", "right")
+    by_wheel = CASE.replace("teeth = -72", 'teeth = 72\nhand = "left"')
+    assert read_case(by_wheel).gear_pair.hand == "right"
+    again = read_case(read_case(left).to_toml()).gear_pair
+    assert again == pair
