@@ -447,11 +447,10 @@ def _helical_share(contact: PathOfContact, age: Array) -> Array:
         rest = phase - turns
         start = np.clip(np.searchsorted(kinks, rest, side="right") - 1, 0, first.size - 1)
         inside = mean_inverse(first[start], pair.contact_line_length(rest))
-        return turns * sums[-1] + sums[start] + (rest - kinks[start]) * inside
+        return np.asarray(turns * sums[-1] + sums[start] + (rest - kinks[start]) * inside)
 
     line = pair.common_face_width / (math.cos(pair.base_helix_angle) * pair.overlap_ratio)
-    share: Array = line * (integral(age + pair.overlap_ratio) - integral(age))
-    return share
+    return np.asarray(line * (integral(age + pair.overlap_ratio) - integral(age)))
 
 
 def gear_loss_factor(pair: CylindricalPair, share: Callable[[Array], Array] | None = None) -> float:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _POINTS = 201
 #: Classes and attributes with a gear pair.
 _HOLDERS = (
-    "SpurPair",
+    "CylindricalPair",
     "Result.case.gear_pair",
     *(f"{name}.gear_pair" for name in ("Case", "MeshTable", "LoadedContact", "HarrisMap")),
     *(f"{name}.gear_pair" for name in ("TipReliefOptimum", "ComprehensiveStiffness")),

@@ -14,6 +14,7 @@ from tribodyn.plot.gear.outlines import (
     placed_outline,
     rotation_arc,
     tooth_angles,
+    wheel_center,
 )
 from tribodyn.plot.gear.path import further_changes, sharing_sentence
 from tribodyn.plot.mesh.cycle import RUN
@@ -47,17 +48,32 @@ def _curve(points: Array, name: str, color: str, **more: Any) -> dict[str, Any]:
 
 def _gears_and_centers(pair: SpurPair) -> tuple[tuple[SpurGear, str, float, str], ...]:
     """Both gears with name, centre position and colour."""
-    places = zip(pair.gears.items(), (0.0, pair.center_distance), (PINION, WHEEL), strict=True)
+    places = zip(pair.gears.items(), (0.0, wheel_center(pair)), (PINION, WHEEL), strict=True)
     return tuple((gear, name, center, color) for (name, gear), center, color in places)
 
 
+def _sense(pair: SpurPair, name: str) -> int:
+    """Sense in which a gear turns: the driver of an external pair to the left."""
+    if pair.is_internal:
+        return 1 if pair.driver == "pinion" else -1
+    return 1 if pair.driver == name else -1
+
+
 def _gears(pair: SpurPair, touching: float) -> list[Trace]:
-    angles = tooth_angles(pair, touching)
     traces = []
-    for (gear, name, center, color), angle in zip(_gears_and_centers(pair), angles, strict=True):
+    placed = list(zip(_gears_and_centers(pair), tooth_angles(pair, touching), strict=True))
+    # A ring is a disc with a white hole, on which the pinion is drawn.
+    for (gear, name, center, color), angle in placed[:: pair.wheel.sign]:
         role = "drives" if pair.driver == name else "is driven"
-        label = f"{name}, {gear.teeth} teeth, {role}"
+        name = "ring" if gear.is_ring else name
+        label = f"{name}, {abs(gear.teeth)} teeth, {role}"
         outline = placed_outline(gear, center, angle)
+        if gear.is_ring:
+            rim = circle(center, gear.rim_radius)
+            traces.append(_curve(rim, label, color, fill="toself", fillcolor=FILLS[color]))
+            more = {"fill": "toself", "fillcolor": "white", "showlegend": False}
+            traces.append(_curve(outline, "teeth", color, **more))
+            continue
         traces.append(_curve(outline, label, color, fill="toself", fillcolor=FILLS[color]))
         if gear.bore_diameter > 0.0:
             bore = circle(center, 0.5 * gear.bore_diameter)
@@ -89,7 +105,10 @@ def _arrows(pair: SpurPair) -> list[Trace]:
     """Arcs with an arrow head in the sense of rotation of each gear."""
     traces = []
     for gear, name, center, color in _gears_and_centers(pair):
-        arc = rotation_arc(center, 0.8 * gear.root_radius, 1 if pair.driver == name else -1)
+        radius = 0.8 * gear.root_radius
+        if gear.is_ring:
+            radius = 0.5 * (gear.root_radius + gear.rim_radius)
+        arc = rotation_arc(center, radius, _sense(pair, name))
         head = [0] * (arc.shape[1] - 1) + [15]
         marker = {"symbol": "arrow", "angleref": "previous", "size": head, "opacity": 1}
         more = {"mode": "lines+markers", "marker": {**marker, "color": color}}
@@ -103,7 +122,7 @@ def _roles(pair: SpurPair) -> list[Trace]:
     return [
         {
             "x": 1e3 * center,
-            "y": -1e3 * gear.tip_radius,
+            "y": -1e3 * (gear.rim_radius if gear.is_ring else gear.tip_radius),
             "yanchor": "top",
             "text": "drives" if pair.driver == name else "driven",
             "showarrow": False,
@@ -213,7 +232,12 @@ def _caption(pair: SpurPair) -> str:
     "gear_pair",
     heading="The gear pair",
     caption=_caption,
-    of=("SpurPair", "Result.case.gear_pair", "MeshTable.gear_pair", "LoadedContact.gear_pair"),
+    of=(
+        "CylindricalPair",
+        "Result.case.gear_pair",
+        "MeshTable.gear_pair",
+        "LoadedContact.gear_pair",
+    ),
     made_by=RUN,
 )
 def gear_pair(pair: SpurPair) -> Any:
@@ -230,8 +254,9 @@ def gear_pair(pair: SpurPair) -> Any:
         "legend": {"orientation": "h", "y": -0.16, "yanchor": "top", "x": 0.0},
     }
     teeth, mate = (gear.teeth for gear in pair.gears.values())
+    section = " in the transverse section" if pair.helix_angle else ""
     title = (
-        f"{teeth} teeth against {mate}: on average "
+        f"{teeth} teeth against {abs(mate)}{' of a ring' if mate < 0 else ''}{section}: on average "
         f"{path.contact_ratio:.2f} tooth pairs are between A and E"
     )
     return figure(title, [*traces, *_arrows(pair), *enlarged], layout)

@@ -1,8 +1,8 @@
 """Outlines of both gears near the contact, unloaded and deformed, in the frame of the pair.
 
-The origin of the frame is the pinion's axis, the
-wheel's axis lies on the horizontal axis, and points are complex numbers.
-
+The origin of the frame is the pinion's axis. The wheel's axis lies on the horizontal axis, that
+of a ring on its negative side, so that the teeth mesh at positive x. Points are complex numbers,
+and outlines those of the transverse section.
 """
 
 from __future__ import annotations
@@ -38,12 +38,18 @@ def on_line_of_action(pair: MeshGeometry, path: Any) -> Array:
     return np.array([x, y])
 
 
+def wheel_center(pair: MeshGeometry) -> float:
+    """Position of the wheel's axis on the horizontal axis [m]."""
+    return pair.wheel.sign * pair.center_distance
+
+
 def tooth_angles(pair: MeshGeometry, path: float) -> tuple[float, float]:
     """Angles of the pinion tooth and the wheel tooth that touch at a position [rad]."""
     x, y = on_line_of_action(pair, path)
-    places = ((pair.pinion, x, y), (pair.wheel, x - pair.center_distance, y))
+    places = ((pair.pinion, x, y), (pair.wheel, x - wheel_center(pair), y))
     first, second = (
-        math.atan2(v, u) - float(gear.half_tooth_angle(math.hypot(u, v))) for gear, u, v in places
+        math.atan2(v, u) - gear.sign * float(gear.half_tooth_angle(math.hypot(u, v)))
+        for gear, u, v in places
     )
     return first, second
 
