@@ -28,6 +28,7 @@ from tribodyn.mesh.loads import (
     warn_of_rigid_films,
 )
 from tribodyn.mesh.sharing import (
+    FittedLaw,
     Teeth,
     ToothContact,
     ToothModel,
@@ -151,11 +152,10 @@ def mesh_table(
     pinion_speed: float,
     pinion_torque: float,
     steps: int | None = None,
-    force_law: bool | None = False,
+    force_law: FittedLaw = False,
     progress: Progress = SILENT,
 ) -> MeshTable:
     """Compute the tooth contact with these settings at one speed and torque, as :func:`build`."""
-    # force_law None: its tangent at the load in its place.
     operation = (pinion_speed, pinion_torque)
     loaded = loaded_mesh(
         pair, settings, operation, steps=steps, force_law=force_law, progress=progress
@@ -176,8 +176,7 @@ class LoadedMesh:
     loads: Loads
     pinion_speed: float
     pinion_torque: float
-    #: Fit the force law of pairs that are springs of their own too; None: only its tangent.
-    force_law: bool | None
+    force_law: FittedLaw
 
     @cached_property
     def films(self) -> Films:
@@ -268,7 +267,7 @@ def loaded_mesh(
     operation: tuple[float, float],
     *,
     steps: int | None = None,
-    force_law: bool | None = False,
+    force_law: FittedLaw = False,
     loading: Array | None = None,
     progress: Progress = SILENT,
 ) -> LoadedMesh:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -88,6 +88,11 @@ _AIM = 1e-3
 #: Range of the force, over the load of the mesh, in which the error counts; and where the law ends
 #: and goes on straight.
 _RANGE, _LAST = (0.1, 3.0), 4.0
+#: What of the force law is computed: that of teeth that are solved together (False) or of all
+#: teeth, few ramps about the load, or the tangent there, which costs nothing.
+FittedLaw = bool | Literal["about-load", "tangent"]
+#: Deflections of the points of a law about the load, over that under the load.
+_ABOUT_LOAD = np.array([0.3, 0.55, 0.75, 0.9, 1.0, 1.12, 1.3, 1.6, 2.1])
 #: Deflections that are looked at, over that at the end, from the first touch on.
 _LOOKED_AT = np.geomspace(0.02, 1.0, 45)
 #: Slices, from the first to the last that touches, whose pairs are followed.
@@ -194,6 +199,14 @@ class Teeth:
                 stacklevel=4,
             )
         return place, slope
+
+    def ramps_about_load(self, shared: SharedLoad, film: FilmSprings | None) -> tuple[Array, Array]:
+        """Few ramps that are exact at the load: where each begins [m], and its stiffness [N/m]."""
+        problem = self.with_film(film)
+        first = problem.least_gap
+        approach = first + _ABOUT_LOAD[:, None] * (shared.transmission_error - first)
+        force, tangent = problem.at_approach(approach)
+        return _chords(first, approach.T, force.T, tangent[-1])
 
     def with_film(self, film: FilmSprings | None) -> ContactProblem:
         """Put the films in series with the teeth."""
@@ -303,6 +316,10 @@ class SpringTeeth(Teeth):
         no_corners = np.zeros((deflection.size, 2))
         return SharedLoad(each, share, no_corners, deflection, problem.tangent_at(load))
 
+    def ramps_about_load(self, shared: SharedLoad, film: FilmSprings | None) -> tuple[Array, Array]:
+        """One ramp."""
+        return self.ramps(shared, film, fitted=False)
+
     def ramps(
         self, shared: SharedLoad, film: FilmSprings | None, *, fitted: bool
     ) -> tuple[Array, Array]:
@@ -356,12 +373,14 @@ def teeth_of(
 
 
 def shared_load_columns(
-    teeth: Teeth, shared: SharedLoad, film: FilmSprings | None, *, force_law: bool | None
+    teeth: Teeth, shared: SharedLoad, film: FilmSprings | None, *, force_law: FittedLaw
 ) -> dict[str, Any]:
     """Columns of the mesh table that follow from teeth and films under load, its own copies."""
-    if force_law is None:  # the tangent at the load, which costs nothing
+    if force_law == "tangent":
         first = shared.transmission_error - np.ravel(teeth.force) / shared.tangent
         ramps = first[:, None], shared.tangent[:, None]
+    elif force_law == "about-load":
+        ramps = teeth.ramps_about_load(shared, film)
     else:
         ramps = teeth.ramps(shared, film, fitted=force_law)
     without_film = shared if film is None else teeth.shared_load()

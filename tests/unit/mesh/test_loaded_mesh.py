@@ -12,7 +12,7 @@ import pytest
 from known_pairs import pair_of, standard, type_c
 from tribodyn.gear import FlankModification, Material
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh import MeshTable, build, sharing
+from tribodyn.mesh import MeshTable, PhaseFunction, build, sharing
 from tribodyn.mesh.build import mesh_table
 from tribodyn.mesh.sharing import LARGEST_ERROR, LARGEST_GRADUAL_ERROR
 from tribodyn.stiffness import loaded_contact
@@ -62,7 +62,7 @@ def test_a_table_about_its_load_has_the_tangent_there_as_its_force_law(monkeypat
     run = {"pinion_speed": 100.0, "pinion_torque": 90.0, "steps": 64}
     full = mesh_table(pair, settings, **run)
     monkeypatch.setattr(sharing, "force_ramps", None)  # the expensive fit is not called
-    about_load = mesh_table(pair, settings, force_law=None, **run)
+    about_load = mesh_table(pair, settings, force_law="tangent", **run)
     law, error = about_load.force_law, about_load.static_transmission_error
     assert law.knot_deflection.shape[1] == 1 < full.force_law.knot_deflection.shape[1]
     rows = np.arange(error.size)
@@ -71,6 +71,24 @@ def test_a_table_about_its_load_has_the_tangent_there_as_its_force_law(monkeypat
     assert slope == pytest.approx(full.mesh_stiffness_tangent, rel=1e-12)
     for name in ("load_share", "stiffness", "static_transmission_error", "friction_sum"):
         assert np.array_equal(getattr(about_load, name), getattr(full, name))
+
+
+def test_a_law_about_the_load_is_exact_there_and_close_around_it():
+    pair = replace(pair_of(), misalignment=8e-6)
+    settings = sharing.ToothContact(Material(), OIL, "analytic", composite_roughness=0.0)
+    run = {"pinion_speed": 100.0, "pinion_torque": 90.0, "steps": 64}
+    mesh = mesh_table(pair, settings, force_law="about-load", **run)
+    fitted = mesh_table(pair, settings, **run).force_law
+    law, load = mesh.force_law, mesh.total_normal_force
+    assert law.knot_deflection.shape[1] == 10
+    inside = mesh.phase[mesh.phase % 0.25 > 0.0]
+    at_load = PhaseFunction(mesh.grid, mesh.static_transmission_error)(inside)
+    assert law.force(inside, at_load) == pytest.approx(load, rel=1e-6)
+    first = fitted.first_touch(inside)
+    for part in np.linspace(0.4, 2.0, 9):
+        deflection = first + part * (at_load - first)
+        error = law.force(inside, deflection) - fitted.force(inside, deflection)
+        assert np.abs(error).max() < (0.01 if 0.75 <= part <= 1.3 else 0.04) * load
 
 
 def test_tip_corners_carry_on_where_the_path_ends():

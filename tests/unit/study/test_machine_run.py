@@ -184,5 +184,11 @@ def test_the_built_in_reducer_runs_with_its_teeth(tmp_path):
         assert mean == pytest.approx(static, rel=0.02)  # friction shifts the mean
         assert 1.0 < figures[f"meshes.{name}.dynamic_factor_peak"] < 2.0
     assert 0.98 < figures["machine.efficiency"] < 1.0
+    contacts = result.operation.system.contacts
+    assert [contact.ramp_gap(0.3).size for contact in contacts] == [9, 9]  # one contact per mesh
+    linear = td.run(case.replace({"dynamics.mesh_law": "tangent"})).summary()
+    for key in ("first.peak", "second.peak", "first.minimum", "second.minimum"):
+        name = f"meshes.{key}_mesh_force"
+        assert figures[name] == pytest.approx(linear[name], rel=0.01)  # the teeth hardly part
     folder = result.save(tmp_path / "out")
     assert (folder / "mesh-first.nc").is_file()

@@ -25,6 +25,7 @@ from tribodyn.dynamics.equations.grid import (
 )
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
+    ramp_count,
     refuse_falling_force,
     refuse_negative_gap,
     step_weights,
@@ -51,11 +52,12 @@ def _structure(system: System) -> Hashable:
     contacts = system.contacts
     if len(contacts) != 1 or system.frictions or varies(system.force) or system.cycles > 1:
         return None
-    if varies(contacts[0].direction) or contacts[0].offset or np.size(contacts[0].ramp_gap):
+    contact = contacts[0]
+    if varies(contact.direction) or contact.offset or ramp_count("contacts[0]", contact):
         return None
-    parts = system.mass, system.rate_matrix, system.stiffness, system.balance, contacts[0].direction
+    parts = system.mass, system.rate_matrix, system.stiffness, system.balance, contact.direction
     numbers = tuple(None if part is None else np.asarray(part).tobytes() for part in parts)
-    return numbers, tuple(system.names), contacts[0].events, contacts[0].damping_in_gap
+    return numbers, tuple(system.names), contact.events, contact.damping_in_gap
 
 
 def evaluate_batch(systems: Sequence[System], grid: Grid, memory: Memory = new_memory) -> Nodes:

@@ -248,10 +248,11 @@ def _ramps(system: System, rows: RowEvaluator) -> dict[str, Array]:
                 table = table if table.flags.writeable else table.copy()
                 where = f"contacts[{j}].{name}"
                 table[:, :, j, : counts[j]] = rows.values(where, getattr(contact, name), counts[j])
-        if table.min(initial=0.0) < 0.0:
-            what, why = f"{name} = {table.min():.6g}", "Ramps add stiffness beyond a dead zone"
+        least = table.min(initial=0.0)
+        if least < -_ROUNDING * table.max(initial=0.0):
+            what, why = f"{name} = {least:.6g}", "Ramps add stiffness beyond a dead zone"
             raise InputError(what, f"Contact.{name}", why, "Give no negative values")
-        out[name] = table
+        out[name] = table if least == 0.0 else np.maximum(table, 0.0)
     return out
 
 

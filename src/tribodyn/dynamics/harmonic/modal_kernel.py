@@ -245,8 +245,9 @@ def _clear(contacts: Contacts, w: Buffers, node: int, j: int, k: int) -> float:
     if not contacts.dead[j, k]:
         return np.inf
     d, side = w.deflection[node, j], w.side[j, k]
-    gap: float = w.rows[node, count * (springs + 3) + j * springs + k]
-    return side * d - gap if side != 0.0 else gap - abs(d)
+    gap = w.rows[node, count * (springs + 3) + j * springs + k]
+    clear: float = side * d - gap if side != 0.0 else gap - abs(d)
+    return clear
 
 
 @nb.njit(**INNER)

@@ -149,7 +149,7 @@ def law_contact(contact: Contact, law: MeshForceLaw) -> Contact:
     else:
         stiffness = law.over_phase(law.knot_stiffness[:, lowest])
         gap = law.over_phase(half + law.knot_deflection[:, lowest])
-    ramps: dict[str, Entry] = {}
+    ramps: dict[str, Any] = {}
     if upper:
         ramps["ramp_stiffness"] = law.over_phase(law.knot_stiffness[:, upper])
         ramps["ramp_gap"] = law.over_phase(half + law.knot_deflection[:, upper])

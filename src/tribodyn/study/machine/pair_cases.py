@@ -12,7 +12,6 @@ from tribodyn.study.case import gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.sections import Dynamics
-from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.case.values import Plain
 from tribodyn.study.machine.read_parts import rolling_options
@@ -98,7 +97,7 @@ def pair_case(
     model_keys = (f"{table}.{key}" for table, values in inner.items() for key in values)
     mesh_keys = {*mesh_dynamics, *model_keys, *inner}
     origin = source or Source()
-    case = Case(
+    return Case(
         PairSource(origin.name, origin.find, origin.replaced, mesh, names, frozenset(mesh_keys)),
         title=f"{data.get('title', 'Machine')}: {mesh}",
         gears=pair,
@@ -106,10 +105,6 @@ def pair_case(
         dynamics={**_STRUCTURE, **shared_dynamics, **mesh_dynamics},
         **tables,
     )
-    # All ramps of a force law are a contact each: about its load a machine has the tangent to it.
-    chosen = case.dynamics.mesh_law is not None
-    tangent = not chosen and mesh_law_of(case) == "force-law"
-    return case.replace({"dynamics.mesh_law": "tangent"}) if tangent else case
 
 
 def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) -> dict[str, Any]:

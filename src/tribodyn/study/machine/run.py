@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics import law_contact
 from tribodyn.errors import ModelWarning, collected, frames, warn
+from tribodyn.interrupt import in_threads, processors
 from tribodyn.machine import (
     MachineStructure,
     face_laws,
@@ -20,7 +22,7 @@ from tribodyn.machine import (
 )
 from tribodyn.machine import system as system_of
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.to_models import locate_errors
+from tribodyn.study.case.to_models import locate_errors, mesh_law_of
 from tribodyn.study.machine.case import LoadCase, MachineCase
 from tribodyn.study.machine.first_look import warn_of_period
 from tribodyn.study.machine.motion import MachineMotion, joined
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
 #: Passes of teeth and balance at most, and change of the misalignment over the compression of the
 #: teeth that ends them.
 _PASSES, _SAME = 4, 0.1
+#: A single spring, which the ramps of a force law replace.
+_SPRING = {"dynamics.mesh_law": "stiffness"}
 
 
 class MeshWarning(NamedTuple):
@@ -103,15 +107,16 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
     static = _static(case.machine(load))  # with a usual stiffness of the teeth
     for _ in range(_PASSES):
         before = {name: static.meshes[name] for name in case.meshes_with_teeth}
-        mesh_warnings: list[MeshWarning] = []  # those of the last pass are in force
         misalignment = {name: mesh.misalignment for name, mesh in before.items()}
-        tables, laws = {}, {}
-        for name in case.meshes_with_teeth:
-            pair = case.pair(name, load, misalignment[name])
-            with locate_errors(pair), collected() as caught:
-                tables[name] = mesh_of(pair, about_load=True)
-                laws[name] = _law(pair, tables[name])
-            mesh_warnings += [MeshWarning(name, load.name, warning) for warning in caught]
+        pairs = [case.pair(name, load, value) for name, value in misalignment.items()]
+        teeth = dict(zip(before, in_threads(_teeth, pairs, processors()), strict=True))
+        tables = {name: table for name, (table, _, _) in teeth.items()}
+        laws = {name: law for name, (_, law, _) in teeth.items()}
+        mesh_warnings = [  # those of the last pass are in force
+            MeshWarning(name, load.name, warning)
+            for name, (_, _, of_mesh) in teeth.items()
+            for warning in of_mesh
+        ]
         static = _static(case.machine(load, **laws))
         changes = [
             abs(static.meshes[name].misalignment - mesh.misalignment) / mesh.compression
@@ -121,6 +126,13 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
             break
     progress.finish()
     return Balanced(static, tables, misalignment, mesh_warnings)
+
+
+def _teeth(pair: Case) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
+    """Mesh table and force law of the teeth of a mesh, and their warnings."""
+    with locate_errors(pair), collected() as caught:
+        table = mesh_of(pair, about_load=True)
+        return table, _law(pair, table), caught
 
 
 def static_with_teeth(
@@ -160,11 +172,14 @@ def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
 
 def _law(pair: Case, table: MeshTable) -> dict[str, Any]:
     """Force law of a mesh whose teeth are computed."""
-    plane, functions = whole_system(pair, table), table.functions()
+    functions, single = table.functions(), mesh_law_of(pair) == "force-law"
+    plane = whole_system(pair.replace(_SPRING) if single else pair, table)
+    law = functions.force_law
+    contacts = [law_contact(c, law) for c in plane.contacts] if single and law else plane.contacts
     return {
         # The static balance and the modes are those about the load.
         "stiffness": functions.tangent_stiffness or functions.stiffness,
-        "contacts": plane.contacts,
+        "contacts": tuple(contacts),
         "frictions": plane.frictions,
         "events": functions.event_phases,
     }

@@ -24,7 +24,7 @@ from tribodyn.study.studies.study_axes import read_torques
 
 if TYPE_CHECKING:
     from tribodyn.mesh import HypoidFriction, HypoidLoadedContact, MeshFriction, MeshTable
-    from tribodyn.mesh.sharing import ToothContact
+    from tribodyn.mesh.sharing import FittedLaw, ToothContact
     from tribodyn.stiffness import LoadedContact
     from tribodyn.study.case.case import Case
     from tribodyn.types import Array
@@ -78,7 +78,7 @@ def mesh_of(
 
     A rehearsal has few phases and a film by formula: it only has to raise the input errors.
     """
-    # about_load: the force law is its tangent, unless the case needs all of it.
+    # about_load: the force law has few ramps, or is its tangent where the case takes no more.
     from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
 
@@ -95,6 +95,9 @@ def mesh_of(
     if problem := uncomputed_teeth(case):
         raise InputError(problem)
     settings = contact_settings(case)
+    fitted: FittedLaw = mesh_law_of(case) == "force-law"
+    if about_load:
+        fitted = "about-load" if fitted else "tangent"
     if rehearsal:
         film = "none" if settings.film_model == "none" else "dowson-higginson"
         settings = replace(settings, film_model=film, film_options={})
@@ -110,7 +113,7 @@ def mesh_of(
         steps=_FEWEST if rehearsal else None,
         pinion_speed=case.pinion_speed,
         pinion_torque=case.pinion_torque * load,
-        force_law=mesh_law_of(case) == "force-law" or (None if about_load else False),
+        force_law=fitted,
         progress=progress,
     )
 
