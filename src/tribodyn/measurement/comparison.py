@@ -147,17 +147,19 @@ def compare(
     teeth: int | None = None,
     tacho: str | None = None,
     pulses: int = 1,
+    mesh: str | None = None,
 ) -> Comparison:
     """Compare a computed steady-state response with a measured one.
 
     Parameters
     ----------
-    computed : Result or xarray.Dataset
+    computed : Result, MachineResult or xarray.Dataset
         Steady-state result of :func:`tribodyn.run` or :func:`tribodyn.load_result`.
     measured : Recording
         Recording at about the same speed and the same torque.
     channels : mapping of str to str
-        Measured channel to computed signal, such as ``{"acc": "acceleration_loa_pinion"}``.
+        Measured channel to computed signal, such as ``{"acc": "acceleration_loa_pinion"}``, or
+        ``"housing.seat A.acceleration_y"`` of a machine.
     harmonics : int
         Mesh harmonics that are compared.
     base : {"measured", "computed", "mean"}
@@ -174,11 +176,15 @@ def compare(
     angle : str, optional
         Channel with the angle of a shaft [rad].
     teeth : int, optional
-        Teeth of the gear on the shaft with angle or tachometer; of the pinion by default.
+        Teeth of the gear on the shaft with angle or tachometer; of the pinion, or of the first gear
+        of the mesh of a machine, by default.
     tacho : str, optional
         Channel with the pulses of a tachometer.
     pulses : int
         Pulses of the tachometer in a revolution.
+    mesh : str, optional
+        Mesh of a machine whose harmonics are compared; the first by default. The rms of the whole
+        signal is that of all meshes.
 
     Raises
     ------
@@ -219,7 +225,7 @@ def compare(
     >>> round(comparison.speed_ratio, 4)
     1.0
     """
-    data = computed.to_xarray() if hasattr(computed, "to_xarray") else computed
+    data = _data(computed, mesh)
     count = require_whole("harmonics", harmonics)
     require_one_of("base", base, ("measured", "computed", "mean"))
     require_between("frequency_tolerance", frequency_tolerance, 0.0, 0.2)
@@ -236,7 +242,7 @@ def compare(
         name: _same_unit(measured.units.get(name, ""), unit, name)
         for name, (_, _, unit) in signals.items()
     }
-    gears = _gears(computed)
+    gears = _gears(computed, data)
     shaft = (angle, tacho, pulses, teeth if teeth is not None else next(iter(gears), None))
     speed = _speed(measured, channels, (frequency, count, frequency_tolerance), gears, shaft)
     rows: list[_Row] = []
@@ -291,8 +297,20 @@ def _errors(values: Array, test: Array, base: Base) -> Array:
         return np.where(values == test, 0.0, (values - test) / divisor)
 
 
-def _gears(computed: Any) -> tuple[int, ...]:
-    """Teeth of pinion and wheel of a result; empty where it is only a data set."""
+def _data(computed: Any, mesh: str | None) -> Any:
+    """Data set of a result; of a machine its spectra over the order of a mesh."""
+    if hasattr(computed, "mesh_spectra"):
+        return computed.mesh_spectra(mesh)
+    if mesh is not None:
+        what, why = f'mesh = "{mesh}"', "A pair of gears has one mesh"
+        raise InputError(what, Argument("mesh"), why, "Leave it out")
+    return computed.to_xarray() if hasattr(computed, "to_xarray") else computed
+
+
+def _gears(computed: Any, data: Any) -> tuple[int, ...]:
+    """Teeth of both gears of a result; empty where it is only a data set."""
+    if "teeth" in getattr(data, "attrs", {}):
+        return tuple(map(int, data.attrs["teeth"]))
     gears = getattr(getattr(computed, "case", None), "gears", None)
     teeth = (getattr(getattr(gears, name, None), "teeth", None) for name in ("pinion", "wheel"))
     return tuple(int(number) for number in teeth if number is not None)

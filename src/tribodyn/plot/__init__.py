@@ -23,7 +23,13 @@ from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.machine.forces import machine_forces
 from tribodyn.plot.machine.front_view import planetary_modes
-from tribodyn.plot.machine.levels import machine_level_lines, machine_levels, machine_sweep
+from tribodyn.plot.machine.levels import (
+    machine_comparison,
+    machine_ensemble,
+    machine_level_lines,
+    machine_levels,
+    machine_sweep,
+)
 from tribodyn.plot.machine.modes import machine_campbell, machine_modes
 from tribodyn.plot.machine.orders import machine_orders
 from tribodyn.plot.machine.power import machine_power
@@ -131,6 +137,8 @@ __all__ = [
     "lyapunov",
     "machine",
     "machine_campbell",
+    "machine_comparison",
+    "machine_ensemble",
     "machine_forces",
     "machine_level_lines",
     "machine_levels",

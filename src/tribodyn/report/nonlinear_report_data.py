@@ -11,7 +11,7 @@ from tribodyn import plot
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
 from tribodyn.study.case.provenance import spec_of
-from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.studies.study_axes import Axis
 
 if TYPE_CHECKING:
@@ -295,7 +295,7 @@ def sobol_report_data(
 
 def _spread_statement(sensitivity: CaseSensitivity, number: int) -> str:
     name = str(sensitivity.figure[number])
-    figure, largest = SUMMARY[name], int(sensitivity.total_order[number].argmax())
+    figure, largest = figure_of(name), int(sensitivity.total_order[number].argmax())
     spread = figure.show(float(sensitivity.standard_deviation[number]))
     share = min(max(100.0 * float(sensitivity.total_order[number, largest]), 0.0), 100.0)
     return (

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.modes import MachineCampbell
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult, MachineResult
+    from tribodyn.study.machine_studies.ensemble import MachineEnsemble
     from tribodyn.study.machine_studies.levels import MachineLevels
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
@@ -51,6 +52,7 @@ __all__ = [
     "LoadResult",
     "MachineCampbell",
     "MachineCase",
+    "MachineEnsemble",
     "MachineLevels",
     "MachineMotion",
     "MachineResult",
@@ -94,6 +96,7 @@ _NAMES = {
     "machine.modes": "MachineCampbell",
     "machine.motion": "MachineMotion",
     "machine.result": "LoadResult MachineResult",
+    "machine_studies.ensemble": "MachineEnsemble",
     "machine_studies.levels": "MachineLevels",
     "pipeline.result": "Result",
     "pipeline.run": "run",

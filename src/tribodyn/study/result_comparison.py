@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError, shortened
 from tribodyn.record import Parts, Record, html_table, record
+from tribodyn.study.machine.result import MachineResult
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
 
@@ -72,14 +74,30 @@ class ResultComparison(Record):
         Values of the cases by key, in SI, where they differ.
     figures : dict of str to tuple of float
         Figures of the summaries by name, in SI, where they differ; None where a result lacks it.
-    results : tuple of Result
+    results : tuple of Result or of MachineResult
         The results.
     """
 
     names: tuple[str, ...]
     values: dict[str, tuple[Any, ...]]
     figures: dict[str, tuple[float | None, ...]]
-    results: tuple[Result, ...] = field(repr=False)
+    results: tuple[Result, ...] | tuple[MachineResult, ...] = field(repr=False)
+
+    def plot(self, *arguments: Any, **options: Any) -> Any:
+        """Draw the motions of pairs overlaid, or the levels of the parts of machines.
+
+        Parameters
+        ----------
+        *arguments, **options
+            Of the figure.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        machines = isinstance(self.results[0], MachineResult)
+        name = "machine_comparison" if machines else "result_comparison"
+        return draw(self, name, *arguments, **options)
 
     def _parts(self) -> Parts:
         parts = Parts({}, {"result": (("result",), list(self.names), {})}, {})
@@ -103,20 +121,23 @@ class ResultComparison(Record):
         return html_table(repr(self), head, difference_rows(self.values, self.figures))
 
 
-def compare_results(*results: Result, names: Sequence[str] | None = None) -> ResultComparison:
+def compare_results(
+    *results: Result | MachineResult, names: Sequence[str] | None = None
+) -> ResultComparison:
     """Compare results: a table of differing values and figures, and overlaid curves.
 
     Parameters
     ----------
-    *results : Result
-        Two or more, at most twelve.
+    *results : Result or MachineResult
+        Two or more, at most twelve, all of pairs or all of machines.
     names : sequence of str, optional
         Name of each; by default the title of its case, with a number where titles are equal.
 
     Returns
     -------
     ResultComparison
-        ``.plot()`` overlays transmission error and mesh force, ``.to_dataframe()`` is the table.
+        ``.plot()`` overlays transmission error and mesh force, or the levels of a machine;
+        ``.to_dataframe()`` is the table.
 
     Raises
     ------
@@ -131,12 +152,12 @@ def compare_results(*results: Result, names: Sequence[str] | None = None) -> Res
     >>> compare_results(base, reduced, names=("as printed", "60 N m")).values
     {'operation.torque': (10.6, 60.0)}
     """
-    invalid = [result for result in results if not isinstance(result, Result)]
+    kind = MachineResult if results and isinstance(results[0], MachineResult) else Result
+    invalid = [result for result in results if not isinstance(result, kind)]
     if invalid:
         what = f"results holds {shortened(repr(invalid[0]))}"
-        raise InputError(
-            what, Argument("results"), "Expected: results of tribodyn.run", "Run each case first"
-        )
+        why = "Expected: results of tribodyn.run, of pairs or of machines"
+        raise InputError(what, Argument("results"), why, "Run each case first")
     if not 2 <= len(results) <= 12:
         why = "Between 2 and 12 results can be compared"
         raise InputError(
@@ -156,7 +177,7 @@ def compare_results(*results: Result, names: Sequence[str] | None = None) -> Res
     )
 
 
-def _titles(results: Sequence[Result]) -> tuple[str, ...]:
+def _titles(results: Sequence[Result | MachineResult]) -> tuple[str, ...]:
     titles = [result.case.title for result in results]
     if len(set(titles)) == len(titles):
         return tuple(titles)

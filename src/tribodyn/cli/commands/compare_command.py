@@ -16,7 +16,6 @@ from tribodyn.validated_files import plain_number
 
 if TYPE_CHECKING:
     from tribodyn.measurement import Comparison
-    from tribodyn.study.case.case import Case
 
 
 def _help(text: str) -> Any:
@@ -44,15 +43,23 @@ class RecordingOptions:
     ] = None
     pulses: Annotated[int | None, _help("Pulses of the tachometer in one revolution.")] = None
     gear: Annotated[
-        Literal["pinion", "wheel"], _help("Gear on whose shaft the tachometer is: pinion or wheel.")
+        Literal["pinion", "wheel"],
+        _help("Gear on whose shaft the tachometer is: pinion or wheel; first or second of a mesh."),
     ] = "pinion"
+    mesh: Annotated[
+        str | None, _help("Mesh of a machine whose harmonics are compared; the first by default.")
+    ] = None
 
-    def tachometer(self, case: Case) -> dict[str, Any]:
-        """Arguments of the comparison; none without a tachometer."""
+    def arguments(self, result: Any) -> dict[str, Any]:
+        """Arguments of the comparison: mesh of a machine and tachometer, where there are any."""
+        arguments: dict[str, Any] = {} if self.mesh is None else {"mesh": self.mesh}
         if self.tacho is None and self.pulses is None:
-            return {}
-        teeth = getattr(case.gears, self.gear).teeth
-        return {"tacho": self.tacho, "pulses": self.pulses, "teeth": teeth}
+            return arguments
+        if hasattr(result, "mesh_spectra"):
+            teeth = result.mesh_spectra(self.mesh).attrs["teeth"][self.gear == "wheel"]
+        else:
+            teeth = getattr(result.case.gears, self.gear).teeth
+        return {**arguments, "tacho": self.tacho, "pulses": self.pulses, "teeth": teeth}
 
     def check(self) -> None:
         """Refuse a channel without its pulses, and pulses without their channel."""
@@ -87,9 +94,10 @@ def compare(
         Another one, or a recording: CSV, MAT, WAV, UFF 58, TDMS, HDF5 or netCDF.
     channel : list of str
         Measured channel and computed signal, such as "acc=acceleration_loa_pinion", or with the
-        sensitivity of the sensor, "acc=acceleration_loa_pinion, 100 mV/g"; one for each.
+        sensitivity of the sensor, "acc=acceleration_loa_pinion, 100 mV/g"; one for each. Of a
+        machine "acc=housing.seat A.acceleration_y".
     options : RecordingOptions
-        How a recording is compared: gain, harmonics and tachometer.
+        How a recording is compared: gain, harmonics, mesh and tachometer.
     out : Path
         Directory for the report of the comparison with a recording.
     force : bool
@@ -163,7 +171,7 @@ def _with_recording(
         channels,
         harmonics=options.harmonics,
         gain="fit" if number is None else number,
-        **options.tachometer(result.case),
+        **options.arguments(result),
     )
     head = ("channel", "figure", "computed", "measured", f"error, of the {comparison.base} value")
     rows = [_cells(*row) for row in _rows(comparison)]

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from tribodyn.cli.commands.study_commands import finish, prepare_study
+from tribodyn.cli.commands.study_commands import finish, prepare_any_study
 from tribodyn.cli.settings import CaseName, Flag, Force, Output, Words
 
 #: Share of the variants between the reported ends.
@@ -49,14 +49,16 @@ def ensemble(
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.errors import InputError
     from tribodyn.plot import ensemble as spread
+    from tribodyn.plot import machine_ensemble
     from tribodyn.plot.signals.bands import banded
     from tribodyn.report.figure_blocks import sections_of
     from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
     from tribodyn.study import ensemble as compute
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.pipeline.summary_figures import figure_of
     from tribodyn.uncertainty import bootstrap_band
 
-    ready, target = prepare_study("ensemble", case, out, set_, force)
+    ready, target = prepare_any_study("ensemble", case, out, set_, force)
     if not ready.uncertain:
         remedy = 'Give a value its spread, as in --set "operation.torque=90 N*m +- 2 %"'
         raise InputError(
@@ -76,8 +78,10 @@ def ensemble(
             rows.append([name, *(figure_of(name).show(float(end)) for end in ends)])
     statements = [f"{len(result.value)} variants over {', '.join(map(str, result.input))}"]
     statements += [f"{key} = {text}" for key, text in ready.uncertain.items()]
-    figures = [figure_with_caption(spread, result)]
-    figures += banded(result, sections_of(ready))
+    if isinstance(ready, MachineCase):
+        figures = [figure_with_caption(machine_ensemble, result)]
+    else:
+        figures = [figure_with_caption(spread, result), *banded(result, sections_of(ready))]
     share = f"{_SHARE:.0%} of the variants"
     head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")
     finish(
@@ -123,7 +127,7 @@ def sobol(
     from tribodyn.errors import InputError
     from tribodyn.report.nonlinear_report_data import sobol_report_data
 
-    ready, target = prepare_study("sobol", case, out, set_, force)
+    ready, target = prepare_any_study("sobol", case, out, set_, force)
     if not ready.uncertain:
         remedy = 'Give values their tolerances, as in --set "operation.torque=90 N*m +- 5 %"'
         why = "Shares of a variance need keys with tolerances"

@@ -29,11 +29,21 @@ if TYPE_CHECKING:
 def prepare_study(
     kind: str, case: str, out: Output, settings: Words, force: bool
 ) -> tuple[Case, Path]:
-    """The case of a study with its changes, and the directory to write."""
+    """The pair of gears of a study with its changes, and the directory to write."""
+    return changed_case(case, settings or []), _target(kind, case, out, force)
+
+
+def prepare_any_study(
+    kind: str, case: str, out: Output, settings: Words, force: bool
+) -> tuple[Case | MachineCase, Path]:
+    """The pair or machine of a study with its changes, and the directory to write."""
+    return changed_any_case(case, settings or []), _target(kind, case, out, force)
+
+
+def _target(kind: str, case: str, out: Output, force: bool) -> Path:
     target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
-    ready = changed_case(case, settings or [])
     check_place(target, force)
-    return ready, target
+    return target
 
 
 def stripped(texts: Sequence[str]) -> list[str]:
@@ -86,9 +96,7 @@ def modes(
     from tribodyn.report.study_report_data import modes_report_data
     from tribodyn.study.machine.case import MachineCase
 
-    target = out if out is not None else Path(f"{Path(case).stem}-modes")
-    ready = changed_any_case(case, set_ or [])
-    check_place(target, force)
+    ready, target = prepare_any_study("modes", case, out, set_, force)
     ends = None if between is None else read_ends(between)
     with progress_bar() as progress:
         if isinstance(ready, MachineCase):
@@ -189,9 +197,7 @@ def run_up(
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.study_report_data import run_up_report_data
 
-    target = out if out is not None else Path(f"{Path(case).stem}-run-up")
-    ready = changed_any_case(case, set_ or [])
-    check_place(target, force)
+    ready, target = prepare_any_study("run-up", case, out, set_, force)
     with progress_bar() as progress:
         answer = run_up_report_data(ready, read_ends(between), duration, down, progress)
     finish("run-up", ready, target, answer, force, json)

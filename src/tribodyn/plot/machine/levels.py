@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,13 +11,16 @@ from tribodyn.drawing import drawing
 from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.motion.sweeps import axis_text, value_text
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
 from tribodyn.plot.theme.style import MUTED, Trace, line, marked
 from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.study.studies.sweep_result import OF_PARTS
 
 if TYPE_CHECKING:
+    from tribodyn.study.machine_studies.ensemble import MachineEnsemble
     from tribodyn.study.machine_studies.levels import MachineLevels, Resonance
+    from tribodyn.study.result_comparison import ResultComparison
     from tribodyn.study.studies.sweep_result import Sweep
     from tribodyn.types import Array
 
@@ -184,3 +187,76 @@ def _met(study: Sweep) -> list[Resonance]:
     except TribodynError:  # a sweep may start from a case that cannot be computed itself
         return []
     return resonances(modes, min(speeds), max(speeds))
+
+
+def _not_of_machines(comparison: ResultComparison) -> str:
+    machines = all(isinstance(each.case, MachineCase) for each in comparison.results)
+    return "" if machines else "It compares pairs of gears; draw it by result_comparison."
+
+
+@drawing(
+    "machine_comparison",
+    heading="Levels of the parts",
+    caption="Alternating mesh forces, transmission errors, radial bearing forces and accelerations "
+    "of the housing at the operating point, one bar for each result.",
+    missing=_not_of_machines,
+    of="ResultComparison",
+    made_by="tribodyn.compare_results",
+)
+def machine_comparison(comparison: ResultComparison) -> Any:
+    """Draw the levels of all parts of several machines as bars."""
+    summaries = [result.summary() for result in comparison.results]
+    keys = dict.fromkeys(key for summary in summaries for key in summary)
+    rows = []
+    for quantity, label, names, parts in _by_kind(keys):
+        traces: list[Trace] = []
+        for number, (title, summary) in enumerate(zip(comparison.names, summaries, strict=True)):
+            values = np.array([summary.get(name, np.nan) for name in names])
+            bar = {"type": "bar", "x": parts, "y": displayed(quantity, values), "name": title}
+            traces.append({**bar, "marker": {"color": COLORS[number % len(COLORS)]}})
+        rows.append(Row("", Panel(axis_label(quantity, label), traces, {"rangemode": "tozero"})))
+    first, last = summaries[0], summaries[-1]
+    shared = [n for *_, names, _ in _by_kind(keys) for n in names if first.get(n) and n in last]
+    title = "No level differs"
+    if shared:
+        name = max(shared, key=lambda each: abs(last[each] / first[each] - 1.0))
+        change = 100.0 * (last[name] / first[name] - 1.0)
+        ends = f"from {comparison.names[0]} to {comparison.names[-1]}"
+        title = f"{in_words(name)}: {change:+.3g} % {ends}"
+    return stack_rows(title, rows, {"barmode": "group"})
+
+
+def _by_kind(keys: Iterable[str]) -> Iterator[tuple[str, str, list[str], list[str]]]:
+    """Quantity, label, keys of the summary and names of parts of each kind of level."""
+    for (quantity, label), figure in zip(_PANELS, OF_PARTS, strict=True):
+        names = [k for k in keys if k.endswith(f".{figure}") and not k.startswith("load_cases.")]
+        if names:
+            parts = [name.partition(".")[2].removesuffix(f".{figure}") for name in names]
+            yield quantity, label, names, parts
+
+
+@drawing(
+    "machine_ensemble",
+    heading="Spread of the levels",
+    caption="Levels of the parts at the median of all inputs; the bars over them hold 95 % of the "
+    "variants.",
+    of="MachineEnsemble",
+    made_by="Call tribodyn.ensemble(machine, {...}, seed=1) and its plot method.",
+)
+def machine_ensemble(study: MachineEnsemble) -> Any:
+    """Draw the levels of all parts with the interval of the variants."""
+    columns, rows, widest = study.figures(), [], (0.0, "No level varies")
+    for number, (quantity, label, names, parts) in enumerate(_by_kind(columns)):
+        middle = np.array([columns[name][0] for name in names])
+        low, high = np.quantile([columns[name][1:] for name in names], (0.025, 0.975), axis=1)
+        shown = [displayed(quantity, each) for each in (middle, low, high)]
+        color, name = COLORS[number % len(COLORS)], "median of all inputs"
+        marks = marked(parts, shown[0], name, color, size=9, symbol="circle")
+        bars = {"array": shown[2] - shown[0], "arrayminus": shown[0] - shown[1]}
+        marks["error_y"] = {"type": "data", "symmetric": False, "width": 8, **bars}
+        rows.append(Row("", Panel(axis_label(quantity, label), [marks], {"rangemode": "tozero"})))
+        for name, centre, a, b in zip(names, middle, low, high, strict=True):
+            text = f"{in_words(name)}: 95 % of the variants from {rounded(quantity, float(a))}"
+            text = f"{text} to {rounded(quantity, float(b))}"
+            widest = max(widest, (float((b - a) / centre) if centre else 0.0, text))
+    return stack_rows(widest[1], rows, {"hovermode": "closest"})

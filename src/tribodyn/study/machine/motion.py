@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from tribodyn.errors import Argument, InputError
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray
 
@@ -128,6 +130,57 @@ class MachineMotion(Record):
             for harmonic in range(1, count + 1):
                 orders.setdefault(int(cycles) * harmonic, []).append((name, harmonic))
         return dict(sorted(orders.items()))
+
+    def mesh_spectra(self, mesh: str, harmonics: int = 20) -> Any:
+        """Peak amplitudes of all signals over the order of one mesh, as those of a pair.
+
+        Parameters
+        ----------
+        mesh : str
+            Name of the mesh whose frequency is order 1; lines of others are between its harmonics.
+        harmonics : int
+            Highest order.
+
+        Returns
+        -------
+        xarray.Dataset
+            ``meshes.NAME.mesh_force_spectrum``, ``meshes.NAME.transmission_error_spectrum``,
+            ``bearings.NAME.force_y_spectrum`` and ``housing.NAME.acceleration_y_spectrum`` for x,
+            y and z, over ``order``; ``mesh_frequency`` is an attribute.
+
+        Raises
+        ------
+        InputError
+            If there is no such mesh.
+        """
+        import xarray
+
+        if mesh not in self.mesh:
+            why, remedy = f"Known: {', '.join(self.mesh)}", "Name one of these"
+            raise InputError(f'there is no mesh "{mesh}"', Argument("mesh"), why, remedy)
+        cycles = int(self.cycles[self.mesh.index(mesh)])
+        orders = np.arange(1, cycles * harmonics + 1)
+        axes = "xyz"
+        signals = {f"meshes.{n}.mesh_force": self.mesh_force[:, i] for i, n in enumerate(self.mesh)}
+        error = self.transmission_error
+        signals |= {f"meshes.{n}.transmission_error": error[:, i] for i, n in enumerate(self.mesh)}
+        for kind, names, values in (
+            ("bearings.{}.force_{}", self.bearing, self.bearing_force),
+            ("housing.{}.acceleration_{}", self.node, self.acceleration),
+        ):
+            for i, name in enumerate(names):
+                signals |= {kind.format(name, axes[k]): values[:, i, k] for k in range(3)}
+        waves = np.abs(self.harmonics(np.stack(list(signals.values()), axis=1), orders))
+        columns = {
+            f"{name}_spectrum": (
+                "order",
+                waves[:, k],
+                {"units": "m/s^2" if "accel" in name else "m" if "error" in name else "N"},
+            )
+            for k, name in enumerate(signals)
+        }
+        attributes = {"mesh_frequency": cycles * self.frequency}
+        return xarray.Dataset(columns, {"order": orders / cycles}, attributes)
 
     @cached_property
     def radial_force(self) -> Array:

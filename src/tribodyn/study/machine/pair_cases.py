@@ -128,7 +128,7 @@ def option_of(case: MachineCase, key: str) -> Option | None:
     if "." not in key:
         return None
     group, *names, name = key.split(".")
-    table = _table(case.data, [group, *names])
+    table = _table(case.data, [group, *names[:1]])
     rolling = table.get("type") if group == "bearings" and table is not None else None
     options = rolling_options(ROLLING_BEARINGS[rolling]) if rolling in ROLLING_BEARINGS else {}
     if name in options:

@@ -203,6 +203,29 @@ class MachineResult:
         """
         return self.motion.to_xarray()
 
+    def mesh_spectra(self, mesh: str | None = None) -> Any:
+        """Peak amplitudes of all signals at the operating point over the order of one mesh.
+
+        Parameters
+        ----------
+        mesh : str, optional
+            Name of the mesh whose frequency is order 1; the first by default.
+
+        Returns
+        -------
+        xarray.Dataset
+            As :meth:`MachineMotion.mesh_spectra`, with the ``teeth`` of both gears.
+
+        Raises
+        ------
+        InputError
+            If there is no such mesh.
+        """
+        name = self.motion.mesh[0] if mesh is None else mesh
+        spectra = self.motion.mesh_spectra(name)
+        gears = [self.machine.gears[gear] for gear in self.machine.meshes[name].gears]
+        return spectra.assign_attrs(teeth=[abs(gear.teeth) for gear in gears])
+
     def plot(self, figure: str = "machine") -> Any:
         """Draw a figure: ``machine``, ``machine_orders``, ``bearing_forces``, ...
 

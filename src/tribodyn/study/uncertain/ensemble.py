@@ -14,8 +14,11 @@ from tribodyn.drawing import figures_of
 from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine_studies.ensemble import MachineEnsemble, ensemble_of
+from tribodyn.study.studies.sweep import points_under
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
-from tribodyn.study.uncertain.lanes import draw, lanes_of
+from tribodyn.study.uncertain.lanes import check_spread_key, draw, lanes_of
 from tribodyn.types import Array
 from tribodyn.uncertainty import Band, bootstrap_band
 
@@ -221,19 +224,19 @@ class CaseEnsemble(Record):
 
 
 def ensemble(
-    case: Case,
+    case: Case | MachineCase,
     distributions: Mapping[str, Any] | None = None,
     size: int = 64,
     *,
     method: str = "latin-hypercube",
     seed: int,
     progress: Progress = SILENT,
-) -> CaseEnsemble:
+) -> CaseEnsemble | MachineEnsemble:
     """Compute many variants of a case with spread inputs in one batch.
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     distributions : mapping, optional
         Inputs that are spread, as :func:`tribodyn.uncertainty.sample` reads them: keys of the
@@ -249,6 +252,12 @@ def ensemble(
     progress : Progress
         Receives the progress of the computation; silent by default.
 
+    Returns
+    -------
+    CaseEnsemble or MachineEnsemble
+        Mesh cycles of all variants of a pair; the figures of the summary of all variants of a
+        machine at its operating point, which takes keys but no factors.
+
     Raises
     ------
     InputError
@@ -259,7 +268,8 @@ def ensemble(
     Warns
     -----
     ModelWarning
-        ``ensemble-period`` if variants do not repeat after one mesh cycle.
+        ``ensemble-period`` if variants do not repeat after one mesh cycle; ``ensemble-failed`` if
+        variants of a machine cannot be computed.
 
     Notes
     -----
@@ -281,6 +291,8 @@ def ensemble(
         why, remedy = "", 'Give {"friction.coefficient": "0.05 +- 0.83 %"}'
         raise InputError("nothing is spread", Argument("distributions"), why, remedy)
     values = draw(case, spread, require_whole("size", size, 3), method=method, seed=seed)
+    if isinstance(case, MachineCase):
+        return _of_machine(case, values, int(seed), progress)
     lanes = lanes_of(case, values, progress)
     signals = steady_cycles(lanes, _PHASES, progress)
     return CaseEnsemble(
@@ -295,3 +307,19 @@ def ensemble(
         title=case.title,
         case=case,
     )
+
+
+def _of_machine(
+    case: MachineCase, values: Mapping[str, Array], seed: int, progress: Progress
+) -> MachineEnsemble:
+    """Figures of a machine at the median of the values, and at each of them."""
+    for key, column in values.items():
+        check_spread_key(case, key, column)
+    medians = {key: float(np.median(column)) for key, column in values.items()}
+    stated = dict(case.values())
+    middle = {key: stated[key] if key in case.uncertain else medians[key] for key in values}
+    rows = [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]
+    progress.start("Variants", len(rows) + 1)
+    points = points_under(case, [middle, *rows], progress)
+    progress.finish()
+    return ensemble_of(points, values, seed, case.title)

@@ -16,6 +16,8 @@ from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.user_input import spread_problem
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.pair_cases import unknown_key
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.case_grid import Member, built, contact_without_speed, varied
 from tribodyn.types import Array, Index
@@ -68,6 +70,8 @@ def distributions_of(case: Case, spread: Mapping[str, Any]) -> dict[str, Any]:
     distributions = {}
     for key, text in spread.items():
         spec = None if key in SCALES else case.option_of(str(key))
+        if spec is None and key not in SCALES and isinstance(case, MachineCase):
+            raise InputError(replace(unknown_key(case, str(key)), where=f"distributions {key}"))
         if spec is None and key not in SCALES:
             # Raises an error that lists the keys.
             case.replace({str(key): text}, by="distributions")
@@ -114,10 +118,12 @@ def check_spread_key(case: Case, key: str, column: Array) -> None:
     """Raise if a key is no number of the case, or its least or greatest value is out of range."""
     spec = case.option_of(key)
     value = effective(case).get(key) if isinstance(case, Case) else None
-    if spec is None or isinstance(value, bool | str) or spec.kind == "file":
+    number = spec is not None and spec.kind not in ("file", "text", "choice", "flag")
+    if not number or isinstance(value, bool | str):
         where = Argument("distributions")
-        what, why = f"{key} cannot be spread", "Numbers of the case can, and the factors "
-        raise InputError(what, where, why + ", ".join(SCALES), "Name one of these")
+        what, why = f"{key} cannot be spread", "Numbers of the case can"
+        factors = f", and the factors {', '.join(SCALES)}" if isinstance(case, Case) else ""
+        raise InputError(what, where, why + factors, "Name one of these")
     for end in (np.min(column), np.max(column)):
         case.replace({key: float(end)})
 

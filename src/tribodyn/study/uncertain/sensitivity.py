@@ -13,14 +13,16 @@ from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.summary_figures import in_order, is_figure
 from tribodyn.study.studies.sweep import points_under
-from tribodyn.study.studies.sweep_result import SHOWN
+from tribodyn.study.studies.sweep_result import OF_PARTS, SHOWN
 from tribodyn.study.uncertain.lanes import check_spread_key, distributions_of
 from tribodyn.types import Array
 from tribodyn.uncertainty import sobol_indices as indices_of
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 #: Probability of the intervals of the indices.
 _LEVEL = 0.95
@@ -77,7 +79,7 @@ class CaseSensitivity(Record):
 
 
 def sobol_indices(
-    case: Case,
+    case: Case | MachineCase,
     figures: str | Sequence[str] | None = None,
     distributions: Mapping[str, Any] | None = None,
     size: int = 64,
@@ -89,7 +91,7 @@ def sobol_indices(
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     figures : str or sequence of str, optional
         Figures of the summary; by default those that a sweep shows, as far as they vary.
@@ -144,7 +146,7 @@ def sobol_indices(
         raise InputError(what, Argument("distributions"), why, "Spread keys of the case")
     wanted = [figures] if isinstance(figures, str) else list(figures or ())
     for name in wanted:
-        if name not in SUMMARY:
+        if not is_figure(name):
             why, remedy = "Figures are those of the summary", "See summary.json of a run"
             remedy = did_you_mean(name, list(SUMMARY), remedy)
             raise InputError(f'there is no figure "{name}"', Argument("figures"), why, remedy)
@@ -177,7 +179,9 @@ def sobol_indices(
 class _Runs:
     """Summaries of a case by the values of its keys, each computed once."""
 
-    def __init__(self, case: Case, distributions: dict[str, Any], progress: Progress) -> None:
+    def __init__(
+        self, case: Case | MachineCase, distributions: dict[str, Any], progress: Progress
+    ) -> None:
         self.case, self.distributions, self.progress = case, distributions, progress
         self.summaries: dict[tuple[float, ...], Mapping[str, float]] = {}
 
@@ -212,7 +216,7 @@ def _rows(values: dict[str, Array]) -> list[tuple[float, ...]]:
 def _varying(runs: _Runs, wanted: Sequence[str]) -> list[str]:
     """Figures that were requested; otherwise those of a sweep that vary, or all that do."""
     summaries = list(runs.summaries.values())
-    shared = [name for name in SUMMARY if all(name in each for each in summaries)]
+    shared = [name for name in in_order(summaries[0]) if all(name in s for s in summaries)]
     values = {name: np.array([each[name] for each in summaries]) for name in shared}
     vary = [
         name for name, each in values.items()
@@ -223,7 +227,8 @@ def _varying(runs: _Runs, wanted: Sequence[str]) -> list[str]:
             kind = "does not vary" if name in shared else "is not in every summary"
             why = f"Figures that vary: {', '.join(vary)}"
             raise ComputationError(f"{name} {kind}", "", why, "Choose one of these")
-    names = list(wanted) or [name for name in SHOWN if name in vary] or vary
+    parts = [name for name in vary if name.rpartition(".")[2] in OF_PARTS]
+    names = list(wanted) or [name for name in SHOWN if name in vary] or parts or vary
     if not names:
         what, why = "no figure of the summary varies", "Shares of a variance need one above zero"
         raise ComputationError(what, "", why, "Widen the tolerances, or spread other keys")

@@ -1,0 +1,89 @@
+"""Machines whose values are spread: figures of many variants."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.errors import ComputationError, warn
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.study.studies.sweep_result import SweepPoint
+
+#: Fewest variants that make an ensemble.
+_FEWEST = 3
+
+
+@record
+class MachineEnsemble(Record):
+    """Figures of many variants of a machine.
+
+    Parameters
+    ----------
+    input : (k,) array of str
+        Keys that were spread.
+    value : (n, k) array
+        Sampled values of the variants, in SI.
+    figure : (m,) array of str
+        Keys of the summary.
+    middle : (m,) array
+        Figures at the median of all inputs, in SI.
+    sample : (n, m) array
+        Figures of the variants, in SI.
+    seed : int
+        Of the sample.
+    title : str
+        Title of the case.
+    """
+
+    input: Any = quantity("input", axis=True, unit="", name="input")
+    value: Array = quantity("variant", "input", unit="")
+    figure: Any = quantity("figure", axis=True, unit="", name="figure")
+    middle: Array = quantity("figure", unit="")
+    sample: Array = quantity("variant", "figure", unit="")
+    seed: int = fact()
+    title: str = fact()
+
+    def figures(self) -> dict[str, Array]:
+        """Figures of the summary, in SI.
+
+        Returns
+        -------
+        dict of str to (n + 1,) array
+            First that at the median of all inputs, then those of the variants.
+        """
+        columns = np.vstack((self.middle, self.sample)).T
+        return {str(name): column for name, column in zip(self.figure, columns, strict=True)}
+
+    def __repr__(self) -> str:
+        """One line."""
+        inputs = ", ".join(map(str, self.input))
+        return f"MachineEnsemble({len(self.value)} variants over {inputs})"
+
+
+def ensemble_of(
+    points: list[SweepPoint], values: Mapping[str, Array], seed: int, title: str
+) -> MachineEnsemble:
+    """Ensemble of the points of its variants; the first point is the middle."""
+    failed = [point.failed for point in points if point.failed]
+    good = [number for number, point in enumerate(points[1:]) if not point.failed]
+    if failed:
+        what = f"{len(failed)} of {len(points)} variants cannot be computed: {failed[0]}"
+        if points[0].failed or len(good) < _FEWEST:
+            raise ComputationError(what, "", "", "Narrow the tolerances, or correct the case")
+        warn("ensemble-failed", f"{what}. They are left out: narrow the tolerances")
+    kept = [points[number + 1] for number in good]
+    names = [n for n in points[0].figures if all(n in point.figures for point in kept)]
+    return MachineEnsemble(
+        input=np.array(list(values)),
+        value=np.stack(list(values.values()), axis=1)[good],
+        figure=np.array(names),
+        middle=np.array([points[0].figures[name] for name in names]),
+        sample=np.array([[point.figures[name] for name in names] for point in kept]),
+        seed=seed,
+        title=title,
+    )
