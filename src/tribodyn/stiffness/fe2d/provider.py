@@ -260,18 +260,18 @@ def cache_folder() -> Path:
     return (Path(shared) if shared else Path.home() / ".cache") / "tribodyn"
 
 
-def load_arrays(name: str) -> dict[str, Array] | None:
+def load_arrays(name: str, method: str = "fe2d") -> dict[str, Array] | None:
     """Read cached arrays."""
     try:
-        with np.load(_path(name), allow_pickle=False) as file:
+        with np.load(_path(name, method), allow_pickle=False) as file:
             return {key: np.asarray(file[key], dtype=float) for key in file.files}
     except (OSError, ValueError, KeyError, EOFError, RuntimeError, zipfile.BadZipFile):
         return None
 
 
-def store_arrays(name: str, arrays: Mapping[str, Array]) -> bool:
+def store_arrays(name: str, arrays: Mapping[str, Array], method: str = "fe2d") -> bool:
     """Keep arrays, at once or not at all: another process never sees half a file."""
-    path = _path(name)
+    path = _path(name, method)
     temporary = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -286,5 +286,5 @@ def store_arrays(name: str, arrays: Mapping[str, Array]) -> bool:
     return True
 
 
-def _path(name: str) -> Path:
-    return cache_folder() / "fe2d" / f"{name}.npz"
+def _path(name: str, method: str) -> Path:
+    return cache_folder() / method / f"{name}.npz"

@@ -140,6 +140,8 @@ class MeshSize:
         Growth of the radial size per depth under the root.
     body_ratio : float
         Largest radial size over the radius.
+    root : int
+        Least number of elements over half a root.
     """
 
     flank: float = 0.05
@@ -147,6 +149,7 @@ class MeshSize:
     growth: float = 1.3
     body_growth: float = 0.3
     body_ratio: float = 0.17
+    root: int = 3
 
     def refined(self, factor: float) -> MeshSize:
         """Mesh with smaller elements everywhere.
@@ -162,6 +165,7 @@ class MeshSize:
             self.growth ** (1.0 / factor),
             self.body_growth / factor,
             self.body_ratio / factor,
+            self.root,
         )
 
 
@@ -196,7 +200,7 @@ def tooth_mesh(form: ToothForm, bore_radius: float, size: MeshSize | None = None
     across = _with_middles(_across(side, size))
     lengths = _with_middles(_flank_edges(side, size))
     tooth = _tooth_points(side, lengths, across)
-    root = side.root_points(_with_middles(_even(1.0, _root_share(side, size), 3)))
+    root = side.root_points(_with_middles(_even(1.0, _root_share(side, size), size.root)))
     top = np.concatenate([root[:-1], tooth[:, -1], (root * [-1.0, 1.0])[-2::-1]])
     body = _body_points(top, _with_middles(_body_levels(side, bore, size)), bore)
     return _numbered(form.teeth, tooth, body, root.shape[0] - 1, lengths)

@@ -1,0 +1,18 @@
+"""Finite elements of a complete gear with its face width: slices of the face that are coupled.
+
+| module | content |
+| --- | --- |
+| `provider` | influence of one gear over radius and face, looked up on disk or computed |
+| `sector` | section of one tooth with the top of the body, reduced to its flank and borders |
+| `ring` | all teeth, harmonic by harmonic around the axis |
+| `annulus` | the body below, wave by wave |
+| `sections` | elements of a solid whose section turns along the face |
+| `face` | functions over the face width |
+| `condense` | elimination of freedoms |
+| `local` | local compression that the elements show, which belongs to the contact |
+"""
+
+from tribodyn.stiffness.fe3d.provider import fe3d_influence
+from tribodyn.stiffness.fe3d.sector import SolidSize
+
+__all__ = ["SolidSize", "fe3d_influence"]

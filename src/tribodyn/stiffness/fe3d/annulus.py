@@ -1,0 +1,48 @@
+"""Stiffness of the ring under the teeth, wave by wave around the axis."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribodyn.stiffness.fe3d.condense import eliminated
+from tribodyn.stiffness.fe3d.face import FaceBasis
+from tribodyn.stiffness.fe3d.sections import SectionMatrices, annulus_matrices
+from tribodyn.types import Array
+
+#: First radial size over the radius over the order, growth, and largest size over the radius.
+_FIRST, _GROWTH, _LARGEST = 0.6, 1.5, 0.25
+#: Waves times the logarithm of radii beyond which nothing moves.
+_DECAYED = 20.0
+
+
+def annulus_radii(inner: float, outer: float, order: int, depth: float) -> Array:
+    """Radii (e, 3) of elements from the held circle to the free one, first size up to ``depth``."""
+    reach = max(inner, outer * np.exp(-_DECAYED / max(abs(order), 1)))
+    radii, step = [outer], min(depth, _FIRST * outer / (abs(order) + 1.0))
+    while radii[-1] > reach:
+        radii.append(radii[-1] - min(step, _LARGEST * radii[-1]))
+        step *= _GROWTH
+    edges = outer - (outer - np.array(radii)) * ((outer - reach) / (outer - radii[-1]))
+    edges = edges[::-1]
+    return np.stack([edges[:-1], 0.5 * (edges[:-1] + edges[1:]), edges[1:]], axis=1)
+
+
+def annulus_stiffness(
+    radii: Array, order: int, twist: float, stress: Array, face: FaceBasis
+) -> Array:
+    """Stiffness (3 z, 3 z) per radian at the free circle under loads ``exp(i order angle)``.
+
+    The other circle is held. Displacements radial, tangential, axial.
+    """
+    matrices = annulus_matrices(radii, order, twist, stress)
+    block = 3 * face.count
+    below = np.zeros((block, block), dtype=complex)
+    for element in range(len(radii)):
+        parts = SectionMatrices(*(part[element] for part in matrices))
+        full = parts.of_solid(face).reshape(3 * block, 3 * block)
+        if element == 0:
+            full = full[block:, block:]
+        else:
+            full[:block, :block] += below
+        below = eliminated(full, full.shape[0] - block)
+    return below

@@ -1,0 +1,133 @@
+"""Elements of a twisted solid: one section, turned along the face by the helix.
+
+In the frame that turns with the section the strain is ``L0 u + L1 du/dzeta`` with matrices that do
+not depend on the face position, so that three matrices of the section and three of the face give
+the stiffness of the solid:
+``K = B0 x mass + B1 x slope + B1' x slope' + B2 x bending``.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribodyn.errors import ComputationError
+from tribodyn.stiffness.fe2d.ring import quadratic_shapes
+from tribodyn.stiffness.fe3d.face import FaceBasis
+from tribodyn.types import Array
+
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+
+
+class SectionMatrices(NamedTuple):
+    """Matrices ``B0``, ``B1``, ``B2`` of a section or of each of its elements."""
+
+    none: Array  #: no slope over the face
+    single: Array  #: slope of the second displacement
+    double: Array  #: slopes of both
+
+    def of_solid(self, face: FaceBasis) -> Array:
+        """Stiffness (f, z, f, z) of the solid of a section with ``f`` freedoms."""
+        turned = np.conj(self.single.T)
+        parts = (
+            (self.none, face.mass),
+            (self.single, face.slope),
+            (turned, face.slope.T),
+            (self.double, face.bending),
+        )
+        total = sum(section[:, None, :, None] * over[:, None, :] for section, over in parts)
+        return np.asarray(total)
+
+
+def elasticity(poissons_ratio: float) -> Array:
+    """Matrix from strains (xx, yy, zz, yz, xz, xy) to stresses for a Young's modulus of one."""
+    nu = poissons_ratio
+    matrix = np.zeros((6, 6))
+    matrix[:3, :3] = nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    matrix[:3, :3] += np.eye(3) / (1.0 + nu)
+    matrix[3:, 3:] = np.eye(3) / (2.0 * (1.0 + nu))
+    return matrix
+
+
+def _products(first: Array, second: Array, stress: Array) -> SectionMatrices:
+    """Integrals of strains ``first`` and ``second`` (..., g, 6, f), weighted by their roots."""
+    turned = np.conj(np.swapaxes(first, -1, -2))
+    right = stress @ second
+    none = (turned @ (stress @ first)).sum(axis=-3)
+    single = (turned @ right).sum(axis=-3)
+    double = (np.swapaxes(second, -1, -2) @ right).sum(axis=-3)
+    return SectionMatrices(none, single, double)
+
+
+def _over_face(values: Array) -> Array:
+    """Strain matrix (..., 6, n, 3) of the slope over the face of three displacements."""
+    strain = np.zeros((*values.shape[:-1], 6, values.shape[-1], 3), dtype=values.dtype)
+    for row, axis in ((2, 2), (3, 1), (4, 0)):
+        strain[..., row, :, axis] = values
+    return strain
+
+
+def element_matrices(corners: Array, twist: float, stress: Array) -> SectionMatrices:
+    """Matrices (e, 27, 27) of nine-node quadrilaterals with corners (e, 9, 2).
+
+    ``twist`` is the angle per face width by which the section turns anticlockwise.
+    """
+    value, slope = quadratic_shapes(_PLACES)
+    values = np.einsum("pa,qb->pqab", value, value).reshape(9, 9)
+    local = np.stack(
+        [
+            np.einsum("pa,qb->pqab", slope, value).reshape(9, 9),
+            np.einsum("pa,qb->pqab", value, slope).reshape(9, 9),
+        ],
+        axis=1,
+    )
+    weights = np.outer(_WEIGHTS, _WEIGHTS).ravel()
+    jacobian = np.einsum("gdn,enx->egdx", local, corners)
+    determinant = np.linalg.det(jacobian)
+    if determinant.min() <= 0.0:
+        raise ComputationError(
+            "the finite element mesh of the gear has an element that is turned inside out",
+            why="Root and rim of this gear do not fit into the mesh",
+            remedy="Give a larger bore-to-root distance, or choose another stiffness model",
+        )
+    root = np.sqrt(determinant * weights)[..., None]
+    slopes = np.linalg.solve(jacobian, np.broadcast_to(local, (*jacobian.shape[:2], 2, 9)))
+    points = np.einsum("gn,enx->egx", values, corners)
+    along, across = slopes[..., 0, :] * root, slopes[..., 1, :] * root
+    still = values * root
+    strain = np.zeros((*still.shape[:2], 6, 9, 3))
+    strain[..., 0, :, 0] = strain[..., 5, :, 1] = along
+    strain[..., 1, :, 1] = strain[..., 5, :, 0] = across
+    strain[..., 4, :, 2] = along
+    strain[..., 3, :, 2] = across
+    # slope over the face at a fixed place: -twist times the turning part, plus the turned frame
+    turning = -twist * (points[..., :1] * across - points[..., 1:] * along)
+    strain[..., 2, :, 2] += turning
+    for row, axis, sign in ((3, 1, 1.0), (4, 0, -1.0)):
+        strain[..., row, :, axis] += turning
+        strain[..., row, :, 1 - axis] += sign * twist * still
+    shape = (*still.shape[:2], 6, 27)
+    return _products(strain.reshape(shape), _over_face(still).reshape(shape), stress)
+
+
+def annulus_matrices(radii: Array, order: int, twist: float, stress: Array) -> SectionMatrices:
+    """Matrices (e, 9, 9) of three-node elements of a ring under loads ``exp(i order angle)``.
+
+    ``radii`` (e, 3); displacements radial, tangential and axial; per radian.
+    """
+    value, slope = quadratic_shapes(_PLACES)
+    half = 0.5 * (radii[:, 2] - radii[:, 0])[:, None]
+    radius = np.einsum("gn,en->eg", value, radii)[..., None]
+    root = np.sqrt(np.abs(half) * _WEIGHTS * radius[..., 0])[..., None]
+    still, grown = value * root, slope / half[..., None] * root
+    wave, hoop = 1j * order * still, still / radius
+    strain = np.zeros((*still.shape[:2], 6, 3, 3), dtype=complex)
+    strain[..., 0, :, 0] = strain[..., 4, :, 2] = grown
+    strain[..., 1, :, 0] = hoop
+    strain[..., 1, :, 1] = strain[..., 3, :, 2] = strain[..., 5, :, 0] = wave / radius
+    strain[..., 5, :, 1] = grown - hoop
+    for row, axis in ((2, 2), (3, 1), (4, 0)):
+        strain[..., row, :, axis] -= twist * wave
+    shape = (*still.shape[:2], 6, 9)
+    return _products(strain.reshape(shape), _over_face(still).reshape(shape), stress)

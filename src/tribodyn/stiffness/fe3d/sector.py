@@ -1,0 +1,185 @@
+"""The sector of one tooth as a twisted solid, reduced to its flank and its borders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from tribodyn.gear import SpurGear
+from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, tooth_mesh
+from tribodyn.stiffness.fe3d.condense import condensed
+from tribodyn.stiffness.fe3d.face import FaceBasis, FaceSize, face_basis
+from tribodyn.stiffness.fe3d.sections import SectionMatrices, elasticity, element_matrices
+from tribodyn.types import Array, Index
+
+#: Least radius of curvature of a load [modules].
+LEAST_CURVATURE = 0.02
+#: Least depth of a ring under the meshed part of the body [modules].
+_LEAST_RING = 0.3
+#: Length along the flank that is rounding [modules].
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class SolidSize:
+    """Sizes of the elements of a gear with its face width over the module.
+
+    Parameters
+    ----------
+    section : MeshSize
+        Elements of the transverse section; loads act where those of the flank meet.
+    face : FaceSize
+        Elements over the face width.
+    depth : float [-]
+        Depth of the meshed part of the body under the root circle; below, rings wave by wave.
+    waves : int
+        Waves around the axis, per tooth and on each side of a harmonic, that reach that depth.
+    """
+
+    section: MeshSize = field(default_factory=lambda: MeshSize(0.18, 0.45, 1.5, 0.5, 0.3, 2))
+    face: FaceSize = field(default_factory=FaceSize)
+    depth: float = 1.0
+    waves: int = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Sector:
+    """Sector of one tooth, all lengths in modules.
+
+    Parameters
+    ----------
+    form : SpurGear
+        The gear in its transverse section.
+    width, held : float [-]
+        Face width, and radius of the circle where the body is held.
+    twist : float [rad]
+        Angle by which the section turns anticlockwise per module of the face.
+    poissons_ratio : float
+        Of the material; its Young's modulus is one.
+    """
+
+    form: SpurGear
+    width: float
+    held: float
+    twist: float
+    poissons_ratio: float
+    size: SolidSize
+
+    @cached_property
+    def interface(self) -> float:
+        """Radius where the meshed part of the body ends."""
+        depth = self.form.root_radius / self.form.normal_module - self.size.depth
+        return depth if depth > self.held + _LEAST_RING else self.held
+
+    @property
+    def on_ring(self) -> bool:
+        """Whether a ring lies below the meshed part, which is held itself otherwise."""
+        return self.interface > self.held
+
+    @cached_property
+    def mesh(self) -> SectorMesh:
+        """Elements of the section."""
+        return tooth_mesh(self.form, self.interface * self.form.normal_module, self.size.section)
+
+    @cached_property
+    def face(self) -> FaceBasis:
+        """Functions over the face."""
+        return face_basis(self.size.face.breaks(self.width))
+
+    @cached_property
+    def stress(self) -> Array:
+        """Elasticity for a Young's modulus of one."""
+        return elasticity(self.poissons_ratio)
+
+    @property
+    def base_radius(self) -> float:
+        """Base radius."""
+        return self.form.base_radius / self.form.normal_module
+
+    @cached_property
+    def flank_length(self) -> Array:
+        """Lengths along the involute from the base circle to the loaded places, increasing."""
+        base, form = self.base_radius, self.form
+        lowest = 0.5 * base * form.roll_angle(max(form.form_radius, form.base_radius)) ** 2
+        lengths = self.mesh.flank_length[::2]
+        return lengths[lengths > lowest - _ROUNDING][::-1]
+
+    @cached_property
+    def flank(self) -> Index:
+        """Nodes of the loaded places."""
+        return self.mesh.tooth[0, : 2 * self.flank_length.size : 2][::-1]
+
+    def curvature_radius(self, length: Array) -> Array:
+        """Radius of curvature at lengths along the involute."""
+        square = 2.0 * self.base_radius * np.maximum(length, 0.0)
+        return np.maximum(np.sqrt(square), LEAST_CURVATURE)
+
+    def load_direction(self, length: Array) -> Array:
+        """Loads (..., 3) whose part in the section is a unit vector, normal to the flank."""
+        angle = self.curvature_radius(length) / self.base_radius - self.form.base_half_angle
+        axial = np.full(angle.shape, -self.twist * self.base_radius)
+        return np.stack([-np.cos(angle), -np.sin(angle), axial], axis=-1)
+
+    def _directions(self) -> Array:
+        """Directions of the freedoms (n, 3, 3): polar on the borders, along the load on the flank.
+
+        The last axis counts the freedoms of a node.
+        """
+        mesh = self.mesh
+        turn = np.tile(np.eye(3), (len(mesh.nodes), 1, 1))
+        polar = np.concatenate([mesh.right_cut, mesh.left_cut, mesh.fixed])
+        outward = mesh.nodes[polar] / np.hypot(*mesh.nodes[polar].T)[:, None]
+        turn[polar, :2, 0] = outward
+        turn[polar, :2, 1] = outward[:, ::-1] * [-1.0, 1.0]
+        load = self.load_direction(self.flank_length)
+        load /= np.linalg.norm(load, axis=1)[:, None]
+        aside = np.stack([-load[:, 1], load[:, 0], np.zeros(len(load))], axis=1)
+        aside /= np.linalg.norm(aside, axis=1)[:, None]
+        turn[self.flank] = np.stack([load, aside, np.cross(load, aside)], axis=2)
+        return turn
+
+    def _groups(self) -> list[Index]:
+        """Rows of elements from the tip to the foot, then from the root to the inner circle."""
+        columns, rows = ((size - 1) // 2 for size in self.mesh.tooth.shape)
+        body = np.arange(len(self.mesh.elements) - columns * rows)
+        tooth = body.size + np.arange(columns * rows)
+        grids = (
+            tooth.reshape(columns, rows),
+            body.reshape((self.mesh.fixed.size - 1) // 2, -1),
+        )
+        return [row for grid in grids for row in grid.T]
+
+    @cached_property
+    def border(self) -> tuple[Index, Index, Index]:
+        """Nodes of the right and left cut and of the circle on the ring."""
+        mesh = self.mesh
+        return mesh.right_cut, mesh.left_cut, mesh.fixed if self.on_ring else mesh.fixed[:0]
+
+    def condensed(self) -> Array:
+        """Stiffness (f, z, f, z) of the flank, in its loaded direction, and of the borders."""
+        mesh = self.mesh
+        matrices = element_matrices(mesh.nodes[mesh.elements], self.twist, self.stress)
+        turn = self._directions()[mesh.elements]
+
+        def turned(matrix: Array) -> Array:
+            blocks = matrix.reshape(-1, 9, 3, 9, 3).transpose(0, 1, 3, 2, 4)
+            right = blocks @ turn[:, None]
+            return (
+                (np.swapaxes(turn, 2, 3)[:, :, None] @ right)
+                .transpose(0, 1, 3, 2, 4)
+                .reshape(-1, 27, 27)
+            )
+
+        freedoms = _freedoms(mesh.elements)
+        if not self.on_ring:
+            freedoms[np.repeat(np.isin(mesh.elements, mesh.fixed), 3, axis=1)] = -1
+        retained = np.concatenate([3 * self.flank, *map(_freedoms, self.border)], axis=None)
+        parts = SectionMatrices(*map(turned, matrices))
+        return condensed(freedoms, parts, self._groups(), retained, self.face)
+
+
+def _freedoms(nodes: Index) -> Index:
+    """Freedoms of rows of nodes."""
+    return np.reshape(3 * nodes[..., None] + np.arange(3), (*nodes.shape[:-1], -1))
