@@ -6,6 +6,7 @@
 | `models` | the models of the literature, one in each file |
 | `teeth` | compliance of one gear under a load on a tooth, in closed form |
 | `fe2d` | the same from finite elements of the whole gear |
+| `fe3d` | the same with the face width: slices of the face that are coupled |
 | `loaded` | load sharing, transmission error and stiffness of a mesh under load |
 | `tip_relief` | transmission error over torque, and the best tip relief |
 """
@@ -28,6 +29,7 @@ from tribodyn.stiffness.models.prescribed import (
     rectangular_stiffness,
     tabulated_stiffness,
 )
+from tribodyn.stiffness.teeth.face_influence import FaceInfluence, SlicedInfluence
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.stiffness.teeth.tooth_bending import (
     LoadPoint,
@@ -53,10 +55,12 @@ from tribodyn.stiffness.tip_relief.search import (
 __all__ = [
     "MODELS",
     "ContactProblem",
+    "FaceInfluence",
     "GearInfluence",
     "HarrisMap",
     "LoadPoint",
     "LoadedContact",
+    "SlicedInfluence",
     "StiffnessModel",
     "TipReliefOptimum",
     "ToothBendingCompliance",

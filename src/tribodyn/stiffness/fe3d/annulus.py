@@ -30,10 +30,7 @@ def annulus_radii(inner: float, outer: float, order: int, depth: float) -> Array
 def annulus_stiffness(
     radii: Array, order: int, twist: float, stress: Array, face: FaceBasis
 ) -> Array:
-    """Stiffness (3 z, 3 z) per radian at the free circle under loads ``exp(i order angle)``.
-
-    The other circle is held. Displacements radial, tangential, axial.
-    """
+    """Stiffness (3 z, 3 z) per radian at the outer circle under loads ``exp(i order angle)``."""
     matrices = annulus_matrices(radii, order, twist, stress)
     block = 3 * face.count
     below = np.zeros((block, block), dtype=complex)

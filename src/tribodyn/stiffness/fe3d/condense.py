@@ -29,19 +29,8 @@ def condensed(
     retained: Index,
     face: FaceBasis,
 ) -> Array:
-    """Stiffness (f, z, f, z) of some freedoms of a section, the others free of loads.
-
-    Parameters
-    ----------
-    freedoms : array (e, n)
-        Freedoms of each element; negative ones cannot move.
-    matrices : SectionMatrices
-        Matrices (e, n, n) of the elements.
-    groups : sequence of arrays
-        Elements that are assembled together, in the order of elimination.
-    retained : array (f,)
-        Freedoms that remain, in the order of the result.
-    """
+    """Stiffness (f, z, f, z) of the retained freedoms of a section, the others free of loads."""
+    # Elements (e, n) whose negative freedoms cannot move are assembled in groups, in this order.
     last = np.full(freedoms.max() + 1, -1)
     for step, group in enumerate(groups):
         members = freedoms[group]

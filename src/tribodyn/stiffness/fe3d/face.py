@@ -12,22 +12,12 @@ from tribodyn.types import Array
 
 @dataclass(frozen=True)
 class FaceSize:
-    """Sizes of the elements over the face width over the module.
+    """Sizes of the elements over the face width over the module."""
 
-    Parameters
-    ----------
-    end, largest : float [-]
-        Size at a free end, and largest size on a face of up to ``least_count`` of them.
-    growth : float [-]
-        Ratio of neighbouring elements.
-    least_count : int
-        Elements of the largest size on longer faces, whose elements grow with the face.
-    """
-
-    end: float = 0.5
-    largest: float = 1.4
-    growth: float = 1.5
-    least_count: int = 14
+    end: float = 0.5  #: size at a free end
+    largest: float = 1.4  #: largest size on a face of up to ``least_count`` of them
+    growth: float = 1.5  #: ratio of neighbouring elements
+    least_count: int = 14  #: elements of the largest size on longer faces
 
     def breaks(self, width: float) -> Array:
         """Ends of the elements from 0 to ``width``, both in modules."""

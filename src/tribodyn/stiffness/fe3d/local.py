@@ -56,10 +56,7 @@ def local_compliance(sector: Sector) -> Array:
 
 
 def _normal_section(sector: Sector, length: Array) -> tuple[Array, Array, Array]:
-    """Compliance factor, depth, and ratio of lengths across the line to those of the section.
-
-    In the section across a line on the flank, of the same radius at each face position.
-    """
+    """Compliance factor, depth, and ratio of lengths in a section across the line of a load."""
     radius, nu = sector.curvature_radius(length), sector.poissons_ratio
     module = sector.form.normal_module
     slope = sector.twist * sector.base_radius

@@ -60,10 +60,7 @@ class Ring:
     def flank_compliances(
         self, sectors: Index, harmonics: Index | None = None, progress: Progress = SILENT
     ) -> Array:
-        """Compliance (s, f, z, f, z) between the flank of the sector 0 and that of others.
-
-        Displacement first; anticlockwise sectors are positive.
-        """
+        """Compliance (s, f, z, f, z) of flanks, anticlockwise, under loads on the sector 0."""
         count = self._sector.form.teeth
         harmonics = solved_harmonics(count) if harmonics is None else harmonics
         weights = harmonic_weights(count, harmonics, sectors)
@@ -75,10 +72,7 @@ class Ring:
         return np.asarray(total)
 
     def harmonic_compliance(self, harmonic: int) -> Array:
-        """Compliance (f, z, f, z) of the flank of the sector 0 under loads on all sectors.
-
-        The load on each sector is ``exp(2 pi i harmonic / count)`` times that on the one before.
-        """
+        """Compliance (f, z, f, z) under loads that turn by a harmonic from sector to sector."""
         sector, face = self._sector, self._sector.face.count
         turn = self._turn(harmonic)
         size = turn.shape[1]

@@ -69,10 +69,7 @@ def _over_face(values: Array) -> Array:
 
 
 def element_matrices(corners: Array, twist: float, stress: Array) -> SectionMatrices:
-    """Matrices (e, 27, 27) of nine-node quadrilaterals with corners (e, 9, 2).
-
-    ``twist`` is the angle per face width by which the section turns anticlockwise.
-    """
+    """Matrices (e, 27, 27) of nine-node quadrilaterals that turn anticlockwise along the face."""
     value, slope = quadratic_shapes(_PLACES)
     values = np.einsum("pa,qb->pqab", value, value).reshape(9, 9)
     local = np.stack(
@@ -112,10 +109,8 @@ def element_matrices(corners: Array, twist: float, stress: Array) -> SectionMatr
 
 
 def annulus_matrices(radii: Array, order: int, twist: float, stress: Array) -> SectionMatrices:
-    """Matrices (e, 9, 9) of three-node elements of a ring under loads ``exp(i order angle)``.
-
-    ``radii`` (e, 3); displacements radial, tangential and axial; per radian.
-    """
+    """Matrices (e, 9, 9) per radian of a ring of elements under loads ``exp(i order angle)``."""
+    # displacements are radial, tangential and axial
     value, slope = quadratic_shapes(_PLACES)
     half = 0.5 * (radii[:, 2] - radii[:, 0])[:, None]
     radius = np.einsum("gn,en->eg", value, radii)[..., None]

@@ -46,24 +46,12 @@ class SolidSize:
 
 @dataclass(frozen=True, eq=False)
 class Sector:
-    """Sector of one tooth, all lengths in modules.
+    """Sector of one tooth, all lengths in modules; Young's modulus one."""
 
-    Parameters
-    ----------
-    form : SpurGear
-        The gear in its transverse section.
-    width, held : float [-]
-        Face width, and radius of the circle where the body is held.
-    twist : float [rad]
-        Angle by which the section turns anticlockwise per module of the face.
-    poissons_ratio : float
-        Of the material; its Young's modulus is one.
-    """
-
-    form: SpurGear
-    width: float
-    held: float
-    twist: float
+    form: SpurGear  #: the gear in its transverse section
+    width: float  #: face width
+    held: float  #: radius of the circle where the body is held
+    twist: float  #: angle by which the section turns anticlockwise per module of the face [rad]
     poissons_ratio: float
     size: SolidSize
 
@@ -123,10 +111,7 @@ class Sector:
         return np.stack([-np.cos(angle), -np.sin(angle), axial], axis=-1)
 
     def _directions(self) -> Array:
-        """Directions of the freedoms (n, 3, 3): polar on the borders, along the load on the flank.
-
-        The last axis counts the freedoms of a node.
-        """
+        """Directions (n, 3, freedom): polar on the borders, along the load on the flank."""
         mesh = self.mesh
         turn = np.tile(np.eye(3), (len(mesh.nodes), 1, 1))
         polar = np.concatenate([mesh.right_cut, mesh.left_cut, mesh.fixed])
