@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribodyn.dynamics.equations.system import Contact
-from tribodyn.dynamics.linear.natural_modes import natural_modes
+from tribodyn.dynamics.equations.system import Contact, System
+from tribodyn.dynamics.linear.natural_modes import frequencies_at, linear_system, natural_modes
 from tribodyn.machine.assembly import mesh_contacts, system
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
@@ -107,18 +107,8 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
     structure = machine_structure(machine) if isinstance(machine, Machine) else machine
     names = tuple(structure.machine.meshes)
     speed = structure.machine.operation.speed if speed is None else float(speed)
-    nonlinear = system(structure)
     linear = replace(
-        nonlinear,
-        contacts=[
-            Contact(
-                structure.mesh(name),
-                structure.mesh_stiffness(name),
-                damping=sum(mean_over_phase(contact.damping) for contact in contacts),
-            )
-            for name, contacts in zip(names, mesh_contacts(structure, nonlinear), strict=True)
-        ],
-        gyroscopic=structure.gyroscopic(speed) if speed else None,
+        _with_mean_stiffness(structure), gyroscopic=structure.gyroscopic(speed) if speed else None
     )
     modes = natural_modes(linear, elements=structure.elements)
     elastic = modes.frequency > 0.0
@@ -134,3 +124,24 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
         strain_share=modes.strain_share[elastic],
         structure=structure,
     )
+
+
+def machine_frequencies(structure: MachineStructure, speeds: Array) -> list[Array]:
+    """Natural frequencies [Hz] at each speed of the input [rad/s], as :func:`machine_modes`."""
+    linear = linear_system(_with_mean_stiffness(structure))
+    turning = [structure.gyroscopic(float(speed)) if speed else None for speed in speeds]
+    return [each[each > 0.0] for each in frequencies_at(linear, turning)]
+
+
+def _with_mean_stiffness(structure: MachineStructure) -> System:
+    """System of a machine at rest whose meshes have their mean stiffness and damping."""
+    names, nonlinear = structure.machine.meshes, system(structure)
+    contacts = [
+        Contact(
+            structure.mesh(name),
+            structure.mesh_stiffness(name),
+            damping=sum(mean_over_phase(contact.damping) for contact in contacts),
+        )
+        for name, contacts in zip(names, mesh_contacts(structure, nonlinear), strict=True)
+    ]
+    return replace(nonlinear, contacts=contacts, gyroscopic=None)

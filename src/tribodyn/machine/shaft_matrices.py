@@ -93,6 +93,17 @@ class ShaftMatrices:
         -------
         (6, n) array
         """
+        if position not in self._rows:
+            rows = self._row(position)
+            rows.flags.writeable = False
+            self._rows[position] = rows
+        return self._rows[position]
+
+    @cached_property
+    def _rows(self) -> dict[float, Array]:
+        return {}
+
+    def _row(self, position: float) -> Array:
         if not self._elements:
             return carried_along(position)
         self._require_on_shaft(position)

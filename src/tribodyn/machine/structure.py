@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +20,12 @@ from tribodyn.types import Array, Mask
 
 #: Eigenvalues below this share of the largest are rounding: the motion is free.
 _FREE = 1e-12
+
+
+@lru_cache(maxsize=64)
+def _matrices(*arguments: Any) -> ShaftMatrices:
+    """Matrices of a shaft, the same object under every load."""
+    return ShaftMatrices(*arguments)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +129,7 @@ class MachineStructure:
         for bearing in self.machine.bearings.values():
             places[bearing.shaft].append(bearing.position)
         return {
-            name: ShaftMatrices(shaft, tuple(places[name]), self.element_length)
+            name: _matrices(shaft, tuple(places[name]), self.element_length)
             for name, shaft in self.machine.shafts.items()
         }
 

@@ -24,6 +24,7 @@ from tribodyn.machine import (
     static_balance,
     system,
 )
+from tribodyn.machine.modes import machine_frequencies
 
 #: Geared shafts at rest [Hz].
 PRINTED = [414.96, 644.20, 693.93, 696.12, 795.98, 868.51, 1390.77, 1411.23, 2376.6, 2478.6, 3047.7]
@@ -75,6 +76,15 @@ def test_natural_frequencies_of_geared_shafts(reduced):
     np.testing.assert_allclose(
         np.delete(turning[:11], [6, 7]), PRINTED[:6] + PRINTED[8:], rtol=9e-4
     )
+
+
+def test_frequencies_over_the_speed_are_those_of_the_modes(reduced):
+    speeds = np.array([0.0, 0.4, 2.0]) * reduced.machine.operation.speed
+    frequencies = machine_frequencies(reduced, speeds)
+    for speed, frequency in zip(speeds, frequencies, strict=True):
+        expected = machine_modes(reduced, float(speed)).frequency
+        np.testing.assert_allclose(frequency, expected, rtol=1e-12)
+    assert not np.array_equal(frequencies[0], frequencies[2])
 
 
 def test_natural_frequencies_of_the_full_model(full):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -341,6 +341,15 @@ def natural_modes(
         complex_shape=complex_shape,
         linear=linear,
     )
+
+
+def frequencies_at(linear: LinearSystem, gyroscopic: Sequence[Array | None]) -> list[Array]:
+    """Natural frequencies [Hz] of a system with each of several gyroscopic matrices."""
+    frequency, shape = _undamped(linear.mass, linear.stiffness)
+    return [
+        frequency if matrix is None else _whirling(matrix, frequency, shape)[0]
+        for matrix in gyroscopic
+    ]
 
 
 def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.machine import MachineModes, MachineStructure, machine_modes
+from tribodyn.machine import MachineModes, MachineStructure
+from tribodyn.machine.modes import machine_frequencies
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
@@ -88,7 +89,7 @@ def campbell_of(structure: MachineStructure, speeds: Array | None = None) -> Mac
         speeds = np.linspace(0.0, _TOP * now, _SPEEDS)
     orders = excitations(structure)
     top = _BEYOND * max(orders.values()) * float(speeds[-1]) / (2.0 * np.pi)
-    rows = [machine_modes(structure, float(speed)).frequency for speed in speeds]
+    rows = machine_frequencies(structure, speeds)
     count = min(int((row <= top).sum()) for row in rows)
     frequency = np.array([row[:count] for row in rows])
     return MachineCampbell(speeds, frequency, tuple(orders), np.array(list(orders.values())), now)
