@@ -101,7 +101,8 @@ def sobol_indices(
         why = "A mapping of names to distributions defines how each input is spread"
         raise InputError("no input is spread", Argument("distributions"), why, "Give one or more")
     if not callable(function):
-        raise InputError("it cannot be called", Argument("function"), "", "Give a function")
+        why = "It computes the figure of every sample"
+        raise InputError("it cannot be called", Argument("function"), why, "Give a function")
     count = require_whole("size", size, 2)
     if count & (count - 1):
         why = "A Sobol sequence is balanced for powers of two only"

@@ -8,15 +8,17 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.dynamics.equations.entry import entry_values
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import Argument, ComputationError, InputError, Problem, did_you_mean
-from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.planetary.plane_model import CENTRAL, planetary_plane_model
 from tribodyn.types import Array, Mask
 
 #: Weak springs to the last position, over the largest stiffness; iterations, and the change of
 #: forces over the mean at which they end.
-_WEAK, _ROUNDS, _DONE = 1e-8, 200, 1e-12
+_WEAK, _ROUNDS, _DONE = 1e-11, 200, 1e-11
+#: Phases of the mean over a mesh cycle.
+_PHASES = np.arange(256) / 256.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,12 +127,15 @@ def _check_names(stage: dict[str, Any]) -> None:
 def _planet_springs(system: System) -> tuple[Array, Array, Array]:
     """Stiffness, direction and error of every planet between sun, ring and pin."""
     count = len(system.contacts) // 2
-    values = [
-        (mean_over_phase(contact.stiffness), mean_over_phase(contact.error), contact.direction)
-        for contact in system.contacts
-    ]
-    stiffness, error = (np.array([value[i] for value in values]) for i in (0, 1))
-    direction = np.array([np.asarray(value[2]) for value in values])
+    meshes = ["sun_mesh"] * count + ["ring_mesh"] * count
+    stiffness, error = (
+        np.array([
+            entry_values(f"{mesh}_{name}", getattr(contact, name), _PHASES, 1).mean()
+            for mesh, contact in zip(meshes, system.contacts, strict=True)
+        ])
+        for name in ("stiffness", "error")
+    )  # fmt: skip
+    direction = np.array([np.asarray(contact.direction) for contact in system.contacts])
     sun, ring = slice(0, count), slice(count, None)
     spring = 1.0 / (1.0 / stiffness[sun] + 1.0 / stiffness[ring])
     return spring, direction[sun] + direction[ring], error[sun] + error[ring]
@@ -149,7 +154,8 @@ def _equilibrium(system: System, spring: Array, along: Array, error: Array) -> t
     for _ in range(_ROUNDS):
         position = _loaded_position(matrix + weak, load + weak @ position, spring, along, error)
         force = spring * np.maximum(along @ position - error, 0.0)
-        if np.abs(force - last).max() <= _DONE * force.mean():
+        rounding = 1e-14 * float(spring.max() * np.abs(position).max())
+        if np.abs(force - last).max() <= _DONE * force.mean() + rounding:
             break
         last = force
     else:

@@ -13,7 +13,14 @@ from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, varies
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.linear.natural_modes import natural_modes
-from tribodyn.errors import Argument, InputError, real_numbers, require_between, require_positive
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    real_numbers,
+    require_between,
+    require_positive,
+    shortened,
+)
 from tribodyn.machine.planetary.phases import MeshPhases
 from tribodyn.machine.planetary.positions import read_angles
 from tribodyn.types import Array
@@ -143,7 +150,10 @@ def planetary_plane_model(
     sun = (sun_mass, sun_inertia, sun_support, sun_torsional_support)
     central = np.array([_member(*each) for each in zip(CENTRAL, (carrier, ring, sun), strict=True)])
     masses = _masses(central[:, [0, 0, 1]], planet_mass, planet_inertia, count)
-    alpha = float(sun_pressure_angle), float(ring_pressure_angle)
+    alpha = (
+        require_number("sun_pressure_angle", sun_pressure_angle),
+        require_number("ring_pressure_angle", ring_pressure_angle),
+    )
     axes = _Directions(_angles(count, angles, phases), *alpha)
     pins = _of_planets("pin_stiffness", pin_stiffness, count, "N/m", positive=True)
     stiffness = np.diag(np.append(central[:, [2, 2, 3]], np.zeros(3 * count)))
@@ -152,7 +162,7 @@ def planetary_plane_model(
     load = _load(require_number("force_per_planet", force_per_planet), count, alpha, central[:, 3])
     load += (pins * _of_planets("pin_errors", pin_errors, count, "m")) @ axes.tangential
     thick = _of_planets("thickness_errors", thickness_errors, count, "m")
-    require_between("mesh_gap", mesh_gap, 0.0, 1.0, "m")
+    require_between("mesh_gap", require_number("mesh_gap", mesh_gap), 0.0, 1.0, "m")
     sun_values, ring_values = (
         (sun_mesh_stiffness, sun_mesh_error),
         (ring_mesh_stiffness, ring_mesh_error),
@@ -162,7 +172,7 @@ def planetary_plane_model(
     system = _system(
         masses, stiffness, load, contacts, require_number("carrier_speed", carrier_speed)
     )
-    require_between("damping_ratio", damping_ratio, 0.0, 2.0)
+    require_between("damping_ratio", require_number("damping_ratio", damping_ratio), 0.0, 2.0)
     return replace(system, damping=_damping(system, damping_ratio)) if damping_ratio else system
 
 
@@ -174,11 +184,13 @@ def _masses(central: Array, planet_mass: ArrayLike, planet_inertia: ArrayLike, c
 
 def _member(name: str, values: tuple[float, float, float, float]) -> tuple[float, ...]:
     """Mass, inertia, support and torsional support of a central member, within their limits."""
-    for key, value in zip(("mass", "inertia"), values, strict=False):
-        require_positive(f"{name}_{key}", value, "kg")
-    for key, value in zip(("support", "torsional_support"), values[2:], strict=True):
-        require_between(f"{name}_{key}", value, 0.0, 1e30, "N/m")
-    return tuple(map(float, values))
+    keys = [f"{name}_{key}" for key in ("mass", "inertia", "support", "torsional_support")]
+    numbers = [require_number(key, value) for key, value in zip(keys, values, strict=True)]
+    for key, number in zip(keys[:2], numbers, strict=False):
+        require_positive(key, number, "kg")
+    for key, number in zip(keys[2:], numbers[2:], strict=True):
+        require_between(key, number, 0.0, 1e30, "N/m")
+    return tuple(numbers)
 
 
 def _contacts(
@@ -240,6 +252,9 @@ class _Directions:
 def _angles(count: int, angles: ArrayLike | None, phases: MeshPhases | None) -> Array:
     if phases is None:
         return read_angles(count, angles)
+    if not isinstance(phases, MeshPhases):
+        what, why = f"phases is {shortened(repr(phases), 60)}", "Wanted: phases of the meshes"
+        raise InputError(what, Argument("phases"), why, "Give the result of mesh_phases(...)")
     if phases.angles.size != count:
         what = f"phases has {phases.angles.size} planets, and planets = {count}"
         remedy = f"Give mesh_phases(..., planets={count})"

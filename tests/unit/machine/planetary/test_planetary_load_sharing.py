@@ -100,3 +100,8 @@ def test_unknown_and_missing_arguments_are_named():
     assert len(refused.value.problems) == 1
     with pytest.raises(InputError, match="planets is missing"):
         load_shares(force_per_planet=1.0, **LIN_PARKER)
+    with pytest.raises(InputError, match=r"carrier_mass = \[1.0\]"):
+        shares(3, 1e8, 0.0, carrier_mass=[1.0])
+    with pytest.raises(InputError, match="sun_mesh_stiffness"):
+        phases = mesh_phases(sun_teeth=17, ring_teeth=61, planets=3)
+        shares(3, 1e8, 0.0, phases=phases, sun_mesh_stiffness=lambda phase: None)
