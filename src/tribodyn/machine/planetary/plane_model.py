@@ -150,10 +150,7 @@ def planetary_plane_model(
     sun = (sun_mass, sun_inertia, sun_support, sun_torsional_support)
     central = np.array([_member(*each) for each in zip(CENTRAL, (carrier, ring, sun), strict=True)])
     masses = _masses(central[:, [0, 0, 1]], planet_mass, planet_inertia, count)
-    alpha = (
-        require_number("sun_pressure_angle", sun_pressure_angle),
-        require_number("ring_pressure_angle", ring_pressure_angle),
-    )
+    alpha = _pressure_angles(sun_pressure_angle, ring_pressure_angle)
     axes = _Directions(_angles(count, angles, phases), *alpha)
     pins = _of_planets("pin_stiffness", pin_stiffness, count, "N/m", positive=True)
     stiffness = np.diag(np.append(central[:, [2, 2, 3]], np.zeros(3 * count)))
@@ -163,17 +160,21 @@ def planetary_plane_model(
     load += (pins * _of_planets("pin_errors", pin_errors, count, "m")) @ axes.tangential
     thick = _of_planets("thickness_errors", thickness_errors, count, "m")
     require_between("mesh_gap", require_number("mesh_gap", mesh_gap), 0.0, 1.0, "m")
-    sun_values, ring_values = (
-        (sun_mesh_stiffness, sun_mesh_error),
-        (ring_mesh_stiffness, ring_mesh_error),
-    )
-    contacts = _contacts("sun", axes.sun, sun_values, thick, mesh_gap, phases)
-    contacts += _contacts("ring", axes.ring, ring_values, thick, mesh_gap, phases)
-    system = _system(
-        masses, stiffness, load, contacts, require_number("carrier_speed", carrier_speed)
-    )
+    of_sun, of_ring = (sun_mesh_stiffness, sun_mesh_error), (ring_mesh_stiffness, ring_mesh_error)
+    contacts = _contacts("sun", axes.sun, of_sun, thick, mesh_gap, phases)
+    contacts += _contacts("ring", axes.ring, of_ring, thick, mesh_gap, phases)
+    speed = require_number("carrier_speed", carrier_speed)
+    system = _system(masses, stiffness, load, contacts, speed)
     require_between("damping_ratio", require_number("damping_ratio", damping_ratio), 0.0, 2.0)
     return replace(system, damping=_damping(system, damping_ratio)) if damping_ratio else system
+
+
+def _pressure_angles(sun: float, ring: float) -> tuple[float, float]:
+    for name, value in (("sun_pressure_angle", sun), ("ring_pressure_angle", ring)):
+        remedy = "Give radians: 20 deg is 0.349066"
+        angle = require_number(name, value)
+        require_between(name, angle, 0.0, 0.25 * np.pi, "rad", remedy=remedy)
+    return float(sun), float(ring)
 
 
 def _masses(central: Array, planet_mass: ArrayLike, planet_inertia: ArrayLike, count: int) -> Array:
@@ -222,9 +223,6 @@ class _Directions:
     """Derivatives of the compressions and of the pin displacements, (N, n) each."""
 
     def __init__(self, angles: Array, sun: float, ring: float) -> None:
-        for name, alpha in (("sun_pressure_angle", sun), ("ring_pressure_angle", ring)):
-            remedy = "Give radians: 20 deg is 0.349066"
-            require_between(name, alpha, 0.0, 0.25 * np.pi, "rad", remedy=remedy)
         count = angles.size
         shape = count, 9 + 3 * count
         self.radial, self.tangential, self.sun, self.ring = (np.zeros(shape) for _ in range(4))

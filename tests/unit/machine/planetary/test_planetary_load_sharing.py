@@ -102,6 +102,6 @@ def test_unknown_and_missing_arguments_are_named():
         load_shares(force_per_planet=1.0, **LIN_PARKER)
     with pytest.raises(InputError, match=r"carrier_mass = \[1.0\]"):
         shares(3, 1e8, 0.0, carrier_mass=[1.0])
+    phases = mesh_phases(sun_teeth=17, ring_teeth=61, planets=3)
     with pytest.raises(InputError, match="sun_mesh_stiffness"):
-        phases = mesh_phases(sun_teeth=17, ring_teeth=61, planets=3)
         shares(3, 1e8, 0.0, phases=phases, sun_mesh_stiffness=lambda phase: None)
