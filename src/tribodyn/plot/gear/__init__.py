@@ -4,6 +4,7 @@
 module                  what it draws
 ======================  ===============================================================
 ``gear_pair``           both gears to scale, and the mesh zone enlarged
+``contact_lines``       teeth in space with the lines of contact moving over them
 ``flank_modification``  modifications and deviations of the flanks
 ``heat``                power loss and dissipated heat over the temperature
 ``hypoid``              a hypoid pair: blanks, in space, ease-off, contact pattern

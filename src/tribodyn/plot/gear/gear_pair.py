@@ -167,7 +167,10 @@ def _names(pair: SpurPair, path: PathOfContact, axes: tuple[str, str]) -> list[T
 
 
 def _contact_line(pair: SpurPair, path: PathOfContact) -> list[Trace]:
-    tangent = on_line_of_action(pair, np.array([0.0, pair.line_of_action_length]))
+    tangents = 0.0, pair.line_of_action_length
+    if pair.is_internal:  # Both tangent points lie before the path of contact.
+        tangents = tangents[1], pair.path_limits[1]
+    tangent = on_line_of_action(pair, np.array(tangents))
     active = on_line_of_action(pair, np.array([path.A, path.E]))
     letters = _letters(pair, path)
     marks = on_line_of_action(pair, np.array(list(letters.values())))
