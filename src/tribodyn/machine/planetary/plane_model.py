@@ -311,16 +311,16 @@ def _less(error: Any, thickness: float) -> Entry:
     return lambda phase: function(phase) - thickness
 
 
-def _load(force: float, count: int, alpha: tuple[float, float], held: Array) -> Array:
+def _load(force: float, count: int, alpha: tuple[float, float], supports: Array) -> Array:
     """Forces on the members that are free to turn; supports react on the others."""
-    if force and held.all():
+    if force and supports.all():
         what = f"force_per_planet = {force:.6g} N, and no member is free to turn"
         why = "Carrier, ring and sun have torsional supports, so that no torque can act"
         remedy = "Set the torsional support of the driving member to 0"
         raise InputError(what, Argument("force_per_planet"), why, remedy)
     load = np.zeros(9 + 3 * count)
     turning = np.array([-np.cos(alpha).sum(), 1.0, 1.0])
-    load[[2, 5, 8]] = count * force * turning * (held == 0.0)
+    load[[2, 5, 8]] = count * force * turning * (supports == 0.0)
     return load
 
 

@@ -112,14 +112,14 @@ def refuse_misfit(teeth: PlanetTeeth, planets: int, angles: ArrayLike | None) ->
         if count % planets:
             fitting = [n for n in range(2, 13) if count % n == 0]
             possible = f"{', '.join(map(str, fitting))} planets" if fitting else "unequal spacing"
-            near = np.unique(np.round(np.degrees(at) / step)) * step
+            fitting_angles = np.unique(np.round(np.degrees(at) / step)) * step
             raise InputError(
                 f"({teeth.positions_formula})/{planets} = {count / planets:.6g} is not whole: "
                 f"{planets} planets at equal spacing do not fit",
                 Argument("planets"),
                 f"Planets can be assembled at multiples of {step:.6g} deg",
                 f"At equal spacing it takes {possible}; {planets} planets fit at the angles "
-                f"{', '.join(f'{angle:.6g}' for angle in near)} deg",
+                f"{', '.join(f'{angle:.6g}' for angle in fitting_angles)} deg",
             )
         return at
     pitches = (at - at[0]) * count / (2.0 * np.pi)
@@ -233,14 +233,14 @@ def _clearance(
     """Least distance between the tip circles of neighbours; raise where they overlap."""
     ordered = np.sort(angles % (2.0 * np.pi))
     gap = float(np.diff(ordered, append=ordered[0] + 2.0 * np.pi).min())
-    apart = 2.0 * distance * math.sin(min(gap, np.pi) / 2.0)
-    if apart <= tip:
+    axis_distance = 2.0 * distance * math.sin(min(gap, np.pi) / 2.0)
+    if axis_distance <= tip:
         raise InputError(
             f"neighbouring planets {np.degrees(gap):.6g} deg apart overlap by "
-            f"{(tip - apart) * factor:.4g} {unit}: their axes are {apart * factor:.5g} {unit} "
-            f"apart, their tip diameter is {tip * factor:.5g} {unit}",
+            f"{(tip - axis_distance) * factor:.4g} {unit}: their axes are "
+            f"{axis_distance * factor:.5g} {unit} apart, their tip diameter is {tip * factor:.5g} {unit}",
             Argument(where),
             "Tip circles of neighbours must not overlap",
             "Take fewer or smaller planets, or a greater angle between them",
         )
-    return apart - tip
+    return axis_distance - tip

@@ -18,8 +18,8 @@ def test_printed_shares():
     four = shares(4, 1e3, [30e-6, 0.0, 0.0, 0.0])
     np.testing.assert_allclose(100 * (four.share - 1), [-12.3, 12.3, -12.3, 12.3], atol=0.05)
     assert four.load_factor == pytest.approx(1.123, abs=5e-4)
-    held = shares(3, 1e12, [30e-6, 0.0, 0.0])
-    np.testing.assert_allclose(100 * (held.share - 1), [-11.9, 6.0, 6.0], atol=0.05)
+    stiff = shares(3, 1e12, [30e-6, 0.0, 0.0])
+    np.testing.assert_allclose(100 * (stiff.share - 1), [-11.9, 6.0, 6.0], atol=0.05)
 
 
 @pytest.mark.parametrize("support", ["sun_support", "ring_support"])
@@ -74,8 +74,8 @@ def test_backwards_a_pin_ahead_carries_more():
 
 
 def test_a_common_error_changes_no_share():
-    alike = shares(4, 1e8, 50e-6)
-    np.testing.assert_allclose(alike.share, 1.0, atol=1e-9)
+    result = shares(4, 1e8, 50e-6)
+    np.testing.assert_allclose(result.share, 1.0, atol=1e-9)
 
 
 def test_functions_of_the_phase_count_with_their_mean():
