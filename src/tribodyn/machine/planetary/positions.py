@@ -238,7 +238,8 @@ def _clearance(
         raise InputError(
             f"neighbouring planets {np.degrees(gap):.6g} deg apart overlap by "
             f"{(tip - axis_distance) * factor:.4g} {unit}: their axes are "
-            f"{axis_distance * factor:.5g} {unit} apart, their tip diameter is {tip * factor:.5g} {unit}",
+            f"{axis_distance * factor:.5g} {unit} apart, their tip diameter is "
+            f"{tip * factor:.5g} {unit}",
             Argument(where),
             "Tip circles of neighbours must not overlap",
             "Take fewer or smaller planets, or a greater angle between them",
