@@ -11,6 +11,8 @@ import pytest
 
 pytest.importorskip("dash", reason="the page needs Dash")
 
+from tests.unit.study.test_machine_run import GEARED
+
 import tribodyn
 from tribodyn.app.server import Page
 
@@ -19,6 +21,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 #: A case with long cycles, for a run that is still going on when it is stopped.
 LONG = {"solver.method": "transient", "solver.cycles": 100000}
 WAIT = 120_000
+#: A machine without load cases.
+MACHINE = GEARED.partition("[[load_cases]]")[0]
 
 
 class Visit:
@@ -219,6 +223,27 @@ def test_a_study_is_started(visit: Visit) -> None:
     visit.wait("#bench h3", "Natural modes")
     tab.wait_for_selector("#bench .main-svg")
     assert "Hz" in tab.inner_text("#bench")
+
+
+def test_a_machine_is_opened_changed_and_run(context: Any, served: Page, folder: Path) -> None:
+    (folder / "shafts.toml").write_text(MACHINE, encoding="utf-8")
+    visit = Visit(context, served)
+    tab = visit.tab
+    tab.click("#tab-files")
+    tab.click("text=two-stage-spur")
+    visit.wait("#bench h3", "The machine")
+    visit.wait("#tab-pair", "Machine")
+    tab.click("#tab-files")
+    tab.click("text=shafts.toml")
+    visit.wait("#title", "Two geared shafts")
+    visit.fill("operation.torque", "500")
+    visit.wait("#bench p.answer", "500 N")
+    visit.run(1)
+    tab.click("[role=tab]:has-text('All numbers')")
+    visit.wait("#bench td", "Bearing A")
+    visit.wait("text=Report")
+    assert not visit.messages
+    tab.close()
 
 
 def test_a_script_in_a_title_stays_text(visit: Visit) -> None:

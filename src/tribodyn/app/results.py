@@ -11,6 +11,7 @@ from tribodyn.app.session import RUNS, TabSession
 from tribodyn.app.studies import STUDIES
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.report.figure_blocks import block_of_figure, topic_of
+from tribodyn.study.machine.case import MachineCase
 
 if TYPE_CHECKING:
     from tribodyn.app.jobs import Job
@@ -27,6 +28,8 @@ _FIRST = (
     "oil_viscosity",
     "gear_loss_factor",
 )
+#: Ends of the keys of figures of machines that are displayed as cards.
+_OF_MACHINE = ("machine.input_power", "machine.output_torque", "mesh_frequency")
 _CONFIG = {
     "displaylogo": False,
     "responsive": True,
@@ -83,7 +86,8 @@ def notice(heading: str, lines: list[str]) -> list[Any]:
 
 def rail(desk: TabSession) -> list[Any]:
     """Tabs of all views, and the list of runs."""
-    views = [("pair", "Gear pair"), ("files", "Open and save"), ("studies", "Studies")]
+    name = "Machine" if isinstance(desk.case, MachineCase) else "Gear pair"
+    views = [("pair", name), ("files", "Open and save"), ("studies", "Studies")]
     tabs = [_tab(desk, view, text) for view, text in views]
     for job in desk.all_jobs():
         tabs.append(_tab(desk, f"job-{job.number}", [job.title, _mark(job)]))
@@ -127,6 +131,8 @@ def pair(desk: TabSession) -> list[Any]:
     from tribodyn.study.pipeline.preview import operating_figures
 
     case = desk.case
+    if isinstance(case, MachineCase):
+        return _machine(desk, case)
     with collected():
         figures = {n: float(v) for n, v in (geometry(case) | operating_figures(case)).items()}
         cautions = [str(caution) for caution in case_cautions(case)]
@@ -140,6 +146,35 @@ def pair(desk: TabSession) -> list[Any]:
         *notice("Warnings", cautions),
         *_drawing(case),
         html.Details(every, className="block"),
+    ]
+    return [*_outdated(desk), html.Div(parts, className="outdated" if desk.faults else "")]
+
+
+def _machine(desk: TabSession, case: MachineCase) -> list[Any]:
+    """Side view, speeds, torques and assumptions of the current machine."""
+    from tribodyn import plot
+    from tribodyn.report.numbers import describe
+    from tribodyn.study.machine.first_look import kinematic_figures, warn_of_period
+
+    machine = case.machine()
+    with collected() as warnings:
+        warn_of_period(machine)
+    numbers = [describe(name, value) for name, value in kinematic_figures(case).items()]
+    rows = [[n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers]
+    first = [n for n in numbers if n.name.endswith((*_OF_MACHINE,))]
+    sketch = plot.machine.sketch(machine)
+    caption = plot.machine.caption_of(machine)
+    block = block_of_figure(plot.machine.name, plot.machine.heading, sketch, caption)
+    every = [html.Summary(f"All speeds, torques and powers ({len(rows)})")]
+    every.append(table(["Quantity", "Value", "Meaning"], rows))
+    assumed = [[a.key, a.value or "", a.reason or ""] for a in case.assumptions]
+    taken = [html.Summary(f"Assumed ({len(assumed)})"), table(["Key", "Value", "Reason"], assumed)]
+    parts = [
+        cards([[n.label, n.value, n.unit] for n in first]),
+        *notice("Warnings", [str(warning) for warning in warnings]),
+        _block(block.__dict__, "pair-machine", json.loads(block.json)),
+        html.Details(every, className="block"),
+        *([html.Details(taken, className="block")] if assumed else []),
     ]
     return [*_outdated(desk), html.Div(parts, className="outdated" if desk.faults else "")]
 
@@ -282,7 +317,7 @@ def files(desk: TabSession) -> list[Any]:
     links = [html.Li(button(name, "open", f"file:{name}", className="link")) for name in case_names]
     built = [
         html.Li([button(name, "open", f"case:{name}", className="link"), " ", html.Span(title)])
-        for name, title in cases().items()
+        for name, title in cases(machines=True).items()
     ]
     name = dcc.Input(id="case-name", value=desk.name or "my-gears.toml", autoComplete="off")
     write = button("Save", "save", id="save", data_from="case-name")
@@ -322,6 +357,7 @@ def studies(desk: TabSession) -> list[Any]:
             ]
         )
         for kind, study in STUDIES.items()
+        if study.takes(desk.case)
     ]
     parts: list[Any] = [html.Section([html.H3("Studies"), html.Ul(kinds)], className="block kinds")]
     if desk.study:

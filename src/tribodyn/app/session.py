@@ -9,20 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.app.case_form import CaseForm, key_label
 from tribodyn.app.jobs import Job, Jobs
+from tribodyn.app.machine_form import MachineForm
 from tribodyn.app.studies import STUDIES, first_values, form_of, numeric_keys
 from tribodyn.app.workspace import Workspace
-from tribodyn.cases.catalogue import case_files
+from tribodyn.cases.catalogue import case_files, machine_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
 from tribodyn.nomenclature import GEARS
-from tribodyn.study.case.provenance import spec_of
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.result_comparison import differing
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
 from tribodyn.validated_files import plain_number
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+
+    AnyCase = Case | MachineCase
 
 #: Greatest number of runs, and of studies, of a tab.
 RUNS = 6
@@ -37,14 +40,14 @@ _BY = "form"
 class TabSession:
     """State of one tab; every request holds the lock while it reads or changes the state."""
 
-    def __init__(self, folder: Workspace, jobs: Jobs, case: Case, name: str = "") -> None:
+    def __init__(self, folder: Workspace, jobs: Jobs, case: AnyCase, name: str = "") -> None:
         self.lock = threading.RLock()
         self.folder, self.jobs = folder, jobs
         self.runs: list[Job] = []
         self.studies: list[Job] = []
         self.overlay: Job | None = None
         self.picked: list[int] = []  #: runs that are selected for the overlay
-        self.view, self.topic, self.study = "pair", "", ""
+        self.view, self.topic, self.study = "pair", "", ""  #: the view "pair" is that of the case
         self.values: dict[str, dict[str, str]] = {}  #: of studies, by kind
         self._acted = 0
         self.notice, self.bad = "", False  #: of the last request
@@ -53,17 +56,22 @@ class TabSession:
         self._numbers: dict[str, int] = {}
         self.take(case, name)
 
-    def take(self, case: Case, name: str) -> None:
+    def take(self, case: AnyCase, name: str) -> None:
         """Replace the case and clear the form."""
-        self.case, self.name = case, name
+        self.case: AnyCase = case
+        self.name = name
+        if self.study and not STUDIES[self.study].takes(case):
+            self.study = ""
         self.typed: dict[str, str] = {}
         self.units: dict[str, str] = {}
         self.faults: list[dict[str, str]] = []
         self.edits += 1
 
     @property
-    def form(self) -> CaseForm:
+    def form(self) -> CaseForm | MachineForm:
         """The form of the case."""
+        if isinstance(self.case, MachineCase):
+            return MachineForm(self.case, self.typed, self.units)
         return CaseForm(self.case, self.typed, self.units)
 
     @property
@@ -111,7 +119,7 @@ class TabSession:
 
     def choose_study(self, kind: str) -> None:
         """Select a kind of study."""
-        if kind in STUDIES:
+        if kind in STUDIES and STUDIES[kind].takes(self.case):
             self.study = kind
             self.values.setdefault(kind, first_values(kind, self.case))
 
@@ -199,7 +207,7 @@ class TabSession:
             return str(self.folder.inside(text))
         if option.kind == "flag":
             return text == "true"
-        if option.kind == "numbers":
+        if option.kind == "numbers" or (option.pair and "," in text):
             return [_plain(option, item.strip()) for item in text.split(",")]
         return _plain(option, text) if option.kind in ("number", "integer") else text
 
@@ -213,7 +221,7 @@ class TabSession:
         kind, _, place = name.partition(":")
         if kind == "file":
             self.take(self.folder.load(place), place)
-        elif place in case_files() or not place:
+        elif place in {**case_files(), **machine_files()} or not place:
             self.take(initial_case(self.folder, place)[0], "")
         else:
             raise InputError(f'no built-in case is called "{place}"')
@@ -316,7 +324,7 @@ class TabSession:
         differences = differing([dict(each.case.values()) for each in (self.runs[0], job)])
         texts = []
         for key, (_, value) in differences.items():
-            option = spec_of(self.case, key)
+            option = self.case.option_of(key)
             value_text = (
                 "default" if value is None else option.show(value) if option else str(value)
             )
@@ -362,14 +370,14 @@ def _plain(option: Option, text: str) -> Any:
     return int(number) if is_integer and number is not None else text if number is None else number
 
 
-def initial_case(folder: Workspace, requested: str) -> tuple[Case, str]:
+def initial_case(folder: Workspace, requested: str) -> tuple[AnyCase, str]:
     """Load the case of ``tribodyn app``: built-in, a file of the folder, or a new one."""
     from tribodyn.study.case.read import read_case
     from tribodyn.study.case.reference import start_toml
 
     if not requested:
         return read_case(start_toml(), "case.toml"), ""
-    if requested in case_files() or not Path(requested).exists():
+    if requested in {**case_files(), **machine_files()} or not Path(requested).exists():
         return load_case(requested), ""  # raises with a list of cases if the name is unknown
     place = Path(requested).resolve()
     if not place.is_relative_to(folder.root):

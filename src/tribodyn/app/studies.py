@@ -12,6 +12,7 @@ from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.values import FaultError, Plain, read_value
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.studies.range_syntax import (
     UnreadError,
     read_list,
@@ -49,10 +50,15 @@ class Study:
     title: str
     meaning: str
     options: Mapping[str, Option]
-    function: Callable[[Case, Values, Progress, Path], Shown]
+    function: Callable[[Any, Values, Progress, Path], Shown]
+    machines: bool = False  #: whether it takes machines too
+
+    def takes(self, case: Case | MachineCase) -> bool:
+        """Whether it can be computed for a case."""
+        return self.machines or not isinstance(case, MachineCase)
 
     def compute(
-        self, case: Case, texts: Mapping[str, str], progress: Progress, target: Path
+        self, case: Case | MachineCase, texts: Mapping[str, str], progress: Progress, target: Path
     ) -> Shown:
         """Check the typed values, compute the study and write its directory."""
         values: dict[str, Any] = {}
@@ -109,14 +115,19 @@ def _of(answer: Any, kind: str, case: Case, target: Path) -> Shown:
 
 def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn import plot
+    from tribodyn.report.study_report_data import figure_with_caption
     from tribodyn.study.pipeline.summary_labels import in_words
     from tribodyn.study.studies.sweep import sweep
 
     result = sweep(case, dict(_varied(values)), by="study", progress=progress)
     result.save(target)
     names = result.displayed_figures()
+    if not plot.machine_sweep.missing(result):
+        names = []
     figures = [(in_words(name), result.plot(name), "") for name in names]
     figures[:1] = [(*figures[0][:2], plot.sweep.caption_of(result))] if figures else []
+    if not names:
+        figures = [figure_with_caption(plot.machine_sweep, result)]
     failed = dict.fromkeys(point.failed for point in result.points if point.failed)
     return {
         "sentences": [f"{len(result.points)} values.", *failed],
@@ -188,9 +199,12 @@ def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Sho
 
 
 def _modes(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.machine_report import machine_modes_report_data
     from tribodyn.report.study_report_data import modes_report_data
 
     ends = _ends("speeds", values["speeds"]) if values["speeds"] else None
+    if isinstance(case, MachineCase):
+        return _of(machine_modes_report_data(case, ends, progress), "modes", case, target)
     return _of(modes_report_data(case, ends, progress), "modes", case, target)
 
 
@@ -264,6 +278,7 @@ STUDIES: dict[str, Study] = {
             "second_values": _text(None, "its values", _RANGE),
         },
         _sweep,
+        machines=True,
     ),
     "losses": Study(
         "Operating map",
@@ -337,6 +352,7 @@ STUDIES: dict[str, Study] = {
             "size": integer(32, 2, 4096, _GUARD, meaning="size of the sample, a power of two"),
         },
         _sobol,
+        machines=True,
     ),
     "relief": Study(
         "Tip relief",
@@ -355,6 +371,7 @@ STUDIES: dict[str, Study] = {
         "Natural frequencies and critical speeds; no motion is computed.",
         {"speeds": _text(None, "speeds of the Campbell diagram", _ENDS)},
         _modes,
+        machines=True,
     ),
     "run-up": Study(
         "Run-up",
@@ -364,6 +381,7 @@ STUDIES: dict[str, Study] = {
             "duration": number(10.0, 0.1, 1e4, _GUARD, meaning="length of the rise in seconds"),
         },
         _run_up,
+        machines=True,
     ),
 }
 
@@ -373,11 +391,12 @@ def numeric_keys(options: Mapping[str, Option]) -> list[str]:
     return [key for key, option in options.items() if option.kind == "number"]
 
 
-def first_values(kind: str, case: Case) -> dict[str, str]:
+def first_values(kind: str, case: Case | MachineCase) -> dict[str, str]:
     """Values to begin with: speeds about that of the case."""
     from tribodyn.units import convert
 
-    rpm = convert(case.operation.speed, "rad/s", "rpm")
+    point = case.operating_point if isinstance(case, MachineCase) else case.operation
+    rpm = abs(convert(point.speed, "rad/s", "rpm"))
     about = f"{0.5 * rpm:.4g}..{2.0 * rpm:.4g} rpm"
     first = {
         "key": _KEY,

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 #: Shortest time between two messages about progress [s].
 _PAUSE = 0.15
@@ -102,19 +103,24 @@ def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
         tell(state="failed", problems=[f"{what}. This is a fault of tribodyn, not of the input."])
 
 
-def _case(order: Mapping[str, Any]) -> Case:
-    from tribodyn.study.case.read import read_case
+def _case(order: Mapping[str, Any]) -> Case | MachineCase:
+    from tribodyn.study.machine.read import read_any_case
 
-    return read_case(order["case"], "case.toml")
+    return read_any_case(order["case"], "case.toml")
 
 
 def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Compute a case, send its contents, and write the directory of ``tribodyn run``."""
     from tribodyn.report.figure_blocks import figure_blocks
     from tribodyn.report.numbers import HEAD, headlines, modes_table, table
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.pipeline.run import computed
 
-    result = computed(_case(order), Teller(tell))
+    case = _case(order)
+    if isinstance(case, MachineCase):
+        _run_machine(case, folder, tell)
+        return
+    result = computed(case, Teller(tell))
     tell(task="Figures", done=0, total=None)
     summary = result.summary()
     modes = modes_table(result) if "natural_frequency_1" in summary else []
@@ -133,6 +139,21 @@ def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     tell(saved=True)
 
 
+def _run_machine(case: MachineCase, folder: Path, tell: Tell) -> None:
+    """Compute a machine, send its contents, and write the directory of ``tribodyn run``."""
+    from tribodyn.errors import collected
+    from tribodyn.report.machine_report import machine_content
+    from tribodyn.study.machine.run import run_machine
+
+    with collected():  # the result has them
+        result = run_machine(case, Teller(tell))
+    tell(task="Figures", done=0, total=None)
+    content = machine_content(result)
+    tell(state="done", content={**content, "blocks": _written(content["blocks"], folder)}, task="")
+    result.save(folder / "result")
+    tell(saved=True)
+
+
 def _written(blocks: Any, folder: Path) -> list[dict[str, Any]]:
     """Write figures as files of a folder and return their descriptions."""
     for block in blocks:
@@ -146,11 +167,13 @@ def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     from tribodyn import plot
     from tribodyn.cases.stored_result import load_result
     from tribodyn.report.figure_blocks import block_of_figure
+    from tribodyn.study.machine.result import MachineResult
     from tribodyn.study.result_comparison import compare_results, difference_rows
 
     results = [load_result(place) for place in order["results"]]
     comparison = compare_results(*results, names=order["names"])
-    figure = plot.result_comparison
+    machines = isinstance(results[0], MachineResult)
+    figure = plot.machine_comparison if machines else plot.result_comparison
     block = block_of_figure(
         figure.name, figure.heading, comparison.plot(), figure.caption_of(comparison)
     )

@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.study.case.read import named_files, read_case, read_text
+from tribodyn.study.case.read import named_files, parse_toml, read_text
+from tribodyn.study.machine.case import MachineCase, is_machine
+from tribodyn.study.machine.read import machine_files, read_any_case
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -73,22 +75,25 @@ class Workspace:
         except InputError:
             return False
 
-    def load(self, name: str) -> Case:
+    def load(self, name: str) -> Case | MachineCase:
         """Read a case file; files that it names have to be in the folder too."""
         place = self.inside(name, ".toml")
         if not place.is_file():
             raise InputError(f'there is no file "{name}"', "", "", "Choose one from the list")
         return self.read(read_text(place), place)
 
-    def read(self, text: str, place: Path) -> Case:
+    def read(self, text: str, place: Path) -> Case | MachineCase:
         """Read a case from text as a file of the folder."""
-        for _, named in named_files(text, self.relative_name(place)):
+        name = self.relative_name(place)
+        data = parse_toml(text, name)
+        files = [named for _, named in named_files(text, name)]
+        for named in [*files, *(machine_files(data) if is_machine(data) else ())]:
             if not (place.parent / named).resolve().is_relative_to(self.root):
                 raise self._outside(named)
-        return read_case(text, str(place))
+        return read_any_case(text, str(place))
 
-    def save_case(self, case: Case, name: str, force: bool = False) -> Path:
-        """Write a case file; replace an existing one only with ``force``."""
+    def save_case(self, case: Case | MachineCase, name: str, force: bool = False) -> Path:
+        """Write a case file with the files of a housing; replace one only with ``force``."""
         from tribodyn.study.pipeline.save import write_file
 
         place = self.inside(name, ".toml")
@@ -96,6 +101,12 @@ class Workspace:
             remedy = "Choose another name, or save once more to replace it"
             raise OutputExistsError(f'"{self.relative_name(place)}" exists already', "", "", remedy)
         self._parent(place)
+        if isinstance(case, MachineCase):
+            files, case = case.housing_files, case.with_files(f"{place.stem}-")
+            for key, path in files.items():
+                target = place.parent / case.housing_files[key]
+                if target.resolve() != Path(path).resolve():
+                    shutil.copyfile(path, target)
         write_file(place, case.to_toml())
         return place
 

@@ -87,6 +87,25 @@ def _blocks(result: MachineResult) -> list[Block]:
     ]
 
 
+def machine_content(result: MachineResult) -> dict[str, Any]:
+    """Cards, tables, warnings and figures of a machine for the page."""
+    summary = result.summary()
+    rows = []
+    for topic, keys in by_topic(summary).items():
+        numbers = [_number(key, summary[key]) for key in keys]
+        rows += [[topic, n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers]
+    return {
+        "cards": [[card.label, card.value, card.unit] for card in _cards(summary)],
+        "sentences": [],
+        "warnings": [str(warning) for warning in result.warnings],
+        "tables": [
+            ["Natural modes", list(MODES_HEAD), mode_rows(result.modes)],
+            ["All numbers", ["Part", "Quantity", "Value", "Meaning"], rows],
+        ],
+        "blocks": _blocks(result),
+    }
+
+
 def render_machine_report(result: MachineResult) -> str:
     """Write the result of a machine as one self-contained HTML page.
 

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.study.case.read import key_lines, parse_toml, read_case
+from tribodyn.study.case.section import file_keys
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.case import MachineCase, is_machine
 from tribodyn.study.machine.tables import HousingTable
+from tribodyn.study.machine.user_tables import flat_keys
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+
+
+def machine_files(data: Mapping[str, Any]) -> list[str]:
+    """Files that the tables of a machine name, without opening them."""
+    names = {*HousingTable.fields, *(key.rpartition(".")[2] for key in file_keys())}
+    return [
+        value
+        for key, value in flat_keys(data)
+        if key.rpartition(".")[2] in names and isinstance(value, str)
+    ]
 
 
 def read_any_case(text: str, name: str = "", folder: Path | None = None) -> Case | MachineCase:

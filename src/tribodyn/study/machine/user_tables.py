@@ -78,7 +78,7 @@ def _estimates(texts: Iterable[str]) -> Iterator[tuple[str, str, str]]:
 
 def user_values(case: MachineCase) -> Iterator[tuple[str, Any]]:
     """Dotted keys and values in SI of what the case gives."""
-    for key, value in _flat(case.data):
+    for key, value in flat_keys(case.data):
         option, name = case.option_of(key), key.rpartition(".")[2]
         if option is not None and option.kind == "file":
             yield key, Path(str(value)).name
@@ -89,13 +89,14 @@ def user_values(case: MachineCase) -> Iterator[tuple[str, Any]]:
             yield key, _plain(value)
 
 
-def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+def flat_keys(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys of nested tables with their values."""
     for name, value in table.items():
         if isinstance(value, Mapping):
-            yield from _flat(value, f"{prefix}{name}.")
+            yield from flat_keys(value, f"{prefix}{name}.")
         elif isinstance(value, list | tuple) and value and isinstance(value[0], Mapping):
             for number, row in enumerate(value):
-                yield from _flat(row, f"{prefix}{name}.{row.get('name', number + 1)}.")
+                yield from flat_keys(row, f"{prefix}{name}.{row.get('name', number + 1)}.")
         else:
             yield f"{prefix}{name}", value
 

@@ -1,0 +1,134 @@
+"""Machines on the page: form, drawing, run, studies, and files of the folder."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("dash", reason="the page needs Dash")
+
+from tests.unit.study.test_machine_run import GEARED
+
+from tribodyn.app import results, worker
+from tribodyn.app.session import TabSession
+from tribodyn.app.studies import STUDIES, first_values
+from tribodyn.app.workspace import Workspace
+from tribodyn.cases.load import load_case
+from tribodyn.errors import InputError
+from tribodyn.progress import SILENT
+from tribodyn.study.machine.read import read_any_case
+
+MACHINE = GEARED.partition("[[load_cases]]")[0]
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> TabSession:
+    return TabSession(Workspace(tmp_path), None, load_case("two-stage-spur"))  # type: ignore[arg-type]
+
+
+def fields(desk: TabSession) -> dict[str, dict[str, Any]]:
+    pending = list(desk.forms()["case"]["groups"])
+    for group in pending:
+        pending += group["groups"]
+    return {f["key"]: f for group in pending for f in (*group["fields"], *group["more"])}
+
+
+def typed(desk: TabSession, key: str, **text: Any) -> list[dict[str, str]]:
+    desk.edit({"form": "case", "key": key, "number": desk.edits + 1, **text})
+    return desk.faults
+
+
+def texts(part: Any) -> str:
+    return json.dumps(part, default=lambda each: each.to_plotly_json())
+
+
+def test_every_number_of_a_machine_has_its_field(desk: TabSession) -> None:
+    displayed = fields(desk)
+    given = [key for key, _ in desk.case.values() if desk.case.option_of(key) is not None]
+    given = [key for key in given if key.partition(".")[0] not in ("housing", "load_cases")]
+    assert set(given) <= set(displayed)
+    assert set(displayed) == set(desk.form.options())
+    assert (displayed["gears.z1.face_width"]["value"], displayed["friction.law"]["value"]) == (
+        "32",
+        "xu-2007",
+    )
+
+
+def test_a_typed_value_changes_the_machine_and_a_wrong_one_is_marked(desk: TabSession) -> None:
+    assert typed(desk, "operation.torque", value="0.1", unit="kN*m") == []
+    assert desk.case.operating_point.torque == 100.0
+    faults = typed(desk, "bearings.A.position", value="5", unit="m")
+    assert faults[0]["key"] == "bearings.A.position"
+    assert "out of date" in texts(results.bench(desk))
+    assert typed(desk, "bearings.A.position", value="40", unit="mm") == []
+    assert typed(desk, "friction.law", value="constant")[0]["key"] == "friction.coefficient"
+    assert typed(desk, "friction.coefficient", value="0.05") == []
+    desk.take(read_any_case(MACHINE), "")
+    assert typed(desk, "bearings.A.radial_stiffness", value="4e8 N/m, 3e8 N/m") == []
+    assert desk.case.bearings["A"].radial_stiffness == (4e8, 3e8)
+
+
+def test_the_machine_is_drawn_with_speeds_and_assumptions(desk: TabSession) -> None:
+    text = texts(results.bench(desk))
+    for part in ("The machine", "Mesh frequency, mesh second", "Assumed", "Output torque"):
+        assert part in text
+    assert "two-stage-spur" in texts(results.files(desk))
+    kinds = {kind for kind, study in STUDIES.items() if study.title in texts(results.studies(desk))}
+    assert kinds == {"sweep", "sobol", "modes", "run-up"}
+    desk.choose_study("harris")  # of a stale page
+    assert desk.study == ""
+
+
+def test_a_saved_machine_takes_its_housing_along(desk: TabSession, tmp_path: Path) -> None:
+    desk.save("gearbox", force=False)
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {"gearbox.toml", *(f"gearbox-two-stage-spur-housing-{k}.mtx" for k in "KM")}
+    desk.open("file:gearbox.toml")
+    assert load_case(tmp_path / "gearbox.toml").to_toml() == desk.case.to_toml()
+    desk.save("gearbox", force=True)
+    assert {path.name for path in tmp_path.iterdir()} == names
+
+
+def test_a_housing_outside_of_the_folder_is_refused(desk: TabSession, tmp_path: Path) -> None:
+    text = MACHINE + '[housing]\nmatrices = "/etc/passwd"\n'
+    (tmp_path / "bad.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="lies outside"):
+        desk.open("file:bad.toml")
+
+
+def test_the_worker_computes_and_overlays_machines(tmp_path: Path) -> None:
+    messages: list[dict[str, Any]] = []
+    orders = []
+    for number, torque in enumerate(("600 N*m", "500 N*m")):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        text = MACHINE.replace("600 N*m", torque)
+        orders.append({"kind": "run", "case": text, "folder": str(folder)})
+        worker._carry_out(orders[-1], lambda **message: messages.append(message))
+    content = next(each["content"] for each in messages if each.get("state") == "done")
+    assert {block["name"] for block in content["blocks"]} >= {"machine", "machine_orders"}
+    assert [heading for heading, *_ in content["tables"]] == ["Natural modes", "All numbers"]
+    assert all(len(row) == len(head) for _, head, rows in content["tables"] for row in rows)
+    places = [str(tmp_path / str(number) / "result") for number in range(2)]
+    assert (Path(places[0]) / "report.html").is_file()
+    order = {"kind": "overlay", "results": places, "names": ["a", "b"], "folder": str(tmp_path)}
+    worker._carry_out(order, lambda **message: messages.append(message))
+    assert messages[-1]["state"] == "done"
+    assert messages[-1]["content"]["blocks"][0]["name"] == "machine_comparison"
+
+
+@pytest.mark.parametrize("kind", ["sweep", "modes", "run-up"])
+def test_studies_of_machines_display_and_save_their_result(kind: str, tmp_path: Path) -> None:
+    case = read_any_case(MACHINE)
+    few = {"sweep": {"values": "2900..3000 rpm:2"}, "run-up": {"duration": "0.1"}}
+    values = first_values(kind, case) | few.get(kind, {})
+    if kind == "run-up":
+        values["speeds"] = "2900..2950 rpm"
+    shown = STUDIES[kind].compute(case, values, SILENT, tmp_path / "result")
+    assert shown["sentences"]
+    assert shown["figures"]
+    assert all(figure.data for _, figure, _ in shown["figures"])
+    assert (tmp_path / "result" / "report.html").is_file()
