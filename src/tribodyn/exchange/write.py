@@ -139,10 +139,11 @@ def _parts(case: Case) -> dict[str, Any]:
 
 def _gear(pair: SpurPair, case: Case, which: int) -> list[dict[str, Any]]:
     gear, options = pair.gears[GEARS[which]], case.gears.by_name[GEARS[which]]
+    helix = gear.helix_angle if gear.hand == "right" else -gear.helix_angle
     attributes: list[Attribute] = [
         ("number_of_teeth", "none", gear.teeth),
         ("normal_module", "mm", gear.normal_module * _TO_MM),
-        ("helix_angle_reference_diameter", "deg", 0.0),
+        ("helix_angle_reference_diameter", "deg", helix * _TO_DEG),
         ("face_width", "mm", gear.face_width * _TO_MM),
         ("tip_diameter", "mm", gear.tip_diameter * _TO_MM),
     ]

@@ -111,6 +111,13 @@ def _label(pair: CylindricalPair, phase: float) -> str:
     return f"Mesh phase {significant(phase, 2)}: {length} of contact on {count} tooth pairs"
 
 
+def _straight(pair: CylindricalPair) -> str:
+    """Reason why spur gears are not drawn."""
+    if pair.helix_angle:
+        return ""
+    return "The lines of contact of spur gears lie straight along the face."
+
+
 @drawing(
     "contact_lines",
     heading="Lines of contact",
@@ -123,6 +130,7 @@ def _label(pair: CylindricalPair, phase: float) -> str:
         "MeshTable.gear_pair",
         "LoadedContact.gear_pair",
     ),
+    missing=_straight,
     made_by=RUN,
 )
 def contact_lines(pair: CylindricalPair) -> Any:
