@@ -35,6 +35,7 @@ from tribodyn.plot.machine.modes import machine_campbell, machine_modes
 from tribodyn.plot.machine.orders import machine_orders
 from tribodyn.plot.machine.power import machine_power
 from tribodyn.plot.machine.side_view import machine
+from tribodyn.plot.mesh.face_maps import face_maps
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, coupling, harris_map, tip_relief_map
 from tribodyn.plot.mesh.table import (
@@ -101,6 +102,7 @@ __all__ = [
     "drawing",
     "ease_off",
     "ensemble",
+    "face_maps",
     "film",
     "film_along_path",
     "film_over_operation",

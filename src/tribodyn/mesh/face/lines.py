@@ -36,16 +36,19 @@ def by_pair(values: NDArray[Any], slices: int) -> NDArray[Any]:
     return values.reshape(*values.shape[:-1], -1, slices)
 
 
-def pair_column(mesh: MeshColumns, column: str) -> tuple[Array, Mask]:
+def pair_column(
+    mesh: MeshColumns, column: str, *, in_middle: bool = False
+) -> tuple[Array, Mask]:
     """Values of whole pairs (n, pairs), and which pairs are in contact there."""
     values, slices = np.asarray(getattr(mesh, column)), slice_count(mesh)
     if slices == 1:
         return values, mesh.in_contact
     each, touching = by_pair(values, slices), by_pair(mesh.in_contact, slices)
-    if column in SUMMED:
-        return np.nansum(each, axis=2), np.asarray(touching.any(axis=2))
     middle = slices // 2
-    return each[:, :, middle], touching[:, :, middle]
+    if column not in SUMMED:
+        return each[:, :, middle], touching[:, :, middle]
+    in_contact = touching[:, :, middle] if in_middle else touching.any(axis=2)
+    return np.nansum(each, axis=2), np.asarray(in_contact)
 
 
 def middle_delay(mesh: MeshColumns) -> float:

@@ -65,7 +65,7 @@ class Path:
 
     def life(self, column: str) -> Array:
         """Values of one tooth pair from its entry to its exit, in SI."""
-        return pair_life(self.mesh, column)[1]
+        return pair_life(self.mesh, column, in_middle=True)[1]
 
     @cached_property
     def loaded(self) -> Mask:

@@ -68,8 +68,9 @@ def mesh_marks(
 
 
 def corner_shades(pair: Gears, first: float, last: float) -> dict[str, list[Trace]]:
-    """Shade and label the ranges before A and after E, where a tip corner carries load."""
+    """Shade and label the ranges before A and after E, where a tip corner or a part carries load."""
     shapes, notes = [], []
+    text = "part of the face" if pair.overlap_ratio else "tip corner"
     for start, stop in ((first, 0.0), (pair.transverse_contact_ratio, last)):
         if stop <= start:
             continue
@@ -80,7 +81,7 @@ def corner_shades(pair: Gears, first: float, last: float) -> dict[str, list[Trac
         shapes.append({"type": "rect", **common, **rectangle, **fill})
         if stop - start < _NAMED_SHADE * (last - first):
             continue
-        label = {"text": "tip corner", "textangle": -90, "font": {"size": 11, "color": MUTED}}
+        label = {"text": text, "textangle": -90, "font": {"size": 11, "color": MUTED}}
         place = {"x": float(x.mean()), "y": 0.98, "yanchor": "top", "showarrow": False}
         notes.append({**label, **place, **common})
     return {"shapes": shapes, "annotations": notes}

@@ -39,9 +39,9 @@ def cycles(phase: Array, values: Array, repeats: int = CYCLES) -> Curve:
     return np.concatenate(shifted), np.tile(values, repeats)
 
 
-def pair_life(mesh: MeshTable, column: str) -> Curve:
-    """Age and values of a column for a tooth pair from entry to exit."""
-    values, in_contact = pair_column(mesh, column)
+def pair_life(mesh: MeshTable, column: str, *, in_middle: bool = False) -> Curve:
+    """Age and values of a column for a tooth pair from entry to exit, or that in mid face."""
+    values, in_contact = pair_column(mesh, column, in_middle=in_middle)
     ages = mesh.phase[:, None] + np.arange(values.shape[1]) - middle_delay(mesh)
     touching = in_contact.T
     return ages.T[touching], values.T[touching]
@@ -77,7 +77,7 @@ def pair_lives(mesh: MeshTable, column: str) -> list[Curve]:
 
 def driving_roll_angle(mesh: MeshTable) -> Array:
     """Roll angle of the driving gear over the engagement of a tooth pair [rad]."""
-    return roll_angle_of(mesh.gear_pair, pair_life(mesh, "stiffness")[0])
+    return roll_angle_of(mesh.gear_pair, pair_life(mesh, "path")[0])
 
 
 def roll_angle_positions(mesh: MeshTable) -> dict[str, float]:

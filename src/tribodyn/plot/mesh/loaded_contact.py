@@ -78,13 +78,14 @@ class Life:
         for reduce in (np.min, np.mean, np.max):
             reduced = np.stack([reduce(group, axis=1) for group in groups], axis=1)
             statistics.append(np.moveaxis(reduced, 2, 1).reshape(by_torque.shape[0], -1))
-        age = np.asarray((phases[:, None] + contact.number).T.ravel(), dtype=np.float64)
+        half_overlap = 0.5 * contact.gear_pair.overlap_ratio
+        age = (phases[:, None] + contact.number).T.ravel() - half_overlap
         order = np.argsort(age, kind="stable")
         age, statistics = age[order], [part[:, order] for part in statistics]
         if np.min(contact.number) == 0:
             # Without tip corners the load starts at A.
             age, statistics = (
-                np.append(0.0, age),
+                np.append(-half_overlap, age),
                 [np.pad(part, ((0, 0), (1, 0))) for part in statistics],
             )
         return cls(age, *statistics)
@@ -104,7 +105,8 @@ def span(contact: LoadedContact) -> tuple[float, float]:
     """Range of ages at which any pair carries load, with a margin."""
     shares = Life.of(contact, contact.load_share)
     loaded = shares.age[(shares.greatest > _BEARS).any(axis=0)]
-    last = max(contact.gear_pair.transverse_contact_ratio, float(loaded.max()))
+    pair = contact.gear_pair
+    last = max(pair.transverse_contact_ratio + 0.5 * pair.overlap_ratio, float(loaded.max()))
     return min(0.0, float(loaded.min())) - _MARGIN, last + _MARGIN
 
 

@@ -266,7 +266,9 @@ def loaded_contact(
     -----
     ``delta = C F + local(F) + gap``, ``F >= 0``, ``sum F = T / r_b`` at every phase, with the
     local compression of Weber and Banaschek growing less than the load. Slices of the face width
-    are independent: they share only the approach. Without friction. Source:
+    are independent: they share only the approach, unless the provider knows the face width. Lines
+    of contact of helical pairs are always cut into slices; those touch between A and E alone.
+    Without friction. Source:
     Conry and Seireg (1973), J. Eng. Ind. 95, 1115-1122, for the complementarity problem.
 
     Examples
@@ -293,19 +295,29 @@ def loaded_contact(
     measured_from = {**MODELS[provider].options, **settings["options"]}.get(
         "reference", "as measured"
     )
+    force, gap = problem.forces(load), problem.gaps.min(axis=1)
+    number, middle = places.number, slice(None)
+    if places.is_sliced:
+        # Columns of whole pairs: those of the slices together, or of the one in the middle.
+        number = np.unique(places.number)
+        count = places.number.size // number.size
+        middle = slice(count // 2, None, count)
+        load = np.moveaxis(load.reshape(*load.shape[:-2], number.size, count), -1, -2)
+        force = force.reshape(*force.shape[:-1], number.size, count).sum(axis=-1)
+        gap = gap.reshape(-1, number.size, count).min(axis=2)
     return LoadedContact(
         gear_pair=pair,
         provider=provider,
         reference="rim" if provider == "iso6336" else measured_from,
         torque=torques,
         phase=places.phase,
-        number=places.number,
-        path=places.path,
-        pinion_curvature_radius=places.pinion_curvature_radius,
-        wheel_curvature_radius=places.wheel_curvature_radius,
-        gap=problem.gaps.min(axis=1),
+        number=number,
+        path=places.path[:, middle],
+        pinion_curvature_radius=places.pinion_curvature_radius[:, middle],
+        wheel_curvature_radius=places.wheel_curvature_radius[:, middle],
+        gap=gap,
         transmission_error=equilibrium.approach.reshape(*shape, places.phase.size),
-        normal_force=problem.forces(load),
+        normal_force=force,
         load_per_width=load,
         mesh_stiffness_tangent=equilibrium.tangent.reshape(*shape, places.phase.size),
     )

@@ -99,9 +99,9 @@ class LoadedContact(Record):
     number : array (n,) of int
         Mesh cycles between the entry of each pair and that of pair 0.
     path : array (p, n) [m]
-        Distance of each contact from the pinion's base tangent point.
+        Distance of each contact from the pinion's base tangent point, in the middle of the face.
     pinion_curvature_radius, wheel_curvature_radius : array (p, n) [m]
-        Where each gear is touched.
+        Where each gear is touched there.
     gap : array (p, n) [m]
         Least separation of each pair over the face width without load.
     transmission_error : array (..., p) [m]
@@ -141,6 +141,12 @@ class LoadedContact(Record):
     def total_normal_force(self) -> Array:
         """Normal force of all pairs together (...) [N]."""
         return np.asarray(self.torque / self.gear_pair.pinion.base_radius)
+
+    @property
+    def face_load_factor(self) -> Array:
+        """Greatest over mean load of a slice of the face, each over all phases (...)."""
+        each = self.load_per_width.sum(axis=(-3, -1))
+        return np.asarray(each.max(axis=-1) / each.mean(axis=-1))
 
     @property
     def load_share(self) -> Array:
