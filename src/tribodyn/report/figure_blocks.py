@@ -52,6 +52,7 @@ _OTHER_TOPICS = {
     "hypoid_friction": "Friction and film",
     "tooth_force": "Motion",
     "coupling": "Friction and film",
+    "face_maps": "Stiffness",
 }
 
 #: Margin above the panels for marks and buttons [px].
@@ -129,5 +130,7 @@ def sections_of(case: Any) -> tuple[str, ...]:
 def figure_blocks(result: Any) -> list[Block]:
     """Draw every figure of the report and merge missing figures by reason."""
     names = [*sections_of(result.case), *(["coupling"] if result.coupling is not None else [])]
+    if result.mesh.face_position is not None:
+        names.insert(names.index("load_sharing") + 1, "face_maps")
     figures = (FIGURES[name] for name in names)
     return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))

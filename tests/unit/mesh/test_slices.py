@@ -14,7 +14,7 @@ from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, Material, cylindrical_pair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import build
-from tribodyn.stiffness import loaded_contact
+from tribodyn.stiffness import iso6336_single_stiffness, loaded_contact
 from tribodyn.stiffness.loaded.contact import contact_problem
 
 OIL = Lubricant(0.05, 880.0, 2e-8)
@@ -256,3 +256,17 @@ def test_slices_out_of_range_are_refused():
         contact_problem(
             helical(), phase=np.zeros(1), total_force=1e3, material=Material(), slices=0
         )
+
+
+def test_stiffness_of_iso_6336_of_a_helical_pair():
+    """Method B by hand: virtual teeth z/cos^3(beta), cos(beta) on the single stiffness."""
+    pair = helical(pinion_profile_shift_coefficient=0.2, wheel_profile_shift_coefficient=0.1)
+    cosine, x1, x2 = math.cos(math.radians(21.0)), 0.2, 0.1
+    z1, z2 = 27 / cosine**3, 51 / cosine**3
+    q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1
+    q += -0.00193 * x2 - 0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
+    rack = 1.0 + 0.5 * (1.2 - pair.pinion.rack.dedendum_coefficient)
+    expected = 0.8 * rack * cosine / q * 1e9
+    steel = Material(youngs_modulus=206e9)
+    found = iso6336_single_stiffness(pair, steel, 50e3)
+    assert found == pytest.approx(expected, rel=1e-9)

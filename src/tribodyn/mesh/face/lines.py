@@ -36,9 +36,7 @@ def by_pair(values: NDArray[Any], slices: int) -> NDArray[Any]:
     return values.reshape(*values.shape[:-1], -1, slices)
 
 
-def pair_column(
-    mesh: MeshColumns, column: str, *, in_middle: bool = False
-) -> tuple[Array, Mask]:
+def pair_column(mesh: MeshColumns, column: str, *, in_middle: bool = False) -> tuple[Array, Mask]:
     """Values of whole pairs (n, pairs), and which pairs are in contact there."""
     values, slices = np.asarray(getattr(mesh, column)), slice_count(mesh)
     if slices == 1:

@@ -68,7 +68,7 @@ def mesh_marks(
 
 
 def corner_shades(pair: Gears, first: float, last: float) -> dict[str, list[Trace]]:
-    """Shade and label the ranges before A and after E, where a tip corner or a part carries load."""
+    """Shade and label the ranges before A and after E, where a tip corner or a part carries."""
     shapes, notes = [], []
     text = "part of the face" if pair.overlap_ratio else "tip corner"
     for start, stop in ((first, 0.0), (pair.transverse_contact_ratio, last)):

@@ -77,7 +77,11 @@ def pair_lives(mesh: MeshTable, column: str) -> list[Curve]:
 
 def driving_roll_angle(mesh: MeshTable) -> Array:
     """Roll angle of the driving gear over the engagement of a tooth pair [rad]."""
-    return roll_angle_of(mesh.gear_pair, pair_life(mesh, "path")[0])
+    age, path = pair_life(mesh, "path")
+    if mesh.face_position is None:
+        return roll_angle_of(mesh.gear_pair, age)
+    pair = mesh.gear_pair
+    return np.asarray(pair.driving_radius(path) / pair.driving.base_radius)
 
 
 def roll_angle_positions(mesh: MeshTable) -> dict[str, float]:
@@ -121,6 +125,11 @@ def _carrying_ends(mesh: MeshTable) -> str:
         return ""
     ages = loaded_ages(mesh, teeth_shares(mesh))
     first, last = ages[0][0], ages[-1][1]
+    if mesh.face_position is not None:
+        return (
+            f"A pair carries during {last - first:.4g} mesh cycles: from the entry of its line of "
+            "contact at one end of the face to its exit at the other."
+        )
     angles = displayed("roll_angle", roll_angle_of(mesh.gear_pair, np.array([first, last])))
     unit = display_unit("roll_angle")
     begins = _compared(first, 0.0, "A", f" ({angles[0]:.4g} {unit})")

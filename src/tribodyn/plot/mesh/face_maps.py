@@ -61,7 +61,7 @@ def face_maps(mesh: MeshTable) -> Any:
     columns = [
         name
         for name in _COLUMNS
-        if getattr(mesh, name) is not None and np.any(np.nan_to_num(getattr(mesh, name)))
+        if getattr(mesh, name) is not None and np.nanstd(face_map(mesh, name).values) > 0.0
     ]
     total = _HEIGHT * len(columns) + _GAP * (len(columns) - 1)
     traces, layout = [], dict[str, Any]()

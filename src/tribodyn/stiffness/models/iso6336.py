@@ -32,8 +32,8 @@ def iso6336_single_stiffness(
 ) -> float:
     """Maximum stiffness of one tooth pair per face width, ``c'``.
 
-    ``c' = C_M C_R C_B / q' * E / E_steel``, times ``(F_t K_A / b / (100 N/mm))^0.25`` below
-    100 N/mm.
+    ``c' = C_M C_R C_B cos(beta) / q' * E / E_steel``, times ``(F_t K_A / b / (100 N/mm))^0.25``
+    below 100 N/mm.
 
     Parameters
     ----------
@@ -73,7 +73,8 @@ def iso6336_single_stiffness(
     require_positive("gear_blank_factor", gear_blank_factor)
     theoretical = _PER_WIDTH / _deflection_coefficient(pair)
     stiffness = theoretical * _CORRECTION_FACTOR * gear_blank_factor * _basic_rack_factor(pair)
-    tangential = normal_force * np.cos(pair.pinion.normal_pressure_angle)
+    stiffness *= np.cos(pair.helix_angle)
+    tangential = normal_force * np.cos(pair.pinion.transverse_pressure_angle)
     specific_load = tangential * application_factor / pair.common_face_width
     light = min(1.0, float(specific_load / _FULL_BEARING_LOAD)) ** 0.25
     return float(stiffness * light * material.youngs_modulus / _STEEL_MODULUS)
@@ -81,7 +82,10 @@ def iso6336_single_stiffness(
 
 def _deflection_coefficient(pair: SpurPair) -> float:
     """Minimum of the pair's flexibility per width ``q'`` [mm um/N]."""
-    z1, z2 = pair.pinion.teeth, pair.wheel.teeth
+    # Teeth of the virtual spur gears; a ring counts as a rack.
+    virtual = 1.0 / np.cos(pair.helix_angle) ** 3
+    z1 = pair.pinion.teeth * virtual
+    z2 = np.inf if pair.is_internal else pair.wheel.teeth * virtual
     x1, x2 = pair.pinion.profile_shift_coefficient, pair.wheel.profile_shift_coefficient
     if x1 < x2 or not -0.5 <= x1 + x2 <= 2.0:
         warn(

@@ -121,6 +121,7 @@ LARGEST = 64_000_000
 #: Highest mesh harmonic that is stored.
 _HIGHEST = 80
 _IN_PLANE = {"loa": ("y", "along the line of action"), "oloa": ("x", "across it")}
+_ALONG_AXES = {**_IN_PLANE, "axial": ("z", "along the axes")}
 _IN_SPACE = {
     "x": ("x", "along the common perpendicular of the axes"),
     "y": ("y", "along its own axis"),
@@ -130,7 +131,9 @@ _IN_SPACE = {
 
 def directions_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Directions in the names of figures, each with its coordinate and its description."""
-    return _IN_SPACE if f"{GEARS[0]}_z" in names else _IN_PLANE
+    if f"{GEARS[0]}_z" not in names:
+        return _IN_PLANE
+    return _ALONG_AXES if f"{GEARS[0]}_theta_y" in names else _IN_SPACE
 
 
 _STATES = {

@@ -160,11 +160,20 @@ def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
         "mean_mesh_stiffness_tangent": mesh.mean_mesh_stiffness_tangent,
         **_stiffness_apart(mesh),
         "contact_ratio_under_load": mesh.contact_ratio_under_load,
+        **_face_figures(mesh),
         "maximum_single_pair_stiffness": mesh.maximum_single_pair_stiffness,
         "mean_friction_coefficient": mesh.mean_friction_coefficient,
         "mean_asperity_friction_coefficient": mesh.mean_asperity_friction_coefficient,
         **_pressure(mesh),
     }
+
+
+def _face_figures(mesh: MeshTable) -> dict[str, Any]:
+    """Distribution of the load over the face, where contacts are slices of it."""
+    if mesh.face_position is None:
+        return {}
+    travel = np.ptp(mesh.load_face_position)
+    return {"face_load_factor": mesh.face_load_factor, "load_face_position_range": travel}
 
 
 def _stiffness_apart(mesh: MeshTable) -> dict[str, Any]:

@@ -121,13 +121,11 @@ def mesh_of(
 def uncomputed_teeth(case: Case) -> Problem | None:
     """Problem of teeth whose load distribution is not computed."""
     pair = case.spur_pair
-    if pair is None or not (pair.helix_angle or pair.is_internal):
+    if pair is None or not pair.is_internal:
         return None
-    kind = "helical" if pair.helix_angle else "internal"
-    what = f"the tooth contact of a pair with {kind} teeth"
+    what = "the tooth contact of a pair with internal teeth"
     why = "The load on its lines of contact is not computed; tribodyn check shows its geometry"
-    where = "gears.helix_angle" if pair.helix_angle else "gears.wheel.teeth"
-    return Problem(what, where, why, "Use external spur gears")
+    return Problem(what, "gears.wheel.teeth", why, "Use external gears")
 
 
 def teeth_contact_ratio(case: Case) -> float | None:
