@@ -60,8 +60,33 @@ def test_check_reports_the_geometry_of_a_ring(
 
 def test_a_run_of_teeth_that_are_not_computed_is_refused() -> None:
     case = read_case(CASE)
-    with pytest.raises(InputError, match=r"gears.helix_angle.*load on its lines of contact"):
+    with pytest.raises(InputError, match=r"gears.wheel.teeth.*load on its lines of contact"):
         td.run(case)
+
+
+HELICAL = (
+    CASE.replace("-72", "72").replace("-0.1", "0.1").replace("torsional", "helical-12dof")
+    + """
+[stiffness]
+model = "fe2d"
+[friction]
+law = "constant"
+coefficient = 0.05
+"""
+)
+
+
+def test_a_helical_pair_runs_with_axial_forces() -> None:
+    """Axial force F_t tan(beta_w) at both supports, and the power that friction takes."""
+    result = td.run(read_case(HELICAL))
+    figures, pair = result.summary(), result.case.gear_pair
+    mean = figures["mean_mesh_force"]
+    axial = mean * math.tan(pair.base_helix_angle)
+    assert figures["mean_bearing_force_axial_pinion"] == pytest.approx(axial, rel=1e-6)
+    assert figures["mean_bearing_force_axial_wheel"] == pytest.approx(-axial, rel=1e-6)
+    assert figures["face_load_factor"] == pytest.approx(1.0, abs=0.05)
+    lost = 1.0 - figures["efficiency"]
+    assert figures["mean_friction_power"] == pytest.approx(lost * figures["input_power"], rel=1e-3)
 
 
 def test_speeds_of_a_ring_are_positive() -> None:
