@@ -133,7 +133,7 @@ def _slice(
                     touched = True
         if touched:
             continue
-        m = _touching_system(n, C, A, B, gaps, delta, f, a, b, place)
+        m: int = _touching_system(n, C, A, B, gaps, delta, f, a, b, place)
         if m <= 0:
             return m
         for r in range(m):
