@@ -159,9 +159,10 @@ def _machine(desk: TabSession, case: MachineCase) -> list[Any]:
     machine = case.machine()
     with collected() as warnings:
         warn_of_period(machine)
-    numbers = [describe(name, value) for name, value in kinematic_figures(case).items()]
+    values = kinematic_figures(case)
+    numbers = [describe(name, value) for name, value in values.items()]
     rows = [[n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers]
-    first = [n for n in numbers if n.name.endswith((*_OF_MACHINE,))]
+    first = [describe(n, value, 4) for n, value in values.items() if n.endswith(_OF_MACHINE)]
     sketch = plot.machine.sketch(machine)
     caption = plot.machine.caption_of(machine)
     block = block_of_figure(plot.machine.name, plot.machine.heading, sketch, caption)

@@ -23,6 +23,7 @@ from tribodyn.report.study_report_data import StudyReportData, figure_with_capti
 from tribodyn.study.case.values import FaultError, read_value
 from tribodyn.study.machine.modes import (
     MODES_HEAD,
+    axial_notes,
     campbell_of,
     mode_rows,
     modes_facts,
@@ -130,7 +131,8 @@ def render_machine_report(result: MachineResult) -> str:
             modes=mode_rows(result.modes),
             modes_head=MODES_HEAD,
             modes_text="About the static load, at the speed of the case, with the mean stiffness "
-            "of the meshes. For each mode: which parts move, and where its energy is.",
+            "of the meshes. For each mode: which parts move, and where its energy is. "
+            + " ".join(axial_notes(result.modes)),
             compared=[],
             blocks=blocks,
             warnings=[str(warning) for warning in result.warnings],
@@ -158,7 +160,7 @@ def machine_modes_report_data(
         figure_with_caption(plot.machine_campbell, campbell),
     ]
     progress.finish()
-    statements = [f"{figures[1][1].layout.title.text}."]
+    statements = [f"{figures[1][1].layout.title.text}.", *axial_notes(modes)]
     facts = modes_facts(modes, campbell)
     rows = mode_rows(modes)
     return StudyReportData(campbell, figures, statements, MODES_HEAD, rows, facts)

@@ -6,8 +6,12 @@ import numpy as np
 import pytest
 
 import tribodyn as td
+from tribodyn import plot
 from tribodyn.cli import main
+from tribodyn.machine import machine_modes
+from tribodyn.study.machine.modes import axial_notes, mode_rows, structure_at_rest
 from tribodyn.study.machine.read import read_any_case
+from tribodyn.study.pipeline.summary_figures import figure_of, is_figure
 
 #: The geared shafts whose natural frequencies are printed, with a spur mesh of constant stiffness.
 GEARED = """
@@ -192,3 +196,37 @@ def test_the_built_in_reducer_runs_with_its_teeth(tmp_path):
         assert figures[name] == pytest.approx(linear[name], rel=0.01)  # the teeth hardly part
     folder = result.save(tmp_path / "out")
     assert (folder / "mesh-first.nc").is_file()
+
+
+def test_a_mode_along_the_axis_of_a_shaft_names_what_holds_it():
+    spur = GEARED.replace('helix_angle = "21 deg"\nhand = "left"\ncenter_distance = "190 mm"\n', "")
+    case = read_any_case(spur.replace('"2e8 N/m"\n[gears', '"3e5 N/m"\n[gears'))
+    modes = machine_modes(structure_at_rest(case))
+    (note,) = [each for each in axial_notes(modes) if "shaft output" in each]
+    assert "C with 0.3 N/um holds it at this load, D not at all" in note
+    mass = modes.structure.shafts["output"].mass[::6, ::6].sum() + 18.0
+    hertz = np.sqrt(3e5 / mass) / (2.0 * np.pi)
+    assert float(note.partition("(")[2].partition(" Hz")[0]) == pytest.approx(hertz, rel=1e-3)
+    number = int(note.split()[1])
+    assert mode_rows(modes)[number - 1][3].endswith("output along its axis")
+
+
+def test_figures_of_a_load_case_whose_name_has_a_dot():
+    figure = figure_of("load_cases.1.5 kW.meshes.first.rms_mesh_force")
+    assert (figure.unit, figure.topic) == ("N", "1.5 kW: Mesh first")
+    assert not is_figure("meshes.first.no_such_figure")
+    assert not is_figure("no_such_figure")
+
+
+def test_names_of_bearings_do_not_overlap_in_the_side_view():
+    text = GEARED.replace("[bearings.A]", '[bearings."left bearing of the input shaft"]')
+    names = ('"second bearing"', '"third bearing"')
+    more = "".join(
+        f'[bearings.{name}]\nshaft = "input"\nposition = "{at} mm"\nradial_stiffness = "1e8 N/m"\n'
+        for name, at in zip(names, (40, 60), strict=True)
+    )
+    figure = plot.machine(read_any_case(text.replace("[gears.z1]", f"{more}[gears.z1]")).machine())
+    notes = {note.text: note for note in figure.layout.annotations}
+    shifts = [notes[name].yshift for name in notes if "bearing" in name]
+    assert len(set(shifts)) == 3
+    assert {notes[name].yshift for name in "BCD"} == {0}  # short names stay on their axis

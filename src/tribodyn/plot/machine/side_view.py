@@ -21,6 +21,8 @@ _MM = 1e3
 _WIDTH, _OUTER = 0.018, 2.0
 #: Diameter of a shaft without sections over the smallest pitch diameter.
 _THIN = 0.15
+#: Width and height of the drawing, width of a character, and shifts of names [px].
+_AREA, _CHARACTER, _SHIFTS = (620.0, 420.0), 7.0, (0, 15, -15, 30, -30)
 _STEEL, _SEAT = "#c9d1d9", "#f3e3c3"
 
 
@@ -174,10 +176,29 @@ def _names(view: SideView) -> list[dict[str, Any]]:
         side = 1.0 if name in driving else -1.0
         y = view.height[gear.shaft] + side * 0.5 * pitch_diameter(machine, name)
         note(machine.placement.gears[name][0], y, name, yshift=9 * side)
+    levels = _levels(view)
     for name, bearing in machine.bearings.items():
         x, height = machine.placement.bearings[name][0], view.height[bearing.shaft]
-        note(x, height, name, font={"size": 12, "color": PAIR_COLORS[0]})
+        note(x, height, name, font={"size": 12, "color": PAIR_COLORS[0]}, yshift=levels[name])
     return notes
+
+
+def _levels(view: SideView) -> dict[str, int]:
+    """Shift of the name of each bearing [px], so that long names of one shaft do not overlap."""
+    machine = view.machine
+    ends = np.array(list(view.reach.values()))
+    across = 2.0 * max(view.height.values()) - 2.0 * min(view.height.values()) + 0.1
+    scale = min(_AREA[0] / max(float(np.ptp(ends)), 0.1), _AREA[1] / across)
+    # Right end of the last name of a level; the name of a shaft ends left of it.
+    right_ends = {(name, 0): scale * left for name, (left, _) in view.reach.items()}
+    levels = {}
+    for name in sorted(machine.bearings, key=lambda each: machine.placement.bearings[each][0]):
+        shaft, half = machine.bearings[name].shaft, 0.5 * _CHARACTER * (len(name) + 1)
+        middle = scale * machine.placement.bearings[name][0]
+        free = [s for s in _SHIFTS if middle - half >= right_ends.get((shaft, s), -np.inf)]
+        levels[name] = free[0] if free else min(_SHIFTS, key=lambda s: right_ends[shaft, s])
+        right_ends[shaft, levels[name]] = middle + half
+    return levels
 
 
 @drawing(

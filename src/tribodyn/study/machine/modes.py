@@ -20,6 +20,8 @@ _SPEEDS, _TOP, _HARMONICS = 6, 1.3, 3
 #: Modes above this many times the highest excitation are left out of tables and figures.
 _BEYOND = 1.5
 _LEAST_SHARE = 0.05
+#: Motion of a shaft along its axis over that of all shafts across, from which it is axial.
+_ALONG = 5.0
 MODES_HEAD = ("Mode", "Frequency [Hz]", "Damping [%]", "Energy in", "Nearest excitation")
 
 
@@ -109,6 +111,37 @@ def energy_shares(modes: MachineModes, number: int) -> str:
     return ", ".join(f"{modes.parts[i]} {100.0 * shares[i]:.0f} %" for i in order)
 
 
+def axial_shaft(modes: MachineModes, number: int) -> str | None:
+    """Shaft that a mode moves along its axis as a whole; None of any other mode."""
+    structure, shape = modes.structure, modes.shape[number]
+    along, across = {}, 0.0
+    for name, shaft in structure.machine.shafts.items():
+        moved = [np.abs(structure.at(name, s * shaft.length) @ shape)[:3] for s in (0.0, 0.5, 1.0)]
+        along[name] = float(min(each[0] for each in moved))
+        across = max(across, *(float(each[1:].max()) for each in moved))
+    name = max(along, key=lambda each: along[each])
+    return name if along[name] > _ALONG * across else None
+
+
+def axial_notes(modes: MachineModes) -> list[str]:
+    """Sentences on the modes in which a shaft moves along its axis, and the bearings that hold it."""
+    notes = []  # bearings without axial load hold little or nothing, so that such a mode is slow
+    for number in range(modes_in_reach(modes)):
+        shaft = axial_shaft(modes, number)
+        if shaft is None:
+            continue
+        parts = modes.structure.machine.bearings.items()
+        stiffness = {n: b.stiffness_matrix[0, 0] for n, b in parts if b.shaft == shaft}
+        holding = [f"{name} with {1e-6 * k:.3g} N/um" for name, k in stiffness.items() if k > 0.0]
+        free = [name for name, k in stiffness.items() if not k > 0.0]
+        text = (
+            f"Mode {number + 1} ({modes.frequency[number]:.4g} Hz) moves shaft {shaft} along its "
+            f"axis; {', '.join(holding) or 'no bearing'} holds it at this load"
+        )
+        notes.append(f"{text}, {', '.join(free)} not at all." if free else f"{text}.")
+    return notes
+
+
 def mode_rows(modes: MachineModes) -> list[list[str]]:
     """Rows of the table of modes under :data:`MODES_HEAD`."""
     structure, count = modes.structure, modes_in_reach(modes)
@@ -119,12 +152,13 @@ def mode_rows(modes: MachineModes) -> list[list[str]]:
         hertz = float(modes.frequency[k])
         nearest = min(orders, key=lambda name: abs(orders[name] * turning - hertz))
         distance = orders[nearest] * turning / hertz - 1.0
+        axial = axial_shaft(modes, k)
         rows.append(
             [
                 f"{k + 1}",
                 f"{hertz:.5g}",
                 f"{100.0 * modes.damping_ratio[k]:.3g}",
-                energy_shares(modes, k),
+                energy_shares(modes, k) + (f"; {axial} along its axis" if axial else ""),
                 f"{nearest}, {100.0 * distance:+.1f} %",
             ]
         )
