@@ -106,7 +106,7 @@ class MachineForm:
         if selector := table.kind.selector:
             key = f"{name}.{selector}"
             chosen = self.typed.get(key) or self._text(key) or self._defaults.get(key)
-            options |= {f"{name}.{k}": o for k, o in case_options(name, chosen).items()}
+            options |= {f"{name}.{k}": o for k, o in case_options(name, str(chosen)).items()}
         return options
 
     def _group(

@@ -81,7 +81,7 @@ class ResultComparison(Record):
     names: tuple[str, ...]
     values: dict[str, tuple[Any, ...]]
     figures: dict[str, tuple[float | None, ...]]
-    results: tuple[Result, ...] | tuple[MachineResult, ...] = field(repr=False)
+    results: tuple[Result | MachineResult, ...] = field(repr=False)
 
     def plot(self, *arguments: Any, **options: Any) -> Any:
         """Draw the motions of pairs overlaid, or the levels of the parts of machines.

@@ -23,6 +23,8 @@ pair_stiffness = "5e8 N/m"
 [friction]
 law = "constant"
 coefficient = 0.05
+[dynamics]
+backlash = "0.1 mm"
 """
 )
 

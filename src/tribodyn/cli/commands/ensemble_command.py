@@ -54,7 +54,7 @@ def ensemble(
     from tribodyn.report.figure_blocks import sections_of
     from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
     from tribodyn.study import ensemble as compute
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine_studies.ensemble import MachineEnsemble
     from tribodyn.study.pipeline.summary_figures import figure_of
     from tribodyn.uncertainty import bootstrap_band
 
@@ -78,7 +78,7 @@ def ensemble(
             rows.append([name, *(figure_of(name).show(float(end)) for end in ends)])
     statements = [f"{len(result.value)} variants over {', '.join(map(str, result.input))}"]
     statements += [f"{key} = {text}" for key, text in ready.uncertain.items()]
-    if isinstance(ready, MachineCase):
+    if isinstance(result, MachineEnsemble):
         figures = [figure_with_caption(machine_ensemble, result)]
     else:
         figures = [figure_with_caption(spread, result), *banded(result, sections_of(ready))]

@@ -71,7 +71,7 @@ def _title(levels: Iterable[tuple[Sequence[str], Array]], x: Sequence[str]) -> s
         return "No value has a motion"
     at, part = np.unravel_index(int(np.nanargmax(values)), values.shape)
     greatest = rounded(quantity, float(values[at, part]))
-    return f"{text} {names[part]} has the largest level at {x[int(at)]}: {greatest}"
+    return f"{text} {names[int(part)]} has the largest level at {x[int(at)]}: {greatest}"
 
 
 @drawing(
@@ -125,9 +125,9 @@ def machine_level_lines(study: MachineLevels) -> Any:
             traces.append(line(x, shown[:, k], name, color, unit=unit, dash=dash, width=1.6))
         panels.append(Panel(axis_label(quantity, label), traces, {"rangemode": "tozero"}))
         if np.any(np.isfinite(total)):
-            at, k = np.unravel_index(int(np.nanargmax(total)), total.shape)
+            at, top = np.unravel_index(int(np.nanargmax(total)), total.shape)
             largest = (
-                f"{label.replace('<br>', ' ')}: the largest line is {study.line[k]} at "
+                f"{label.replace('<br>', ' ')}: the largest line is {study.line[int(top)]} at "
                 f"{rounded('speed', float(study.speed[at]))}"
             )
     label = axis_label("speed", "Speed of the input")

@@ -168,9 +168,17 @@ _COLORS = (TOTAL, PINION, WHEEL, *PAIR_COLORS)
 _DASHES = ("solid", "dash", "dot")
 
 
+def _motions(comparison: ResultComparison) -> list[Motion]:
+    from tribodyn.study.pipeline.result import Result
+
+    return [Motion(each) for each in comparison.results if isinstance(each, Result)]
+
+
 def _axis_mismatch(comparison: ResultComparison) -> str:
     """Reason why the responses cannot share an axis; empty if they can."""
-    if len({Motion(each).label for each in comparison.results}) == 1:
+    if not _motions(comparison):
+        return "It compares machines; draw it by machine_comparison."
+    if len({motion.label for motion in _motions(comparison)}) == 1:
         return ""
     return "Steady states and transients have different axes: compare results of the same kind"
 
@@ -186,7 +194,7 @@ def _axis_mismatch(comparison: ResultComparison) -> str:
 )
 def result_comparison(comparison: ResultComparison) -> Any:
     """Draw transmission error and mesh force of all results in the same axes."""
-    motions = [Motion(each) for each in comparison.results]
+    motions = _motions(comparison)
     panels: list[Panel] = []
     names = {"dynamic_transmission_error": "transmission_error", "mesh_force": "mesh_force"}
     for quantity, name in names.items():

@@ -124,7 +124,7 @@ def axial_shaft(modes: MachineModes, number: int) -> str | None:
 
 
 def axial_notes(modes: MachineModes) -> list[str]:
-    """Sentences on the modes in which a shaft moves along its axis, and the bearings that hold it."""
+    """Sentences on modes in which a shaft moves along its axis, and the bearings that hold it."""
     notes = []  # bearings without axial load hold little or nothing, so that such a mode is slow
     for number in range(modes_in_reach(modes)):
         shaft = axial_shaft(modes, number)

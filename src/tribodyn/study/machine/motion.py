@@ -159,7 +159,7 @@ class MachineMotion(Record):
             why, remedy = f"Known: {', '.join(self.mesh)}", "Name one of these"
             raise InputError(f'there is no mesh "{mesh}"', Argument("mesh"), why, remedy)
         cycles = int(self.cycles[self.mesh.index(mesh)])
-        orders = np.arange(1, cycles * harmonics + 1)
+        orders = np.arange(1.0, cycles * harmonics + 1.0)
         axes = "xyz"
         signals = {f"meshes.{n}.mesh_force": self.mesh_force[:, i] for i, n in enumerate(self.mesh)}
         error = self.transmission_error

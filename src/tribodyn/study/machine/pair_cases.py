@@ -129,7 +129,7 @@ def option_of(case: MachineCase, key: str) -> Option | None:
         return None
     group, *names, name = key.split(".")
     table = _table(case.data, [group, *names[:1]])
-    rolling = table.get("type") if group == "bearings" and table is not None else None
+    rolling = str(table.get("type")) if group == "bearings" and table is not None else ""
     options = rolling_options(ROLLING_BEARINGS[rolling]) if rolling in ROLLING_BEARINGS else {}
     if name in options:
         return options[name]

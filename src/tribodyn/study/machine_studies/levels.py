@@ -166,16 +166,10 @@ def levels_of(motions: Iterable[MachineMotion | None], speed: Array, **more: Any
         raise ComputationError(what, "operation.speed", why, remedy)
     blank = [np.full_like(values, np.nan) for values in next(row for row in rows if row)]
     columns = [np.stack(part) for part in zip(*(row or blank for row in rows), strict=True)]
-    return MachineLevels(
-        speed,
-        first.mesh,
-        first.bearing,
-        first.node,
-        tuple(lines),
-        orders * first.frequency / turning,
-        *columns,
-        **{"failed": np.full(speed.size, "", dtype=object), **more},
-    )
+    more = {"failed": np.full(speed.size, "", dtype=object), **more}
+    parts = first.mesh, first.bearing, first.node, tuple(lines)
+    fields: list[Any] = [*parts, orders * first.frequency / turning, *columns]
+    return MachineLevels(speed, *fields, **more)
 
 
 def _levels(motion: MachineMotion, orders: Array) -> list[Array]:

@@ -90,8 +90,8 @@ def run_up(
 
     low, high = _ends(between)
     if isinstance(case, MachineCase):
-        options = {"down": down, "hold": hold, "progress": progress}
-        return machine_run_up(case, (low, high), duration, **options)
+        ends = (low, high)
+        return machine_run_up(case, ends, duration, down=down, hold=hold, progress=progress)
     count = int(tables)
     if count != tables or count < 1:
         what = f"tables = {tables}"

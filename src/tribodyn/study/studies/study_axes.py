@@ -68,7 +68,9 @@ class Axis:
         return f"{number:.6g} {self.display_unit}".rstrip()
 
 
-def ends_of(case: Case, key: str, ends: Sequence[Any], *, by: str = "") -> tuple[float, ...]:
+def ends_of(
+    case: Case | MachineCase, key: str, ends: Sequence[Any], *, by: str = ""
+) -> tuple[float, ...]:
     """Read numbers of one key as the case file does, each on its own."""
     values = [member_value(case, key, end, by) for end in ends]
     if not all(isinstance(value, float) for value in values):
@@ -80,7 +82,7 @@ def ends_of(case: Case, key: str, ends: Sequence[Any], *, by: str = "") -> tuple
     return tuple(float(value) for value in values)
 
 
-def member_value(case: Case, key: str, value: Any, by: str) -> Any:
+def member_value(case: Case | MachineCase, key: str, value: Any, by: str) -> Any:
     """Read a value of one key; conflicts with other keys are found when it is computed."""
     spec = case.option_of(key)
     if spec is None and isinstance(case, MachineCase):
@@ -111,12 +113,14 @@ def _location(by: str) -> str:
     return by or "argument over"
 
 
-def _first_key(case: Case, key: str) -> str:
+def _first_key(case: Case | MachineCase, key: str) -> str:
     section = section_at(tuple(key.split(".")))
     return next(iter(section.fields)) if section else ""
 
 
-def read_axes(case: Case, over: Mapping[str, Any], *, by: str = "") -> tuple[Axis, ...]:
+def read_axes(
+    case: Case | MachineCase, over: Mapping[str, Any], *, by: str = ""
+) -> tuple[Axis, ...]:
     """Read the keys that vary with their values, and limit the number of points."""
     if not over:
         raise InputError("nothing varies", "argument over", "", _EXAMPLE)
@@ -131,7 +135,7 @@ def _check_number(points: int, by: str) -> None:
         raise InputError(f"{points} values", _location(by), why, "Take fewer points")
 
 
-def read_axis(case: Case, key: str, entry: Any, by: str) -> Axis:
+def read_axis(case: Case | MachineCase, key: str, entry: Any, by: str) -> Axis:
     """Read a range ``(first, last, points)`` or a list of values of one key."""
     if isinstance(entry, tuple) and len(entry) == 3:
         values = _range(case, key, entry, by)
@@ -149,7 +153,9 @@ def read_axis(case: Case, key: str, entry: Any, by: str) -> Axis:
     return Axis(key, values, unit, display_unit)
 
 
-def _range(case: Case, key: str, entry: tuple[Any, ...], by: str) -> tuple[float, ...]:
+def _range(
+    case: Case | MachineCase, key: str, entry: tuple[Any, ...], by: str
+) -> tuple[float, ...]:
     first, last, points = entry
     if isinstance(points, bool) or int(points) != points or points < 2:
         why = "A range has at least two points, both ends included"
@@ -164,7 +170,7 @@ def _range(case: Case, key: str, entry: tuple[Any, ...], by: str) -> tuple[float
     return tuple(np.linspace(low, high, int(points)).tolist())
 
 
-def points_of(case: Case, key: str, values: Any, *, by: str) -> list[float]:
+def points_of(case: Case | MachineCase, key: str, values: Any, *, by: str) -> list[float]:
     """Read the values of a key; a list may have a single value."""
     if isinstance(values, list) and len(values) == 1:
         return list(ends_of(case, key, values, by=by))

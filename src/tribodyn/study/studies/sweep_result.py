@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +23,6 @@ from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.study.studies.study_axes import Axis
 from tribodyn.types import Array
 from tribodyn.validated_files import csv_text, write_dataset
-
-if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-
 
 #: Figures in tables and reports, and those added if a key of the film or the oil varies.
 _MOTIONS = (
@@ -77,7 +73,7 @@ class Sweep(Record):
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         The case that was varied.
     axes : tuple of Axis
         Keys that vary, each with its values.
@@ -85,7 +81,7 @@ class Sweep(Record):
         Finished points, the last key varying fastest; all of the grid unless it was interrupted.
     """
 
-    case: Case
+    case: Any
     axes: tuple[Axis, ...]
     points: tuple[SweepPoint, ...]
 

@@ -59,13 +59,18 @@ class Lanes:
 
 
 def draw(
-    case: Case, spread: Mapping[str, Any], size: int, *, method: Any = "monte-carlo", seed: int
+    case: Case | MachineCase,
+    spread: Mapping[str, Any],
+    size: int,
+    *,
+    method: Any = "monte-carlo",
+    seed: int,
 ) -> dict[str, Array]:
     """Values of keys of a case and of factors, each in the unit that it has there."""
     return sample(distributions_of(case, spread), size, method=method, seed=seed)
 
 
-def distributions_of(case: Case, spread: Mapping[str, Any]) -> dict[str, Any]:
+def distributions_of(case: Case | MachineCase, spread: Mapping[str, Any]) -> dict[str, Any]:
     """Distributions of keys of a case and of factors, each in the unit that it has there."""
     distributions = {}
     for key, text in spread.items():
@@ -114,7 +119,7 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
     return Lanes(members, frequency, used, _steps(members, frequency, factors))
 
 
-def check_spread_key(case: Case, key: str, column: Array) -> None:
+def check_spread_key(case: Case | MachineCase, key: str, column: Array) -> None:
     """Raise if a key is no number of the case, or its least or greatest value is out of range."""
     spec = case.option_of(key)
     value = effective(case).get(key) if isinstance(case, Case) else None
