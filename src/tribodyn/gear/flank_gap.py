@@ -15,6 +15,9 @@ from tribodyn.gear.mesh_geometry import FlankRange, default_relief_length, flank
 from tribodyn.gear.modification import FlankModification
 from tribodyn.types import Array
 
+#: Length of an end relief over the face width, unless it is given.
+END_RELIEF_LENGTH = 0.1
+
 
 def hunting_period(pair: SpurPair) -> int:
     """Mesh cycles until the same two teeth meet again.
@@ -242,7 +245,7 @@ def profile_gap(
 
 
 def lead_gap(gear: SpurGear, face_position: ArrayLike) -> Array:
-    """Material removed along the face width of a flank: crowning and slope.
+    """Material removed along the face width of a flank: crowning, slope and end relief.
 
     Parameters
     ----------
@@ -258,8 +261,9 @@ def lead_gap(gear: SpurGear, face_position: ArrayLike) -> Array:
 
     Notes
     -----
-    Crowning is C (2y/b)^2 and lead slope C y/b with the face width b of the gear. Source:
-    ISO 21771.
+    Crowning is C (2y/b)^2 and lead slope C y/b with the face width b of the gear; an end relief
+    of amount C and length L is C (1 - d/L) at the distance d from an end, or C (1 - d/L)^2.
+    Source: ISO 21771.
 
     Examples
     --------
@@ -273,7 +277,26 @@ def lead_gap(gear: SpurGear, face_position: ArrayLike) -> Array:
     """
     modification = gear.modification
     place = np.asarray(face_position, dtype=float) / gear.face_width
-    return np.asarray(modification.crowning * (2.0 * place) ** 2 + modification.lead_slope * place)
+    length = modification.end_relief_length
+    end = _relief(
+        (0.5 - np.abs(place)) * gear.face_width,
+        modification.end_relief,
+        END_RELIEF_LENGTH * gear.face_width if length is None else length,
+        modification.end_relief_shape,
+    )
+    return np.asarray(
+        modification.crowning * (2.0 * place) ** 2 + modification.lead_slope * place + end
+    )
+
+
+def twist_gap(
+    gear: SpurGear, curvature_radius: ArrayLike, flank: FlankRange, face_position: ArrayLike
+) -> Array:
+    """Material removed by the twist of a flank: the slope over the face grows along the profile."""
+    radius = np.clip(np.asarray(curvature_radius, dtype=float), *flank)
+    place = (radius - flank.lowest) / flank.length - 0.5
+    along = np.asarray(face_position, dtype=float) / gear.face_width
+    return np.asarray(gear.modification.flank_twist * place * along)
 
 
 def flank_gap(
@@ -304,7 +327,8 @@ def flank_gap(
     Notes
     -----
     Sum of what is missing on both flanks, less what a measured map has in excess, and misalignment
-    times y/b with the common face width b.
+    times y/b with the common face width b. The twist C of a flank is C (x - 1/2) y/b, with x from
+    zero at its lowest used point to one at its tip.
 
     Examples
     --------
@@ -334,6 +358,8 @@ def flank_gap(
         strict=True,
     ):
         gap = gap + profile_gap(gear, radius, flank, length) + lead_gap(gear, face)
+        if gear.modification.flank_twist:
+            gap = gap + twist_gap(gear, radius, flank, face)
         chart = gear.modification.profile_map
         if chart is not None:
             inside = np.abs(np.clip(np.asarray(radius, dtype=float), *flank))

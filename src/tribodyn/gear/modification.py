@@ -210,9 +210,11 @@ _CLOSURE = 1e-6
 _PITCHES = ("single_pitch_deviation", "cumulative_pitch_deviation")
 #: Limits of the amounts: material that is taken away, and what may be missing or in excess [m].
 _LIMITS = {
-    **dict.fromkeys(("tip_relief", "root_relief", "wear_depth"), (0.0, LARGEST_AMOUNT)),
     **dict.fromkeys(
-        ("profile_crowning", "profile_slope", "crowning", "lead_slope", *_PITCHES),
+        ("tip_relief", "root_relief", "end_relief", "wear_depth"), (0.0, LARGEST_AMOUNT)
+    ),
+    **dict.fromkeys(
+        ("profile_crowning", "profile_slope", "crowning", "lead_slope", "flank_twist", *_PITCHES),
         (-LARGEST_AMOUNT, LARGEST_AMOUNT),
     ),
     "run_out": (0.0, LARGEST_RUN_OUT),
@@ -223,8 +225,9 @@ _LIMITS = {
 class FlankModification:
     """Modifications and deviations of the loaded flanks of a gear; nothing by default.
 
-    Amounts are measured along the normal of the flank, which is the line of action; what takes
-    material away is positive. Lengths are measured along the line of action (roll length).
+    Amounts are measured along the transverse line of action, to which the flank of a spur gear is
+    normal; what takes material away is positive. Lengths are measured along the line of action
+    (roll length), or along the face.
 
     Parameters
     ----------
@@ -250,6 +253,15 @@ class FlankModification:
     lead_slope : float [m]
         Material taken away at the end of the face where ``face_position`` is positive, more than
         at the other end; the middle stays.
+    end_relief : float [m]
+        Material taken away at both ends of the face.
+    end_relief_length : float [m], optional
+        Distance from each end of the face over which it falls to zero; by default a tenth of the
+        face width.
+    end_relief_shape : str
+        ``"linear"`` or ``"parabolic"``.
+    flank_twist : float [m]
+        Slope over the face at the tip less that at the lowest used point.
     single_pitch_deviation : tuple of float [m]
         Deviation of the pitch from the flank before to each flank, one for each tooth in the order
         in which they come into contact; too long is positive. They sum to zero.
@@ -292,6 +304,10 @@ class FlankModification:
     profile_slope: float = 0.0
     crowning: float = 0.0
     lead_slope: float = 0.0
+    end_relief: float = 0.0
+    end_relief_length: float | None = None
+    end_relief_shape: str = "linear"
+    flank_twist: float = 0.0
     single_pitch_deviation: tuple[float, ...] = ()
     cumulative_pitch_deviation: tuple[float, ...] = ()
     run_out: float = 0.0
@@ -314,7 +330,8 @@ class FlankModification:
         if not math.isfinite(self.run_out_phase):
             what, why = f"run_out_phase = {self.run_out_phase}", "An angle is finite"
             problems.append(Problem(what, Argument("run_out_phase"), why, "Give it in radians"))
-        problems += self._relief_problems("tip_relief") + self._relief_problems("root_relief")
+        for name in ("tip_relief", "root_relief", "end_relief"):
+            problems += self._relief_problems(name)
         problems = problems or self._pitch_problems()
         if problems:
             raise InputError(problems)
@@ -323,14 +340,19 @@ class FlankModification:
     def changes_profile(self) -> bool:
         """Whether the gap depends on the position along the profile."""
         shaped = (self.tip_relief, self.root_relief, self.profile_crowning, self.profile_slope)
-        return any(shaped) or _any(self.wear_depth) or self.profile_map is not None
+        return (
+            any((*shaped, self.flank_twist))
+            or _any(self.wear_depth)
+            or self.profile_map is not None
+        )
 
     @cached_property
     def changes_lead(self) -> bool:
         """Whether the gap depends on the position along the face width."""
         chart = self.profile_map
         mapped = chart is not None and len(chart.face_position) > 1
-        return bool(self.crowning or self.lead_slope) or mapped
+        shaped = (self.crowning, self.lead_slope, self.end_relief, self.flank_twist)
+        return any(shaped) or mapped
 
     @cached_property
     def changes_pitch(self) -> bool:

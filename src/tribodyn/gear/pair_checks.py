@@ -288,6 +288,16 @@ def _length_problems(
     return problems
 
 
+def _end_relief_problems(name: str, gear: GearData) -> list[Problem]:
+    length, half = gear.modification.end_relief_length, 0.5 * gear.face_width
+    if length is None or length <= half * (1.0 + _SLACK):
+        return []
+    what = f"end_relief_length = {length * 1e3:.6g} mm of the {name}"
+    why = f"The reliefs of both ends meet beyond half of the face width, {half * 1e3:.6g} mm"
+    remedy = "Reduce it, or give crowning"
+    return [Problem(what, Argument("modification.end_relief_length", name), why, remedy)]
+
+
 def _map_problems(
     name: str, chart: ProfileMap, gear: GearData, flank: FlankRange, face_width: float
 ) -> list[Problem]:
@@ -321,6 +331,7 @@ def fit_problems(pair: FaceGeometry) -> list[Problem]:
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}
     for (name, gear), flank in zip(gears.items(), flank_ranges(pair), strict=True):
         problems += _length_problems(name, gear.modification, flank)
+        problems += _end_relief_problems(name, gear)
         chart = gear.modification.profile_map
         if chart is not None:
             problems += _map_problems(name, chart, gear, flank, pair.common_face_width)

@@ -56,6 +56,18 @@ class Modification(Section):
     profile_slope: float = _signed("profile_slope")
     crowning: float = _signed("crowning")
     lead_slope: float = _signed("lead_slope")
+    end_relief: float = _relief("end_relief")
+    end_relief_length: float | None = number(
+        None,
+        0.0,
+        2.0,
+        "no longer than half the face",
+        of="end_relief_length",
+        positive=True,
+        basis="a tenth of the face width",
+    )
+    end_relief_shape: str = choice("linear", _SHAPES, meaning="how the end relief falls to zero")
+    flank_twist: float = _signed("flank_twist")
     single_pitch_deviation: tuple[float, ...] | None = _pitches(
         "single_pitch_deviation",
         "deviation of the pitch from the flank before, in the order of contact",

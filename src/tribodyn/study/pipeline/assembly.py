@@ -31,6 +31,8 @@ _AMOUNTS = (
     "profile_slope",
     "crowning",
     "lead_slope",
+    "end_relief",
+    "flank_twist",
     "run_out",
 )
 
@@ -173,18 +175,19 @@ def _body(gear: SpurGear, density: float) -> dict[str, float]:
 def _modifications(pair: SpurPair) -> dict[str, float]:
     """Amounts that are not zero, with the lengths of the reliefs in force."""
     from tribodyn.gear import default_relief_length, hunting_period
+    from tribodyn.gear.flank_gap import END_RELIEF_LENGTH
 
+    lengths = dict.fromkeys(("tip_relief", "root_relief"), default_relief_length(pair))
     values = {"misalignment": pair.misalignment} if pair.misalignment else {}
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         modification = gear.modification
+        lengths["end_relief"] = END_RELIEF_LENGTH * gear.face_width
         for key in _AMOUNTS:
             if getattr(modification, key) != 0.0:
                 values[f"{key}_{name}"] = getattr(modification, key)
-                if key in ("tip_relief", "root_relief"):
+                if key in lengths:
                     length = getattr(modification, f"{key}_length")
-                    values[f"{key}_length_{name}"] = (
-                        default_relief_length(pair) if length is None else length
-                    )
+                    values[f"{key}_length_{name}"] = lengths[key] if length is None else length
     if pair.has_pitch_deviation:
         values["hunting_period"] = hunting_period(pair)
     return values
