@@ -15,6 +15,7 @@ import numpy as np
 from tribodyn.errors import ComputationError, InputError, ModelOption, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.model import Model, Registry, choice
+from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array, Mask
 
@@ -62,7 +63,7 @@ class StiffnessModel(Model):
     name: str
     function: Callable[..., Array]
     options: Mapping[str, Any]
-    influence: Callable[..., GearInfluence] | None = None
+    influence: Callable[..., GearInfluence | FaceInfluence] | None = None
     over_face: bool = False
     coupled: bool = False
     source: str = ""

@@ -183,8 +183,8 @@ BROKEN = (
            ("film.stiffness", '"sekant"', "none, tangent, secant, seed", '"secant"?')),
     Broken("unknown-inlet", "[solver]", _film('inlet = "dry"'), "inlet",
            ("film.inlet", '"dry"', "flooded, zero", "Choose one")),
-    Broken("unknown-stiffness", 'model = "rectangular"', 'model = "fe3d"', 'model = "fe3d"',
-           ("stiffness.model", '"fe3d"', "potential-energy", '"fe2d"?')),
+    Broken("unknown-stiffness", 'model = "rectangular"', 'model = "fe4d"', 'model = "fe4d"',
+           ("stiffness.model", '"fe4d"', "potential-energy", '"fe3d"?')),
     Broken("unknown-oil", _OIL, 'name = "80V"', 'name = "80V"',
            ("lubricant.name", '"80V"', 'Did you mean "80W"?')),
     # missing

@@ -14,7 +14,7 @@ import numpy as np
 
 from tribodyn.gear import SpurGear
 from tribodyn.stiffness.fe2d.ring import element_stiffness, quadratic_shapes
-from tribodyn.stiffness.fe2d.tooth_mesh import SectorMesh, grid_elements
+from tribodyn.stiffness.fe2d.tooth_mesh import SectorMesh
 from tribodyn.stiffness.teeth.tooth_bending import load_point
 from tribodyn.types import Array
 
@@ -60,7 +60,8 @@ def flank_loads(
     module = gear.normal_module
     point = load_point(gear, curvature_radius)
     tip = mesh.flank_length[0] - (half_width if inside else 0.0)
-    length = np.minimum(0.5 * curvature_radius**2 / (gear.base_radius * module), tip)
+    place = 0.5 * gear.sign * curvature_radius**2 / (gear.base_radius * module)
+    length = np.minimum(place, tip)
     width = np.minimum(half_width, mesh.flank_length[0] - length)
     weights = nodal_weights(mesh, length, width)
     direction = -np.stack([np.cos(point.load_angle), np.sin(point.load_angle)], axis=-1)
@@ -106,7 +107,7 @@ def remainder_loads(
 def _add_missed_tractions(forces: Array, mesh: SectorMesh, place: Array, direction: Array) -> None:
     """Take the tractions of the half plane off the whole boundary of the tooth."""
     grid = mesh.tooth
-    # clockwise, so that the outward normal is to the left of the way
+    # clockwise, so that the outward normal is to the left of the way; of a ring the other way round
     loop = np.concatenate([grid[::-1, 0], grid[0, 1:], grid[1:, -1], grid[-1, -2::-1]])
     edges = np.stack([loop[:-2:2], loop[1:-1:2], loop[2::2]], axis=1)
     values, slopes = quadratic_shapes(_GAUSS[0])
@@ -114,6 +115,7 @@ def _add_missed_tractions(forces: Array, mesh: SectorMesh, place: Array, directi
     points = np.einsum("ga,eax->egx", values, corners)
     tangent = np.einsum("ga,eax->egx", slopes, corners)
     normal = np.stack([-tangent[..., 1], tangent[..., 0]], axis=-1)
+    normal *= mesh.sign
     away = points[..., None, :] - place
     inward = np.einsum("egkx,kx->egk", away, direction)
     facing = np.einsum("egkx,egx->egk", away, normal)
@@ -128,7 +130,7 @@ def _add_jump(
 ) -> None:
     """Give the elements above the foot the displacement of the half plane there."""
     nu = float(elasticity[0, 1] / elasticity[0, 0])
-    elements = grid_elements(mesh.tooth[:, -3:])
+    elements = mesh.tooth_elements(slice(-3, None))
     foot = elements[:, [2, 5, 8]]
     away = mesh.nodes[foot][:, :, None] - place
     jump = half_plane_displacement(away, direction, depth, nu)

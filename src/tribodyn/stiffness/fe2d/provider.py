@@ -47,17 +47,16 @@ class UnitCompliances(NamedTuple):
 
 
 def held_radius(gear: SpurGear) -> float:
-    """Radius of the circle where the body is held."""
-    if gear.bore_diameter > 0.0:
-        return 0.5 * gear.bore_diameter
-    return gear.root_radius / LARGEST_RATIO
+    """Radius of the circle where the body is held: the bore, or the outer circle of a ring."""
+    return gear.rim_radius or gear.root_radius / LARGEST_RATIO
 
 
 def wind_up_to_take_off(gear: SpurGear, material: Material, reference: str) -> float:
     """Wind-up of the body per unit width that does not belong to the reference."""
     check_reference(reference)
-    fixed_radius = 0.5 * gear.bore_diameter if reference == "bore" else held_radius(gear)
-    wind_up = wind_up_compliance(gear.base_radius, gear.root_radius, fixed_radius, 1.0, material)
+    fixed_radius = gear.rim_radius if reference == "bore" else held_radius(gear)
+    circles = gear.root_radius, fixed_radius
+    wind_up = wind_up_compliance(gear.base_radius, *circles[:: gear.sign], 1.0, material)
     return wind_up if reference == "rim" else 0.0
 
 
@@ -75,18 +74,16 @@ def unit_compliances(
     ring = Ring(mesh, elasticity)
     rho, support = _places(gear)
     loads = flank_loads(gear, mesh, np.concatenate([rho, support]))
-    beyond_supports = np.append(rho > support[0], np.zeros(support.size, dtype=bool))
+    on_tip = gear.sign * (rho - support[0]) > 0.0
+    beyond_supports = np.append(on_tip, np.zeros(support.size, dtype=bool))
     forces = loads.forces.copy()
     place, direction, depth = (rows[~beyond_supports] for rows in loads[:3])
     forces[:, ~beyond_supports] = remainder_loads(mesh, place, direction, depth, elasticity)
     solution = ring.solve(forces)
-    # the side of larger radii is the clockwise one
-    displacements = ring.weighted_displacements(
-        solution, loads.forces, [-n for n in range(neighbours + 1)]
-    )
-    self_compliance = _carried_to_tip(
-        rho, support, np.diagonal(displacements[0]), beyond_supports[: rho.size]
-    )
+    # the side of larger radii is the clockwise one; of a ring the other
+    sectors = [-gear.sign * n for n in range(neighbours + 1)]
+    displacements = ring.weighted_displacements(solution, loads.forces, sectors)
+    self_compliance = _carried_to_tip(rho, support, np.diagonal(displacements[0]), on_tip)
     return UnitCompliances(rho, self_compliance, displacements[1:, : rho.size, : rho.size].copy())
 
 
@@ -95,20 +92,20 @@ def _places(gear: SpurGear) -> tuple[Array, Array]:
     base, module = gear.base_radius, gear.normal_module
     tip = gear.roll_angle(gear.tip_radius) * base
     form = gear.roll_angle(max(gear.form_radius, base)) * base
-    low = max(form, min(_LEAST_CURVATURE * module, 0.5 * tip))
+    low, high = sorted((max(form, min(_LEAST_CURVATURE * module, 0.5 * tip)), tip))
     share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, NODES))
-    rho = low + (tip - low) * share
-    rho[-1] = tip
-    flank = 0.5 * (tip * tip - low * low) / base
+    rho = low + (high - low) * share
+    rho[-1] = high
+    flank = 0.5 * (high * high - low * low) / base
     shrink = min(1.0, _TIP_SHARE * flank / (_TIP_SUPPORT[-1] * module))
-    return rho, np.sqrt(tip * tip - 2.0 * base * module * shrink * _TIP_SUPPORT)
+    return rho, np.sqrt(tip * tip - gear.sign * 2.0 * base * module * shrink * _TIP_SUPPORT)
 
 
 def _carried_to_tip(
     rho: Array, support: Array, self_compliance: Array, beyond_supports: Mask
 ) -> Array:
     """Self compliance at the nodes, beyond the supports as the parabola of the length."""
-    tip = rho[-1]
+    tip = rho[-1] if support[0] > support[-1] else rho[0]
     scale = tip * tip - support[-1] ** 2
     curve = np.polyfit((tip * tip - support**2) / scale, self_compliance[rho.size :], 2)
     parabola = np.polyval(curve, (tip * tip - rho * rho) / scale)
@@ -177,7 +174,7 @@ def fe2d_influence(
     if neighbours < 1:
         why, remedy = "Teeth in contact at the same time move one another", "Give 1 or more"
         raise InputError(f"neighbours = {neighbours}", Argument("neighbours"), why, remedy)
-    neighbour_count = max(min(neighbours, (gear.teeth - 1) // 2), 1)
+    neighbour_count = max(min(neighbours, (abs(gear.teeth) - 1) // 2), 1)
     unit = _looked_up(gear, material.poissons_ratio, neighbour_count, size or MeshSize(), cache)
     self_compliance = unit.self_compliance / material.youngs_modulus - wind_up
     if not np.all(self_compliance > 0.0):
@@ -187,7 +184,7 @@ def fe2d_influence(
 
 
 def _too_thin(gear: SpurGear) -> Problem:
-    rim = gear.root_radius - held_radius(gear)
+    rim = abs(gear.root_radius - held_radius(gear))
     return Problem(
         what=f"the bore of {gear.bore_diameter * 1e3:.4g} mm leaves a rim of {rim * 1e3:.3g} mm "
         "under the root circle",
@@ -228,6 +225,7 @@ def _file_name(gear: SpurGear, poissons_ratio: float, neighbours: int, size: Mes
         gear.tip_diameter,
         gear.tooth_thinning,
         gear.rack,
+        gear.helix_angle,
         held_radius(gear),
     )
     text = repr((form, poissons_ratio, neighbours, size, _digest()))

@@ -24,8 +24,20 @@ class SectorMesh:
     left_cut: Index
     fixed: Index  #: nodes that cannot move
     tooth: Index
-    flank_length: Array  #: place of the nodes of the loaded flank as length along it, falling
+    #: place of the nodes of the loaded flank as length along it from the base circle, falling; of a
+    #: ring, whose tip is nearest to the base circle, negative
+    flank_length: Array
     outline: Index  #: nodes of the free boundary from the right cut over the tip to the left cut
+
+    @property
+    def sign(self) -> int:
+        """1, or -1 of a ring, whose teeth point inwards."""
+        tip, foot = np.hypot(*self.nodes[self.tooth[0, [0, -1]]].T)
+        return 1 if tip > foot else -1
+
+    def tooth_elements(self, rows: slice = slice(None)) -> Index:
+        """Elements of the tooth, or of some rows of its nodes from the tip to the foot."""
+        return grid_elements(self.tooth[:: self.sign, rows])
 
 
 def grid_elements(grid: Index) -> Index:
@@ -52,19 +64,19 @@ class ToothSide:
     """Half of the outline of a tooth with its axis on +y, all lengths in modules."""
 
     def __init__(self, form: ToothForm) -> None:
-        self.form = form
+        self.form, self.sign = form, form.sign
         module = form.normal_module
         self.base_radius = form.base_radius / module
         self.root_radius = form.root_radius / module
         self.tip_radius = form.tip_radius / module
-        self.pitch_angle = math.pi / form.teeth
+        self.pitch_angle = math.pi / abs(form.teeth)
         self.tip_length = self._involute_length(form.tip_radius)
         self.form_length = self._involute_length(form.form_radius)
 
     def _involute_length(self, radius: float) -> float:
         base = self.form.base_radius
         roll = self.form.roll_angle(max(radius, base))
-        return 0.5 * self.base_radius * roll * roll
+        return 0.5 * self.sign * self.base_radius * roll * roll
 
     @cached_property
     def _fillet(self) -> tuple[Array, Array, int]:
@@ -75,10 +87,12 @@ class ToothSide:
         length = np.concatenate([[0.0], np.cumsum(step)])
         radius = np.hypot(*places.T)
         middle = 0.5 * (places[1:] + places[:-1])
-        outward = middle / np.hypot(*middle.T)[:, None]
+        outward = self.sign * middle / np.hypot(*middle.T)[:, None]
         fall = -np.einsum("ix,ix->i", np.diff(places, axis=0), outward)
-        along = np.einsum("ix,ix->i", np.diff(places, axis=0), outward[:, ::-1] * [1.0, -1.0])
-        flat = (np.arctan2(fall, along) < _FOOT_STEEPNESS) & (np.diff(radius) <= 0.0)
+        along = np.einsum(
+            "ix,ix->i", np.diff(places, axis=0), outward[:, ::-1] * [self.sign, -self.sign]
+        )
+        flat = (np.arctan2(fall, along) < _FOOT_STEEPNESS) & (self.sign * np.diff(radius) <= 0.0)
         steep = np.flatnonzero(~flat)
         foot = min(int(steep[-1]) + 1 if steep.size else 0, int(0.9 * _TABLE))
         return angle, length, foot
@@ -98,9 +112,11 @@ class ToothSide:
         """Points from the tip to the foot."""
         angle, fillet_length, _ = self._fillet
         on_fillet = length < self.form_length
-        roll = np.sqrt(2.0 * np.where(on_fillet, self.form_length, length) / self.base_radius)
+        along = np.abs(np.where(on_fillet, self.form_length, length))
+        roll = np.sqrt(2.0 * along / self.base_radius)
         radius = self.base_radius * np.hypot(1.0, roll)
-        flank = _cartesian(radius, self.form.base_half_angle - (roll - np.arctan(roll)))
+        turn = self.form.base_half_angle - self.sign * (roll - np.arctan(roll))
+        flank = _cartesian(radius, turn)
         below = np.interp(self.form_length - length, fillet_length, angle)
         return np.where(on_fillet[..., None], self._fillet_at(below), flank)
 
@@ -203,11 +219,11 @@ def tooth_mesh(form: ToothForm, bore_radius: float, size: MeshSize | None = None
     root = side.root_points(_with_middles(_even(1.0, _root_share(side, size), size.root)))
     top = np.concatenate([root[:-1], tooth[:, -1], (root * [-1.0, 1.0])[-2::-1]])
     body = _body_points(top, _with_middles(_body_levels(side, bore, size)), bore)
-    return _numbered(form.teeth, tooth, body, root.shape[0] - 1, lengths)
+    return _numbered(form, tooth, body, root.shape[0] - 1, lengths)
 
 
 def _check_rim(form: ToothForm, bore_radius: float) -> None:
-    rim = form.root_radius - bore_radius
+    rim = form.sign * (form.root_radius - bore_radius)
     if rim < _THINNEST_RIM * form.normal_module:
         raise InputError(
             f"the bore of {2e3 * bore_radius:.4g} mm leaves a rim of {rim * 1e3:.3g} mm "
@@ -258,17 +274,16 @@ def _arc(begin: Array, share: Array) -> Array:
 
 def _body_levels(side: ToothSide, bore: float, size: MeshSize) -> Array:
     """Shares of the depth from the root (0) to the bore (1)."""
-    radii = [side.root_radius]
-    while radii[-1] > bore:
-        depth = side.root_radius - radii[-1]
-        step = min(size.largest + size.body_growth * depth, size.body_ratio * radii[-1])
-        radii.append(radii[-1] - step)
-    if len(radii) > 4 and bore - radii[-1] > 0.5 * (radii[-2] - radii[-1]):
-        radii.pop()
-    while len(radii) < 4:
-        radii = list(np.linspace(radii[0], radii[-1], 4))
-    depths = radii[0] - np.array(radii)
-    return np.asarray(depths / depths[-1])
+    depths, thickness = [0.0], side.sign * (side.root_radius - bore)
+    while depths[-1] < thickness:
+        radius = side.root_radius - side.sign * depths[-1]
+        step = min(size.largest + size.body_growth * depths[-1], size.body_ratio * radius)
+        depths.append(depths[-1] + step)
+    if len(depths) > 4 and depths[-1] - thickness > 0.5 * (depths[-1] - depths[-2]):
+        depths.pop()
+    if len(depths) < 4:
+        depths = list(np.linspace(0.0, depths[-1], 4))
+    return np.array(depths) / depths[-1]
 
 
 def _body_points(top: Array, levels: Array, bore: float) -> Array:
@@ -279,7 +294,7 @@ def _body_points(top: Array, levels: Array, bore: float) -> Array:
 
 
 def _numbered(
-    count: int, tooth: Array, body: Array, side_columns: int, lengths: Array
+    form: ToothForm, tooth: Array, body: Array, side_columns: int, lengths: Array
 ) -> SectorMesh:
     """Join the two grids: the lowest row of the tooth is a part of the top row of the body."""
     under = np.arange(body.shape[0] * body.shape[1]).reshape(body.shape[:2])
@@ -295,10 +310,12 @@ def _numbered(
             under[side_columns + tooth.shape[0] :, 0],
         ]
     )
+    # anticlockwise elements; the tip of a ring is inside
+    around = slice(None, None, form.sign)
     return SectorMesh(
-        count=count,
+        count=abs(form.teeth),
         nodes=np.concatenate([body.reshape(-1, 2), tooth[:, :-1].reshape(-1, 2)]),
-        elements=np.concatenate([grid_elements(under), grid_elements(grid)]),
+        elements=np.concatenate([grid_elements(under[around]), grid_elements(grid[around])]),
         right_cut=under[0, :-1],
         left_cut=under[-1, :-1],
         fixed=under[:, -1],

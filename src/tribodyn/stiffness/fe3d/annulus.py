@@ -15,22 +15,23 @@ _FIRST, _GROWTH, _LARGEST = 0.6, 1.5, 0.25
 _DECAYED = 20.0
 
 
-def annulus_radii(inner: float, outer: float, order: int, depth: float) -> Array:
-    """Radii (e, 3) of elements from the held circle to the free one, first size up to ``depth``."""
-    reach = max(inner, outer * np.exp(-_DECAYED / max(abs(order), 1)))
-    radii, step = [outer], min(depth, _FIRST * outer / (abs(order) + 1.0))
-    while radii[-1] > reach:
-        radii.append(radii[-1] - min(step, _LARGEST * radii[-1]))
+def annulus_radii(held: float, loaded: float, order: int, first: float) -> Array:
+    """Radii (e, 3) of elements from the held circle to the loaded one, the last size ``first``."""
+    decayed = _DECAYED / max(abs(order), 1)
+    reach = loaded * np.exp(np.clip(np.log(held / loaded), -decayed, decayed))
+    inwards = np.sign(loaded - held)
+    depths, step = [0.0], min(first, _FIRST * loaded / (abs(order) + 1.0))
+    while depths[-1] < abs(loaded - reach):
+        depths.append(depths[-1] + min(step, _LARGEST * (loaded - inwards * depths[-1])))
         step *= _GROWTH
-    edges = outer - (outer - np.array(radii)) * ((outer - reach) / (outer - radii[-1]))
-    edges = edges[::-1]
+    edges = loaded + (reach - loaded) / depths[-1] * np.array(depths[::-1])
     return np.stack([edges[:-1], 0.5 * (edges[:-1] + edges[1:]), edges[1:]], axis=1)
 
 
 def annulus_stiffness(
     radii: Array, order: int, twist: float, stress: Array, face: FaceBasis
 ) -> Array:
-    """Stiffness (3 z, 3 z) per radian at the outer circle under loads ``exp(i order angle)``."""
+    """Stiffness (3 z, 3 z) per radian at the loaded circle under loads ``exp(i order angle)``."""
     matrices = annulus_matrices(radii, order, twist, stress)
     block = 3 * face.count
     below = np.zeros((block, block), dtype=complex)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from tribodyn.stiffness.fe2d.flank_load import nodal_weights
-from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, grid_elements, tooth_mesh
+from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, tooth_mesh
 from tribodyn.stiffness.fe3d.sections import element_matrices
 from tribodyn.stiffness.fe3d.sector import Sector
 from tribodyn.stiffness.teeth.tooth_bending import load_point
@@ -31,8 +31,8 @@ _TIP_SHARE = 0.4
 def local_compliance(sector: Sector) -> Array:
     """Local part (f, f) of the compliance between the loaded places, even over the face."""
     nu, length = sector.poissons_ratio, sector.flank_length
-    tip = length[-1]
-    shrink = min(1.0, _TIP_SHARE * (tip - length[0]) / _TIP_SUPPORT[-1])
+    tip = length.max()
+    shrink = min(1.0, _TIP_SHARE * (tip - length.min()) / _TIP_SUPPORT[-1])
     support = tip - shrink * _TIP_SUPPORT
     coarse = np.diagonal(_clamped_compliance(sector, sector.mesh, length, 0.0))
     fine_mesh = tooth_mesh(sector.form, sector.interface * sector.form.normal_module, MeshSize())
@@ -74,7 +74,7 @@ def _clamped_compliance(
     from scipy.sparse import coo_array
     from scipy.sparse.linalg import splu
 
-    elements = grid_elements(mesh.tooth)
+    elements = mesh.tooth_elements()
     matrix = element_matrices(mesh.nodes[elements], sector.twist, sector.stress).none
     freedoms = (3 * elements[:, :, None] + np.arange(3)).reshape(len(elements), 27)
     rows = np.broadcast_to(freedoms[:, :, None], matrix.shape)

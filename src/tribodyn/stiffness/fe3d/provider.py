@@ -35,17 +35,14 @@ class UnitFaceCompliances(NamedTuple):
     compliance: Array  #: [neighbour, loaded radius, displaced radius, loaded, displaced function]
 
 
-def gear_sector(
-    gear: SpurGear, poissons_ratio: float, size: SolidSize, helix: float | None = None
-) -> Sector:
-    """Sector of a gear; ``helix`` is its base helix angle [rad]."""
-    angle = getattr(gear, "base_helix_angle", 0.0) if helix is None else helix
+def gear_sector(gear: SpurGear, poissons_ratio: float, size: SolidSize) -> Sector:
+    """Sector of a gear, turned along the face so that lines of contact fall from its tip."""
     module = gear.normal_module
     return Sector(
         form=gear,
         width=gear.face_width / module,
         held=held_radius(gear) / module,
-        twist=math.tan(abs(angle)) * module / gear.base_radius,
+        twist=gear.sign * math.tan(gear.base_helix_angle) * module / gear.base_radius,
         poissons_ratio=poissons_ratio,
         size=size,
     )
@@ -55,9 +52,9 @@ def unit_face_compliances(
     sector: Sector, neighbours: int, progress: Progress = SILENT
 ) -> UnitFaceCompliances:
     """Compliances of a gear whose body is held along a circle."""
-    progress.start("compliance over the face", solved_harmonics(sector.form.teeth).size)
-    # the side of larger radii is the clockwise one
-    sectors = -np.arange(neighbours + 1)
+    progress.start("compliance over the face", solved_harmonics(sector.count).size)
+    # the side of larger radii is the clockwise one; of a ring the other
+    sectors = -sector.form.sign * np.arange(neighbours + 1)
     compliance = Ring(sector).flank_compliances(sectors, progress=progress)
     local = local_compliance(sector)[:, None, :, None]
     compliance[0] -= local * np.linalg.inv(sector.face.mass)[None, :, None, :]
@@ -143,7 +140,7 @@ def fe3d_influence(
     if neighbours < 1:
         why, remedy = "Teeth in contact at the same time move one another", "Give 1 or more"
         raise InputError(f"neighbours = {neighbours}", Argument("neighbours"), why, remedy)
-    neighbour_count = max(min(neighbours, (gear.teeth - 1) // 2), 1)
+    neighbour_count = max(min(neighbours, (abs(gear.teeth) - 1) // 2), 1)
     sector = gear_sector(gear, material.poissons_ratio, size or SolidSize())
     unit = _looked_up(sector, neighbour_count, cache, progress)
     module = gear.normal_module
@@ -181,6 +178,7 @@ def _file_name(sector: Sector, neighbours: int) -> str:
         form.tip_diameter / module,
         form.tooth_thinning / module,
         form.rack,
+        form.helix_angle,
     )
     solid = (sector.width, sector.held, sector.twist, sector.poissons_ratio, sector.size)
     text = repr((outline, solid, neighbours, _digest()))

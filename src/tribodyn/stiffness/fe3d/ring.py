@@ -61,7 +61,7 @@ class Ring:
         self, sectors: Index, harmonics: Index | None = None, progress: Progress = SILENT
     ) -> Array:
         """Compliance (s, f, z, f, z) of flanks, anticlockwise, under loads on the sector 0."""
-        count = self._sector.form.teeth
+        count = self._sector.count
         harmonics = solved_harmonics(count) if harmonics is None else harmonics
         weights = harmonic_weights(count, harmonics, sectors)
         total = 0.0
@@ -83,7 +83,7 @@ class Ring:
             radii = annulus_radii(sector.held, sector.interface, order, _RING_SIZE)
             ring = annulus_stiffness(radii, order, sector.twist, sector.stress, sector.face)
             rows = slice(first + 3 * place, first + 3 * place + 3)
-            share = 2.0 * np.pi / sector.form.teeth
+            share = 2.0 * np.pi / sector.count
             stiffness[rows, :, rows, :] += share * ring.reshape(3, face, 3, face)
         loaded = self._flank.stop
         below = (size - loaded) * face
@@ -99,7 +99,7 @@ class Ring:
         if not sector.on_ring:
             return []
         waves = range(-sector.size.waves, sector.size.waves + 1)
-        return [harmonic + wave * sector.form.teeth for wave in waves]
+        return [harmonic + wave * sector.count for wave in waves]
 
     def _turn(self, harmonic: int) -> Array:
         """Retained freedoms per cut, waves on the inner circle, and flank."""
@@ -109,7 +109,7 @@ class Ring:
         turn = np.zeros((self._inner.stop, below + self._flank.stop), dtype=complex)
         turn[self._flank, below:] = np.eye(self._flank.stop)
         turn[self._right, :cut] = np.eye(cut)
-        turn[self._left, :cut] = np.exp(2j * np.pi * harmonic / sector.form.teeth) * np.eye(cut)
+        turn[self._left, :cut] = np.exp(2j * np.pi * harmonic / sector.count) * np.eye(cut)
         points = sector.mesh.nodes[sector.border[2]]
         angle = np.arctan2(-points[:, 0], points[:, 1])
         for place, order in enumerate(orders):

@@ -38,7 +38,7 @@ class SolidSize:
         Waves around the axis, per tooth and on each side of a harmonic, that reach that depth.
     """
 
-    section: MeshSize = field(default_factory=lambda: MeshSize(0.18, 0.45, 1.5, 0.5, 0.3, 2))
+    section: MeshSize = field(default_factory=lambda: MeshSize(0.2, 0.6, 1.7, 0.8, 0.45, 2))
     face: FaceSize = field(default_factory=FaceSize)
     depth: float = 1.0
     waves: int = 2
@@ -58,13 +58,18 @@ class Sector:
     @cached_property
     def interface(self) -> float:
         """Radius where the meshed part of the body ends."""
-        depth = self.form.root_radius / self.form.normal_module - self.size.depth
-        return depth if depth > self.held + _LEAST_RING else self.held
+        depth = self.form.root_radius / self.form.normal_module - self.form.sign * self.size.depth
+        return depth if self.form.sign * (depth - self.held) > _LEAST_RING else self.held
 
     @property
     def on_ring(self) -> bool:
         """Whether a ring lies below the meshed part, which is held itself otherwise."""
-        return self.interface > self.held
+        return self.interface != self.held
+
+    @property
+    def count(self) -> int:
+        """Number of sectors of the ring."""
+        return abs(self.form.teeth)
 
     @cached_property
     def mesh(self) -> SectorMesh:
@@ -88,25 +93,26 @@ class Sector:
 
     @cached_property
     def flank_length(self) -> Array:
-        """Lengths along the involute from the base circle to the loaded places, increasing."""
-        base, form = self.base_radius, self.form
-        lowest = 0.5 * base * form.roll_angle(max(form.form_radius, form.base_radius)) ** 2
-        lengths = self.mesh.flank_length[::2]
-        return lengths[lengths > lowest - _ROUNDING][::-1]
+        """Places on the flank as :class:`SectorMesh` counts them, by the radius of curvature."""
+        form, lengths = self.form, self.mesh.flank_length[::2]
+        roll = form.roll_angle(max(form.form_radius, form.base_radius))
+        lowest = 0.5 * form.sign * self.base_radius * roll**2
+        return lengths[lengths > lowest - _ROUNDING][:: -form.sign]
 
     @cached_property
     def flank(self) -> Index:
         """Nodes of the loaded places."""
-        return self.mesh.tooth[0, : 2 * self.flank_length.size : 2][::-1]
+        return self.mesh.tooth[0, : 2 * self.flank_length.size : 2][:: -self.form.sign]
 
     def curvature_radius(self, length: Array) -> Array:
-        """Radius of curvature at lengths along the involute."""
-        square = 2.0 * self.base_radius * np.maximum(length, 0.0)
+        """Radius of curvature at places on the flank."""
+        square = 2.0 * self.base_radius * np.maximum(self.form.sign * length, 0.0)
         return np.maximum(np.sqrt(square), LEAST_CURVATURE)
 
     def load_direction(self, length: Array) -> Array:
         """Loads (..., 3) whose part in the section is a unit vector, normal to the flank."""
-        angle = self.curvature_radius(length) / self.base_radius - self.form.base_half_angle
+        roll = self.form.sign * self.curvature_radius(length) / self.base_radius
+        angle = roll - self.form.base_half_angle
         axial = np.full(angle.shape, -self.twist * self.base_radius)
         return np.stack([-np.cos(angle), -np.sin(angle), axial], axis=-1)
 

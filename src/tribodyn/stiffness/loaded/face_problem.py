@@ -134,8 +134,11 @@ def face_compliance(
     shape = contacts.phase.size, -1, contacts.slices
     radii = places.pinion_curvature_radius, places.wheel_curvature_radius
     structure = np.zeros((*places.path.shape, places.path.shape[1]))
-    for gear, radius, sense in zip(gears, radii, (1, -1), strict=True):
-        gear.sliced(edges).fill(structure, radius.reshape(shape), sense * places.direction)
+    # Lines of contact fall along the face where slices enter one after the other.
+    fall = places.direction * float(contacts.delay[-1] - contacts.delay[0])
+    for gear, radius, sense in zip(gears, radii, (1, -pair.wheel.sign), strict=True):
+        sliced = gear.sliced(edges, rising=sense * fall < 0.0)
+        sliced.fill(structure, radius.reshape(shape), sense * places.direction)
     # Where a part of a slice alone is on the path of contact, its load per width acts on less.
     structure *= (contacts.width / np.diff(edges)[contacts.slice])[:, None, :]
     return Compliance(structure, *local)

@@ -1,4 +1,4 @@
-"""Models whose tooth pairs are solved together: ``fe2d``, ``analytic``, and ``weber`` by the way.
+"""Models whose tooth pairs are solved together: finite elements, ``analytic``, also ``weber``.
 
 Like any other model they return the stiffness of the pairs over a mesh cycle, as the
 secant of the loaded tooth contact on the path of contact.
@@ -15,6 +15,7 @@ from tribodyn.gear import Material, SpurGear
 from tribodyn.model import flag
 from tribodyn.stiffness.loaded.contact import mesh_problem
 from tribodyn.stiffness.model import MODELS, MeshState, reference_option
+from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array
 
@@ -26,6 +27,12 @@ def _fe2d(gear: SpurGear, material: Material, *, reference: str) -> GearInfluenc
     from tribodyn.stiffness.fe2d import fe2d_influence
 
     return fe2d_influence(gear, material, reference=reference)
+
+
+def _fe3d(gear: SpurGear, material: Material, *, reference: str) -> FaceInfluence:
+    from tribodyn.stiffness.fe3d import fe3d_influence
+
+    return fe3d_influence(gear, material, reference=reference)
 
 
 def _analytic(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
@@ -79,6 +86,14 @@ MODELS.define(
     "together",
     **_TOGETHER,
 )(_pair_stiffness("fe2d"))
+MODELS.define(
+    "fe3d",
+    influence=_fe3d,
+    over_face=True,
+    meaning="stiffness from finite elements of both whole gears with their face width, all slices "
+    "of all tooth pairs solved together",
+    **{**_TOGETHER, "options": {"reference": reference_option("bore")}},
+)(_pair_stiffness("fe3d"))
 MODELS.define(
     "analytic",
     influence=_analytic,

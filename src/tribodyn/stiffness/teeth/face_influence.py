@@ -23,10 +23,11 @@ _ROUNDING = 1e-9
 class FaceInfluence:
     """Compliances of one gear over radius of curvature and face position.
 
-    Loads and displacements lie along the transverse line of action, per transverse force. Face
-    positions count from the face where the radius of curvature along a line of contact is largest
-    (from either face of a spur gear). The neighbour ``+n`` is the n-th tooth on the side of the
-    loaded tooth where a contact at the same time has a larger radius of curvature.
+    Loads and displacements lie along the transverse line of action, per transverse force. The
+    splines count the face from the end where the radius of curvature along a line of contact is
+    largest (of a spur gear, from either end). The neighbour ``+n`` is the n-th tooth on the side of
+    the loaded tooth where a contact at the same time has a larger radius of curvature. Radii of
+    curvature of a ring are positive.
 
     Parameters
     ----------
@@ -90,10 +91,11 @@ class FaceInfluence:
         Parameters
         ----------
         edges : array (s + 1,) [m]
-            Increasing ends of the slices as positions on the face of this gear.
+            Increasing ends of the slices, counted from the middle of the face of this gear.
         rising : bool
-            Whether positions count from the other face, from which radii of curvature along a line
-            of contact increase: true of one gear of a helical pair.
+            Whether radii of curvature along a line of contact increase with the face position;
+            otherwise they decrease. Of a helical pair it is true of one gear, or of a ring and
+            its pinion.
 
         Returns
         -------
@@ -105,22 +107,24 @@ class FaceInfluence:
             If the edges do not increase or lie off the face.
         """
         places = np.asarray(edges, dtype=float)
-        slack = _ROUNDING * self.face_width
-        inside = places.size > 1 and places[0] >= -slack and places[-1] <= self.face_width + slack
-        if places.ndim != 1 or not inside or np.any(np.diff(places) <= 0.0):
+        half = 0.5 * self.face_width
+        most = np.abs(places).max(initial=0.0)
+        if (
+            places.ndim != 1
+            or places.size < 2
+            or most > half * (1.0 + _ROUNDING)
+            or np.any(np.diff(places) <= 0.0)
+        ):
             raise InputError(
-                f"edges of slices from {places.min() * 1e3:.6g} to {places.max() * 1e3:.6g} mm",
+                f"edges of slices up to {most * 1e3:.6g} mm from the middle of the face",
                 where=Argument("edges"),
                 why=f"They increase, two or more, within the face of {self.face_width * 1e3:.6g} "
                 "mm",
                 remedy="Cut the common face of the pair into slices",
             )
-        places = np.clip(places, 0.0, self.face_width)
-        if rising:
-            places = self.face_width - places[::-1]
-        integrals = bspline_integrals(self.knots, places)
-        if rising:
-            integrals = integrals[::-1]
+        order = -1 if rising else 1
+        counted = np.clip(half + (order * places)[::order], 0.0, self.face_width)
+        integrals = bspline_integrals(self.knots, counted)[::order]
         tables = np.concatenate([self.self_compliance[None], self.cross_compliance])
         over_face = integrals @ tables @ integrals.T
         radii = self._radius_knots
@@ -129,7 +133,7 @@ class FaceInfluence:
         coefficients = np.tensordot(first, inverse, (1, 1))
         return SlicedInfluence(
             radius_knots=radii,
-            widths=np.diff(np.asarray(edges, dtype=float)),
+            widths=np.diff(places),
             coefficients=np.ascontiguousarray(coefficients),
         )
 
@@ -162,7 +166,8 @@ class SlicedInfluence:
             ``[phase, displaced, loaded]``, contacts ``c = pair * slices + slice``: mean
             displacement of a slice per load per width of another, without the local compression.
         radii : array (p, pairs, slices) [m]
-            Radius of curvature of each contact; beyond the nodes, the nearest node counts.
+            Radius of curvature of each contact, of a ring with any sign; beyond the nodes, the
+            nearest node counts.
         sense : int
             1 where the next pair has the larger radii of curvature on this gear, otherwise -1.
 

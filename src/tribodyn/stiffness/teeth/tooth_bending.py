@@ -42,7 +42,7 @@ def load_point(gear: SpurGear, curvature_radius: Array | float) -> LoadPoint:
     """Find the load on the tooth when the contact has a given radius of curvature.
 
     The load is tangent to the base circle, so its angle to the normal of the tooth axis is the
-    roll angle less the half angle of the tooth on the base circle.
+    roll angle, of a ring negative, less the half angle of the tooth on the base circle.
 
     Parameters
     ----------
@@ -82,8 +82,8 @@ def load_point(gear: SpurGear, curvature_radius: Array | float) -> LoadPoint:
     rho = np.asarray(curvature_radius, dtype=float)
     base = gear.base_radius
     radius = np.hypot(base, rho)
-    load_angle = rho / base - gear.base_half_angle
-    off_axis = np.arctan2(rho, base) - load_angle
+    load_angle = gear.sign * rho / base - gear.base_half_angle
+    off_axis = gear.sign * np.arctan2(rho, base) - load_angle
     half_thickness = radius * np.sin(off_axis)
     return LoadPoint(
         height=radius * np.cos(off_axis),

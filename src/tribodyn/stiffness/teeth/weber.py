@@ -97,7 +97,7 @@ def local_terms(
     nu = material.poissons_ratio
     reduced = radii[0] * radii[1] / (radii[0] + radii[1])
     square = 8.0 * reduced / (np.pi * effective_modulus(material, material))
-    depths = np.stack([load_point(g, r).depth for g, r in zip(gears, radii, strict=True)])
+    depths = np.stack([load_point(g, np.abs(r)).depth for g, r in zip(gears, radii, strict=True)])
     terms = np.log(2.0 * depths) - 0.5 * np.log(square) - nu / (2.0 * (1.0 - nu))
     return terms, 2.0 * (1.0 - nu**2) / (np.pi * material.youngs_modulus)
 
