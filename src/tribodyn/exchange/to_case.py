@@ -1,4 +1,4 @@
-"""Convert a spur stage of a REXS model to a case."""
+"""Convert an external stage of a REXS model, spur or helical, to a case."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def case_from_rexs(
     *,
     changes: dict[str, Any] | None = None,
 ) -> Case:
-    """Case of a spur stage of a gearbox model under one load.
+    """Case of an external stage of a gearbox model under one load.
 
     Parameters
     ----------
@@ -65,14 +65,14 @@ def case_from_rexs(
     Raises
     ------
     InputError
-        If the stage is helical, has a ring gear or is part of a planetary stage, or speed and
+        If the stage has a ring gear or is part of a planetary stage, or speed and
         torque are not known.
     """
     return _case(model, model.stage(stage), model.load(load_case), dict(changes or {}))
 
 
 def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]) -> Case:
-    _require_spur(model, stage)
+    _require_external(model, stage)
     if "lubricant.temperature" in changes:  # the viscosity of the file depends on it
         load = replace(load, oil_temperature=_kelvin(changes["lubricant.temperature"]))
     file_values, notes = _values(model, stage, load)
@@ -119,17 +119,14 @@ def _kelvin(value: Any) -> float:
         raise InputError(f'lubricant.temperature = "{value}"', "", str(error)) from None
 
 
-def _require_spur(model: GearboxModel, stage: Stage) -> None:
+def _require_external(model: GearboxModel, stage: Stage) -> None:
     what = ""
     if stage.planetary:
         what = f"stage {stage.id} is part of a planetary stage"
     elif min(stage.gear_1.teeth, stage.gear_2.teeth) < 0:
         what = f"stage {stage.id} has a ring gear"
-    elif max(abs(stage.gear_1.helix_angle), abs(stage.gear_2.helix_angle)) > 1e-6:
-        angle = math.degrees(abs(stage.gear_1.helix_angle))
-        what = f"stage {stage.id} is helical, with a helix angle of {angle:g} deg"
     if what:
-        why = "Only external spur pairs on fixed axes are supported"
+        why = "Only external pairs on fixed axes are supported"
         remedy = "List the data of all stages by the same command without --out"
         raise InputError(what, model.path, why, remedy)
 
@@ -150,6 +147,10 @@ def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, An
         **rack_values(model, pinion, wheel),
         **material_values(model, pinion.id, model.shaft_of(pinion.id)),
     }
+    if pinion.helix_angle:
+        data["gears.helix_angle"] = abs(pinion.helix_angle)
+        for name, gear in (("pinion", pinion), ("wheel", wheel)):
+            data[f"gears.{name}.hand"] = "right" if gear.helix_angle > 0.0 else "left"
     for name, gear in (("pinion", pinion), ("wheel", wheel)):
         data |= {
             f"gears.{name}.{key}": value

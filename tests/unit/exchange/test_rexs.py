@@ -59,8 +59,10 @@ def test_both_forms_of_one_gearbox_give_the_figures_of_its_data_sheet(name: str)
         assert load.oil_temperature == pytest.approx(343.15)
     assert any("tip_diameter = 1 mm" in remark for remark in model.remarks)
     assert two.gear_1.tip_diameter is None
-    with pytest.raises(InputError, match="stage 19 is helical, with a helix angle of 21 deg"):
-        case_from_rexs(model, 19)
+    pair = case_from_rexs(model, 19).gear_pair
+    assert (pair.hand, pair.wheel.hand) == ("right", "left")
+    ratios = pair.transverse_contact_ratio, pair.overlap_ratio
+    assert ratios == pytest.approx((1.450202, 1.267467), abs=2e-4)
 
 
 def test_xml_and_json_say_the_same() -> None:

@@ -9,6 +9,7 @@ import pytest
 import tribodyn as td
 from tribodyn.cli import call
 from tribodyn.errors import InputError
+from tribodyn.exchange import case_from_rexs, read_rexs, write_rexs
 from tribodyn.study.case.read import read_case
 
 CASE = """
@@ -137,3 +138,13 @@ def test_hand_of_the_pinion_alone() -> None:
     assert read_case(by_wheel).gear_pair.hand == "right"
     again = read_case(read_case(left).to_toml()).gear_pair
     assert again == pair
+
+
+def test_rexs_has_the_helix_with_the_sign_of_its_hand(tmp_path: Path) -> None:
+    case = read_case(CASE.replace("teeth = -72", 'teeth = 72\nhand = "right"'))
+    path = tmp_path / "helical.rexs"
+    write_rexs(case, path)
+    stage = read_rexs(path).stages[0]
+    angles = stage.gear_1.helix_angle, stage.gear_2.helix_angle
+    assert angles == pytest.approx((-math.radians(15.0), math.radians(15.0)))
+    assert case_from_rexs(read_rexs(path)).gear_pair == case.gear_pair
