@@ -231,11 +231,9 @@ def compare(
     require_between("frequency_tolerance", frequency_tolerance, 0.0, 0.2)
     _refuse(measured, channels)
     computed_frequency = _frequency(data)
-    frequency = (
-        computed_frequency
-        if mesh_frequency is None
-        else require_number("mesh_frequency", mesh_frequency)
-    )
+    frequency = computed_frequency
+    if mesh_frequency is not None:
+        frequency = require_number("mesh_frequency", mesh_frequency)
     require_positive("mesh_frequency", frequency, "Hz")
     signals = {name: _computed(data, signal, count) for name, signal in channels.items()}
     factors = {
