@@ -57,7 +57,7 @@ def machine_from_rexs(
         Number of the load case that is the operating point; the first by default.
     changes : dict, optional
         Values by dotted key that replace those of the file, as in :meth:`MachineCase.replace`;
-        a helical stage needs one: ``{"meshes.stage_19.stiffness": 5e8}``.
+        a stage with internal teeth needs one: ``{"meshes.stage_19.stiffness": 5e8}``.
     by : str
         Source of the changes, for messages; then a bare number for a dimension is refused.
 
@@ -71,7 +71,7 @@ def machine_from_rexs(
     Raises
     ------
     InputError
-        Naming each stage that needs a mesh stiffness (helical, internal) or is not computed
+        Naming each stage that needs a mesh stiffness (internal teeth) or is not computed
         (planetary, bevel, worm), or if the machine cannot be composed.
     """
     changes = dict(changes or {})
@@ -128,20 +128,16 @@ def _without_stiffness(model: GearboxModel, changes: dict[str, Any]) -> list[Pro
     for stage in model.stages:
         key = f"meshes.stage_{stage.id}.stiffness"
         first, second = stage.gear_1, stage.gear_2
-        what = ""
-        if min(first.teeth, second.teeth) < 0:
-            what = "has internal teeth"
-        elif abs(first.helix_angle) > _SPUR:
-            what = f"is helical, {math.degrees(abs(first.helix_angle)):g} deg"
-        if not what or stage.planetary or changes.get(key) is not None:
+        external = min(first.teeth, second.teeth) > 0
+        if external or stage.planetary or changes.get(key) is not None:
             continue
         names = [f"gear_{g.id}" + (f' "{g.name}"' if g.name else "") for g in (first, second)]
         teeth = f"z = {first.teeth} / {second.teeth}"
         problems.append(
             Problem(
-                f"stage_{stage.id} {what} ({' and '.join(names)}, {teeth})",
+                f"stage_{stage.id} has internal teeth ({' and '.join(names)}, {teeth})",
                 model.path,
-                "Teeth of external spur gears are computed; this mesh needs its stiffness",
+                "Teeth of external gears are computed; this mesh needs its stiffness",
                 f'Give it along the transverse line of action: --set "{key}=5e8 N/m"',
             )
         )
@@ -302,10 +298,10 @@ def _models(
     model: GearboxModel, load: Load, changes: dict[str, Any]
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """Tables of models that all meshes share, and what is assumed for their teeth."""
-    spur = [s for s in model.stages if f"meshes.stage_{s.id}.stiffness" not in changes]
+    computed = [s for s in model.stages if f"meshes.stage_{s.id}.stiffness" not in changes]
     values: dict[str, Any] = {"dynamics.backlash": ASSUMED["dynamics.backlash"][0]}
     notes = {"dynamics.backlash": NOT_THERE + str(ASSUMED["dynamics.backlash"][1])}
-    if spur:
+    if computed:
         values |= {k: v for k, v in MODELS.items() if not k.startswith("dynamics.")}
         oil, oil_notes = oil_values(model, load)
         values |= oil
@@ -313,7 +309,7 @@ def _models(
         for key in () if oil else ("lubricant.name", "lubricant.temperature"):
             values[key], reason = ASSUMED[key]
             notes[key] = NOT_THERE + str(reason)
-    for stage in spur:
+    for stage in computed:
         for gear in (stage.gear_1, stage.gear_2):
             if gear.roughness_ra is None:
                 values[f"gears.gear_{gear.id}.roughness_ra"] = 0.4e-6

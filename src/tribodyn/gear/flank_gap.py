@@ -299,6 +299,15 @@ def twist_gap(
     return np.asarray(gear.modification.flank_twist * place * along)
 
 
+def _tilted_path(pair: SpurPair, path: Array) -> Array | float:
+    """Face width that makes the same gap, where the axes tilt, as a distance along the path."""
+    if pair.base_helix_angle == 0.0:
+        return 0.0
+    sense = 1.0 if (pair.hand == "right") == (pair.driver == "pinion") else -1.0
+    pitch_point = pair.pinion.base_radius * math.tan(pair.operating_pressure_angle)
+    return np.asarray(sense * math.tan(pair.base_helix_angle) * (path - pitch_point))
+
+
 def flank_gap(
     pair: SpurPair,
     pinion_curvature_radius: ArrayLike,
@@ -328,7 +337,9 @@ def flank_gap(
     -----
     Sum of what is missing on both flanks, less what a measured map has in excess, and misalignment
     times y/b with the common face width b. The twist C of a flank is C (x - 1/2) y/b, with x from
-    zero at its lowest used point to one at its tip.
+    zero at its lowest used point to one at its tip. Axes that tilt in the plane of action move the
+    inclined flanks of helical gears along the axes, too: to the y of a misalignment is added the
+    distance from the pitch point along the path times tan(beta_b).
 
     Examples
     --------
@@ -349,7 +360,7 @@ def flank_gap(
     require_one_shape(
         pinion_curvature_radius=radii[0], wheel_curvature_radius=radii[1], face_position=face
     )
-    gap = pair.misalignment * face / pair.common_face_width
+    gap = pair.misalignment * (face + _tilted_path(pair, radii[0])) / pair.common_face_width
     length = default_relief_length(pair)
     for gear, flank, radius in zip(
         (pair.pinion, pair.wheel),

@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 from tribodyn.machine.machine import Machine
-from tribodyn.machine.plane_law import plane_coordinates, projected
+from tribodyn.machine.plane_law import coordinate_count, pair_coordinates, projected
 from tribodyn.machine.reduction import machine_structure
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
@@ -102,7 +102,8 @@ def _in_space(
     """Force law of computed teeth over the coordinates; its contacts are numbered from first."""
     machine, mesh = structure.machine, structure.machine.meshes[name]
     drives = machine.kinematics.meshes[name].driver == mesh.gears[0]
-    onto = plane_coordinates(machine.directions[name], first_drives=drives)
+    size = coordinate_count(mesh.contacts[0])
+    onto = pair_coordinates(machine.directions[name], size, first_drives=drives)
     onto = onto @ np.vstack([structure.gear(gear) for gear in mesh.gears])
     clock = {"cycles": machine.clock.cycles[name], "offset": mesh.offset}
     contacts = [projected(contact, onto, **clock) for contact in mesh.contacts]

@@ -16,7 +16,7 @@ from tribodyn.machine.fields import check_number, quoted
 
 Hand = Literal["right", "left"]
 #: Phases over which an entry is averaged.
-_PHASES = (np.arange(256) + 0.5) / 256
+PHASES = (np.arange(256) + 0.5) / 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,10 +55,13 @@ class Mesh:
         The friction force over the mesh force and its moments on both gears, over the mesh phase:
         ``mesh_table.functions()``, or an object with the same three functions.
     contacts, frictions : sequence of Contact, of LoadFriction
-        Force law of computed teeth in the plane of the gears, in place of damping, error, gap and
-        friction; ``stiffness`` is then that of the static balance. Coordinates: x across the line
-        of action in the direction of the surface speeds, y along it towards the driven gear, and
-        rotation in the running sense, of the first and of the second gear.
+        Force law of computed teeth, in place of damping, error, gap and friction; ``stiffness`` is
+        then that of the static balance. Coordinates: x across the line of action in the direction
+        of the surface speeds, y along it towards the driven gear, and rotation in the running
+        sense, of the first and of the second gear. With twelve coordinates, as those of
+        :func:`tribodyn.dynamics.helical12`, the force acts at the centre of the load, which moves
+        over path and face: x, y, z along the axes in the running sense of the first gear, the
+        rotations about x and y, and that in the running sense.
     events : tuple of float
         Mesh phases at which an entry jumps.
     offset : float
@@ -138,7 +141,7 @@ class Mesh:
 
 def mean_over_phase(entry: Any) -> float:
     """Mean of an entry of a mesh over its phase."""
-    return float(np.mean(entry(_PHASES) if varies(entry) else entry))
+    return float(np.mean(entry(PHASES) if varies(entry) else entry))
 
 
 def _check_entry(mesh: Mesh, name: str, positive: bool | None) -> None:

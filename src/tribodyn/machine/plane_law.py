@@ -1,8 +1,9 @@
-"""Contacts of a plane pair of gears in space, and over the coordinates of a structure.
+"""Contacts of a pair of gears in space, and over the coordinates of a structure.
 
-A plane pair has the coordinates x (across the line of action, in the direction of the surface
-speeds), y (along it, towards the driven gear) and theta (in the running sense) of its first gear,
-then those of its second gear.
+A pair has the coordinates x (across the line of action, in the direction of the surface speeds),
+y (along it, towards the driven gear) and theta (in the running sense) of its first gear, then those
+of its second gear. Where the force has an axial part or moves over the face, each gear has x, y, z
+(along the axes, in the sense in which the first gear turns), rotations about x and y, and theta.
 """
 
 from __future__ import annotations
@@ -14,21 +15,53 @@ import numpy as np
 
 from tribodyn.dynamics import Contact, LoadFriction
 from tribodyn.machine.graph.directions import MeshDirection
+from tribodyn.machine.mesh import PHASES, Mesh
 from tribodyn.types import Array
 
 T = TypeVar("T", Contact, LoadFriction)
+#: Coordinates of a pair in space that a plane pair has.
+_PLANE = [0, 1, 5, 6, 7, 11]
+#: Number of coordinates of a pair in space.
+SPATIAL = 12
 
 
-def plane_coordinates(direction: MeshDirection, *, first_drives: bool) -> Array:
-    """Coordinates of a plane pair from those of both gear nodes in space, (6, 12)."""
+def pair_coordinates(direction: MeshDirection, size: int, *, first_drives: bool) -> Array:
+    """The 6 or 12 coordinates of a pair from those of both gear nodes in space, (size, 12)."""
     along = np.array([0.0, *direction.normal[1:]]) * (1.0 if first_drives else -1.0)
-    rows = np.zeros((6, 12))
+    axis = np.array([direction.senses[0], 0.0, 0.0])
+    rows = np.zeros((SPATIAL, SPATIAL))
     for gear, sense in enumerate(direction.senses):
         first = 6 * gear
-        rows[3 * gear, first : first + 3] = direction.across
-        rows[3 * gear + 1, first : first + 3] = along
-        rows[3 * gear + 2, first + 3] = sense
-    return rows
+        rows[first : first + 3, first : first + 3] = direction.across, along, axis
+        rows[first + 3 : first + 5, first + 3 : first + 6] = direction.across, along
+        rows[first + 5, first + 3] = sense
+    return rows if size == SPATIAL else rows[_PLANE]
+
+
+def coordinate_count(part: Contact | LoadFriction) -> int:
+    """Number of coordinates of the directions of a contact or of friction."""
+    entry: Any = part.direction
+    return int(np.shape(entry(np.zeros(1)) if callable(entry) else entry)[-1])
+
+
+def mean_direction(contact: Contact) -> Array:
+    """Mean over the mesh phase of the direction of a contact."""
+    entry: Any = contact.direction
+    return np.asarray(entry(PHASES).mean(axis=0) if callable(entry) else entry, dtype=float)
+
+
+def with_exchanged_gears(mesh: Mesh) -> Mesh:
+    """External mesh whose contacts were those of its second and its first gear, in this order."""
+
+    def exchanged(part: T) -> T:
+        size = coordinate_count(part)
+        rows = np.roll(np.eye(size), size // 2, axis=0)
+        if size == SPATIAL:  # z follows the rotation of the first gear
+            rows[[2, 8]] *= -1.0
+        return projected(part, rows)
+
+    contacts, frictions = map(exchanged, mesh.contacts), map(exchanged, mesh.frictions)
+    return replace(mesh, contacts=tuple(contacts), frictions=tuple(frictions))
 
 
 def projected(part: T, onto: Array, **changes: Any) -> T:
@@ -41,6 +74,7 @@ def projected(part: T, onto: Array, **changes: Any) -> T:
 def _entry(entry: Any, onto: Array) -> Any:
     if not callable(entry):
         return np.asarray(entry, dtype=float) @ onto
-    if getattr(entry, "onto", None) is not None:  # a table stays a table
-        return type(entry)(entry.grid, entry.values, entry.onto @ onto)
+    if hasattr(entry, "onto"):  # a table stays a table
+        onto = onto if entry.onto is None else entry.onto @ onto
+        return type(entry)(entry.grid, entry.values, onto)
     return lambda phase: np.asarray(entry(phase)) @ onto

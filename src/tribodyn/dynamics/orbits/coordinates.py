@@ -31,6 +31,8 @@ from tribodyn.errors import InputError, warn
 from tribodyn.types import Array
 
 _RANK = 1e-9
+#: Directions of a contact over the clock that are replaced by a basis of them.
+_MANY = 4096
 #: Share of the acceleration by the forces in free motions above which a warning is issued.
 _UNBALANCED = 1e-3
 
@@ -168,7 +170,10 @@ def _used_directions(*parts: Array) -> Array:
     for part in parts:
         for number in range(part.shape[-2]):
             contact = unrepeated(part[..., number, :], 1).reshape(-1, part.shape[-1])
-            rows.append(contact if np.ptp(contact, axis=0).any() else contact[:1])
+            varying = np.ptp(contact, axis=0).any()
+            if varying and len(contact) > _MANY:  # rows of the same space, with the same lengths
+                contact = np.linalg.qr(contact, mode="r")
+            rows.append(contact if varying else contact[:1])
     return np.asarray(np.unique(np.vstack(rows), axis=0))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,12 @@ from tribodyn.machine.fields import check_number
 from tribodyn.machine.graph.kinematics import mean_stiffness
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
+from tribodyn.machine.plane_law import (
+    SPATIAL,
+    coordinate_count,
+    mean_direction,
+    pair_coordinates,
+)
 from tribodyn.types import Array
 
 #: Points over the face: an odd number, for the rule of Simpson.
@@ -144,19 +151,81 @@ class FaceLaw:
         return force, moment, (levers * carrying) @ levers.T
 
 
-def face_laws(machine: Machine) -> dict[str, FaceLaw]:
-    """Laws of slices of all meshes of a machine, for :func:`static_balance`.
+@dataclass(frozen=True, eq=False)
+class LoadCenterLaw:
+    """Law of a mesh about a misalignment at which the centre of its load is known.
+
+    Parameters
+    ----------
+    stiffness : float
+        Mean mesh stiffness of the full face [N/m].
+    face_width : float
+        Common face width [m].
+    slope : float
+        Increase of the compression over x with which the tooth contact was computed [1].
+    lever : float
+        Moment of the load about mid face over the load, at this slope [m].
+    error : float
+        Mean displacement error, subtracted from the compression [m].
+
+    Notes
+    -----
+    Away from that slope the moment changes as that of :class:`FaceLaw` with the full face in
+    contact, so that an iteration with the tooth contact converges to the moment of the latter.
+
+    Examples
+    --------
+    >>> law = LoadCenterLaw(stiffness=4e8, face_width=0.02, slope=1e-4, lever=1e-3)
+    >>> force, moment, _ = law(10e-6, 1e-4)
+    >>> round(force, 6), round(moment, 6)
+    (4000.0, 4.0)
+    """
+
+    stiffness: float
+    face_width: float
+    slope: float
+    lever: float
+    error: float = 0.0
+
+    def __call__(self, compression: float, slope: float) -> tuple[float, float, Array]:
+        """Force, moment about mid face, and their derivatives, as :class:`FaceLaw`."""
+        change = slope - self.slope
+        force = self.stiffness * (compression - self.error + self.lever * change)
+        tilting = self.stiffness * self.face_width**2 / 12.0
+        levers = np.array([1.0, self.lever])
+        tangent = self.stiffness * np.outer(levers, levers) + np.diag([0.0, tilting])
+        return force, force * self.lever + tilting * change, tangent
+
+
+def load_lever(machine: Machine, name: str) -> float:
+    """Mean moment of the load of a mesh with twelve coordinates about mid face, over it [m]."""
+    mesh, direction = machine.meshes[name], machine.directions[name]
+    drives = machine.kinematics.meshes[name].driver == mesh.gears[0]
+    mean = mean_direction(mesh.contacts[0])
+    in_space = mean @ pair_coordinates(direction, mean.size, first_drives=drives)
+    turn = np.cross([1.0, 0.0, 0.0], direction.normal)
+    return float(turn @ (in_space[3:6] - direction.direction[3:6]))
+
+
+def face_laws(
+    machine: Machine, misalignment: Mapping[str, float] | None = None
+) -> dict[str, FaceLaw | LoadCenterLaw]:
+    """Laws of all meshes of a machine over their face, for :func:`static_balance`.
 
     Parameters
     ----------
     machine : Machine
         The machine.
+    misalignment : mapping of str to float, optional
+        Increase of the compression over the face along x with which the contacts of meshes were
+        computed [m].
 
     Returns
     -------
     dict
-        :class:`FaceLaw` by mesh, of its mean stiffness, mean error and common face width, without
-        gap.
+        :class:`LoadCenterLaw` of meshes whose contacts know the centre of the load, with twelve
+        coordinates; of others :class:`FaceLaw` of the mean stiffness, mean error and common face
+        width, without gap.
 
     Examples
     --------
@@ -169,9 +238,14 @@ def face_laws(machine: Machine) -> dict[str, FaceLaw]:
     >>> face_laws(machine)["first"].face_width
     0.02
     """
-    laws = {}
+    laws: dict[str, FaceLaw | LoadCenterLaw] = {}
     for name, mesh in machine.meshes.items():
         gears = machine.gears[mesh.gears[0]], machine.gears[mesh.gears[1]]
         width = min(gear.face_width for gear in gears)
-        laws[name] = FaceLaw(mean_stiffness(mesh, gears), width, error=mean_over_phase(mesh.error))
+        stiffness, error = mean_stiffness(mesh, gears), mean_over_phase(mesh.error)
+        if mesh.contacts and coordinate_count(mesh.contacts[0]) == SPATIAL:
+            slope = (misalignment or {}).get(name, 0.0) / width
+            laws[name] = LoadCenterLaw(stiffness, width, slope, load_lever(machine, name), error)
+        else:
+            laws[name] = FaceLaw(stiffness, width, error=error)
     return laws

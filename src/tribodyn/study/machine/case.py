@@ -9,10 +9,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from tribodyn.errors import InputError, Problem
 from tribodyn.machine import Bearing, Gear, Housing, Machine, Mesh, Operation, Shaft
+from tribodyn.machine.graph.mesh_checks import gear_hand
+from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.user_input import Source, spread_problem, unsound, without_spread
@@ -21,10 +21,12 @@ from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.pair_cases import (
     MESH_KEYS,
     SHARED,
-    helical_problem,
+    constant_law,
     mesh_tables,
     option_of,
     pair_case,
+    pinion_and_wheel,
+    ring_problem,
 )
 from tribodyn.study.machine.read_parts import (
     in_si,
@@ -254,12 +256,8 @@ class MachineCase:
                 problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
                 problems.append((f"meshes.{name}.gears", problem))
             rings = [gear for gear in names if not missing and self.gears[gear].is_ring]
-            if table.stiffness is None:
-                ring = rings[0] if rings else None
-                unknown_teeth = helical_problem({"helix_angle": table.helix_angle}, ring)
-                if unknown_teeth is not None:
-                    key = f"meshes.{name}.{'gears' if ring else 'helix_angle'}"
-                    problems.append((key, unknown_teeth))
+            if table.stiffness is None and rings:
+                problems.append((f"meshes.{name}.gears", ring_problem(rings[0])))
         if problems:
             raise InputError((self.source or Source()).place(problems))
 
@@ -290,6 +288,9 @@ class MachineCase:
     def _names(self, mesh: str) -> tuple[str, str]:
         first, second = self.data["meshes"][mesh]["gears"]
         return first, second
+
+    def _pinion_and_wheel(self, mesh: str) -> tuple[str, str]:
+        return pinion_and_wheel(self._names(mesh), self.gears)
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
@@ -371,27 +372,28 @@ class MachineCase:
         values = {key: getattr(table, key) for key in _OF_MESH}
         values["pressure_angle"] = table.normal_pressure_angle
         if (law := self._mesh_dynamics.get(name)) is not None:
-            values |= _constant_law(law)
+            values |= constant_law(law)
         if values["center_distance"] is None:
             values["center_distance"] = self._center_distances.get(name)
-        return Mesh(self._names(name), **{**values, **fields})
+        mesh = Mesh(self._names(name), **{**values, **fields})
+        return mesh if mesh.gears == self._pinion_and_wheel(name) else with_exchanged_gears(mesh)
 
     @cached_property
     def _center_distances(self) -> dict[str, float]:
-        """Centre distances of pairs of spur gears from their profile shifts [m]."""
-        load = self.operating_point
-        run: dict[str, Any] = {"driver": 0, "speed": abs(load.speed) or 1.0}
-        run["torque"] = abs(load.torque) or 1.0
-        return {
-            name: pair_case(
-                self.data, name, self._names(name), self.source, **run
-            ).gear_pair.center_distance
-            for name in self.meshes_with_teeth
-            if self._mesh_tables[name].center_distance is None
-        }
+        """Centre distances of pairs of gears from their profile shifts [m]."""
+        distances = {}
+        for name in self.meshes_with_teeth:
+            if self._mesh_tables[name].center_distance is None:
+                names = self._pinion_and_wheel(name)
+                parts = self.data, name, names, self.source
+                pair = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
+                distances[name] = pair.gear_pair.center_distance
+        return distances
 
     def pair(self, mesh: str, load: LoadCase, misalignment: float = 0.0) -> Case:
-        """Pair of a mesh under a load case, as a case of its own; its first gear is the pinion.
+        """Pair of a mesh under a load case, as a case of its own.
+
+        Its pinion is the gear with fewer teeth.
 
         Parameters
         ----------
@@ -400,7 +402,7 @@ class MachineCase:
         load : LoadCase
             Speed and torque of the machine.
         misalignment : float
-            Difference of the gap over the face [m].
+            Increase of the compression over the common face width along x [m].
 
         Returns
         -------
@@ -412,17 +414,19 @@ class MachineCase:
             If the gears of the mesh have no tooth contact that is computed.
         """
         machine = self.machine(load)
-        names, flow = self._names(mesh), machine.kinematics
-        mesh_load, shaft = flow.meshes[mesh], flow.shafts[self.gears[names[0]].shaft]
+        names, flow = self._pinion_and_wheel(mesh), machine.kinematics
+        part, mesh_load = machine.meshes[mesh], flow.meshes[mesh]
+        pinion, speed = names[0], flow.shafts[self.gears[names[0]].shaft].speed
         return pair_case(
             self.data,
             mesh,
             names,
             self.source,
-            driver=names.index(mesh_load.driver),
-            speed=abs(shaft.speed),
-            torque=abs(mesh_load.torque[0]),
-            misalignment=misalignment,
+            driver=mesh_load.driver,
+            operation=(abs(speed), abs(mesh_load.torque[part.gears.index(pinion)])),
+            hand=gear_hand(pinion, self.gears, part),
+            # The gap grows along the axis about which the pinion turns.
+            misalignment=misalignment if speed < 0.0 else -misalignment,
         )
 
     def replace(self, changes: Mapping[str, Any], *, by: str = "") -> MachineCase:
@@ -481,18 +485,6 @@ class MachineCase:
         parts = repr(self.machine()).removeprefix("Machine(").removesuffix(")")
         loads = f", {count} load case{'s' * (count != 1)}" if count else ""
         return f'MachineCase("{self.title}": {parts}{loads})'
-
-
-def _constant_law(law: Any) -> dict[str, Any]:
-    """Damping, backlash and error of a mesh with a constant stiffness."""
-    size, shift = law.transmission_error_amplitude, law.transmission_error_phase
-    has_damping = law.mesh_damping is not None
-    return {
-        "gap": 0.5 * (law.backlash or 0.0),
-        "damping": law.mesh_damping if has_damping else 0.0,
-        "damping_ratio": None if has_damping else law.mesh_damping_ratio,
-        "error": (lambda phase: size * np.cos(2.0 * np.pi * phase + shift)) if size else 0.0,
-    }
 
 
 def _read(groups: Mapping[str, Any], group: str, read: Any, problems: KeyedProblems) -> Any:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tribodyn.errors import Problem, did_you_mean
 from tribodyn.machine import ROLLING_BEARINGS
@@ -18,6 +20,7 @@ from tribodyn.study.machine.read_parts import rolling_options
 from tribodyn.study.machine.tables import TABLES, MeshDynamics
 
 if TYPE_CHECKING:
+    from tribodyn.machine import Gear
     from tribodyn.model import Option
     from tribodyn.study.machine.case import MachineCase
 
@@ -26,7 +29,10 @@ SHARED = ("material", "lubricant", "film", "stiffness", "friction")
 #: Keys of ``[dynamics]`` of a pair that belong to its mesh.
 MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damping_ratio"))
 #: The pair vibrates in the machine, not on supports of its own.
-_STRUCTURE = {"model": "spur-6dof", "bearing_stiffness": Plain(1e9)}
+_STRUCTURES: dict[str, dict[str, Any]] = {
+    "spur": {"model": "spur-6dof", "bearing_stiffness": Plain(1e9)},
+    "helical": {"model": "helical-12dof"},
+}
 _ROLES = ("pinion", "wheel")
 
 
@@ -35,7 +41,7 @@ class PairSource(Source):
     """Origin of the values of a pair: keys of the machine in place of those of the pair."""
 
     mesh: str = ""
-    gears: tuple[str, str] = ("", "")
+    gears: tuple[str, str] = ("", "")  #: pinion and wheel
     mesh_keys: frozenset[str] = frozenset()  #: keys inside the table of the mesh
 
     def key(self, key: str) -> str:
@@ -60,6 +66,13 @@ class PairSource(Source):
         return Source(self.name, self.find, self.replaced).where(self.key(key))
 
 
+def pinion_and_wheel(names: Sequence[str], gears: Mapping[str, Gear]) -> tuple[str, str]:
+    """Gears of a mesh in the order pinion, wheel; of equal gears the first is the pinion."""
+    first, second = names
+    teeth = abs(gears[first].teeth), abs(gears[second].teeth)
+    return (first, second) if teeth[0] <= teeth[1] else (second, first)
+
+
 def mesh_tables(body: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
     """Tables of models inside the table of a mesh."""
     return {name: body[name] for name in SHARED if isinstance(body.get(name), Mapping)}
@@ -71,12 +84,13 @@ def pair_case(
     names: tuple[str, str],
     source: Source | None,
     *,
-    driver: int,
-    speed: float,
-    torque: float,
+    driver: str,
+    operation: tuple[float, float],
+    hand: str = "right",
     misalignment: float = 0.0,
 ) -> Case:
-    """Case of the pair of a mesh; its first gear is the pinion, of this speed and torque."""
+    """Case of the pair of a mesh; hand, speed and torque are those of its pinion."""
+    speed, torque = operation
     body = data["meshes"][mesh]
     inner = mesh_tables(body)
     tables = {
@@ -88,7 +102,9 @@ def pair_case(
     mesh_dynamics = {k: v for k, v in body.items() if k in MESH_KEYS}
     pair = {k: v for k, v in body.items() if k in gears.Gears.fields and k not in inner}
     pair.setdefault("normal_pressure_angle", "20 deg")
-    pair["driver"] = _ROLES[driver]
+    pair["driver"] = _ROLES[names.index(driver)]
+    if "helix_angle" in pair:
+        pair["hand"] = hand
     if misalignment:
         pair["misalignment"] = Plain(misalignment)
     for role, name in zip(_ROLES, names, strict=True):
@@ -102,7 +118,11 @@ def pair_case(
         title=f"{data.get('title', 'Machine')}: {mesh}",
         gears=pair,
         operation={"speed": Plain(speed), "torque": Plain(torque), "speed_of": "pinion"},
-        dynamics={**_STRUCTURE, **shared_dynamics, **mesh_dynamics},
+        dynamics={
+            **_STRUCTURES["helical" if body.get("helix_angle") else "spur"],
+            **shared_dynamics,
+            **mesh_dynamics,
+        },
         **tables,
     )
 
@@ -113,12 +133,22 @@ def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) ->
     return {**({} if selector in of_mesh else shared), **of_mesh}
 
 
-def helical_problem(body: Mapping[str, Any], ring: str | None) -> Problem | None:
-    """Problem of teeth whose contact is not computed: helical teeth, and those of a ring."""
-    if ring is None and not body.get("helix_angle"):
-        return None
-    what = f'gear "{ring}" has internal teeth' if ring else "the teeth are helical"
-    why = "The tooth contact of external spur gears is computed; other teeth need their stiffness"
+def constant_law(law: Any) -> dict[str, Any]:
+    """Damping, backlash and error of a mesh with a constant stiffness."""
+    size, shift = law.transmission_error_amplitude, law.transmission_error_phase
+    has_damping = law.mesh_damping is not None
+    return {
+        "gap": 0.5 * (law.backlash or 0.0),
+        "damping": law.mesh_damping if has_damping else 0.0,
+        "damping_ratio": None if has_damping else law.mesh_damping_ratio,
+        "error": (lambda phase: size * np.cos(2.0 * np.pi * phase + shift)) if size else 0.0,
+    }
+
+
+def ring_problem(ring: str) -> Problem:
+    """Problem of a ring, whose tooth contact is not computed."""
+    what = f'gear "{ring}" has internal teeth'
+    why = "The tooth contact of external gears is computed; other teeth need their stiffness"
     remedy = 'Give the mesh its stiffness along the line of action: stiffness = "5e8 N/m"'
     return Problem(what, "", why, remedy)
 
@@ -172,7 +202,10 @@ def _pair_key(
 ) -> tuple[Case, str] | None:
     """Pair of gears that has a value of the machine, and its key there."""
     for mesh in case.meshes_with_teeth:
-        pair, gears = case.pair(mesh, case.operating_point), case.data["meshes"][mesh]["gears"]
+        pair, gears = (
+            case.pair(mesh, case.operating_point),
+            pinion_and_wheel(case.data["meshes"][mesh]["gears"], case.gears),
+        )
         if group in (*SHARED, "dynamics"):
             return pair, ".".join((group, *names, name))
         if group == "meshes" and names[:1] == [mesh]:

@@ -117,7 +117,7 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
             for name, (_, _, of_mesh) in teeth.items()
             for warning in of_mesh
         ]
-        static = _static(case.machine(load, **laws))
+        static = _static(case.machine(load, **laws), misalignment)
         changes = [
             abs(static.meshes[name].misalignment - mesh.misalignment) / mesh.compression
             for name, mesh in before.items()
@@ -143,7 +143,7 @@ def static_with_teeth(
 ) -> StaticBalance:
     """Static balance of a machine with the force laws of its mesh tables."""
     laws = {n: _law(case.pair(n, load, misalignment[n]), table) for n, table in tables.items()}
-    return _static(case.machine(load, **laws))
+    return _static(case.machine(load, **laws), misalignment)
 
 
 def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
@@ -158,8 +158,8 @@ def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
         warn(code, f"mesh {first.mesh}, {first.load}: {first.warning.message}{others}")
 
 
-def _static(machine: Machine) -> StaticBalance:
-    return static_balance(machine, laws=face_laws(machine))
+def _static(machine: Machine, misalignment: Mapping[str, float] | None = None) -> StaticBalance:
+    return static_balance(machine, laws=face_laws(machine, misalignment))
 
 
 def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -58,24 +59,41 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
         "transmission_error_peak_to_peak": float(np.ptp(error)),
         "misalignment": balance.misalignment,
         "face_load_factor": balance.face_load_factor,
+        **_of_helix(result, name, mean),
         **_of_table(result, name, table),
     }
+
+
+def _of_helix(result: LoadResult, name: str, force: float) -> dict[str, float]:
+    """Overlap and axial force of helical teeth; nothing of spur gears."""
+    machine = result.machine
+    mesh = machine.meshes[name]
+    if not mesh.helix_angle:
+        return {}
+    width = min(machine.gears[gear].face_width for gear in mesh.gears)
+    axial_pitch = math.pi * mesh.normal_module / math.sin(mesh.helix_angle)
+    axial = -force * float(machine.directions[name].normal[0])
+    return {"overlap_ratio": width / axial_pitch, "axial_force": axial}
 
 
 def _of_table(result: LoadResult, name: str, table: Any) -> dict[str, float | None]:
     """Figures of computed teeth; of a constant stiffness there is only that."""
     if table is None:
         return {"mean_mesh_stiffness": float(result.static.meshes[name].stiffness[0, 0])}
-    film = getattr(table, "film_thickness", None)
-    pressure = getattr(table, "hertz_pressure", None)
+    film = table.minimum_film
+    loaded = None if film is None else film[table.in_contact & (film > 0.0)]
+    sliced = table.face_load_factor
     return {
+        **({} if sliced is None else {"face_load_factor": sliced}),
         "mean_mesh_stiffness": table.mean_mesh_stiffness,
         "static_transmission_error_peak_to_peak": float(np.ptp(table.transmission_error_at_rest)),
         "contact_ratio": table.contact_ratio_under_load,
         "mean_friction_coefficient": table.mean_friction_coefficient,
         "friction_power": table.mean_friction_power,
-        "maximum_hertz_pressure": None if pressure is None else float(np.nanmax(pressure)),
-        "minimum_film_thickness": None if film is None else float(np.nanmin(film)),
+        "maximum_hertz_pressure": float(np.nanmax(table.hertz_pressure)),
+        "minimum_film_thickness": None
+        if loaded is None or not loaded.size
+        else float(loaded.min()),
     }
 
 

@@ -38,9 +38,12 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
         "misalignment": ("deflection", "of the flanks over the face, by deflected shafts"),
         "face_load_factor": (
             "",
-            "greatest over mean load along the face, of independent slices under this misalignment",
+            "greatest over mean load along the face under this misalignment: mean over the mesh "
+            "cycle of computed helical teeth, of independent slices of other teeth",
         ),
-        "contact_ratio": ("", "transverse contact ratio under load"),
+        "overlap_ratio": ("overlap_ratio", "face width over axial pitch"),
+        "axial_force": ("mesh_force", "mean force along x on the first gear, against the second"),
+        "contact_ratio": ("", "mean number of tooth pairs that carry load"),
         "mean_friction_coefficient": ("", "mean over the mesh cycle, weighted by load"),
         "friction_power": ("power", "power lost to the friction of the teeth"),
         "maximum_hertz_pressure": ("hertz_pressure", "greatest contact pressure of the teeth"),
