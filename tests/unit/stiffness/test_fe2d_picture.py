@@ -46,6 +46,29 @@ def test_outline_is_that_of_the_gear_in_order(gear):
     assert (outline.shape[1] - 1) % 3 == 0
 
 
+def test_ring_bends_where_it_is_loaded():
+    ring = SpurGear(
+        teeth=-40,
+        normal_module=3e-3,
+        normal_pressure_angle=math.radians(20.0),
+        profile_shift_coefficient=0.0,
+        tip_diameter=114e-3,
+        face_width=10e-3,
+    )
+    # right flanks of tooth 0 and of its neighbour on the left, whose contact has a larger radius
+    outline, moved = deformed_gear(ring, STEEL, [(0, 22e-3, 1e5), (1, 29e-3, 0.0)])
+    assert np.hypot(*outline).min() == pytest.approx(ring.tip_radius)
+    angle = np.unwrap(np.arctan2(outline[1], outline[0]))
+    assert 0.5 * (angle[0] + angle[-1]) == pytest.approx(math.pi / 2.0 + math.pi / 40)
+    assert np.hypot(*np.diff(outline)).max() < 0.3 * ring.normal_module
+    largest = np.hypot(*moved).argmax()
+    assert abs(math.atan2(outline[0, largest], outline[1, largest])) < math.pi / 40
+    # pushed to the left, into its material
+    assert moved[0, largest] < -1e-6
+    with pytest.raises(InputError, match="flank"):
+        deformed_gear(ring, STEEL, [(0, 8e-3, 1e5)])
+
+
 def test_loaded_tooth_bends_away_from_its_load(gear):
     outline, moved = deformed_gear(gear, STEEL, [(0, 9e-3, 1e5)])
     top = (outline[1] > 0.999 * gear.tip_radius * math.cos(0.02)) & (abs(outline[0]) < 1e-3)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tribodyn.errors import InputError
-from tribodyn.gear import Material, SpurGear
+from tribodyn.gear import Material, SpurGear, cylindrical_pair, spur_pair
+from tribodyn.stiffness import LoadedContact, loaded_contact
 from tribodyn.stiffness.fe2d import MeshSize, fe2d_influence
 from tribodyn.stiffness.fe2d.provider import unit_compliances
 from tribodyn.stiffness.fe3d import SolidSize, fe3d_influence, provider
@@ -409,3 +410,62 @@ def test_all_teeth_are_those_of_bricks_in_space(kind):
                 expected = np.vdot(flank_load(-tooth, 4, other), moved)
                 work = (mass @ values) @ table[tooth, 4, :, 6] @ (mass @ coefficients)
                 assert work == pytest.approx(expected, rel=3e-2, abs=2e-3 * scale)
+
+
+def loaded(phases=16, **changes):
+    data = {
+        "pinion_teeth": 19,
+        "wheel_teeth": 31,
+        "normal_module": MODULE,
+        "normal_pressure_angle": math.radians(20.0),
+        "helix_angle": math.radians(18.0),
+        "pinion_face_width": 16e-3,
+        "pinion_bore_diameter": 25e-3,
+        "wheel_bore_diameter": 40e-3,
+    }
+    return loaded_contact(
+        cylindrical_pair(**{**data, **changes}), 200.0, provider="fe3d", phases=phases, slices=10
+    )
+
+
+@pytest.fixture(scope="module")
+def right_hand() -> LoadedContact:
+    return loaded(hand="right")
+
+
+def test_hand_mirrors_the_load_over_the_face(right_hand):
+    left = loaded(hand="left")
+    assert left.transmission_error == pytest.approx(right_hand.transmission_error, rel=1e-9)
+    assert left.load_per_width[:, ::-1] == pytest.approx(
+        right_hand.load_per_width, abs=1e-8 * right_hand.load_per_width.max()
+    )
+    assert not np.allclose(left.load_per_width, right_hand.load_per_width, rtol=1e-2)
+
+
+def test_driving_wheel_goes_through_the_same_positions_backwards(right_hand):
+    # what enters at one end of the path and the face leaves there when the other gear drives
+    phase = (right_hand.gear_pair.total_contact_ratio - right_hand.phase) % 1.0
+    back = loaded(phases=phase, hand="right", driver="wheel")
+    assert back.transmission_error == pytest.approx(right_hand.transmission_error, rel=1e-6)
+
+
+def test_spur_pair_agrees_with_the_plane_model():
+    plane = loaded_contact(
+        spur_pair(
+            pinion_teeth=19,
+            wheel_teeth=31,
+            normal_module=MODULE,
+            normal_pressure_angle=math.radians(20.0),
+            pinion_face_width=16e-3,
+            pinion_bore_diameter=25e-3,
+            wheel_bore_diameter=40e-3,
+        ),
+        200.0,
+        phases=16,
+        extended_contact=False,
+    )
+    solid = loaded(helix_angle=0.0)
+    assert solid.mean_transmission_error == pytest.approx(plane.mean_transmission_error, rel=0.02)
+    assert np.ptp(solid.transmission_error) == pytest.approx(
+        np.ptp(plane.transmission_error), rel=0.05
+    )

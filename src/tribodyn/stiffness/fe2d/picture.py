@@ -40,7 +40,8 @@ def deformed_gear(
         Its material.
     loads : sequence of tuple (int, float [m], float [N/m])
         Tooth, radius of curvature and load per width. Teeth are counted as the neighbours of
-        :class:`tribodyn.stiffness.GearInfluence`: clockwise here, to the side of larger radii.
+        :class:`tribodyn.stiffness.GearInfluence`: clockwise here, to the side of larger radii;
+        those of a ring anticlockwise.
     reference : str
         ``"bore"``: the bore is held; ``"rim"``: the wind-up of the body is taken off.
 
@@ -75,15 +76,14 @@ def deformed_gear(
     mesh = tooth_mesh(gear, held_radius(gear), _SIZE)
     ring = Ring(mesh, plane_stress(1.0, material.poissons_ratio))
     solution = ring.solve(flank_loads(gear, mesh, radii, _HALF_WIDTH, inside=True).forces)
-    drawn_teeth = _drawn_teeth(teeth, gear.teeth)
+    drawn_teeth = _drawn_teeth(teeth, abs(gear.teeth))[:: gear.sign]
     points, moves = [], []
     for tooth in drawn_teeth:
         moved = np.zeros((len(mesh.outline), 2))
         for case, loaded in enumerate(teeth):
-            displacement_of_tooth = ring.displacement(solution, loaded - tooth)[:, case].reshape(
-                -1, 2
-            )
-            moved += forces[case] / material.youngs_modulus * displacement_of_tooth[mesh.outline]
+            sector = gear.sign * (loaded - tooth)
+            displacement = ring.displacement(solution, sector)[:, case].reshape(-1, 2)
+            moved += forces[case] / material.youngs_modulus * displacement[mesh.outline]
         turn = 2.0 * math.pi * tooth / gear.teeth
         # a clockwise turn of rows
         matrix = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
@@ -106,7 +106,8 @@ def _split(
     teeth = [int(tooth) for tooth, _, _ in loads]
     radii = np.array([radius for _, radius, _ in loads], dtype=float)
     tip = gear.roll_angle(gear.tip_radius) * gear.base_radius
-    if not np.all((radii > 0.0) & (radii <= tip * (1.0 + 1e-9))):
+    beyond = gear.sign * (radii - tip) > 1e-9 * tip
+    if np.any(beyond | (radii <= 0.0)):
         what = f"radii of curvature {radii.min() * 1e3:.6g} to {radii.max() * 1e3:.6g} mm"
         why = f"The flank ends at the tip with {tip * 1e3:.6g} mm"
         raise InputError(what, Argument("loads"), why, "Load the tooth on its involute")

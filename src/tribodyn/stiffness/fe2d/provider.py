@@ -55,8 +55,8 @@ def wind_up_to_take_off(gear: SpurGear, material: Material, reference: str) -> f
     """Wind-up of the body per unit width that does not belong to the reference."""
     check_reference(reference)
     fixed_radius = gear.rim_radius if reference == "bore" else held_radius(gear)
-    circles = gear.root_radius, fixed_radius
-    wind_up = wind_up_compliance(gear.base_radius, *circles[:: gear.sign], 1.0, material)
+    inner, outer = sorted((gear.root_radius, fixed_radius))
+    wind_up = wind_up_compliance(gear.base_radius, outer, inner, 1.0, material)
     return wind_up if reference == "rim" else 0.0
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.compiled import source_digest
+from tribodyn.compiled import announce, source_digest
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Material, SpurGear
 from tribodyn.progress import SILENT, Progress
@@ -163,6 +163,10 @@ def _looked_up(
         shape = (neighbours + 1, radii, radii, functions, functions)
         if unit.compliance.shape == shape and all(np.all(np.isfinite(rows)) for rows in unit):
             return unit
+    announce(
+        f"computing the compliance of {sector.count} teeth over their face, once on this machine, "
+        "2 to 20 seconds"
+    )
     unit = unit_face_compliances(sector, neighbours, progress)
     store_arrays(name, unit._asdict(), "fe3d")
     return unit

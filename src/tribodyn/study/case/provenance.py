@@ -295,11 +295,13 @@ def _model_of(case: CaseData, path: list[str]) -> Model | None:
 
 
 def _bored(case: CaseData, default: Any) -> Any:
-    """Return the reference of deflection: the rim where a gear has no bore."""
+    """Return the reference of deflection: the rim where a gear has no bore and is no ring."""
     if case.gears.kind != "spur":
         return default
-    bores = (case.gears.pinion.bore_diameter, case.gears.wheel.bore_diameter)
-    return "rim" if default == "bore" and not all(bores) else default
+    held = (
+        gear.bore_diameter or gear.tooth_count < 0 for gear in (case.gears.pinion, case.gears.wheel)
+    )
+    return "rim" if default == "bore" and not all(held) else default
 
 
 def effective_values(case: CaseData) -> dict[str, Any]:

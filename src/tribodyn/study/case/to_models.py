@@ -444,5 +444,5 @@ def _bores(case: CaseData) -> list[tuple[str, Problem]]:
     return [
         (f"gears.{name}.bore_diameter", problem)
         for name, gear in gears.items()
-        if gear.bore_diameter == 0.0
+        if gear.bore_diameter == 0.0 and gear.tooth_count > 0
     ]
