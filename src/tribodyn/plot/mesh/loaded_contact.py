@@ -79,7 +79,7 @@ class Life:
             reduced = np.stack([reduce(group, axis=1) for group in groups], axis=1)
             statistics.append(np.moveaxis(reduced, 2, 1).reshape(by_torque.shape[0], -1))
         half_overlap = 0.5 * contact.gear_pair.overlap_ratio
-        age = (phases[:, None] + contact.number).T.ravel() - half_overlap
+        age = np.asarray(phases[:, None] + contact.number, float).T.ravel() - half_overlap
         order = np.argsort(age, kind="stable")
         age, statistics = age[order], [part[:, order] for part in statistics]
         if np.min(contact.number) == 0:
