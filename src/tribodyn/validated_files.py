@@ -157,10 +157,10 @@ def _write(content: _Content, path: str | PathLike[str]) -> None:
                 name,
                 dims,
                 h5py.string_dtype() if texts else values.dtype,
+                values.astype(object) if texts else values,
                 fillvalue=values.dtype.type(np.nan) if kind == "f" else None,
             )
             variable.attrs.update(attributes)
-            variable[...] = values.astype(object) if texts else values
         file.attrs.update(content.attributes)
         if unreferenced:
             file.attrs["coordinates"] = " ".join(sorted(unreferenced))

@@ -5,6 +5,7 @@
 | `path` | positions of tooth pairs on the line of action, and motion of their flanks |
 | `face_contacts` | lines of contact of helical gears in slices of the face width |
 | `separation` | separation of the teeth before and after the path of contact |
+| `loss_factor` | equal load shares, and the gear loss factor by integration |
 | `hertz` | half width and pressure of a line contact, half axes of an elliptical one |
 """
 
@@ -23,13 +24,8 @@ from tribodyn.contact.hertz import (
     hertz_ellipse,
     hertz_line,
 )
-from tribodyn.contact.path import (
-    Kinematics,
-    PathOfContact,
-    equal_share,
-    gear_loss_factor,
-    path_of_contact,
-)
+from tribodyn.contact.loss_factor import equal_share, gear_loss_factor
+from tribodyn.contact.path import Kinematics, PathOfContact, path_of_contact
 from tribodyn.contact.separation import ExtendedContact, extended_contact
 
 __all__ = [

@@ -13,12 +13,17 @@ from tribodyn.errors import InputError, ModelWarning, quiet
 from tribodyn.gear import (
     BasicRack,
     CylindricalPair,
+    FlankModification,
+    ProfileMap,
     SpurGear,
     SpurPair,
     cylindrical_pair,
+    flank_gap,
     gear_outline,
+    hunting_period,
     mass_properties,
     section_moments,
+    tooth_positions,
 )
 from tribodyn.gear.pair_checks import tip_play
 
@@ -370,3 +375,27 @@ def test_tip_play_is_that_of_the_outlines() -> None:
     ring_corner = turns[crossing] / ratio + (touch - alpha) + spread
     play = ring.tip_radius * (ring_corner - math.atan2(y[crossing], x[crossing]))
     assert tip_play(pair) == pytest.approx(play, abs=2e-7)
+
+
+def test_modifications_of_a_ring_act_where_its_flank_is_touched() -> None:
+    """Tip relief of the ring at A, its root relief at E; a map in roll lengths of a drawing."""
+    low, high = RING.path_limits
+    first, last = (path - RING.line_of_action_length for path in (low, high))
+    chart = ProfileMap((first, last), (0.0,), ((4e-6,), (1e-6,)))
+
+    def gap(path: float, **amounts: Any) -> float:
+        gear = replace(RING.wheel, modification=FlankModification(**amounts))
+        pair = replace(RING, wheel=gear)
+        return float(flank_gap(pair, path, pair.line_of_action_length - path))
+
+    with quiet():
+        assert gap(low, tip_relief=7e-6) == pytest.approx(7e-6)
+        assert gap(high, tip_relief=7e-6) == pytest.approx(0.0, abs=1e-12)
+        assert gap(high, root_relief=5e-6) == pytest.approx(5e-6)
+        assert gap(low, profile_map=chart) == pytest.approx(-4e-6)
+        assert gap(high, profile_map=chart) == pytest.approx(-1e-6)
+        short = ProfileMap((first, 0.5 * (first + last)), (0.0,), ((0.0,), (0.0,)))
+        with pytest.raises(InputError, match=r"covers the roll lengths 20\.6"):
+            gap(low, profile_map=short)
+    assert hunting_period(RING) == 504
+    assert tooth_positions(RING.wheel).shape == (72,)

@@ -268,8 +268,8 @@ def _solve(model: StaticModel, external: Array, output_row: Array) -> tuple[Arra
     shift, softest = (1e7 if rolling else 0.0), 1e-3
     displacement, best, torque = np.zeros(model.size), np.inf, 0.0
     limit = _TOLERANCE * float(np.abs(external * model.scale).max()) + 1e-12
+    forces = _Forces(model, laws, displacement)
     for step in range(_STEPS):
-        forces = _Forces(model, laws, displacement)
         residual = external - forces.total
         shift = max(0.1 * shift, softest)
         matrix = np.zeros((model.size + 1, model.size + 1))
@@ -283,7 +283,8 @@ def _solve(model: StaticModel, external: Array, output_row: Array) -> tuple[Arra
         if not np.abs(displacement / model.scale).max() < 1.0:
             break
         share = min(1.0, _STRIDE / max(float(np.abs(reach @ change).max(initial=0.0)), 1e-30))
-        displacement, shortened = _advance(model, laws, external, displacement, share * change)
+        new = _advance(model, laws, external, (displacement, forces), share * change)
+        displacement, forces, shortened = new
         shift *= 100.0 if shortened else 1.0
     raise _unbalanced(model, (residual - torque * output_row) * model.scale, displacement)
 
@@ -296,22 +297,20 @@ def _advance(
     model: StaticModel,
     laws: Mapping[str, MeshLaw],
     external: Array,
-    displacement: Array,
+    start: tuple[Array, _Forces],
     change: Array,
-) -> tuple[Array, bool]:
+) -> tuple[Array, _Forces, bool]:
     """Go along a step until the energy no longer falls; whether the step was shortened."""
-
-    def slope(share: float) -> float:
-        forces = _Forces(model, laws, displacement + share * change)
-        return float((external - forces.total) @ change)
-
-    start, share = slope(0.0), 1.0
+    displacement, forces = start
+    share, first = 1.0, float((external - forces.total) @ change)
     for _ in range(20):
-        end = slope(share)
-        if start <= 0.0 or end >= -0.5 * start:
+        moved = displacement + share * change
+        forces = _Forces(model, laws, moved)
+        end = float((external - forces.total) @ change)
+        if first <= 0.0 or end >= -0.5 * first:
             break
-        share *= max(0.1, start / (start - end))
-    return displacement + share * change, share < 1.0
+        share *= max(0.1, first / (first - end))
+    return moved, forces, share < 1.0
 
 
 def _unbalanced(model: StaticModel, residual: Array, displacement: Array) -> ComputationError:

@@ -52,7 +52,7 @@ def line_points(pair: CylindricalPair, phase: float) -> list[Array]:
         if tangent > 0.0:
             ends = np.clip(ends, (travel - contact.length) / tangent, travel / tangent)
         if ends[1] > ends[0] and travel - ends[1] * tangent < contact.length:
-            entry = np.linspace(*ends, _SECTIONS)
+            entry = np.linspace(ends[0], ends[1], _SECTIONS)
             path = contact.A + contact.direction * (travel - entry * tangent)
             radius = np.hypot(pair.pinion.base_radius, path)
             face = _SENSES[pair.hand] * (0.5 * width - entry)

@@ -52,7 +52,7 @@ def _flank_gap_of_gear(pair: SpurPair, name: str, radius: Array, face: Array) ->
     gap = profile_gap(gear, radius, flank, default_relief_length(pair)) + lead_gap(gear, face)
     chart = gear.modification.profile_map
     if chart is not None:
-        gap = gap - chart.at(np.clip(radius, *flank), face, base_radius=gear.base_radius)
+        gap = gap - chart.at(np.abs(np.clip(radius, *flank)), face, base_radius=gear.base_radius)
     return np.asarray(gap)
 
 
@@ -111,7 +111,7 @@ def _pitch(pair: SpurPair) -> Row:
             bars.append(
                 {
                     "type": "bar",
-                    "x": np.arange(gear.teeth),
+                    "x": np.arange(abs(gear.teeth)),
                     "y": places,
                     "name": name,
                     "marker": {"color": color},

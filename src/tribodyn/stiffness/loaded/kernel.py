@@ -54,8 +54,11 @@ def _eliminate(m: int, a: Array, b: Array) -> None:
 
 
 @nb.njit(**_INNER)
-def _touching_system(n: int, C: Array, A: Array, B: float, f: Array, a: Array, place: Array) -> int:
-    """Tangent compliances of the pairs that carry; returns their number, -1 out of range."""
+def _touching_system(
+    n: int, C: Array, A: Array, B: float, gaps: Array, delta: float,
+    f: Array, a: Array, b: Array, place: Array,
+) -> int:  # fmt: skip
+    """Tangent compliances and residuals of the pairs that carry; their number, -2 out of range."""
     m = 0
     for i in range(n):
         if f[i] > 0.0:
@@ -65,10 +68,14 @@ def _touching_system(n: int, C: Array, A: Array, B: float, f: Array, a: Array, p
         i = int(place[r])
         for c in range(m):
             a[r, c] = C[i, int(place[c])]
-        local = A[i] - B - B * np.log(f[i]) if B > 0.0 else A[i]
-        if local < 0.0:
-            return -1
-        a[r, r] += local
+        local = A[i] - B * np.log(f[i]) if B > 0.0 else A[i]
+        if local - B < 0.0:
+            return -2
+        a[r, r] += local - B
+        total = gaps[i] - delta
+        for j in range(n):
+            total += C[i, j] * f[j]
+        b[r] = -(total + f[i] * local)
     return m
 
 
@@ -97,7 +104,11 @@ def _slice(
     b: Array,
     place: Array,
 ) -> int:
-    """Loads ``f`` of one slice at an approach, from the loads that it holds."""
+    """Loads ``f`` of one slice at an approach, from the loads that it holds.
+
+    Returns the number of pairs that carry, whose tangent system is in ``a`` and ``place``, or minus
+    the status of a failure.
+    """
     least = gaps[0]
     for i in range(1, n):
         least = min(least, gaps[i])
@@ -122,18 +133,14 @@ def _slice(
                     touched = True
         if touched:
             continue
-        m = _touching_system(n, C, A, B, f, a, place)
-        if m < 0:
-            return 2
-        if m == 0:
-            return 0
+        m: int = _touching_system(n, C, A, B, gaps, delta, f, a, b, place)
+        if m <= 0:
+            return m
         for r in range(m):
-            i = int(place[r])
-            b[r] = -_residual(n, C, A, B, gaps[i], delta, f, i)
             if abs(b[r]) > tight:
                 settled = False
         if settled and stepped:
-            return 0
+            return m
         stepped = True
         _eliminate(m, a, b)
         for r in range(m):
@@ -144,7 +151,7 @@ def _slice(
                 f[i] = 0.0
                 if _residual(n, C, A, B, gaps[i], delta, f, i) < 0.0:
                     f[i] = previous
-    return 1
+    return -1
 
 
 @nb.njit(**_INNER)
@@ -166,10 +173,9 @@ def _total_force(
     sums[0] = 0.0
     sums[1] = 0.0
     for s in range(width.shape[0]):
-        status = _slice(n, C, A, B, gaps[s], delta, f[s], a, b, place)
-        if status != 0:
-            return status
-        m = _touching_system(n, C, A, B, f[s], a, place)
+        m = _slice(n, C, A, B, gaps[s], delta, f[s], a, b, place)
+        if m < 0:
+            return -m
         for r in range(m):
             b[r] = 1.0
         _eliminate(m, a, b)
@@ -327,8 +333,8 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                     if middle <= low or middle >= high:
                         break
                     status = _slice(n, C[p], A[p], B, alone, middle, f, a, b, place)
-                    if status != 0:
-                        return status
+                    if status < 0:
+                        return -status
                     if _residual(n, C[p], A[p], B, gaps[p, 0, i], middle, f, i) < 0.0:
                         high = middle
                     else:

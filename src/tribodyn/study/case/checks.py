@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
-from tribodyn.study.case.gears import HYPOID_KEYS, heat_of_bodies, is_idle
+from tribodyn.study.case.gears import (
+    HYPOID_KEYS,
+    heat_of_bodies,
+    is_idle,
+    ring_problems,
+    size_problems,
+)
 from tribodyn.study.case.section import Choice, SectionKeys, choices, section_at
 from tribodyn.study.case.sections import THERMAL, lubricant_problems
 from tribodyn.study.case.user_input import CONFLICT_REASON, UserInput, conflicting_keys
@@ -158,41 +164,6 @@ def _face_width(inputs: UserInput) -> KeyedProblems:
     if all(gear in inputs and f"{gear}.face_width" not in inputs for gear in gears):
         what, why = "face_width is missing", "At least one gear needs its face width"
         yield "gears.pinion", Problem(what, "", why, 'Add face_width = "20 mm" to [gears.pinion]')
-
-
-def _size(inputs: UserInput) -> KeyedProblems:
-    pinion, wheel = (inputs.get(f"gears.{gear}.teeth") for gear in ("pinion", "wheel"))
-    ring = (type(wheel) is int and wheel < 0) or inputs.get("gears.wheel.internal")
-    if type(pinion) is int and type(wheel) is int and not ring and pinion > wheel:
-        what = f"teeth = {pinion} of the pinion and teeth = {wheel} of the wheel"
-        why = "The pinion is the gear with fewer teeth, whichever drives"
-        remedy = "Exchange the two tables, speed_of and driver"
-        yield "gears.pinion.teeth", Problem(what, "", why, remedy)
-
-
-def _rings(inputs: UserInput) -> KeyedProblems:
-    """Check the keys of internal teeth and of the hand of the helix."""
-    spur = inputs.get("gears.kind", "spur") == "spur"
-    for gear in ("pinion", "wheel"):
-        key = f"gears.{gear}.teeth"
-        if type(teeth := inputs.get(key)) is not int or teeth >= 0:
-            continue
-        if not spur:
-            why = "Only cylindrical gears have internal teeth"
-            yield key, Problem(inputs.show(key), "", why, f"Write teeth = {-teeth}")
-        elif inputs.get(f"gears.{gear}.internal") is False:
-            yield conflicting_keys(inputs, key, f"gears.{gear}.internal")
-    key = "gears.pinion.hand"
-    if key in inputs and "gears.hand" in inputs and inputs[key] != inputs["gears.hand"]:
-        yield conflicting_keys(inputs, "gears.hand", key)
-    key = "gears.pinion.rim_diameter"
-    if key in inputs:
-        why = "Only a ring, which is the wheel, has its rim outside"
-        yield key, Problem(inputs.show(key), "", why, "Remove it, or give the bore diameter")
-    if inputs.get("gears.pinion.internal") is True:
-        key = "gears.pinion.internal"
-        why = "Only the wheel of a pair may be a ring"
-        yield key, Problem(inputs.show(key), "", why, "Exchange the two gears")
 
 
 def _lubrication_inputs(inputs: UserInput, law: FrictionLaw | None) -> KeyedProblems:
@@ -495,8 +466,8 @@ _STIFFNESS_CHECKS = {"rectangular": _rectangular, "table": _table, "fourier": _f
 
 
 _CHECKS: tuple[Callable[[UserInput], KeyedProblems], ...] = (
-    _kind, _roughness, heat_of_bodies, _face_width, _size, _rings, lubricant_problems, _dampings,
-    _friction_load, _solver, _coupling,
+    _kind, _roughness, heat_of_bodies, _face_width, size_problems, ring_problems,
+    lubricant_problems, _dampings, _friction_load, _solver, _coupling,
 )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
 from tribodyn.model import REQUIRED, Option, choice, file_path, flag, integer, number, numbers
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
-from tribodyn.study.case.user_input import UserInput
+from tribodyn.study.case.user_input import UserInput, conflicting_keys
 
 _GUARD = "guards against a wrong unit"
 _RACK = "ISO 53 profiles lie between 0.2 and 1.4"
@@ -436,3 +436,39 @@ def heat_of_bodies(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
             example = {"specific_heat": "460 J/kg/K", "thermal_conductivity": "47 W/m/K"}[name]
             remedy = f'Add {name} = "{example}", that of steel, or remove both'
             yield absent, Problem(f"{name} of the {gear} is missing", "", why, remedy)
+
+
+def size_problems(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
+    """Check that the pinion has fewer teeth."""
+    pinion, wheel = (inputs.get(f"gears.{gear}.teeth") for gear in ("pinion", "wheel"))
+    ring = (type(wheel) is int and wheel < 0) or inputs.get("gears.wheel.internal")
+    if type(pinion) is int and type(wheel) is int and not ring and pinion > wheel:
+        what = f"teeth = {pinion} of the pinion and teeth = {wheel} of the wheel"
+        why = "The pinion is the gear with fewer teeth, whichever drives"
+        remedy = "Exchange the two tables, speed_of and driver"
+        yield "gears.pinion.teeth", Problem(what, "", why, remedy)
+
+
+def ring_problems(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
+    """Check the keys of internal teeth and of the hand of the helix."""
+    spur = inputs.get("gears.kind", "spur") == "spur"
+    for gear in ("pinion", "wheel"):
+        key = f"gears.{gear}.teeth"
+        if type(teeth := inputs.get(key)) is not int or teeth >= 0:
+            continue
+        if not spur:
+            why = "Only cylindrical gears have internal teeth"
+            yield key, Problem(inputs.show(key), "", why, f"Write teeth = {-teeth}")
+        elif inputs.get(f"gears.{gear}.internal") is False:
+            yield conflicting_keys(inputs, key, f"gears.{gear}.internal")
+    key = "gears.pinion.hand"
+    if key in inputs and "gears.hand" in inputs and inputs[key] != inputs["gears.hand"]:
+        yield conflicting_keys(inputs, "gears.hand", key)
+    key = "gears.pinion.rim_diameter"
+    if key in inputs:
+        why = "Only a ring, which is the wheel, has its rim outside"
+        yield key, Problem(inputs.show(key), "", why, "Remove it, or give the bore diameter")
+    if inputs.get("gears.pinion.internal") is True:
+        key = "gears.pinion.internal"
+        why = "Only the wheel of a pair may be a ring"
+        yield key, Problem(inputs.show(key), "", why, "Exchange the two gears")
