@@ -74,10 +74,8 @@ def mesh_of(
     rehearsal: bool = False,
     about_load: bool = False,
 ) -> MeshTable:
-    """Compute the tooth contact of a case over one mesh cycle.
-
-    A rehearsal has few phases and a film by formula: it only has to raise the input errors.
-    """
+    """Compute the tooth contact of a case over one mesh cycle."""
+    # A rehearsal has few phases and a film by formula: it only has to raise the input errors.
     # about_load: the force law has few ramps, or is its tangent where the case takes no more.
     from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
