@@ -15,7 +15,8 @@ from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import atomic_write
 from tribodyn.record import Record
-from tribodyn.study import SUMMARY, Result
+from tribodyn.study import MachineResult, Result
+from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.validated_files import csv_text
 
 #: Arrays of a curve of a figure that become columns.
@@ -24,12 +25,12 @@ _nothing = "".format  # for a figure without conditions
 Table = tuple[list[str], list[Sequence[Any]]]  # heads with units, columns
 
 
-def write_tables(result: Result | Record, folder: str | PathLike[str]) -> Path:
+def write_tables(result: Result | MachineResult | Record, folder: str | PathLike[str]) -> Path:
     """Write all tables and figures of a result into a new folder, as CSV and as JSON.
 
     Parameters
     ----------
-    result : Result or Record
+    result : Result, MachineResult or Record
         A computed or loaded result; also sweeps, bifurcations, maps and all other results with
         ``to_xarray``.
     folder : path
@@ -69,8 +70,8 @@ def write_tables(result: Result | Record, folder: str | PathLike[str]) -> Path:
     return target
 
 
-def _tables(result: Result | Record) -> Iterator[tuple[str, Table]]:
-    if not isinstance(result, Result):
+def _tables(result: Result | MachineResult | Record) -> Iterator[tuple[str, Table]]:
+    if not isinstance(result, Result | MachineResult):
         yield from _of_data("table", result.to_xarray())
         return
     summary = result.summary()
@@ -81,13 +82,26 @@ def _tables(result: Result | Record) -> Iterator[tuple[str, Table]]:
             [
                 list(summary),
                 list(summary.values()),
-                [SUMMARY[name].unit or "1" for name in summary],
-                [SUMMARY[name].meaning for name in summary],
+                [figure_of(name).unit or "1" for name in summary],
+                [figure_of(name).meaning for name in summary],
             ],
         ),
     )
+    if isinstance(result, MachineResult):
+        yield from _of_loads(result)
+        return
     yield from _of_data("mesh", result.mesh.to_xarray())
     yield from _of_data("motion", result.to_xarray())
+
+
+def _of_loads(result: MachineResult) -> Iterator[tuple[str, Table]]:
+    """Mesh tables and motions of a machine; those of load cases by their number."""
+    for number, load in enumerate((result.operation, *result.load_cases)):
+        prefix = f"load_{number}_" if number else ""
+        for mesh, name in enumerate(load.tables):
+            plain = name if name.replace("_", "").replace("-", "").isalnum() else str(mesh + 1)
+            yield from _of_data(f"{prefix}mesh_{plain}", load.tables[name].to_xarray())
+        yield from _of_data(f"{prefix}motion", load.motion.to_xarray())
 
 
 def _of_data(kind: str, data: Any) -> Iterator[tuple[str, Table]]:

@@ -8,6 +8,7 @@ from tests.unit.study.test_machine_run import GEARED
 
 import tribodyn as td
 from tribodyn.errors import ModelWarning
+from tribodyn.exchange import write_tables
 from tribodyn.report.machine_report import render_machine_report
 from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
@@ -72,6 +73,15 @@ def test_a_damaged_or_missing_file_is_named(folder, name):
     path.unlink()
     with pytest.raises(td.errors.InputError, match="this is no result"):
         td.load_result(folder)
+
+
+def test_tables_of_a_stored_machine_are_exported(result, folder, tmp_path):
+    write_tables(td.load_result(folder), tmp_path / "tables")
+    rows = (tmp_path / "tables" / "summary.csv").read_text(encoding="utf-8").splitlines()
+    force = result.summary()["meshes.first.static_mesh_force"]
+    assert f"meshes.first.static_mesh_force,{force!r},N," in "\n".join(rows)
+    names = {path.name for path in (tmp_path / "tables").iterdir()}
+    assert {"motion_over_clock_and_mesh.csv", "load_1_motion_over_clock_and_mesh.csv"} <= names
 
 
 def test_files_of_another_result_are_refused(result, folder):
