@@ -336,7 +336,8 @@ class MeshColumns(Record):
     @cached_property
     def _plane_friction(self) -> Array:
         share, corners = self.load_share, self.corner_share
-        levers = self.pinion_curvature_radius, self.wheel_curvature_radius
+        # Rotations count in the running sense, so that the negative radius of a ring does not.
+        levers = self.pinion_curvature_radius, np.abs(self.wheel_curvature_radius)
         return plane_friction(self._directed_friction, levers, share, corners, self._last_touch)
 
 

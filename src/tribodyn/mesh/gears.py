@@ -154,12 +154,14 @@ def spatial_columns(mesh: MeshColumns) -> dict[str, Array]:
     lean, zero = axial_ratio(mesh), np.zeros(face.size)
     radii = mesh.base_radius_pinion, mesh.base_radius_wheel
     levers = [np.full(face.size, radius) for radius in radii]
+    # The contact lies on one side of both axes of an internal pair.
+    opposite = levers[1] * mesh.gear_pair.wheel.sign
     towards = sense * np.ones(face.size)
     direction = (
         *(zero, towards, lean * towards),
         *(face - sense * first * lean, -towards * lean * levers[0], towards * levers[0]),
         *(zero, -towards, -lean * towards),
-        *(-face - sense * second * lean, -towards * lean * levers[1], -towards * levers[1]),
+        *(-face - sense * second * lean, -towards * lean * opposite, -towards * levers[1]),
     )
     across, couple = mesh.friction_sum, sense * _friction_couple(mesh)
     turns = mesh.friction_moment_pinion, mesh.friction_moment_wheel

@@ -4,12 +4,14 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import tribodyn as td
 from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.exchange import case_from_rexs, read_rexs, write_rexs
+from tribodyn.mesh.gears import spatial_columns
 from tribodyn.study.case.read import read_case
 
 CASE = """
@@ -59,10 +61,40 @@ def test_check_reports_the_geometry_of_a_ring(
     assert "[fillet-contact]" in streams.err
 
 
-def test_a_run_of_teeth_that_are_not_computed_is_refused() -> None:
-    case = read_case(CASE)
-    with pytest.raises(InputError, match=r"gears.wheel.teeth.*load on its lines of contact"):
-        td.run(case)
+RING = (
+    CASE.replace("torsional", "helical-12dof").replace('"pinion"\n[gears.p', '"DRIVER"\n[gears.p')
+    + """
+[stiffness]
+model = "iso6336"
+[friction]
+law = "constant"
+coefficient = 0.05
+"""
+)
+
+
+@pytest.mark.parametrize("driver", ["pinion", "wheel"])
+def test_a_ring_runs_with_its_friction_and_moments(driver: str) -> None:
+    """Friction takes its sliding work; moving both gears as one body compresses nothing."""
+    result = td.run(read_case(RING.replace("DRIVER", driver)))
+    figures, pair, mesh = result.summary(), result.case.gear_pair, result.mesh
+    speed = np.abs(mesh.sliding_speed) * 0.05 / math.cos(pair.base_helix_angle)
+    lost = float(mesh.grid.mean(mesh.by_share(speed))) * figures["mean_mesh_force"]
+    assert figures["mean_friction_power"] == pytest.approx(lost, rel=1e-3)
+    equal = 0.05 * figures["gear_loss_factor"] * figures["input_power"]
+    assert lost == pytest.approx(equal, rel=0.1)
+    axial = figures["mean_bearing_force_axial_pinion"] + figures["mean_bearing_force_axial_wheel"]
+    assert axial == pytest.approx(0.0, abs=1e-6)
+    first, second = pair.pinion.base_radius, pair.wheel.base_radius
+    across, along = first - second, pair.line_of_action_length
+    row = spatial_columns(mesh)["direction"]
+    x1, y1, z1, tx1, ty1, tz1, x2, y2, z2, tx2, ty2, tz2 = row.T
+    tolerance = 1e-9 * second
+    assert np.abs([x1 + x2, y1 + y2, z1 + z2]).max() < tolerance
+    assert np.abs(tz1 + tz2 + across * y2).max() < tolerance
+    assert np.abs(ty1 + ty2 - across * z2).max() < tolerance
+    # The first rotation counts the other way.
+    assert np.abs(tx1 + tx2 - along * z2).max() < tolerance
 
 
 HELICAL = (

@@ -35,7 +35,6 @@ from tribodyn.study.pipeline.tooth_contact import (
     mesh_of,
     meshes_of,
     teeth_contact_ratio,
-    uncomputed_teeth,
 )
 
 if TYPE_CHECKING:
@@ -99,8 +98,6 @@ def rehearse(case: Case) -> tuple[ModelWarning, ...]:
     """Raise the input errors of a run without computing it; return its warnings on the load."""
     from tribodyn.dynamics.equations.compiled import compile_for
 
-    if uncomputed_teeth(case):
-        return ()
     with locate_errors(case), collected():
         mesh = mesh_of(case, rehearsal=True)
         system = system_of(case, mesh, damping_of(case, mesh))

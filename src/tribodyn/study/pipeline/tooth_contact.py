@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, collected, warn
+from tribodyn.errors import ComputationError, InputError, ModelWarning, collected, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case import to_models
 from tribodyn.study.case.hypoid import mounting
@@ -90,8 +90,6 @@ def mesh_of(
         )
     if case.hypoid_flanks is not None:
         return hypoid_friction_of(case, load=load, rehearsal=rehearsal).table()
-    if problem := uncomputed_teeth(case):
-        raise InputError(problem)
     settings = contact_settings(case)
     fitted: FittedLaw = mesh_law_of(case) == "force-law"
     if about_load:
@@ -114,16 +112,6 @@ def mesh_of(
         force_law=fitted,
         progress=progress,
     )
-
-
-def uncomputed_teeth(case: Case) -> Problem | None:
-    """Problem of teeth whose load distribution is not computed."""
-    pair = case.spur_pair
-    if pair is None or not pair.is_internal:
-        return None
-    what = "the tooth contact of a pair with internal teeth"
-    why = "The load on its lines of contact is not computed; tribodyn check shows its geometry"
-    return Problem(what, "gears.wheel.teeth", why, "Use external gears")
 
 
 def teeth_contact_ratio(case: Case) -> float | None:
