@@ -17,7 +17,7 @@ def clamped_knots(breaks: Array) -> Array:
 def bspline_values(knots: Array, x: Array, degree: int = DEGREE) -> Array:
     """Values (x.size, count) of all B-splines of a knot sequence at places within it."""
     x = np.asarray(x, dtype=float)
-    first, last = degree, knots.size - degree - 2
+    first, last = DEGREE, knots.size - DEGREE - 2
     piece = np.clip(np.searchsorted(knots, x, side="right") - 1, first, last)
     values = np.zeros((x.size, knots.size - 1))
     values[np.arange(x.size), piece] = 1.0

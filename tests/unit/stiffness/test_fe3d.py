@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from tribodyn.arrays.bspline import bspline_integrals, bspline_values, interpolation_knots
 from tribodyn.errors import InputError
 from tribodyn.gear import Material, SpurGear, cylindrical_pair, spur_pair
 from tribodyn.stiffness import LoadedContact, loaded_contact
@@ -124,6 +125,30 @@ def test_reciprocity_between_slices_of_any_width_and_teeth(short):
     short.sliced(edges).fill(other, radii[:, ::-1], -1)
     turned = other.reshape(2, 3, 5, 3, 5)[:, ::-1, :, ::-1].reshape(out.shape)
     assert turned == pytest.approx(out, rel=1e-12)
+
+
+def test_compiled_sum_is_that_of_the_splines(short):
+    """The readable form of ``fill``: splines over the squared radius, means over slices."""
+    edges = np.array([-8.0, -5.0, 0.0, 1.0, 7.0]) * 1e-3
+    radii = np.random.default_rng(5).uniform(5e-3, 20e-3, (3, 2, 4))
+    out = np.zeros((3, 8, 8))
+    short.sliced(edges).fill(out, radii, -1)
+    integrals = bspline_integrals(short.knots, edges + 8e-3)
+    square = short.curvature_radius**2
+    knots = interpolation_knots(square)
+    inverse = np.linalg.inv(bspline_values(knots, square))
+    at_radius = bspline_values(knots, radii.ravel() ** 2).reshape(3, 8, -1) @ inverse
+    for displaced in range(8):
+        for loaded in range(8):
+            (i, k), (j, m) = divmod(loaded, 4), divmod(displaced, 4)
+            # pair 0 lies on the side of the larger radii of pair 1
+            table = short.self_compliance if i == j else short.cross_compliance[0]
+            ends = (k, m) if i >= j else (m, k)
+            places = (loaded, displaced) if i >= j else (displaced, loaded)
+            first, second = (at_radius[:, place] for place in places)
+            work = np.einsum("a,ijab,b->ij", integrals[ends[0]], table, integrals[ends[1]])
+            expected = np.einsum("pi,ij,pj->p", first, work, second) / np.diff(edges)[m]
+            assert out[:, displaced, loaded] == pytest.approx(expected, rel=1e-9)
 
 
 def test_finer_slices_carry_the_same(short):
