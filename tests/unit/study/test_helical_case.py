@@ -180,3 +180,61 @@ def test_rexs_has_the_helix_with_the_sign_of_its_hand(tmp_path: Path) -> None:
     angles = stage.gear_1.helix_angle, stage.gear_2.helix_angle
     assert angles == pytest.approx((-math.radians(15.0), math.radians(15.0)))
     assert case_from_rexs(read_rexs(path)).gear_pair == case.gear_pair
+
+
+MACHINE = """
+[shafts.input]
+[shafts.output]
+[bearings.A]
+shaft = "input"
+SUPPORT
+[bearings.B]
+shaft = "output"
+SUPPORT
+[gears.z1]
+shaft = "input"
+teeth = 21
+face_width = "25 mm"
+profile_shift_coefficient = 0.2
+[gears.z2]
+shaft = "output"
+teeth = -72
+face_width = "25 mm"
+profile_shift_coefficient = -0.1
+[meshes.first]
+gears = ["z1", "z2"]
+normal_module = "2 mm"
+helix_angle = "15 deg"
+backlash = "0.1 mm"
+[operation]
+input = "input"
+speed = "3000 rpm"
+torque = "40 N*m"
+output = "output"
+[stiffness]
+model = "iso6336"
+[friction]
+law = "constant"
+coefficient = 0.05
+""".replace(
+    "SUPPORT",
+    'position = "0 mm"\nradial_stiffness = "1e11 N/m"\naxial_stiffness = "1e11 N/m"\n'
+    'tilting_stiffness = "1e9 N*m/rad"',
+)
+
+
+def test_a_ring_in_a_machine_has_the_forces_of_the_pair(tmp_path: Path) -> None:
+    path = tmp_path / "machine.toml"
+    path.write_text(MACHINE, "utf-8")
+    figures = td.run(td.load_case(path)).summary()
+    pair = td.run(read_case(RING.replace("DRIVER", "pinion"))).summary()
+    mesh = {name.removeprefix("meshes.first."): figures[name] for name in figures}
+    assert mesh["mean_mesh_force"] == pytest.approx(pair["mean_mesh_force"], rel=1e-3)
+    assert mesh["mean_mesh_stiffness"] == pytest.approx(pair["mean_mesh_stiffness"], rel=2e-2)
+    axial = pair["mean_bearing_force_axial_pinion"]
+    assert abs(figures["bearings.A.mean_axial_force"]) == pytest.approx(axial, rel=1e-3)
+    assert mesh["friction_power"] == pytest.approx(pair["mean_friction_power"], rel=2e-2)
+    assert figures["shafts.output.speed"] == pytest.approx(100.0 * math.pi * 21.0 / 72.0)
+    path.write_text(MACHINE.replace('["z1", "z2"]', '["z2", "z1"]'), "utf-8")
+    with pytest.raises(InputError, match='"z2" has internal teeth and is the first of its mesh'):
+        td.load_case(path)

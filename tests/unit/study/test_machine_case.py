@@ -102,7 +102,7 @@ def test_load_cases_have_names_and_shares(reducer):
         ({"meshes.first.gears": "z1"}, "meshes.first.gears", "two gears"),
         ({"meshes.first.friction.law": "x"}, "meshes.first.friction.law", "Allowed"),
         ({"friction.law": "x"}, "friction.law", "Allowed"),
-        ({"gears.z2.teeth": -57}, "meshes.first.gears", "stiffness"),
+        ({"gears.z2.teeth": -57}, "gears.z2.bore_diameter", "of a ring"),
         ({"meshes.first.stiffness": "5 mm"}, "meshes.first.stiffness", "N/m"),
         ({"operation.output": "none"}, "operation.output", "there is no shaft"),
         ({"operation.speed": "5"}, "operation.speed", "has no unit"),

@@ -255,9 +255,8 @@ class MachineCase:
                 why, remedy = f"Known: {', '.join(self.gears)}", "Add the gear, or correct the name"
                 problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
                 problems.append((f"meshes.{name}.gears", problem))
-            rings = [gear for gear in names if not missing and self.gears[gear].is_ring]
-            if table.stiffness is None and rings:
-                problems.append((f"meshes.{name}.gears", ring_problem(rings[0])))
+            if table.stiffness is None and not missing and self.gears[names[0]].is_ring:
+                problems.append((f"meshes.{name}.gears", ring_problem(names[0])))
         if problems:
             raise InputError((self.source or Source()).place(problems))
 

@@ -146,10 +146,10 @@ def constant_law(law: Any) -> dict[str, Any]:
 
 
 def ring_problem(ring: str) -> Problem:
-    """Problem of a ring, whose tooth contact is not computed."""
-    what = f'gear "{ring}" has internal teeth'
-    why = "The tooth contact of external gears is computed; other teeth need their stiffness"
-    remedy = 'Give the mesh its stiffness along the line of action: stiffness = "5e8 N/m"'
+    """Problem of a ring that is the first gear of its mesh."""
+    what = f'gear "{ring}" has internal teeth and is the first of its mesh'
+    why = "The teeth of a ring are computed as those of the second gear"
+    remedy = 'Exchange the gears, their hand and angle, or give the mesh its stiffness = "5e8 N/m"'
     return Problem(what, "", why, remedy)
 
 
