@@ -1,6 +1,7 @@
 """Run of a machine: figures by part, files, report; and the modes of a machine."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -230,3 +231,17 @@ def test_names_of_bearings_do_not_overlap_in_the_side_view():
     shifts = [notes[name].yshift for name in notes if "bearing" in name]
     assert len(set(shifts)) == 3
     assert {notes[name].yshift for name in "BCD"} == {0}  # short names stay on their axis
+
+
+def test_of_a_very_long_period_the_beginning_is_drawn(result):
+    motion = result.motion
+    count = 40_000 // motion.clock.size + 1
+    clock = (np.arange(count)[:, None] + motion.clock).ravel() / count
+    force = np.tile(motion.mesh_force, (count, 1))
+    bearings = np.tile(motion.bearing_force, (count, 1, 1))
+    weight = np.tile(motion.weight, count) / count
+    parts = {"clock": clock, "mesh_force": force, "bearing_force": bearings, "weight": weight}
+    figure = plot.machine_forces(replace(motion, **parts))
+    assert max(len(trace.x) for trace in figure.data) == 30_000
+    assert "its first" in figure.layout.xaxis.title.text
+    assert "its first" not in plot.machine_forces(motion).layout.xaxis.title.text

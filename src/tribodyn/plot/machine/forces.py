@@ -15,6 +15,9 @@ from tribodyn.plot.theme.style import line
 if TYPE_CHECKING:
     from tribodyn.study.machine.motion import MachineMotion
 
+#: Most samples of a period that are drawn.
+_SAMPLES = 30_000
+
 
 @drawing(
     "machine_forces",
@@ -26,12 +29,19 @@ if TYPE_CHECKING:
 )
 def machine_forces(motion: MachineMotion) -> Any:
     """Draw mesh forces and radial bearing forces over one period of the clock."""
-    clock = motion.clock
+    shown = slice(_SAMPLES)
+    clock = motion.clock[shown]
 
     def panel(quantity: str, label: str, names: Any, values: Any) -> Panel:
         unit = display_unit(quantity)
         traces = [
-            line(clock, displayed(quantity, values[:, i]), name, COLORS[i % len(COLORS)], unit=unit)
+            line(
+                clock,
+                displayed(quantity, values[shown, i]),
+                name,
+                COLORS[i % len(COLORS)],
+                unit=unit,
+            )
             for i, name in enumerate(names)
         ]
         return Panel(axis_label(quantity, label), traces)
@@ -49,4 +59,5 @@ def machine_forces(motion: MachineMotion) -> Any:
         f"{rounded('mesh_force', float(motion.mean(motion.mesh_force)[worst]))}"
     )
     milliseconds = 1e3 / motion.frequency
-    return stack(title, f"Phase of the clock, 1 = {milliseconds:.4g} ms", panels)
+    part = f", its first {100.0 * clock[-1]:.2g} %" if motion.clock.size > _SAMPLES else ""
+    return stack(title, f"Phase of the clock, 1 = {milliseconds:.4g} ms{part}", panels)
