@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from tribodyn.stiffness.fe3d import SolidSize, fe3d_influence, provider
 from tribodyn.stiffness.fe3d.face import FaceSize
 from tribodyn.stiffness.fe3d.provider import gear_sector
 from tribodyn.stiffness.fe3d.ring import Ring, harmonic_weights, solved_harmonics
+from tribodyn.stiffness.loaded import face_problem
 
 MODULE = 4e-3
 STEEL = Material()
@@ -494,3 +496,43 @@ def test_spur_pair_agrees_with_the_plane_model():
     assert np.ptp(solid.transmission_error) == pytest.approx(
         np.ptp(plane.transmission_error), rel=0.05
     )
+
+
+@pytest.mark.slow
+def test_printed_figures_of_bricks_that_couple_next_teeth(monkeypatch):
+    # mean transmission error 16.4 um, peak to peak 1.32 um, greatest share .587; 3-D bricks
+    pair = cylindrical_pair(
+        pinion_teeth=27,
+        wheel_teeth=51,
+        normal_module=4.5e-3,
+        normal_pressure_angle=math.radians(20.0),
+        helix_angle=math.radians(21.0),
+        pinion_profile_shift_coefficient=0.231415,
+        wheel_profile_shift_coefficient=0.231415,
+        center_distance=0.19,
+        pinion_face_width=50e-3,
+        pinion_bore_diameter=40e-3,
+        wheel_bore_diameter=70e-3,
+    )
+    size = SolidSize(MeshSize(0.25, 0.7, 1.8, 1.0, 0.5, 1))
+    gears = [
+        fe3d_influence(gear, STEEL, neighbours=2, cache=False, size=size)
+        for gear in pair.gears.values()
+    ]
+
+    def solved(neighbours: int) -> LoadedContact:
+        tables = [
+            replace(gear, cross_compliance=gear.cross_compliance[:neighbours]) for gear in gears
+        ]
+        monkeypatch.setattr(face_problem, "gear_influences", lambda *_: tables)
+        return loaded_contact(pair, 600.0, provider="fe3d", phases=32, slices=24)
+
+    next_teeth = solved(1)
+    assert next_teeth.load_share.max() == pytest.approx(0.587, rel=0.01)
+    assert next_teeth.mean_transmission_error == pytest.approx(16.4e-6, rel=0.04)
+    assert np.ptp(next_teeth.transmission_error) == pytest.approx(1.32e-6, rel=0.06)
+    # three pairs are in contact: the first and the third share the bodies too
+    every_tooth = solved(2)
+    assert every_tooth.load_share.max() == pytest.approx(0.627, rel=0.01)
+    assert every_tooth.mean_transmission_error == pytest.approx(17.3e-6, rel=0.01)
+    assert np.ptp(every_tooth.transmission_error) == pytest.approx(0.80e-6, rel=0.03)
