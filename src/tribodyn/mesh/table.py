@@ -11,7 +11,7 @@ import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.mesh.columns import MeshColumns, whole_stiffness
-from tribodyn.mesh.face.lines import slice_count
+from tribodyn.mesh.face.lines import SUMMED, slice_count
 from tribodyn.mesh.face.maps import face_load_factor, face_map
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
@@ -206,7 +206,9 @@ class MeshTable(MeshColumns):
         Returns
         -------
         float or None
-            The pair carries its own part of the load at that phase. Where another pair enters or
+            The pair carries its own part of the load at that phase. A slice in the middle of the
+            face stands for its pair: forces and stiffnesses count as if the whole face were there.
+            Where another pair enters or
             leaves at the same time, the value after that; ``None`` where the pitch point is
             outside of the contact, or there is no such column in this table.
         """
@@ -217,8 +219,8 @@ class MeshTable(MeshColumns):
         if self.face_position is not None:
             slices = slice_count(self)
             age += self.gears.entry_delay(slices)[slices // 2]
-            at = self.at(column, age % 1.0)[int(age) * slices + slices // 2]
-            return float(at)
+            at = float(self.at(column, age % 1.0)[int(age) * slices + slices // 2])
+            return at * slices if column in SUMMED else at
         # The event that is nearest: its phase and this one may differ by rounding.
         phases = np.array(self.event_phases)
         event = int(np.argmin(np.abs((phases - age + 0.5) % 1.0 - 0.5)))

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, ModelOption, Problem
+from tribodyn.errors import Argument, ComputationError, InputError, ModelOption, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.model import Model, Registry, choice
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence
@@ -49,6 +49,8 @@ class StiffnessModel(Model):
         know it; these carry contacts anywhere on the flank, and deviations of the flanks.
     over_face : bool
         Whether that structure is known over the face width, so that slices act on each other.
+    external_only : bool
+        Whether it does not know internal teeth.
     coupled : bool
         Whether pairs act on each other through the gear bodies; such a model is always solved
         by the loaded tooth contact.
@@ -65,6 +67,7 @@ class StiffnessModel(Model):
     options: Mapping[str, Any]
     influence: Callable[..., GearInfluence | FaceInfluence] | None = None
     over_face: bool = False
+    external_only: bool = False
     coupled: bool = False
     source: str = ""
     meaning: str = ""
@@ -114,9 +117,31 @@ class StiffnessModel(Model):
         unknown = [name for name in supplied if name not in self.options]
         if unknown:
             raise InputError([self._unknown(name) for name in unknown])
+        self.require_known_teeth(pair)
         return self.function(
             pair, material, path, in_contact, phase, normal_force, **{**self.options, **supplied}
         )
+
+    def require_known_teeth(self, pair: SpurPair) -> None:
+        """Refuse internal teeth where the model knows external ones alone.
+
+        Parameters
+        ----------
+        pair : SpurPair
+            Both gears in their working position.
+
+        Raises
+        ------
+        InputError
+            If it does not know the teeth of the pair.
+        """
+        if self.external_only and pair.is_internal:
+            raise InputError(
+                f'the stiffness model "{self.name}" of a pair with internal teeth',
+                where=Argument("stiffness_model"),
+                why="It describes teeth that grow thinner outwards, not those of a ring",
+                remedy='Choose "fe2d", "fe3d" or "iso6336", or give the stiffness',
+            )
 
     def _unknown(self, name: str) -> Problem:
         names = ", ".join(self.options)

@@ -87,7 +87,6 @@ def test_a_vanishing_helix_angle_gives_the_spur_pair(model):
         assert getattr(nearly, name) == pytest.approx(getattr(spur, name), rel=1e-3), name
     for name in ("hertz_pressure", "load_per_width", "central_film", "film_stiffness"):
         expected = spur.at_pitch_point(name)
-        expected = expected / 24 if name == "film_stiffness" else expected
         assert nearly.at_pitch_point(name) == pytest.approx(expected, rel=1e-3)
     swing = np.ptp(spur.static_transmission_error)
     assert np.ptp(nearly.static_transmission_error) == pytest.approx(swing, rel=5e-3)
@@ -234,6 +233,44 @@ def test_force_and_moments_in_space_balance(driver, hand):
     ]
     total = moments[0] + moments[1] + np.cross(between, force)
     assert total == pytest.approx(np.zeros_like(total), abs=1e-9)
+
+
+def test_force_and_friction_of_a_ring_in_space_balance():
+    """The ring turns in the same sense as its pinion, with its axis on the other side."""
+    pair = cylindrical_pair(
+        pinion_teeth=21,
+        wheel_teeth=-72,
+        normal_module=2e-3,
+        normal_pressure_angle=math.radians(20.0),
+        helix_angle=math.radians(15.0),
+        pinion_face_width=25e-3,
+    )
+    mesh = table(pair, stiffness_model="iso6336", pinion_torque=100.0)
+    functions, frame = mesh.functions(), np.array([-1.0, 1.0, 1.0])
+    radius = pair.pinion.base_radius - pair.wheel.base_radius
+    between = np.array([radius, pair.line_of_action_length, 0.0])
+    for columns in (functions.spatial_direction, functions.spatial_friction):
+        rows = columns(mesh.phase)
+        moments = rows[:, 3:6] * frame + rows[:, 9:12] * frame
+        total = moments + np.cross(between, rows[:, 6:9] * frame)
+        assert total == pytest.approx(np.zeros_like(total), abs=1e-9)
+    lost = mesh.mean_friction_power / (100.0 * 150.0)
+    moments = mesh.friction_moment_pinion - mesh.friction_moment_wheel / abs(pair.ratio)
+    assert mesh.grid.mean(moments) / pair.pinion.base_radius == pytest.approx(lost, rel=1e-3)
+
+
+def test_models_of_external_teeth_refuse_a_ring():
+    ring = cylindrical_pair(
+        pinion_teeth=21,
+        wheel_teeth=-72,
+        normal_module=2e-3,
+        normal_pressure_angle=math.radians(20.0),
+        helix_angle=0.0,
+        pinion_face_width=25e-3,
+    )
+    for model in ("potential-energy", "analytic", "weber"):
+        with pytest.raises(InputError, match=rf'"{model}" of a pair with internal teeth'):
+            table(ring, stiffness_model=model)
 
 
 def test_friction_in_space_balances():

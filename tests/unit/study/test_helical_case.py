@@ -12,6 +12,7 @@ from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.exchange import case_from_rexs, read_rexs, write_rexs
 from tribodyn.mesh.gears import spatial_columns
+from tribodyn.study.case.provenance import changed_keys
 from tribodyn.study.case.read import read_case
 
 CASE = """
@@ -95,6 +96,21 @@ def test_a_ring_runs_with_its_friction_and_moments(driver: str) -> None:
     assert np.abs(ty1 + ty2 - across * z2).max() < tolerance
     # The first rotation counts the other way.
     assert np.abs(tx1 + tx2 - along * z2).max() < tolerance
+def test_a_ring_loses_the_power_of_its_loss_factor() -> None:
+    """Constant friction: loss = mu H_V, up to the unequal sharing of the load."""
+    friction = '[stiffness]\nmodel = "iso6336"\n[friction]\nlaw = "constant"\ncoefficient = 0.05\n'
+    figures = td.run(read_case(CASE + friction)).summary()
+    lost = 0.05 * figures["gear_loss_factor"]
+    assert 1.0 - figures["efficiency"] == pytest.approx(lost, rel=0.1)
+    assert figures["mean_friction_power"] == pytest.approx(lost * figures["input_power"], rel=0.1)
+
+
+def test_helical_pairs_have_solid_teeth_unless_another_model_is_chosen() -> None:
+    case = read_case(CASE)
+    assert case.stiffness.model == "fe3d"
+    assert case.replace({"gears.helix_angle": 0.0}).stiffness.model == "fe2d"
+    assert case.replace({"stiffness.model": "iso6336"}).stiffness.model == "iso6336"
+    assert "stiffness.model" not in changed_keys(case)
 
 
 HELICAL = (

@@ -15,6 +15,7 @@ def gear_influences(
     pair: SpurPair, material: Material, model: StiffnessModel, options: Mapping[str, Any]
 ) -> tuple[Any, Any]:
     """Structure of pinion and wheel by a model that knows it, the same under every load."""
+    model.require_known_teeth(pair)
     reference = {**model.options, **options}["reference"]
     gears = pair.gears.values()
     pinion, wheel = (_influence(model.influence, gear, material, reference) for gear in gears)

@@ -96,6 +96,7 @@ MODELS.define(
 )(_pair_stiffness("fe3d"))
 MODELS.define(
     "analytic",
+    external_only=True,
     influence=_analytic,
     meaning="stiffness from strain energy of the teeth and Fourier series of the gear bodies, "
     "all pairs together",
@@ -103,6 +104,7 @@ MODELS.define(
 )(_pair_stiffness("analytic"))
 MODELS.define(
     "weber",
+    external_only=True,
     options={"reference": reference_option("rim")},
     influence=_weber,
     meaning="stiffness after Weber: bending of the tooth, half plane under it, local compression",

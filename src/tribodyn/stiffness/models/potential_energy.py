@@ -224,6 +224,7 @@ def potential_energy_stiffness(
 
 @MODELS.define(
     "potential-energy",
+    external_only=True,
     options={"reference": reference_option("bore")},
     influence=potential_energy_influence,
     meaning="stiffness from the strain energy of each tooth, its foundation and the Hertzian "

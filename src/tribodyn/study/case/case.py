@@ -13,7 +13,7 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.study.case import to_models
 from tribodyn.study.case.case_data import CaseData
 from tribodyn.study.case.checks import cross_problems, dropped_options
-from tribodyn.study.case.gears import is_needed
+from tribodyn.study.case.gears import is_needed, with_gear_defaults
 from tribodyn.study.case.provenance import (
     changed_after,
     effective_values,
@@ -94,9 +94,10 @@ class Case(CaseData, case=True):
         inputs = UserInput(central_values if source is not None else plain(central_values))
         source = source or Source()
         stated, problems = read_stated(inputs)
-        body = without_records(inputs.data)
+        complete = with_gear_defaults(inputs)
+        body = without_records(complete.data)
         marks = body.pop("assumed", {})
-        chosen = choices(inputs)
+        chosen = choices(complete)
         vars(self).update(read_fields(type(self), body, "", chosen, problems))
         problems = [fault for fault in problems if is_needed(fault[0], inputs.get("gears.kind"))]
         problems += [*misspelt, *reason_faults(marks)]

@@ -424,6 +424,19 @@ def is_needed(key: str, kind: str | None) -> bool:
     )
 
 
+#: Stiffness model of helical pairs unless one is chosen: slices of the face act on each other.
+HELICAL_STIFFNESS = "fe3d"
+
+
+def with_gear_defaults(inputs: UserInput) -> UserInput:
+    """Return the input with the stiffness model of helical pairs where none is chosen."""
+    helix = inputs.get("gears.helix_angle")
+    plain = isinstance(inputs.get("stiffness"), str) or inputs.get("gears.kind", "spur") != "spur"
+    if plain or "stiffness.model" in inputs or not helix or str(helix).split()[0] in ("0", "0.0"):
+        return inputs
+    return UserInput(inputs.merged({"stiffness.model": HELICAL_STIFFNESS}))
+
+
 def heat_of_bodies(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
     """Check that thermal conductivity and specific heat of a gear are given together."""
     for gear in ("pinion", "wheel"):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import Problem
 from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
-from tribodyn.study.case.gears import RQ_OVER_RA, is_idle
+from tribodyn.study.case.gears import HELICAL_STIFFNESS, RQ_OVER_RA, is_idle
 from tribodyn.study.case.hypoid import solid
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.sections import PROPERTIES, SHEET
@@ -335,6 +335,8 @@ def default_of(case: CaseData, key: str) -> Any:
         return _TRANSIENT_CYCLES
     if key == "dynamics.mesh_law":
         return mesh_law_of(case)
+    if key == "stiffness.model" and case.gears.kind == "spur" and case.gears.helix_angle:
+        return HELICAL_STIFFNESS
     model = _model_of(case, path)
     option = section.fields.get(name) if section else None
     standard = option.default if isinstance(option, Option) and not option.required else None

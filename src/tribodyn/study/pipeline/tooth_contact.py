@@ -97,6 +97,8 @@ def mesh_of(
     if rehearsal:
         film = "none" if settings.film_model == "none" else "dowson-higginson"
         settings = replace(settings, film_model=film, film_options={})
+        if settings.stiffness_model == "fe3d":  # solids take seconds, plane sections do not
+            settings = replace(settings, stiffness_model="fe2d")
         law = LAWS[case.friction.law]
         if law.needs_film:
             other = LAWS[law.rehearsal]
