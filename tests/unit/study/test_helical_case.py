@@ -96,6 +96,8 @@ def test_a_ring_runs_with_its_friction_and_moments(driver: str) -> None:
     assert np.abs(ty1 + ty2 - across * z2).max() < tolerance
     # The first rotation counts the other way.
     assert np.abs(tx1 + tx2 - along * z2).max() < tolerance
+
+
 def test_a_ring_loses_the_power_of_its_loss_factor() -> None:
     """Constant friction: loss = mu H_V, up to the unequal sharing of the load."""
     friction = '[stiffness]\nmodel = "iso6336"\n[friction]\nlaw = "constant"\ncoefficient = 0.05\n'
