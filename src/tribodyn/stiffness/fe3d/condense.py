@@ -19,7 +19,9 @@ def eliminated(matrix: Array, count: int) -> Array:
         return matrix
     lower = cholesky(matrix[:count, :count], lower=True, check_finite=False)
     half = solve_triangular(lower, matrix[:count, count:], lower=True, check_finite=False)
-    return np.asarray(matrix[count:, count:] - np.conj(half.T) @ half)
+    # real: the product of a matrix with itself is recognised, and costs half
+    turned = np.conj(half.T) if np.iscomplexobj(half) else half.T
+    return np.asarray(matrix[count:, count:] - turned @ half)
 
 
 def condensed(

@@ -29,15 +29,10 @@ class SectionMatrices(NamedTuple):
 
     def of_solid(self, face: FaceBasis) -> Array:
         """Stiffness (f, z, f, z) of the solid of a section with ``f`` freedoms."""
-        turned = np.conj(self.single.T)
-        parts = (
-            (self.none, face.mass),
-            (self.single, face.slope),
-            (turned, face.slope.T),
-            (self.double, face.bending),
-        )
-        total = sum(section[:, None, :, None] * over[:, None, :] for section, over in parts)
-        return np.asarray(total)
+        parts = self.none, self.single, np.conj(self.single.T), self.double
+        faces = face.mass, face.slope, face.slope.T, face.bending
+        # [f, 1, g, part] times [z, part, w]
+        return np.asarray(np.stack(parts, axis=-1)[:, None] @ np.stack(faces, axis=1))
 
 
 def elasticity(poissons_ratio: float) -> Array:
