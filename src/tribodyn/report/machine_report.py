@@ -48,6 +48,8 @@ FIGURES_OF_MACHINES = (
     plot.machine_modes,
     plot.machine_campbell,
 )
+#: Figures before the maps of the meshes.
+_BEFORE_MAPS = 2
 #: Figures on the cards: those of every part with these ends.
 _CARDS = (
     "machine.input_power",
@@ -79,12 +81,16 @@ def _cards(summary: dict[str, float]) -> list[Number]:
 
 
 def _blocks(result: MachineResult) -> list[Block]:
+    figures = [(figure, result, figure.name, figure.heading) for figure in FIGURES_OF_MACHINES]
+    maps = [
+        (plot.face_maps, table, f"face-maps-{number}", f"Mesh {mesh}: maps over the face")
+        for number, (mesh, table) in enumerate(result.operation.tables.items(), 1)
+    ]
+    places = [*figures[:_BEFORE_MAPS], *maps, *figures[_BEFORE_MAPS:]]
     return [
-        block_of_figure(
-            figure.name, figure.heading, figure.sketch(result), figure.caption_of(result)
-        )
-        for figure in FIGURES_OF_MACHINES
-        if not figure.missing(result)
+        block_of_figure(name, heading, figure.sketch(part), figure.caption_of(part))
+        for figure, part, name, heading in places
+        if not figure.missing(part)
     ]
 
 

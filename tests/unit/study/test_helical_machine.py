@@ -197,3 +197,25 @@ def test_teeth_and_shafts_agree_on_the_misalignment(result) -> None:
     # More load where the compression grows, in the direction of x.
     heavier = np.sign(load.static.meshes["first"].moment) == np.sign(balanced)
     assert heavier
+
+
+def test_the_report_maps_each_mesh_over_its_face(result, tmp_path) -> None:
+    text = (result.save(tmp_path / "out") / "report.html").read_text(encoding="utf-8")
+    assert "Mesh first: maps over the face" in text
+    again = td.load_result(tmp_path / "out")
+    table, other = (each.operation.tables["first"] for each in (result, again))
+    assert other.load_face_position == pytest.approx(table.load_face_position)
+    static = again.operation.static.meshes["first"]
+    assert static.moment == pytest.approx(result.operation.static.meshes["first"].moment, rel=1e-6)
+
+
+def test_the_built_in_reducer_lets_axial_forces_of_its_middle_shaft_oppose_each_other() -> None:
+    case = td.load_case("two-stage-helical").replace({"stiffness": {"model": "iso6336"}})
+    figures = td.run(case.replace({"load_cases": None})).summary()
+    first, second = (figures[f"meshes.{name}.axial_force"] for name in ("first", "second"))
+    on_middle = figures["bearings.C.mean_axial_force"]
+    assert on_middle == pytest.approx(second - first, rel=1e-4)
+    assert abs(on_middle) < min(abs(first), abs(second))
+    for name in ("first", "second"):
+        assert figures[f"meshes.{name}.overlap_ratio"] > 1.0
+        assert figures[f"meshes.{name}.minimum_film_thickness"] > 1e-7

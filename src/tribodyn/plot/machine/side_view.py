@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.plot.theme.labels import rounded
 from tribodyn.plot.theme.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure
 
@@ -23,6 +25,8 @@ _WIDTH, _OUTER = 0.018, 2.0
 _THIN = 0.15
 #: Width and height of the drawing, width of a character, and shifts of names [px].
 _AREA, _CHARACTER, _SHIFTS = (620.0, 420.0), 7.0, (0, 15, -15, 30, -30)
+#: Heights of the lines that show the inclination of the teeth, over the pitch radius.
+_TEETH = (-0.66, -0.22, 0.22, 0.66)
 _STEEL, _SEAT = "#c9d1d9", "#f3e3c3"
 
 
@@ -125,8 +129,32 @@ def _gears(view: SideView) -> Iterator[Trace]:
         drives = any(load.driver == name for load in machine.kinematics.meshes.values())
         color = PINION if drives else WHEEL
         text = f"{name}: {gear.teeth} teeth, diameter {rounded('reference_diameter', 2.0 * radius)}"
+        helix = _helix(machine, name)
+        if helix:
+            text += f", {rounded('helix_angle', abs(helix))} {'right' if helix > 0.0 else 'left'}"
         trace = _drawn(color, FILLS[color], text)
         yield _box(x - half, x + half, height - radius, height + radius, trace)
+        # Teeth of a right-hand gear descend along x on the side of the viewer.
+        rise = -half * math.tan(helix)
+        for part in _TEETH if helix else ():
+            y = height + part * radius
+            yield {
+                "type": "scatter",
+                "mode": "lines",
+                "x": _MM * np.array([x - half, x + half]),
+                "y": _MM * np.array([y - rise, y + rise]),
+                "line": {"color": color, "width": 0.8},
+                "hoverinfo": "skip",
+                "showlegend": False,
+            }
+
+
+def _helix(machine: Machine, name: str) -> float:
+    """Helix angle of a gear, negative of a left-hand one; zero of a spur gear."""
+    mesh = next((each for each in machine.meshes.values() if name in each.gears), None)
+    if mesh is None:
+        return 0.0
+    return mesh.helix_angle * (1.0 if gear_hand(name, machine.gears, mesh) == "right" else -1.0)
 
 
 def _bearings(view: SideView) -> Iterator[Trace]:
@@ -206,7 +234,8 @@ def _levels(view: SideView) -> dict[str, int]:
     heading="The machine",
     caption="To scale, with the axes unfolded into one plane: shafts with their sections, gears "
     "with their reference circles (blue: driving, orange: driven, an idler counts as driving), "
-    "bearings with crosses. Point at a part for its speed, torque or size.",
+    "bearings with crosses; lines on helical gears are inclined like their teeth. Point "
+    "at a part for its speed, torque or size.",
     of=("Machine", "MachineResult.machine"),
     made_by="Load a case with shafts, or build a tribodyn.machine.Machine.",
 )

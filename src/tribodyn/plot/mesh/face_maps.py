@@ -33,6 +33,8 @@ _NAMES = {
     "friction_coefficient": "Friction coefficient",
 }
 _COLORS = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
+#: Part of the film whose values the colours resolve: slices that hardly carry have thick films.
+_COLORED = 0.97
 #: Height of a map, of the gap between two, and of what surrounds them [px].
 _HEIGHT, _GAP, _AROUND = 190, 40, 150
 
@@ -82,6 +84,8 @@ def face_maps(mesh: MeshTable) -> Any:
                 "z": values,
                 "yaxis": f"y{suffix}",
                 "colorscale": _COLORS,
+                "zmin": np.nanmin(values),
+                "zmax": np.nanquantile(values, _COLORED if "film" in column else 1.0),
                 "colorbar": {
                     "title": {"text": label, "side": "right"},
                     "y": sum(domain) / 2.0,

@@ -80,8 +80,7 @@ def _of_table(result: LoadResult, name: str, table: Any) -> dict[str, float | No
     """Figures of computed teeth; of a constant stiffness there is only that."""
     if table is None:
         return {"mean_mesh_stiffness": float(result.static.meshes[name].stiffness[0, 0])}
-    film = table.minimum_film
-    loaded = None if film is None else film[table.in_contact & (film > 0.0)]
+    film = table.central_film if table.minimum_film is None else table.minimum_film
     sliced = table.face_load_factor
     return {
         **({} if sliced is None else {"face_load_factor": sliced}),
@@ -91,9 +90,9 @@ def _of_table(result: LoadResult, name: str, table: Any) -> dict[str, float | No
         "mean_friction_coefficient": table.mean_friction_coefficient,
         "friction_power": table.mean_friction_power,
         "maximum_hertz_pressure": float(np.nanmax(table.hertz_pressure)),
-        "minimum_film_thickness": None
-        if loaded is None or not loaded.size
-        else float(loaded.min()),
+        "minimum_film_thickness": (
+            None if film is None else float(np.fmin.reduce(film[table.in_contact]))
+        ),
     }
 
 
