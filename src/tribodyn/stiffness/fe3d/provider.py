@@ -165,7 +165,7 @@ def _looked_up(
             return unit
     announce(
         f"computing the compliance of {sector.count} teeth over their face, once on this machine, "
-        "2 to 20 seconds"
+        "1 to 10 seconds"
     )
     unit = unit_face_compliances(sector, neighbours, progress)
     store_arrays(name, unit._asdict(), "fe3d")
