@@ -10,13 +10,7 @@
 """
 
 from tribodyn.arguments import guard
-from tribodyn.contact.face_contacts import (
-    FaceContacts,
-    checked_slices,
-    entry_delay,
-    face_contacts,
-    face_positions,
-)
+from tribodyn.contact.face_contacts import FaceContacts, face_contacts
 from tribodyn.contact.hertz import (
     HertzEllipse,
     HertzLine,
@@ -35,13 +29,10 @@ __all__ = [
     "HertzLine",
     "Kinematics",
     "PathOfContact",
-    "checked_slices",
     "effective_modulus",
-    "entry_delay",
     "equal_share",
     "extended_contact",
     "face_contacts",
-    "face_positions",
     "gear_loss_factor",
     "hertz_ellipse",
     "hertz_line",

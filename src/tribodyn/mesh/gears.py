@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from tribodyn.contact import entry_delay, path_of_contact
+from tribodyn.contact import path_of_contact
+from tribodyn.contact.face_contacts import entry_delay
 from tribodyn.contact.path import pitch_point_age
 from tribodyn.errors import InputError, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair

@@ -172,7 +172,7 @@ def _used_directions(*parts: Array) -> Array:
             contact = unrepeated(part[..., number, :], 1).reshape(-1, part.shape[-1])
             varying = np.ptp(contact, axis=0).any()
             if varying and len(contact) > _MANY:  # rows of the same space, with the same lengths
-                contact = np.linalg.qr(contact, mode="r")
+                contact = np.asarray(np.linalg.qr(contact, mode="r"))
             rows.append(contact if varying else contact[:1])
     return np.asarray(np.unique(np.vstack(rows), axis=0))
 

@@ -21,6 +21,7 @@ from tribodyn.dynamics.structure.gear_pair import (
 )
 from tribodyn.errors import InputError, require_between
 from tribodyn.nomenclature import GEARS
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshFunctions
@@ -90,8 +91,10 @@ def helical12(
         As in :func:`spur6` [kg], [kg*m^2], [N*m].
     supports : SpatialSupports, optional
         Springs of the gears; assumed where left out.
-    mesh_damping, driver, backlash, error, damping_in_gap, torque_balance, mesh_force
+    mesh_damping, driver, backlash, error, damping_in_gap, torque_balance
         As in :func:`spur6` [N*s/m], [m].
+    mesh_force : "stiffness", "tangent" or "force-law"
+        Force law of the teeth.
 
     Returns
     -------
@@ -120,32 +123,14 @@ def helical12(
     >>> helical12(flat, mass=1.0, moment_of_inertia=1e-3, torque=(90.0, 150.0))
     System(12 coordinates, 1 contact)
     """
-    springs = supports or SpatialSupports()
     require_between("backlash", backlash, 0.0, np.inf, "m")
-    towards = getattr(mesh, "spatial_direction", None)
-    if towards is None:
-        why = "The gears of this structure are cylindrical and move in space"
-        remedy = "Use the mesh table of a cylindrical pair, or another structure"
-        raise InputError("the mesh has no directions in space", "argument mesh", why, remedy)
-    m, polar = (
+    inertia, stiffness, damping = _bodies(
         pair_of("mass", mass, "kg"),
         pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2"),
+        supports or SpatialSupports(),
     )
-    across = springs.diametral_moment_of_inertia
-    tilting = 0.5 * polar if across is None else np.asarray(across)
-    inertia = np.stack((m, m, m, tilting, tilting, polar), axis=1).ravel()
-    radial, axial, tilt = (
-        np.asarray(values)
-        for values in (
-            springs.bearing_stiffness,
-            springs.axial_bearing_stiffness,
-            springs.tilting_stiffness,
-        )
-    )
-    stiffness = np.stack((radial, radial, axial, tilt, tilt, np.zeros(2)), axis=1).ravel()
-    damping = 2.0 * springs.bearing_damping_ratio * np.sqrt(stiffness * inertia)
     contact = Contact(
-        direction=towards,
+        direction=_direction(mesh),
         stiffness=mesh.stiffness,
         damping=mesh_damping,
         error=with_error_of(mesh, error),
@@ -169,3 +154,29 @@ def helical12(
         names=HELICAL12_NAMES,
         balance=held,
     )
+
+
+def _direction(mesh: MeshFunctions) -> Entry:
+    towards: Entry | None = getattr(mesh, "spatial_direction", None)
+    if towards is None:
+        why = "The gears of this structure are cylindrical and move in space"
+        remedy = "Use the mesh table of a cylindrical pair, or another structure"
+        raise InputError("the mesh has no directions in space", "argument mesh", why, remedy)
+    return towards
+
+
+def _bodies(mass: Array, polar: Array, springs: SpatialSupports) -> tuple[Array, Array, Array]:
+    """Inertia, stiffness and damping of every coordinate."""
+    across = springs.diametral_moment_of_inertia
+    tilting = 0.5 * polar if across is None else np.asarray(across)
+    inertia = np.stack((mass, mass, mass, tilting, tilting, polar), axis=1).ravel()
+    radial, axial, tilt = (
+        np.asarray(values)
+        for values in (
+            springs.bearing_stiffness,
+            springs.axial_bearing_stiffness,
+            springs.tilting_stiffness,
+        )
+    )
+    stiffness = np.stack((radial, radial, axial, tilt, tilt, np.zeros(2)), axis=1).ravel()
+    return inertia, stiffness, 2.0 * springs.bearing_damping_ratio * np.sqrt(stiffness * inertia)

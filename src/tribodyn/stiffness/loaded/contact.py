@@ -10,14 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.contact import (
-    FaceContacts,
-    checked_slices,
-    face_contacts,
-    face_positions,
-    path_of_contact,
-)
-from tribodyn.contact.face_contacts import SLICES
+from tribodyn.contact import FaceContacts, face_contacts, path_of_contact
+from tribodyn.contact.face_contacts import SLICES, checked_slices, face_positions
 from tribodyn.errors import (
     Argument,
     InputError,

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.contact import PathOfContact, checked_slices, extended_contact
+from tribodyn.contact import PathOfContact, extended_contact
+from tribodyn.contact.face_contacts import checked_slices
 from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.gear import Material, flank_gap, hunting_period, pitch_gap, run_out_gap
 from tribodyn.interrupt import stoppable
@@ -290,7 +291,17 @@ class ContactProblem:
         return np.asarray(self.widths.sum(axis=1))
 
     def forces(self, load_per_width: Array) -> Array:
-        """Force on each pair (..., p, n) [N] from its loads per width (..., p, s, n) [N/m]."""
+        """Force on each pair of all its slices.
+
+        Parameters
+        ----------
+        load_per_width : array (..., p, s, n) [N/m]
+            Loads of every pair in every slice.
+
+        Returns
+        -------
+        array (..., p, n) [N]
+        """
         return np.asarray((self.widths * load_per_width).sum(axis=-2))
 
     @property

@@ -149,12 +149,21 @@ class FaceInfluence:
 
 @dataclass(frozen=True, eq=False)
 class SlicedInfluence:
-    """Compliances of one gear between slices of its face; made by :meth:`FaceInfluence.sliced`."""
+    """Compliances of one gear between slices of its face; made by :meth:`FaceInfluence.sliced`.
 
-    radius_knots: Array  #: knots over the square of the radius of curvature [m^2]
-    widths: Array  #: of the slices [m]
-    #: [neighbour, loaded slice, displaced slice, loaded radius, displaced radius]: mean
-    #: displacement of a slice times its width per load per width [m^3/N]
+    Parameters
+    ----------
+    radius_knots : array (r,) [m^2]
+        Knots over the square of the radius of curvature.
+    widths : array (s,) [m]
+        Widths of the slices.
+    coefficients : array (N + 1, s, s, K, K) [m^3/N]
+        ``[neighbour, loaded slice, displaced slice, loaded radius, displaced radius]``: mean
+        displacement of a slice times its width per load per width.
+    """
+
+    radius_knots: Array
+    widths: Array
     coefficients: Array
 
     def fill(self, out: Array, radii: Array, sense: int) -> None:

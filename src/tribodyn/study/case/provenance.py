@@ -259,9 +259,8 @@ def foundations(key: str) -> tuple[str, ...]:
     return _FOUNDATIONS.get(key, ())
 
 
-_TRANSIENT_CYCLES = 50
-#: Keys of descriptive text.
-_TEXT_KEYS = ("title", "origin")
+#: Cycles of a transient motion unless given, and keys of descriptive text.
+_TRANSIENT_CYCLES, _TEXT_KEYS = 50, ("title", "origin")
 
 
 @dataclass(frozen=True)
@@ -298,27 +297,24 @@ def _bored(case: CaseData, default: Any) -> Any:
     """Return the reference of deflection: the rim where a gear has no bore and is no ring."""
     if case.gears.kind != "spur":
         return default
-    held = (
-        gear.bore_diameter or gear.tooth_count < 0 for gear in (case.gears.pinion, case.gears.wheel)
-    )
+    gears = case.gears.pinion, case.gears.wheel
+    held = (gear.bore_diameter or gear.tooth_count < 0 for gear in gears)
     return "rim" if default == "bore" and not all(held) else default
 
 
 def effective_values(case: CaseData) -> dict[str, Any]:
     """Return all effective values by dotted key, with defaults filled in."""
-    values = in_force(case)
-    kind = case.gears.kind
+    values, kind = in_force(case), case.gears.kind
     values |= {key: None for key in values if is_idle(key, kind)}
     if kind != "spur":
         values["film.model"] = "none"
     if case.stiffness.reference is None:
         values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
-    for name in ("mesh_damping", "bearing_damping"):
-        if values[f"dynamics.{name}"] is not None:
-            values[f"dynamics.{name}_ratio"] = None
+    both = [f"dynamics.{name}" for name in ("mesh_damping", "bearing_damping")]
+    values |= {f"{key}_ratio": None for key in both if values[key] is not None}
     values["dynamics.mesh_law"] = mesh_law_of(case)
-    if case.solver.method == "transient" and values["solver.cycles"] is None:
-        values["solver.cycles"] = _TRANSIENT_CYCLES
+    if case.solver.method == "transient":
+        values["solver.cycles"] = values["solver.cycles"] or _TRANSIENT_CYCLES
     return values
 
 
@@ -335,7 +331,7 @@ def default_of(case: CaseData, key: str) -> Any:
         return _TRANSIENT_CYCLES
     if key == "dynamics.mesh_law":
         return mesh_law_of(case)
-    if key == "stiffness.model" and case.gears.kind == "spur" and case.gears.helix_angle:
+    if key == "stiffness.model" and case.gears.helix_angle:
         return HELICAL_STIFFNESS
     model = _model_of(case, path)
     option = section.fields.get(name) if section else None
