@@ -56,8 +56,8 @@ def machine_from_rexs(
     load_case : int, optional
         Number of the load case that is the operating point; the first by default.
     changes : dict, optional
-        Values by dotted key that replace those of the file, as in :meth:`MachineCase.replace`;
-        a stage with internal teeth needs one: ``{"meshes.stage_19.stiffness": 5e8}``.
+        Values by dotted key that replace those of the file, as in :meth:`MachineCase.replace`:
+        ``{"meshes.stage_19.stiffness": 5e8}`` for a stage without tooth contact.
     by : str
         Source of the changes, for messages; then a bare number for a dimension is refused.
 
@@ -71,11 +71,11 @@ def machine_from_rexs(
     Raises
     ------
     InputError
-        Naming each stage that needs a mesh stiffness (internal teeth) or is not computed
-        (planetary, bevel, worm), or if the machine cannot be composed.
+        Naming each stage that is not computed (planetary, bevel, worm), or if the machine cannot
+        be composed.
     """
     changes = dict(changes or {})
-    if problems := [*_unsupported(model), *_without_stiffness(model, changes)]:
+    if problems := _unsupported(model):
         raise InputError(problems)
     model.stage(model.stages[0].id if model.stages else None)  # refuses a model without stages
     load = model.load(load_case)
@@ -119,28 +119,6 @@ def _unsupported(model: GearboxModel) -> list[Problem]:
             why = "The axes of a machine are parallel and fixed in the housing"
             remedy = f"List the data of its gears: tribodyn import {model.path}"
             problems.append(Problem(what, model.path, why, remedy))
-    return problems
-
-
-def _without_stiffness(model: GearboxModel, changes: dict[str, Any]) -> list[Problem]:
-    """Stages whose tooth contact is not computed, and that have no stiffness yet."""
-    problems = []
-    for stage in model.stages:
-        key = f"meshes.stage_{stage.id}.stiffness"
-        first, second = stage.gear_1, stage.gear_2
-        external = min(first.teeth, second.teeth) > 0
-        if external or stage.planetary or changes.get(key) is not None:
-            continue
-        names = [f"gear_{g.id}" + (f' "{g.name}"' if g.name else "") for g in (first, second)]
-        teeth = f"z = {first.teeth} / {second.teeth}"
-        problems.append(
-            Problem(
-                f"stage_{stage.id} has internal teeth ({' and '.join(names)}, {teeth})",
-                model.path,
-                "Teeth of external gears are computed; this mesh needs its stiffness",
-                f'Give it along the transverse line of action: --set "{key}=5e8 N/m"',
-            )
-        )
     return problems
 
 

@@ -50,13 +50,13 @@ def mean_direction(contact: Contact) -> Array:
     return np.asarray(entry(PHASES).mean(axis=0) if callable(entry) else entry, dtype=float)
 
 
-def with_exchanged_gears(mesh: Mesh) -> Mesh:
-    """External mesh whose contacts were those of its second and its first gear, in this order."""
+def with_exchanged_gears(mesh: Mesh, *, internal: bool) -> Mesh:
+    """Mesh whose contacts were those of its second and its first gear, in this order."""
 
     def exchanged(part: T) -> T:
         size = coordinate_count(part)
         rows = np.roll(np.eye(size), size // 2, axis=0)
-        if size == SPATIAL:  # z follows the rotation of the first gear
+        if size == SPATIAL and not internal:  # z follows the rotation of the first gear
             rows[[2, 8]] *= -1.0
         return projected(part, rows)
 

@@ -171,14 +171,18 @@ def test_planetary_stages_are_named_with_their_teeth() -> None:
     assert "tribodyn import" in str(problem)
 
 
-def test_internal_teeth_need_a_stiffness_and_then_turn_alike(tree, tmp_path) -> None:
+def test_internal_teeth_are_computed_and_turn_alike(tree, tmp_path) -> None:
     straight(tree)
     add(tree, 17, "", number_of_teeth=-51.0)
     add(tree, 19, center_distance=-54.0)
-    model = read_rexs(stored(tree, tmp_path))
-    with pytest.raises(InputError, match=r"stage_19 has internal teeth .* z = 27 / -51"):
-        machine_from_rexs(model)
-    case = machine_from_rexs(model, changes=STIFF)
+    shift = "addendum_modification_coefficient"
+    for component in tree["model"]["components"]:
+        for attribute in component["attributes"]:
+            if attribute["id"] == shift and attribute["floating_point"] > 0.2:
+                attribute["floating_point"] = 0.0
+    case = machine_from_rexs(read_rexs(stored(tree, tmp_path)))
+    assert case.meshes_with_teeth == ("stage_19", "stage_20")
+    assert case.pair("stage_19", case.operating_point).gear_pair.is_internal
     speeds = [case.machine().kinematics.shafts[f"shaft_{n}"].speed / RPM for n in (12, 13)]
     assert speeds == pytest.approx([543.0, 543.0 * 27.0 / 51.0])
 

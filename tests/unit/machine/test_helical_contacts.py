@@ -21,11 +21,13 @@ from tribodyn.mesh.gears import spatial_columns
 ANGLE, WIDTH = 15 * DEGREE, 0.02
 
 
-def teeth(hand: str = "right", driver: str = "pinion", misalignment: float = 0.0) -> MeshTable:
+def teeth(
+    hand: str = "right", driver: str = "pinion", misalignment: float = 0.0, wheel_teeth: int = 72
+) -> MeshTable:
     """Mesh table of 21 and 72 teeth with the face width of the machine."""
     gears = cylindrical_pair(
         pinion_teeth=21,
-        wheel_teeth=72,
+        wheel_teeth=wheel_teeth,
         normal_module=2e-3,
         normal_pressure_angle=20 * DEGREE,
         helix_angle=ANGLE,
@@ -64,10 +66,24 @@ def tables() -> dict[tuple[str, str], MeshTable]:
     return {(h, d): teeth(h, d) for h in ("right", "left") for d in ("pinion", "wheel")}
 
 
-@pytest.mark.parametrize(("hand", "torque", "speed"), CASES)
-def test_force_is_that_of_the_pitch_point_at_another_place(tables, hand, torque, speed) -> None:
-    machine = pair((21, 72), hand=hand, torque=torque, speed=speed, helix_angle=ANGLE, angle=0.7)
-    table = tables[hand, "pinion" if torque > 0.0 else "wheel"]
+@pytest.fixture(scope="module")
+def rings() -> dict[tuple[str, str], MeshTable]:
+    """The same with a ring of 72 teeth."""
+    sides = (("right", "pinion"), ("left", "wheel"))
+    return {side: teeth(*side, wheel_teeth=-72) for side in sides}
+
+
+@pytest.mark.parametrize(
+    ("hand", "torque", "speed", "count"),
+    [(*case, 72) for case in CASES]
+    + [("right", 100.0, 50.0, -72), ("right", 100.0, -50.0, -72), ("left", -100.0, 50.0, -72)],
+)
+def test_force_is_that_of_the_pitch_point_at_another_place(
+    tables, rings, hand, torque, speed, count
+) -> None:
+    machine = pair((21, count), hand=hand, torque=torque, speed=speed, helix_angle=ANGLE, angle=0.7)
+    side = hand, "pinion" if torque > 0.0 else "wheel"
+    table = (tables if count > 0 else rings)[side]
     line, rows = machine.directions["mesh"], in_space(table, machine)
     for first, sign in ((0, 1.0), (6, -1.0)):
         assert rows[:, first : first + 3] == pytest.approx(
@@ -101,8 +117,8 @@ def test_lines_of_contact_lie_in_the_flanks(tables, hand, torque, speed) -> None
     step = np.outer(np.diff(table.face_position[one_pair]), [line.senses[0], 0.0, 0.0])
     step += np.outer(np.diff(path), towards)
     inside = table.in_contact[5, one_pair]
-    both = inside[1:] & inside[:-1]
-    middle = both & np.roll(both, 1) & np.roll(both, -1)
+    in_contact = inside[1:] & inside[:-1]
+    middle = in_contact & np.roll(in_contact, 1) & np.roll(in_contact, -1)
     assert middle[1:-1].sum() > 3
     assert step[1:-1][middle[1:-1]] @ line.normal == pytest.approx(0.0, abs=1e-12)
 
@@ -178,7 +194,7 @@ def test_contacts_of_exchanged_gears_are_those_of_the_same_machine(tables) -> No
     other = Machine(
         shafts={"input": Shaft(), "output": Shaft()},
         gears={"a": Gear("input", 0.0, 21, WIDTH), "b": Gear("output", 0.0, 72, WIDTH)},
-        meshes={"mesh": with_exchanged_gears(turned)},
+        meshes={"mesh": with_exchanged_gears(turned, internal=False)},
         operation=Operation("input", "output", speed=50.0, torque=100.0),
     )
     phase, rows = np.array([0.1, 0.6]), []

@@ -26,7 +26,6 @@ from tribodyn.study.machine.pair_cases import (
     option_of,
     pair_case,
     pinion_and_wheel,
-    ring_problem,
 )
 from tribodyn.study.machine.read_parts import (
     in_si,
@@ -246,17 +245,15 @@ class MachineCase:
         return tuple(loads)
 
     def _check_meshes(self) -> None:
-        """Refuse meshes whose gears do not exist, and teeth that need a stiffness."""
+        """Refuse meshes whose gears do not exist."""
         problems: KeyedProblems = []
-        for name, table in self._mesh_tables.items():
+        for name in self._mesh_tables:
             names = self._names(name)
             missing = [gear for gear in names if gear not in self.gears]
             for gear in missing:
                 why, remedy = f"Known: {', '.join(self.gears)}", "Add the gear, or correct the name"
                 problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
                 problems.append((f"meshes.{name}.gears", problem))
-            if table.stiffness is None and not missing and self.gears[names[0]].is_ring:
-                problems.append((f"meshes.{name}.gears", ring_problem(names[0])))
         if problems:
             raise InputError((self.source or Source()).place(problems))
 
@@ -375,7 +372,10 @@ class MachineCase:
         if values["center_distance"] is None:
             values["center_distance"] = self._center_distances.get(name)
         mesh = Mesh(self._names(name), **{**values, **fields})
-        return mesh if mesh.gears == self._pinion_and_wheel(name) else with_exchanged_gears(mesh)
+        pinion, wheel = self._pinion_and_wheel(name)
+        if mesh.gears == (pinion, wheel):
+            return mesh
+        return with_exchanged_gears(mesh, internal=self.gears[wheel].is_ring)
 
     @cached_property
     def _center_distances(self) -> dict[str, float]:

@@ -145,14 +145,6 @@ def constant_law(law: Any) -> dict[str, Any]:
     }
 
 
-def ring_problem(ring: str) -> Problem:
-    """Problem of a ring that is the first gear of its mesh."""
-    what = f'gear "{ring}" has internal teeth and is the first of its mesh'
-    why = "The teeth of a ring are computed as those of the second gear"
-    remedy = 'Exchange the gears, their hand and angle, or give the mesh its stiffness = "5e8 N/m"'
-    return Problem(what, "", why, remedy)
-
-
 def option_of(case: MachineCase, key: str) -> Option | None:
     """Option of a dotted key of a machine: of a part, or of the models of its teeth."""
     if "." not in key:
