@@ -14,7 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, wait
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from contextvars import copy_context
 from queue import SimpleQueue
 from types import FrameType, TracebackType
@@ -168,6 +168,15 @@ def alone() -> Iterator[None]:
 def processors() -> int:
     """Number of threads that this thread may start."""
     return 1 if getattr(_thread_state, "alone", False) else os.cpu_count() or 1
+
+
+def single_blas_thread() -> AbstractContextManager[Any]:
+    """Limit the linear algebra to one thread: with small matrices threads only wait."""
+    import scipy.linalg  # noqa: F401  (brings a library of its own, which has to be limited too)
+    from threadpoolctl import threadpool_limits
+
+    limits: AbstractContextManager[Any] = threadpool_limits(1, "blas")
+    return limits
 
 
 def begins_thread() -> bool:

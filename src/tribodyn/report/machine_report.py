@@ -12,6 +12,7 @@ import numpy as np
 from tribodyn import plot
 from tribodyn.drawing import report_of
 from tribodyn.errors import InputError
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine import machine_modes
 from tribodyn.model import Option
 from tribodyn.progress import SILENT, Progress
@@ -158,9 +159,10 @@ def machine_modes_report_data(
     case: MachineCase, ends: Any, progress: Progress = SILENT
 ) -> StudyReportData:
     """Natural modes of a machine and what excites them; ``ends`` limits the speeds."""
-    structure = structure_at_rest(case, progress)
-    progress.start("Natural modes")
-    modes, campbell = machine_modes(structure), campbell_of(structure, _speeds(case, ends))
+    with single_blas_thread():
+        structure = structure_at_rest(case, progress)
+        progress.start("Natural modes")
+        modes, campbell = machine_modes(structure), campbell_of(structure, _speeds(case, ends))
     figures = [
         figure_with_caption(plot.machine_modes, modes),
         figure_with_caption(plot.machine_campbell, campbell),

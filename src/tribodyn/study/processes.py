@@ -20,7 +20,15 @@ from contextvars import ContextVar
 from queue import Empty, SimpleQueue
 from typing import IO, Any, TypeVar
 
-from tribodyn.interrupt import STOPPED, alone, in_threads, processors, refuse_stopped, stop_flag
+from tribodyn.interrupt import (
+    STOPPED,
+    alone,
+    in_threads,
+    processors,
+    refuse_stopped,
+    single_blas_thread,
+    stop_flag,
+)
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
@@ -170,9 +178,7 @@ class Helpers:
                 remaining.clear()
                 raise
 
-        from threadpoolctl import threadpool_limits
-
-        with threadpool_limits(1, "blas"):
+        with single_blas_thread():
             in_threads(work, [None, *self._helpers], 1 + len(self._helpers))
 
     def start_in_background(

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.drawing import draw, write_report_of
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.record import html_table
 from tribodyn.study.machine.summary import summary_of
 from tribodyn.study.pipeline.save import new_directory
@@ -266,7 +267,7 @@ class MachineResult:
         from tribodyn.study.machine.stored import write_machine
 
         target = Path(directory)
-        with new_directory(target, force=force) as place:
+        with single_blas_thread(), new_directory(target, force=force) as place:
             write_machine(self, place)
             if csv:
                 frame = self.to_xarray().mesh_force.to_pandas()

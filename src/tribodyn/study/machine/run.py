@@ -12,7 +12,7 @@ import numpy as np
 
 from tribodyn.dynamics import law_contact
 from tribodyn.errors import ModelWarning, collected, frames, warn
-from tribodyn.interrupt import in_threads, processors
+from tribodyn.interrupt import in_threads, processors, single_blas_thread
 from tribodyn.machine import (
     MachineStructure,
     face_laws,
@@ -65,10 +65,8 @@ def run_machine(
     case: MachineCase, progress: Progress = SILENT, *, stacklevel: int = 2
 ) -> MachineResult:
     """Compute a machine at its operating point and under its load cases."""
-    from threadpoolctl import threadpool_limits
-
     # The matrices of a machine are small: threads of the linear algebra only wait for each other.
-    with collected() as caught, threadpool_limits(1, "blas"):
+    with collected() as caught, single_blas_thread():
         warn_of_period(case.machine())
         of_meshes: list[MeshWarning] = []
         points = (case.operating_point, *case.load_cases)

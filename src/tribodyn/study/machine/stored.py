@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.record import Parts, labels_of
 from tribodyn.study.machine.motion import MachineMotion
 from tribodyn.study.machine.result import LoadResult, MachineResult
@@ -57,14 +58,12 @@ def read_machine(
     read_summary: Callable[[Path], dict[str, float]],
 ) -> MachineResult:
     """Read the result of a machine; its matrices are assembled again, its motion is stored."""
-    from threadpoolctl import threadpool_limits
-
     data = read_dataset(folder / MOTION, str(folder))
     try:
         _check_files(folder, json.loads(data.attrs["files"]))
         case: MachineCase = load_case(folder / "case.toml")
         summary = read_summary(folder)
-        with collected(), threadpool_limits(1, "blas"):
+        with collected(), single_blas_thread():
             loads = [
                 _read_load(case, load, folder, number, summary)
                 for number, load in enumerate((case.operating_point, *case.load_cases))

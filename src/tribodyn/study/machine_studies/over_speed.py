@@ -10,6 +10,7 @@ import numpy as np
 
 from tribodyn.dynamics import harmonic_balance
 from tribodyn.errors import ComputationError, InputError, collected, warn
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.machine.result import STEPS
 from tribodyn.study.machine.run import machine_motion, run_load
@@ -70,15 +71,13 @@ def machine_run_up(
 ) -> MachineLevels:
     """Levels of a machine along a run-up from one speed of its input to another [rad/s]."""
     # The speed rises from period to period; teeth and gyroscopic moments are of the mean speed.
-    from threadpoolctl import threadpool_limits
-
     from tribodyn.dynamics.harmonic.varying_speed import periods_at
     from tribodyn.machine import machine_modes
 
     middle = case.replace({"operation.speed": float(np.sqrt(ends[0] * ends[1]))})
     per_speed = middle.machine().clock.frequency / middle.operating_point.speed
     speed, time = _periods(per_speed, ends, duration, hold, down)
-    with collected(), threadpool_limits(1, "blas"):
+    with collected(), single_blas_thread():
         result = run_load(middle, middle.operating_point, progress, [])
         start = harmonic_balance(result.system, float(per_speed * speed[0]), steps=STEPS)
         every = -(-speed.size // _RECORDED)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ComputationError, InputError, collected
-from tribodyn.interrupt import STOPPED, refuse_stopped, stop_flag
+from tribodyn.interrupt import STOPPED, refuse_stopped, single_blas_thread, stop_flag
 from tribodyn.progress import SILENT
 from tribodyn.study.machine.run import MeshWarning, run_load
 from tribodyn.study.studies.sweep_result import SweepPoint
@@ -20,13 +20,11 @@ def results_under(
     case: MachineCase, changes: Sequence[Mapping[str, Any]]
 ) -> Iterator[tuple[LoadResult | InputError | ComputationError, tuple[str, ...]]]:
     """Results of a machine at its operating point for changes of its keys, and warning codes."""
-    from threadpoolctl import threadpool_limits
-
     start = None
     for change in changes:
         refuse_stopped(STOPPED * int(stop_flag()[0]))
         of_meshes: list[MeshWarning] = []
-        with collected() as caught, threadpool_limits(1, "blas"):
+        with collected() as caught, single_blas_thread():
             try:
                 changed = case.replace(change)
                 load = changed.operating_point
