@@ -281,6 +281,8 @@ def _models(
     notes = {"dynamics.backlash": NOT_THERE + str(ASSUMED["dynamics.backlash"][1])}
     if computed:
         values |= {k: v for k, v in MODELS.items() if not k.startswith("dynamics.")}
+        if any(abs(stage.gear_1.helix_angle) > _SPUR for stage in computed):
+            values["stiffness.model"] = "fe3d"  # thin slices are too stiff
         oil, oil_notes = oil_values(model, load)
         values |= oil
         notes |= oil_notes

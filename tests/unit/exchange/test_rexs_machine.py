@@ -141,6 +141,7 @@ def test_teeth_of_helical_stages_are_computed(ending: str) -> None:
     """Figures of both pairs on their data sheets, by pinion and hand."""
     case = td.load_case(MODELS / f"two_stages.{ending}")
     assert case.meshes_with_teeth == ("stage_19", "stage_20")
+    assert case.pair("stage_19", case.operating_point).stiffness.model == "fe3d"
     for mesh, teeth, hand, angle, ratios in (
         ("stage_19", (27, 51), "right", 22.806245, (1.450202, 1.267467)),
         ("stage_20", (23, 34), "left", 21.775125, (1.523695, 0.629272)),
@@ -197,6 +198,7 @@ def test_spur_stages_make_a_machine_with_computed_teeth(tree, tmp_path) -> None:
     case = td.load_case(stored(straight(tree), tmp_path))
     assert case.meshes_with_teeth == ("stage_19", "stage_20")
     pair = case.pair("stage_20", case.load_cases[2])
+    assert pair.stiffness.model == "fe2d"
     assert (pair.gears.pinion.teeth, pair.gears.wheel.teeth) == (23, 34)
     assert pair.operation.speed == pytest.approx(1234.0 * 27.0 / 51.0 * RPM)
     assert pair.operation.torque == pytest.approx(456.0 * 51.0 / 27.0)

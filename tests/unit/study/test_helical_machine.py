@@ -219,3 +219,24 @@ def test_the_built_in_reducer_lets_axial_forces_of_its_middle_shaft_oppose_each_
     for name in ("first", "second"):
         assert figures[f"meshes.{name}.overlap_ratio"] > 1.0
         assert figures[f"meshes.{name}.minimum_film_thickness"] > 1e-7
+
+
+def test_equal_loads_are_computed_once(monkeypatch) -> None:
+    from tribodyn.study.machine import run
+
+    loads, compute = [], run.run_load
+
+    def counted(case: MachineCase, load: Any, *arguments: Any) -> Any:
+        loads.append(load.name)
+        return compute(case, load, *arguments)
+
+    monkeypatch.setattr(run, "run_load", counted)
+    parts = deepcopy(PARTS)
+    parts["load_cases"] = [{"name": "same"}, {"name": "light", "torque": 100.0}]
+    result = td.run(MachineCase(**parts))
+    assert loads == ["operation", "light"]
+    figures = result.summary()
+    assert [load.load.name for load in result.load_cases] == ["same", "light"]
+    key = "meshes.first.rms_mesh_force"
+    assert figures[f"load_cases.same.{key}"] == figures[key]
+    assert figures[f"load_cases.light.{key}"] != figures[key]

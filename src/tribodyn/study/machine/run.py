@@ -6,6 +6,7 @@ import re
 import sys
 import warnings
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -69,8 +70,13 @@ def run_machine(
     with collected() as caught, single_blas_thread():
         warn_of_period(case.machine())
         of_meshes: list[MeshWarning] = []
-        points = (case.operating_point, *case.load_cases)
-        results = [run_load(case, load, progress, of_meshes) for load in points]
+        results: list[LoadResult] = []
+        for load in (case.operating_point, *case.load_cases):
+            equal = [
+                r for r in results if (r.load.speed, r.load.torque) == (load.speed, load.torque)
+            ]
+            computed = equal[0] if equal else run_load(case, load, progress, of_meshes)
+            results.append(replace(computed, load=load))
         warn_of_meshes(of_meshes)
     unique = {str(warning): warning for warning in caught}
     for warning in unique.values():
