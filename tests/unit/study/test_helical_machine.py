@@ -240,3 +240,24 @@ def test_equal_loads_are_computed_once(monkeypatch) -> None:
     key = "meshes.first.rms_mesh_force"
     assert figures[f"load_cases.same.{key}"] == figures[key]
     assert figures[f"load_cases.light.{key}"] != figures[key]
+
+
+def test_a_helix_angle_of_zero_is_a_spur_gear() -> None:
+    """The same coordinates, and the load over the face of independent slices."""
+    parts = deepcopy(PARTS)
+    del parts["meshes"]["first"]["helix_angle"]
+    expected = td.run(MachineCase(**parts))
+    zero = td.run(machine(meshes={"first.helix_angle": 0.0}))
+    assert zero.summary() == pytest.approx(expected.summary(), rel=1e-12)
+    assert zero.summary()["meshes.first.face_load_factor"] > 1.2
+    assert "meshes.first.axial_force" not in zero.summary()
+
+
+def test_check_shows_overlap_and_axial_force_without_computing(result) -> None:
+    from tribodyn.study.machine.first_look import kinematic_figures
+
+    figures, computed = kinematic_figures(machine()), result.summary()
+    assert figures["meshes.first.overlap_ratio"] == computed["meshes.first.overlap_ratio"]
+    axial = figures["meshes.first.axial_force"] / figures["meshes.first.static_mesh_force"]
+    mean = computed["meshes.first.axial_force"] / computed["meshes.first.mean_mesh_force"]
+    assert axial == pytest.approx(mean, rel=1e-12)

@@ -423,7 +423,7 @@ class MachineCase:
             self.source,
             driver=mesh_load.driver,
             operation=(abs(speed), abs(mesh_load.torque[part.gears.index(pinion)])),
-            hand=gear_hand(pinion, self.gears, part),
+            hand=gear_hand(pinion, self.gears, part) if part.helix_angle else "",
             # The gap grows along the axis about which the pinion turns.
             misalignment=misalignment if speed < 0.0 else -misalignment,
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tribodyn.errors import warn
+from tribodyn.study.machine.summary import helix_figures
 from tribodyn.study.pipeline.run import rehearse
 
 if TYPE_CHECKING:
@@ -56,6 +57,8 @@ def kinematic_figures(case: MachineCase) -> dict[str, float]:
     for name, mesh in flow.meshes.items():
         values[f"meshes.{name}.mesh_frequency"] = mesh.mesh_frequency
         values[f"meshes.{name}.static_mesh_force"] = mesh.force
+        for key, value in helix_figures(machine, name, mesh.force).items():
+            values[f"meshes.{name}.{key}"] = value
     for name, shaft in flow.shafts.items():
         values[f"shafts.{name}.speed"] = shaft.speed
         values[f"shafts.{name}.torque"] = shaft.torque

@@ -86,10 +86,10 @@ def pair_case(
     *,
     driver: str,
     operation: tuple[float, float],
-    hand: str = "right",
+    hand: str = "",
     misalignment: float = 0.0,
 ) -> Case:
-    """Case of the pair of a mesh; hand, speed and torque are those of its pinion."""
+    """Case of the pair of a mesh; hand, if helical, speed and torque are those of its pinion."""
     speed, torque = operation
     body = data["meshes"][mesh]
     inner = mesh_tables(body)
@@ -103,7 +103,7 @@ def pair_case(
     pair = {k: v for k, v in body.items() if k in gears.Gears.fields and k not in inner}
     pair.setdefault("normal_pressure_angle", "20 deg")
     pair["driver"] = _ROLES[names.index(driver)]
-    if "helix_angle" in pair:
+    if hand:
         pair["hand"] = hand
     if misalignment:
         pair["misalignment"] = Plain(misalignment)
@@ -119,7 +119,7 @@ def pair_case(
         gears=pair,
         operation={"speed": Plain(speed), "torque": Plain(torque), "speed_of": "pinion"},
         dynamics={
-            **_STRUCTURES["helical" if body.get("helix_angle") else "spur"],
+            **_STRUCTURES["helical" if hand else "spur"],
             **shared_dynamics,
             **mesh_dynamics,
         },

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from tribodyn.machine import Machine
     from tribodyn.study.machine.result import LoadResult
 
 
@@ -59,14 +60,13 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
         "transmission_error_peak_to_peak": float(np.ptp(error)),
         "misalignment": balance.misalignment,
         "face_load_factor": balance.face_load_factor,
-        **_of_helix(result, name, mean),
+        **helix_figures(result.machine, name, mean),
         **_of_table(result, name, table),
     }
 
 
-def _of_helix(result: LoadResult, name: str, force: float) -> dict[str, float]:
-    """Overlap and axial force of helical teeth; nothing of spur gears."""
-    machine = result.machine
+def helix_figures(machine: Machine, name: str, force: float) -> dict[str, float]:
+    """Overlap and axial force of a mesh with helical teeth; nothing of spur gears."""
     mesh = machine.meshes[name]
     if not mesh.helix_angle:
         return {}
