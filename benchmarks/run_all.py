@@ -26,6 +26,7 @@ SCRIPTS = (
     "losses_speed",
     "fe2d_speed",
     "stiffness_speed",
+    "helical_speed",
     "learning_speed",
     "signals_speed",
     "study_speed",

@@ -127,7 +127,7 @@ def plain(mesh: ContactProblem, totals: np.ndarray) -> np.ndarray:
             [
                 plain_approach(
                     parts.structure[p], parts.local[p], parts.logarithm, mesh.gaps[p],
-                    mesh.widths, float(total),
+                    mesh.widths[0, :, 0], float(total),
                 )
                 for p in range(mesh.gaps.shape[0])
             ]
