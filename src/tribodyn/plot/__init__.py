@@ -36,6 +36,7 @@ from tribodyn.plot.machine.orders import machine_orders
 from tribodyn.plot.machine.power import machine_power
 from tribodyn.plot.machine.side_view import machine
 from tribodyn.plot.mesh.face_maps import face_maps
+from tribodyn.plot.mesh.lead import lead_optimum
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, coupling, harris_map, tip_relief_map
 from tribodyn.plot.mesh.table import (
@@ -131,6 +132,7 @@ __all__ = [
     "hypoid_load",
     "hypoid_pair",
     "hypoid_pressure",
+    "lead_optimum",
     "line_contact",
     "load_sharing",
     "loaded_contact",

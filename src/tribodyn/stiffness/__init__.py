@@ -8,7 +8,7 @@
 | `fe2d` | the same from finite elements of the whole gear |
 | `fe3d` | the same with the face width: slices of the face that are coupled |
 | `loaded` | load sharing, transmission error and stiffness of a mesh under load |
-| `tip_relief` | transmission error over torque, and the best tip relief |
+| `tip_relief` | transmission error over torque, the best tip relief, crowning and slope |
 """
 
 from tribodyn.arguments import guard
@@ -46,6 +46,7 @@ from tribodyn.stiffness.teeth.tooth_compliance import (
 )
 from tribodyn.stiffness.teeth.weber import weber_banaschek_compression
 from tribodyn.stiffness.tip_relief.harris import HarrisMap, transmission_error_over_torque
+from tribodyn.stiffness.tip_relief.lead import LeadOptimum, optimize_lead
 from tribodyn.stiffness.tip_relief.search import (
     TipReliefOptimum,
     optimize_tip_relief,
@@ -58,6 +59,7 @@ __all__ = [
     "FaceInfluence",
     "GearInfluence",
     "HarrisMap",
+    "LeadOptimum",
     "LoadPoint",
     "LoadedContact",
     "SlicedInfluence",
@@ -72,6 +74,7 @@ __all__ = [
     "load_point",
     "loaded_contact",
     "mesh_problem",
+    "optimize_lead",
     "optimize_tip_relief",
     "potential_energy_influence",
     "potential_energy_stiffness",

@@ -111,6 +111,8 @@ class LoadedContact(Record):
         Force on each pair.
     load_per_width : array (..., p, s, n) [N/m]
         Load of each pair in each slice.
+    face_load : array (..., s)
+        Force on each slice over all phases and pairs, over the mean of all slices.
     mesh_stiffness_tangent : array (..., p) [N/m]
         Slope of the total force over the transmission error at this load.
     """
@@ -135,6 +137,7 @@ class LoadedContact(Record):
     transmission_error: Array = quantity("torque", "phase", of="static_transmission_error")
     normal_force: Array = quantity("torque", "phase", "pair")
     load_per_width: Array = quantity("torque", "phase", "slice", "pair")
+    face_load: Array = quantity("torque", "slice", unit="1")
     mesh_stiffness_tangent: Array = quantity("torque", "phase")
 
     @property
@@ -145,8 +148,7 @@ class LoadedContact(Record):
     @property
     def face_load_factor(self) -> Array:
         """Greatest over mean load of a slice of the face, each over all phases (...)."""
-        each = self.load_per_width.sum(axis=(-3, -1))
-        return np.asarray(each.max(axis=-1) / each.mean(axis=-1))
+        return np.asarray(self.face_load.max(axis=-1))
 
     @property
     def load_share(self) -> Array:

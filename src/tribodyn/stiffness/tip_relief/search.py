@@ -25,6 +25,7 @@ from tribodyn.gear.modification import LARGEST_AMOUNT
 from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.stiffness.loaded.contact import contact_problem, contact_settings, phases_of
+from tribodyn.stiffness.loaded.face_problem import has_slices
 from tribodyn.stiffness.loaded.problem import ContactProblem, mesh_period, slice_widths
 from tribodyn.stiffness.model import MODELS
 from tribodyn.stiffness.tip_relief.minimum import least_point
@@ -297,8 +298,9 @@ def relief_mesh(
     return ReliefMesh(pair, gears, shape, problems, totals)
 
 
-#: Phases of a mesh cycle where nothing multiplies the work, and where something does.
-_MOST, _LEAST = 512, 64
+#: Phases of a mesh cycle where nothing multiplies the work, and where something does; and of
+#: slices of lines of contact, which enter and leave gradually.
+_MOST, _LEAST, _OF_SLICES = 512, 64, 32
 
 
 def optimize_tip_relief(
@@ -389,7 +391,7 @@ def optimize_tip_relief(
     """
     check_choices(grid, gears=gears, shape=shape, objective=objective)
     torques, weights = torques_and_weights(torque, weight)
-    phase = _phases(pair, phases, slices)
+    phase = _phases(pair, phases, slices, provider)
     settings = contact_settings(
         provider, phase, extended_contact, reference, material, slices, options
     )
@@ -429,9 +431,11 @@ def optimize_tip_relief(
     )
 
 
-def _phases(pair: SpurPair, phases: int | None, slices: int | None) -> Array:
+def _phases(pair: SpurPair, phases: int | None, slices: int | None, provider: str) -> Array:
     """Mesh phases, as many as requested or as the time limit allows."""
     contact = path_of_contact(pair)
     cycles = mesh_period(contact)
+    if phases is None and has_slices(pair, MODELS[provider]):
+        return phases_of(_OF_SLICES, cycles)
     work = cycles * slice_widths(contact, slices).size
     return phases_of(max(_LEAST, _MOST // work) if phases is None else phases, cycles)
