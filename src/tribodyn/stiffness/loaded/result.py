@@ -111,10 +111,10 @@ class LoadedContact(Record):
         Force on each pair.
     load_per_width : array (..., p, s, n) [N/m]
         Load of each pair in each slice.
-    face_load : array (..., s)
-        Force on each slice over all phases and pairs, over the mean of all slices.
     mesh_stiffness_tangent : array (..., p) [N/m]
         Slope of the total force over the transmission error at this load.
+    face_load : array (..., s), optional
+        Force on each slice over all phases and pairs, over the mean of all slices.
     """
 
     DERIVED: ClassVar[Mapping[str, Labels]] = {
@@ -137,8 +137,8 @@ class LoadedContact(Record):
     transmission_error: Array = quantity("torque", "phase", of="static_transmission_error")
     normal_force: Array = quantity("torque", "phase", "pair")
     load_per_width: Array = quantity("torque", "phase", "slice", "pair")
-    face_load: Array = quantity("torque", "slice", unit="1")
     mesh_stiffness_tangent: Array = quantity("torque", "phase")
+    face_load: Array | None = quantity("torque", "slice", unit="1", default=None)
 
     @property
     def total_normal_force(self) -> Array:
@@ -148,7 +148,8 @@ class LoadedContact(Record):
     @property
     def face_load_factor(self) -> Array:
         """Greatest over mean load of a slice of the face, each over all phases (...)."""
-        return np.asarray(self.face_load.max(axis=-1))
+        each = np.full(1, np.nan) if self.face_load is None else self.face_load
+        return np.asarray(each.max(axis=-1))
 
     @property
     def load_share(self) -> Array:
