@@ -251,6 +251,15 @@ def test_a_helix_angle_of_zero_is_a_spur_gear() -> None:
     assert zero.summary() == pytest.approx(expected.summary(), rel=1e-12)
     assert zero.summary()["meshes.first.face_load_factor"] > 1.2
     assert "meshes.first.axial_force" not in zero.summary()
+    # A small angle: slices of lines of contact in place of whole pairs, the same balance at rest.
+    small = td.run(machine(meshes={"first.helix_angle": math.radians(0.1)}))
+    for key, close in (("misalignment", 0.02), ("mean_mesh_stiffness", 5e-3),
+                       ("static_transmission_error_peak_to_peak", 5e-3), ("friction_power", 2e-3),
+                       ("face_load_factor", 0.04)):  # fmt: skip
+        value, limit = (each.summary()[f"meshes.first.{key}"] for each in (small, zero))
+        assert value == pytest.approx(limit, rel=close), key
+    loads = [each.operation.static.bearings["inB"].load for each in (small, zero)]
+    assert loads[0][1:3] == pytest.approx(loads[1][1:3], rel=0.02)
 
 
 def test_check_shows_overlap_and_axial_force_without_computing(result) -> None:
