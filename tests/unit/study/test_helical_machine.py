@@ -70,7 +70,9 @@ def result() -> MachineResult:
 MOVING = ("rms_", "peak_", "minimum_mesh_force", "dynamic_factor", ".transmission_error")
 
 
-def same(result: MachineResult, other: MachineResult, *turned: str, moving: float = 1e-6) -> None:
+def assert_same(
+    result: MachineResult, other: MachineResult, *turned: str, moving: float = 1e-6
+) -> None:
     """Compare all figures; those that end with one of ``turned`` have the other sign."""
     figures, expected = result.summary(), other.summary()
     assert figures.keys() == expected.keys()
@@ -83,7 +85,7 @@ def same(result: MachineResult, other: MachineResult, *turned: str, moving: floa
 def test_the_mirror_image_in_the_plane_of_the_shafts_has_the_same_figures(result) -> None:
     """Speeds and hand change, the axial forces and the misalignment do not."""
     mirrored = td.run(machine(meshes={"first.hand": "left"}, operation={"speed": -150.0}))
-    same(mirrored, result, ".speed")
+    assert_same(mirrored, result, ".speed")
 
 
 def test_the_mirror_image_across_the_shafts_turns_axial_forces_and_misalignment(result) -> None:
@@ -96,7 +98,7 @@ def test_the_mirror_image_across_the_shafts_turns_axial_forces_and_misalignment(
         f"{name}.position": SPAN - body["position"] for name, body in PARTS["bearings"].items()
     }
     mirrored = td.run(machine(meshes={"first.hand": "left"}, gears=places, bearings=bearings))
-    same(mirrored, result, "axial_force", ".misalignment", moving=0.01)
+    assert_same(mirrored, result, "axial_force", ".misalignment", moving=0.01)
 
 
 def test_the_wheel_as_the_first_gear_has_the_same_figures(result) -> None:
@@ -106,7 +108,7 @@ def test_the_wheel_as_the_first_gear_has_the_same_figures(result) -> None:
     )
     pair = exchanged.pair("first", exchanged.operating_point)
     assert (pair.gears.pinion.teeth, pair.gears.driver, pair.gears.hand) == (23, "pinion", "right")
-    same(td.run(exchanged), result, "first.axial_force")
+    assert_same(td.run(exchanged), result, "first.axial_force")
 
 
 def test_the_wheel_drives_and_a_brake_reverses_the_axial_force(result) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -47,7 +47,7 @@ class LeadOptimum(Record):
     face_position : array (s,) [m]
         Middles of the slices.
     face_load_before, face_load_after : array (t, s)
-        Load of each slice over the mesh cycle, over the mean of all.
+        Load of each slice over the mesh cycle, over the mean of all: pure numbers.
     """
 
     DERIVED: ClassVar[Mapping[str, Labels]] = {
@@ -131,9 +131,13 @@ def optimize_lead(
     provider : str
         As ``reference``, ``material`` and ``options`` for
         :func:`tribodyn.stiffness.loaded_contact`.
-    phases, slices : int
-        Evenly spaced phases of the mesh cycle, and slices of the face.
-    reference, material, options
+    phases : int
+        Evenly spaced phases of the mesh cycle.
+    reference, material
+        As there.
+    slices : int
+        Slices of the face.
+    options
         As there.
 
     Returns
@@ -162,8 +166,6 @@ def optimize_lead(
     >>> bool(abs(best.lead_slope + 10e-6) < 1e-6)
     True
     """
-    from scipy.optimize import minimize
-
     require_one_of("gear", gear, ("pinion", "wheel"))
     require_one_of("objective", objective, ("largest", "mean"))
     bounds = [_range("crowning", crowning), _range("lead_slope", lead_slope)]
@@ -174,27 +176,16 @@ def optimize_lead(
     )
     plain = _with_lead(pair, gear, 0.0, 0.0)
     search, given = (_FaceLoads(each, torques, lean, settings) for each in (plain, pair))
-    width = getattr(pair, gear).face_width
+    along = search.face_position / getattr(pair, gear).face_width
 
     def loads(place: Array) -> Array:
-        along = search.face_position / width
         return search.over_face(place[0] * (2.0 * along) ** 2 + place[1] * along)
 
     def value(place: Array) -> float:
-        factors = loads(place * span + low).max(axis=1)
+        factors = loads(place).max(axis=1)
         return float(factors.max() if objective == "largest" else weights @ factors)
 
-    low = np.array([bound[0] for bound in bounds])
-    span = np.array([bound[1] - bound[0] for bound in bounds])
-    grid = [np.array([a, b]) for a in (0.0, 0.3, 0.6) for b in np.linspace(0.0, 1.0, 7)]
-    start = min(grid, key=value)
-    steps = np.array([[0.0, 0.0], [0.2, 0.0], [0.0, -0.1]])
-    simplex = np.clip(start + steps, 0.0, 1.0)
-    found = minimize(
-        value, start, method="Nelder-Mead", bounds=[(0.0, 1.0)] * 2,
-        options={"initial_simplex": simplex, "xatol": _ENOUGH, "fatol": 1e-5, "maxfev": 200},
-    )  # fmt: skip
-    best = found.x * span + low
+    best = _least(value, bounds)
     return LeadOptimum(
         gear_pair=pair,
         modified_pair=_with_lead(pair, gear, *best.tolist()),
@@ -208,6 +199,26 @@ def optimize_lead(
         face_load_before=given.over_face(np.zeros(1)),
         face_load_after=loads(best),
     )
+
+
+def _least(value: Callable[[Array], float], bounds: list[tuple[float, float]]) -> Array:
+    """Least point within bounds: the best of a grid, from which a simplex goes on."""
+    from scipy.optimize import minimize
+
+    low = np.array([bound[0] for bound in bounds])
+    span = np.array([bound[1] - bound[0] for bound in bounds])
+    grid = [np.array([a, b]) for a in (0.0, 0.3, 0.6) for b in np.linspace(0.0, 1.0, 7)]
+    start = min(grid, key=lambda place: value(place * span + low))
+    steps = np.array([[0.0, 0.0], [0.2, 0.0], [0.0, -0.1]])
+    found = minimize(
+        lambda place: value(place * span + low), start, method="Nelder-Mead",
+        bounds=[(0.0, 1.0)] * 2,
+        options={
+            "initial_simplex": np.clip(start + steps, 0.0, 1.0),
+            "xatol": _ENOUGH, "fatol": 1e-5, "maxfev": 200,
+        },
+    )  # fmt: skip
+    return np.asarray(found.x * span + low)
 
 
 class _FaceLoads:
@@ -268,4 +279,4 @@ def _misalignments(torques: Array, given: Array, misalignment: ArrayLike) -> Arr
         what, why = f"{lean.size} misalignments", f"There are {given.size} torques"
         raise InputError(what, Argument("misalignment"), why, "Give one for each, or a single one")
     order = np.argsort(given)
-    return np.interp(torques, given[order], lean[order])
+    return np.asarray(np.interp(torques, given[order], lean[order]))
