@@ -314,7 +314,7 @@ def _cached_teeth(*arguments: Any) -> tuple[MeshCycle, Teeth, list[ModelWarning]
 
 
 @lru_cache(maxsize=8)
-def _cycle(pair: Gears, steps: int, slices: int) -> MeshCycle:
+def _cycle(pair: Gears, steps: int, slices: int = 0) -> MeshCycle:
     """Contacts over the mesh cycle, cached: the same object under every load."""
     return mesh_cycle(path_of_contact(pair), steps, slices)
 

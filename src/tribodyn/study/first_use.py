@@ -89,7 +89,7 @@ def _loads() -> None:
 
     none, line = np.zeros((0, 1, 1)), np.zeros((1, 0))
     loads = line, line, np.zeros((1, 0, 1, 1)), line
-    solve_loads(none, none[0:, :, 0], 0.0, none, np.zeros(1), *loads, stop_flag())
+    solve_loads(none, none[0:, :, 0], 0.0, none, none, *loads, stop_flag())
 
 
 def _march(lanes: int, followed: bool = False) -> None:

@@ -115,7 +115,7 @@ def test_pages_that_are_named_exist() -> None:
         (("tip", "relief"), {"quantity": "tip_relief", "unit": "um"}),
         (("Ra",), {"see": "roughness_ra"}),
         (("c_gamma",), {"page": "docs/stiffness.md"}),
-        (("helix",), {"page": "docs/scope.md"}),
+        (("helix",), {"page": "docs/geometry.md"}),
         (("Kv",), {"see": "dynamic_factor_peak"}),
         (("XU-2007",), {"choice": "xu-2007", "page": "docs/friction.md"}),
         (("[mixed-lubrication]",), {"warning": "mixed-lubrication"}),
