@@ -168,7 +168,7 @@ def main(words: Sequence[str] | None = None) -> None:
         [
             Goal("loaded contact", _LOADED, contacts["fe3d"].median, "s CPU", at_least=False),
             Goal("whole run", _RUN, runs["fe3d"].median, "s CPU", at_least=False),
-            Goal("compiled over SciPy", 10.0, ratio, "times", at_least=True),
+            Goal("compiled over SciPy", 2.0, ratio, "times", at_least=True),
         ]
     )
 
