@@ -111,12 +111,13 @@ def face_contacts(
     contact : PathOfContact
         Path of contact of the pair.
     phase : array (p,)
-        Mesh phases; only their fraction counts, except that 1 is the end of a cycle.
+        Mesh phases; only their fraction counts.
     slices : int
         Number of slices.
     side : array (p,), optional
-        Mesh phases of the same segments between two events, at which pairs of spur gears, which
-        enter and leave at once, are or are not in contact.
+        Given for the knots of a mesh cycle, whose last one, at phase 1, counts the pairs as those
+        before it: mesh phases of the same segments between two events, at which pairs of spur
+        gears, which enter and leave at once, are or are not in contact.
 
     Examples
     --------
@@ -134,13 +135,13 @@ def face_contacts(
     width = pair.common_face_width
     slope = math.tan(pair.base_helix_angle)
     zeta = pair.entry_distance(face_positions(contact, slices))
-    # Whole phases are the end of the cycle before, as knots of a mesh cycle have it.
     turned = phase - np.floor(phase)
-    turned = np.where((turned == 0.0) & (phase > 0.0), 1.0, turned)
+    if side is not None:
+        turned = np.where(phase == 1.0, 1.0, turned)
     travel = (turned[:, None] + np.arange(contact.pairs)) * pair.base_pitch
     middle = travel[:, :, None] - zeta * slope
     half = 0.5 * slope * width / slices
-    low, high = (np.clip(middle + side, 0.0, contact.length) for side in (-half, half))
+    low, high = (np.clip(middle + end, 0.0, contact.length) for end in (-half, half))
     if half > 0.0:
         share = (high - low) / (2.0 * half)
         share[share < _ROUNDING] = 0.0

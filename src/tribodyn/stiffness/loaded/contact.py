@@ -290,15 +290,13 @@ def loaded_contact(
         "reference", "as measured"
     )
     force, gap = problem.forces(load), problem.gaps.min(axis=1)
-    face_load = (problem.widths * load).sum(axis=(-3, -1))
+    face_load = problem.face_load(load)
     number, middle = places.number, slice(None)
     if places.is_sliced:
         # Columns of whole pairs: those of the slices together, or of the one in the middle.
         number = np.unique(places.number)
         count = places.number.size // number.size
         middle = slice(count // 2, None, count)
-        contacts = (problem.widths * load).sum(axis=(-3, -2))
-        face_load = contacts.reshape(*shape, number.size, count).sum(axis=-2)
         load = np.moveaxis(load.reshape(*load.shape[:-2], number.size, count), -1, -2)
         force = force.reshape(*force.shape[:-1], number.size, count).sum(axis=-1)
         gap = gap.reshape(-1, number.size, count).min(axis=2)
@@ -316,7 +314,7 @@ def loaded_contact(
         transmission_error=equilibrium.approach.reshape(*shape, places.phase.size),
         normal_force=force,
         load_per_width=load,
-        face_load=face_load / face_load.mean(axis=-1, keepdims=True),
+        face_load=face_load,
         mesh_stiffness_tangent=equilibrium.tangent.reshape(*shape, places.phase.size),
     )
 

@@ -27,6 +27,7 @@ from tribodyn.stiffness.loaded.problem import (
     slice_gaps,
 )
 from tribodyn.stiffness.model import StiffnessModel, usable_stiffness
+from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array
 
@@ -76,9 +77,28 @@ def thin_slices(
     phases, count = places.path.shape
     total = np.zeros((phases, count, count))
     for k in range(contacts.slices):
-        one = slice(k, None, contacts.slices)
-        total[:, one, one] = coupled_compliance(pinion, wheel, places.some(one))
+        columns = slice(k, None, contacts.slices)
+        total[:, columns, columns] = coupled_compliance(pinion, wheel, places.some(columns))
     return total
+
+
+def coupled_slices(
+    pinion: FaceInfluence, wheel: FaceInfluence, contacts: FaceContacts, places: ContactPlaces
+) -> Array:
+    """Compliance of slices that act on each other through the teeth (p, c, c)."""
+    pair = contacts.contact.pair
+    edges = np.linspace(-0.5, 0.5, contacts.slices + 1) * pair.common_face_width
+    shape = contacts.phase.size, -1, contacts.slices
+    structure = np.zeros((*places.path.shape, places.path.shape[1]))
+    # Lines of contact fall along the face where slices enter one after the other.
+    fall = places.direction * float(contacts.delay[-1] - contacts.delay[0])
+    for gear, radius, sense in (
+        (pinion, places.pinion_curvature_radius, 1),
+        (wheel, places.wheel_curvature_radius, -pair.wheel.sign),
+    ):
+        sliced = gear.sliced(edges, rising=sense * fall < 0.0)
+        sliced.fill(structure, radius.reshape(shape), sense * places.direction)
+    return structure
 
 
 def local_of_slices(material: Material, places: ContactPlaces) -> tuple[Array, float]:
@@ -103,12 +123,14 @@ def slice_stiffness(
     """Stiffness of each slice by a model of pairs, as that part of a spur pair (p, c)."""
     count, stiffness = contacts.slices, np.zeros(contacts.path.shape)
     for k in range(count):
-        one = slice(k, None, count)
-        on_path = contacts.in_contact[:, one]
+        columns = slice(k, None, count)
+        on_path = contacts.in_contact[:, columns]
         phase = (contacts.phase - contacts.delay[k]) % 1.0
-        each = model(pair, material, contacts.path[:, one], on_path, phase, normal_force, **options)
+        each = model(
+            pair, material, contacts.path[:, columns], on_path, phase, normal_force, **options
+        )
         checked = usable_stiffness(each, on_path, model.name)
-        stiffness[:, one] = checked * contacts.width[:, one] / pair.common_face_width
+        stiffness[:, columns] = checked * contacts.width[:, columns] / pair.common_face_width
     return stiffness
 
 
@@ -127,18 +149,12 @@ def face_compliance(
         structure = independent_compliance(stiffness, contacts.width)
         return Compliance(structure, np.zeros(places.path.shape), 0.0)
     gears = gear_influences(pair, material, model, options)
-    local = local_of_slices(material, places)
-    if not model.over_face:
-        return Compliance(thin_slices(*gears, contacts, places), *local)
-    edges = np.linspace(-0.5, 0.5, contacts.slices + 1) * pair.common_face_width
-    shape = contacts.phase.size, -1, contacts.slices
-    radii = places.pinion_curvature_radius, places.wheel_curvature_radius
-    structure = np.zeros((*places.path.shape, places.path.shape[1]))
-    # Lines of contact fall along the face where slices enter one after the other.
-    fall = places.direction * float(contacts.delay[-1] - contacts.delay[0])
-    for gear, radius, sense in zip(gears, radii, (1, -pair.wheel.sign), strict=True):
-        sliced = gear.sliced(edges, rising=sense * fall < 0.0)
-        sliced.fill(structure, radius.reshape(shape), sense * places.direction)
+    of_gears = coupled_slices if model.over_face else thin_slices
+    structure = of_gears(*gears, contacts, places)
+    alone = np.diagonal(structure, axis1=1, axis2=2).copy()
     # Where a part of a slice alone is on the path of contact, its load per width acts on less.
-    structure *= (contacts.width / np.diff(edges)[contacts.slice])[:, None, :]
-    return Compliance(structure, *local)
+    structure *= (contacts.width * (contacts.slices / pair.common_face_width))[:, None, :]
+    if not model.over_face:  # that part is a thinner gear: it gives way to its own load as a slice
+        diagonal = np.arange(alone.shape[1])
+        structure[:, diagonal, diagonal] = alone
+    return Compliance(structure, *local_of_slices(material, places))

@@ -11,13 +11,15 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.contact import FaceContacts, face_contacts, path_of_contact
+from tribodyn.contact.face_contacts import SLICES
 from tribodyn.gear import Material, SpurGear
 from tribodyn.model import flag
 from tribodyn.stiffness.loaded.contact import mesh_problem
 from tribodyn.stiffness.model import MODELS, MeshState, reference_option
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 #: Options of every model that knows the structure of the gears.
 OPTIONS = {"reference": "bore", "extended_contact": True}
@@ -49,11 +51,17 @@ def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluen
 
 def _pair_stiffness(name: str) -> Callable[..., Array]:
     def function(*mesh: Any, **options: Any) -> Array:
-        state = MeshState(*mesh)
+        state, over_face = MeshState(*mesh), MODELS[name].over_face
+        places: tuple[Array, Array, Mask] | FaceContacts
+        places = state.phase, state.path, state.in_contact
+        if over_face:
+            before_end = np.minimum(state.phase, np.nextafter(1.0, 0.0))
+            contact = path_of_contact(state.pair)
+            places = face_contacts(contact, state.phase, SLICES, before_end)
         problem = mesh_problem(
             state.pair,
             provider=name,
-            places=(state.phase, state.path, state.in_contact),
+            places=places,
             total_force=state.normal_force,
             extended_contact=bool(options.get("extended_contact")),
             material=state.material,
@@ -61,6 +69,8 @@ def _pair_stiffness(name: str) -> Callable[..., Array]:
         )
         equilibrium = problem.at_loads(np.array([state.normal_force]))
         force = problem.forces(equilibrium.load[0])
+        if over_face:
+            force = force.reshape(len(force), -1, SLICES).sum(axis=2)
         if force.shape != state.in_contact.shape:
             force = force[:, 1:-1]
         deflection = equilibrium.approach[0] - problem.least_gap

@@ -304,6 +304,26 @@ class ContactProblem:
         """
         return np.asarray((self.widths * load_per_width).sum(axis=-2))
 
+    def face_load(self, load_per_width: Array) -> Array:
+        """Force on each slice of the face over all phases and pairs, over the mean of all slices.
+
+        Parameters
+        ----------
+        load_per_width : array (..., p, s, n) [N/m]
+            Loads of every pair in every slice.
+
+        Returns
+        -------
+        array (..., slices)
+        """
+        force = self.widths * load_per_width
+        if self.places.is_sliced:  # contacts are counted pair by pair
+            contacts, pairs = force.sum(axis=(-3, -2)), np.unique(self.places.number).size
+            each = contacts.reshape(*contacts.shape[:-1], pairs, -1).sum(axis=-2)
+        else:
+            each = force.sum(axis=(-3, -1))
+        return np.asarray(each / each.mean(axis=-1, keepdims=True))
+
     @property
     def least_gap(self) -> Array:
         """Approach at which the first pair touches (p,) [m]."""

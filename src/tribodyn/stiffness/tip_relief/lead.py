@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.contact.face_contacts import SLICES
+from tribodyn.contact import path_of_contact
+from tribodyn.contact.face_contacts import SLICES, face_positions
 from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.gear import FlankModification, Material, SpurPair
 from tribodyn.gear.modification import LARGEST_AMOUNT
@@ -153,7 +154,7 @@ def optimize_lead(
 
     Notes
     -----
-    Bounded search by coordinates and simplex from the middle of the ranges; compliances are found
+    The best point of a grid, from which a simplex goes on within the ranges; compliances are found
     once, only the gaps change. Source of the face load factor: ISO 6336-1, K_H_beta, by its
     definition; of the simplex: Nelder and Mead (1965), Comput. J. 7, 308-313.
 
@@ -175,7 +176,7 @@ def optimize_lead(
         provider, np.arange(phases) / phases, False, reference, material, slices, options
     )
     plain = _with_lead(pair, gear, 0.0, 0.0)
-    search, given = (_FaceLoads(each, torques, lean, settings) for each in (plain, pair))
+    search, before = (_FaceLoads(each, torques, lean, settings) for each in (plain, pair))
     along = search.face_position / getattr(pair, gear).face_width
 
     def loads(place: Array) -> Array:
@@ -196,7 +197,7 @@ def optimize_lead(
         misalignment=lean,
         objective_kind=objective,
         face_position=search.face_position,
-        face_load_before=given.over_face(np.zeros(1)),
+        face_load_before=before.over_face(np.zeros(1)),
         face_load_after=loads(best),
     )
 
@@ -232,7 +233,7 @@ class _FaceLoads:
         self.totals, self.lean, self.width = totals, lean, pair.common_face_width
         self.problems = [contact_problem(pair, total_force=f, **settings) for f in totals]
         count = settings["slices"]
-        self.face_position = ((np.arange(count) + 0.5) / count - 0.5) * self.width
+        self.face_position = face_positions(path_of_contact(pair), count)
 
     def over_face(self, gap: Array) -> Array:
         """Load of each slice over the mean (t, s) with a gap over the face (s,) added [m]."""
@@ -244,14 +245,11 @@ class _FaceLoads:
 
 
 def _slice_loads(problem: ContactProblem, total: float, added: Array) -> Array:
-    """Mean load of each slice over all phases and pairs, over that of all slices (s,)."""
+    """Load of each slice over the mean of all (s,), with a gap over the face added."""
     sliced = problem.places.is_sliced
     gap = np.tile(added, problem.gaps.shape[2] // added.size)[None] if sliced else added[:, None]
-    load = replace(problem, gaps=problem.gaps + gap).at_loads(np.array([total])).load[0]
-    force = problem.widths * load
-    each = force.reshape(len(force), -1, added.size).sum(axis=(0, 1)) if sliced else None
-    each = force.sum(axis=(0, 2)) if each is None else each
-    return np.asarray(each / each.mean())
+    moved = replace(problem, gaps=problem.gaps + gap)
+    return moved.face_load(moved.at_loads(np.array([total])).load[0])
 
 
 def _with_lead(pair: SpurPair, gear: str, crowning: float, slope: float) -> SpurPair:
@@ -270,13 +268,13 @@ def _range(name: str, limits: tuple[float, float]) -> tuple[float, float]:
     raise InputError(f"{name} = {text} um", Argument(name), why, "Check values and unit")
 
 
-def _misalignments(torques: Array, given: Array, misalignment: ArrayLike) -> Array:
+def _misalignments(torques: Array, listed: Array, misalignment: ArrayLike) -> Array:
     """Misalignment under every torque: a single one grows with the torque."""
     lean = np.asarray(misalignment, dtype=float)
     if lean.ndim == 0:
         return np.asarray(float(lean) * torques / torques.max())
-    if lean.shape != given.shape:
-        what, why = f"{lean.size} misalignments", f"There are {given.size} torques"
+    if lean.shape != listed.shape:
+        what, why = f"{lean.size} misalignments", f"There are {listed.size} torques"
         raise InputError(what, Argument("misalignment"), why, "Give one for each, or a single one")
-    order = np.argsort(given)
-    return np.asarray(np.interp(torques, given[order], lean[order]))
+    order = np.argsort(listed)
+    return np.asarray(np.interp(torques, listed[order], lean[order]))
