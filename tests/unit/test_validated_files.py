@@ -81,6 +81,21 @@ def test_the_file_is_that_of_xarray(tmp_path: Path) -> None:
     assert read_dataset(tmp_path / "c.nc").identical(read_dataset(tmp_path / "b.nc"))
 
 
+def test_empty_axes_and_names_of_other_dimensions_are_stored(tmp_path: Path) -> None:
+    variables = {
+        "phase": (("time",), np.arange(3.0)),
+        "speed": (("phase",), np.arange(2)),
+        "event": (("none", "time"), np.zeros((0, 3))),
+        "at": (("empty",), np.zeros(0, int)),
+    }
+    data = xarray.Dataset(variables, {"empty": ("empty", [])})
+    write_dataset(data, tmp_path / "a.nc")
+    xarray.testing.assert_identical(read_dataset(tmp_path / "a.nc"), data)
+    data.to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
+    with xarray.open_dataset(tmp_path / "b.nc", engine="h5netcdf") as opened:
+        xarray.testing.assert_identical(read_dataset(tmp_path / "a.nc"), opened.load())
+
+
 def test_variables_that_do_not_fit_together_are_not_stored(tmp_path: Path) -> None:
     for name, values in (("b", [1.0]), ("a/b", [1.0, 2.0])):
         parts = Parts({"a": ("time", [1.0, 2.0]), name: ("time", values)}, {}, {})

@@ -85,7 +85,7 @@ def _get_ready(wanted: Callable[[], bool]) -> None:
             if wanted():
                 return
             step()
-        import_module("h5netcdf")  # to store what is found
+        import_module("h5py")  # to store what is found
 
 
 def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:

@@ -111,3 +111,20 @@ def test_engines_without_ramps_and_wrong_ramps_are_refused():
     wrong = machine([base(ramp_stiffness=[-1e8], ramp_gap=[3e-5])])
     with pytest.raises(InputError, match="ramp_stiffness = -1e"):
         harmonic_balance(wrong, 300.0)
+
+
+def test_directions_of_the_ramps_of_one_law_are_evaluated_once():
+    """As many calls as for one ramp, and the rows of ramps with functions of their own."""
+    calls = []
+
+    def push(phase):
+        calls.append(phase.size)
+        return np.stack((0.02 * np.cos(2 * np.pi * phase), 0.03 + 0 * phase), axis=1)
+
+    contacts = law_contacts(replace(base(), friction=push), wavy_law(6))
+    rows = sample_system(machine(contacts), 32).nodes
+    together = len(calls)
+    alone = [replace(c, friction=lambda p, c=c: c.friction(p)) for c in contacts]
+    expected = sample_system(machine(alone), 32).nodes
+    np.testing.assert_array_equal(rows.force_direction, expected.force_direction)
+    assert together * len(contacts) == len(calls) - together > together

@@ -41,6 +41,14 @@ class ClockEntry:
         raise AttributeError(name)
 
 
+def same_entry(first: Any, second: Any) -> bool:
+    """Whether two entries are one function over the same clock, as those of the ramps of a law."""
+    if isinstance(first, ClockEntry) and isinstance(second, ClockEntry):
+        clocks = (first.cycles, first.offset), (second.cycles, second.offset)
+        return clocks[0] == clocks[1] and first.function is second.function
+    return callable(first) and first is second
+
+
 def events_on_clock(events: tuple[float, ...], cycles: int, offset: float) -> tuple[float, ...]:
     """Phases of the clock at which events of a mesh take place, sorted."""
     if cycles == 1 and offset == 0.0:

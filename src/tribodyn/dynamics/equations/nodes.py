@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics.equations.clock import same_entry
 from tribodyn.dynamics.equations.entry import varies
 from tribodyn.dynamics.equations.grid import (
     Grid,
@@ -196,9 +197,12 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
         still = not any(map(varies, entries))
         table = np.empty((1 if still else shape[0], shape[1], len(entries)))
         together = rows.joined(entries, table) if take == rows.values else frozenset[int]()
-        for j, entry in enumerate(entries):
-            if j not in together:
-                table[..., j] = take(f"contacts[{j}].{name}", entry)[: len(table), :, 0]
+        for j in (j for j in range(len(entries)) if j not in together):
+            if (same := _evaluated_before(entries, j)) is not None:
+                table[..., j] = table[..., same]
+            else:
+                values = take(f"contacts[{j}].{name}", entries[j])
+                table[..., j] = values[: len(table), :, 0]
         return _one_row(table[0, 0], shape) if still else table
 
     def vector(name: str, take: Callable[..., Array]) -> Array:
@@ -208,7 +212,9 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
         still = not any(map(varies, entries))
         table = np.zeros((1 if still else shape[0], shape[1], len(entries), size))
         for j, entry in enumerate(entries):
-            if entry is not None:
+            if (same := _evaluated_before(entries, j)) is not None:
+                table[:, :, j] = table[:, :, same]
+            elif entry is not None:
                 table[:, :, j] = take(f"contacts[{j}].{name}", entry, size)[: len(table)]
         return _one_row(table[0, 0], shape) if still else table
 
@@ -233,6 +239,11 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
         friction_coefficients=friction_coefficients(system, rows),
         **_ramps(system, rows),
     )
+
+
+def _evaluated_before(entries: list[Any], number: int) -> int | None:
+    """Number of an earlier entry that is the same function, as for the ramps of a force law."""
+    return next((i for i in range(number) if same_entry(entries[i], entries[number])), None)
 
 
 def _ramps(system: System, rows: RowEvaluator) -> dict[str, Array]:

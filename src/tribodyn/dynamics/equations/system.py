@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -238,6 +239,8 @@ class System:
     gyroscopic: ArrayLike | None = None
     #: Largest rate of the motion by the number of steps with which it was computed.
     _rates: dict[int, float] = field(default_factory=dict, init=False, repr=False, compare=False)
+    #: Matrices about the static load, by the phase at which they were computed.
+    _linear: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
     #: Widest step over a mesh cycle when the entries were checked for jumps and randomness.
     _checked: float = field(default=np.inf, init=False, repr=False, compare=False)
 

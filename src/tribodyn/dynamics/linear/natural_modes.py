@@ -53,8 +53,14 @@ class LinearSystem:
 
 
 def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
-    """Replace every contact by the spring and the damper that act at the static load."""
-    system = split_ramps(system)
+    """Replace every contact by the spring and the damper that act at the static load; cached."""
+    if phase not in system._linear:
+        system._linear[phase] = _linearised(split_ramps(system), phase)
+    linear: LinearSystem = system._linear[phase]
+    return linear
+
+
+def _linearised(system: System, phase: ModePhase) -> LinearSystem:
     nodes, weight = _rows(system, phase)
     closed, push = _at_rest(system, nodes)
     along, rub = nodes.direction, combined(np.subtract, push, nodes.direction)

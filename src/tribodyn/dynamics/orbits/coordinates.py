@@ -168,9 +168,12 @@ def _used_directions(*parts: Array) -> Array:
     """Different directions of all contacts (m, n); one row for a contact of constant direction."""
     rows = [np.zeros((0, parts[0].shape[-1]))]
     for part in parts:
+        last = rows[0]
         for number in range(part.shape[-2]):
             contact = unrepeated(part[..., number, :], 1).reshape(-1, part.shape[-1])
-            varying = np.ptp(contact, axis=0).any()
+            if np.array_equal(contact, last):  # another ramp of one force law
+                continue
+            last, varying = contact, np.ptp(contact, axis=0).any()
             if varying and len(contact) > _MANY:  # rows of the same space, with the same lengths
                 contact = np.asarray(np.linalg.qr(contact, mode="r"))
             rows.append(contact if varying else contact[:1])
