@@ -4,6 +4,11 @@ Python raises an interruption in its main thread, between two bytecode instructi
 call in the main thread would delay it until it returns. Therefore the main thread waits while
 worker threads compute, and when it is interrupted it sets the flag that these threads, and the
 threads that they started, share.
+
+Python discards an exception that is raised in a finaliser or in the callback of a weak reference,
+and garbage collection may run those anywhere in the main thread. An interruption that arrives there
+would be lost. Therefore its handler sets the flag too while threads compute, and the main thread
+looks at the record of the handler at every wait and when the threads end.
 """
 
 from __future__ import annotations
@@ -84,7 +89,8 @@ class Threads:
     """Worker threads that end with the ``with`` block, or soon after an interruption."""
 
     def __init__(self, count: int) -> None:
-        self.flag = stop_flag()
+        self.flag, self.interrupted = stop_flag(), False
+        self._handler: Any = None  #: handler of Ctrl-C before, where these threads replace it
         self._tasks: SimpleQueue[tuple[Future[Any], Callable[..., Any], Any] | None] = SimpleQueue()
         self._waiting: list[Future[Any]] = []
         self._threads = [threading.Thread(target=self._work, daemon=True) for _ in range(count)]
@@ -109,9 +115,27 @@ class Threads:
         self._tasks.put((future, copy_context().run, (function, *arguments)))
         return future
 
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
+        """Interrupt the main thread and the threads, even if Python discards the exception."""
+        try:
+            self._handler(number, frame)
+        except KeyboardInterrupt:
+            self.interrupted, self.flag[0] = True, 1
+            raise
+
+    def refuse_interrupted(self) -> None:
+        """Raise KeyboardInterrupt if one was raised since the threads began."""
+        if self.interrupted:
+            raise KeyboardInterrupt
+
     def __enter__(self) -> Threads:
         """Start the threads."""
         try:
+            if threading.current_thread() is threading.main_thread():
+                handler = signal.getsignal(signal.SIGINT)
+                if callable(handler):
+                    self._handler = handler
+                    signal.signal(signal.SIGINT, self._interrupt)
             for thread in self._threads:
                 thread.start()
         except BaseException:
@@ -133,9 +157,17 @@ class Threads:
             while any(thread.is_alive() for thread in self._threads):
                 for thread in self._threads:
                     thread.join(_POLL_INTERVAL)
+            self._restore_handler()
+            if error is None:
+                self.refuse_interrupted()
         except BaseException:
             self._stop()
             raise
+
+    def _restore_handler(self) -> None:
+        """Give Ctrl-C back the handler that it had before, unless another one replaced ours."""
+        if self._handler is not None and signal.getsignal(signal.SIGINT) == self._interrupt:
+            signal.signal(signal.SIGINT, self._handler)
 
     def _dismiss(self, cancel: bool) -> None:
         """Let every thread end after its task; ``cancel`` drops the tasks that wait."""
@@ -148,6 +180,7 @@ class Threads:
     def _stop(self) -> None:
         """Set the flag and give the threads a short time to end."""
         self.flag[0] = 1
+        self._restore_handler()
         self._dismiss(cancel=True)
         end = time.monotonic() + _GRACE
         while any(thread.is_alive() for thread in self._threads) and time.monotonic() < end:
@@ -202,6 +235,7 @@ def in_threads(
         left: set[Future[Value]] = set(running)
         while left:
             done, left = wait(left, _POLL_INTERVAL, "FIRST_EXCEPTION")
+            threads.refuse_interrupted()
             for future in done:
                 future.result()
         return [future.result() for future in running]
@@ -216,6 +250,7 @@ def aside(work: Callable[[], Value]) -> Value:
         while not future.done():
             with suppress(TimeoutError):
                 future.exception(_POLL_INTERVAL)
+            threads.refuse_interrupted()
         return future.result()
 
 

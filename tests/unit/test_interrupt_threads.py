@@ -8,16 +8,18 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import Future
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from known_marches import march_newmark, march_one
+from tribodyn import interrupt
 from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.interrupt import Threads, deferred, in_threads, stop_flag
+from tribodyn.interrupt import Threads, aside, deferred, in_threads, stop_flag
 
 _SYSTEM = System([[1.0]], [[0.05]], [[0.0]], [0.3], [Contact([1.0], 1.0, damping=0.05, gap=1.0)])
 #: Mesh cycles that nobody waits for: they take hours.
@@ -136,6 +138,39 @@ def test_a_failure_ends_what_has_not_begun_and_is_raised():
     with pytest.raises(ValueError, match="no"):
         in_threads(work, range(1000), 2)
     assert len(started) < 1000
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("call", [lambda work: in_threads(work, range(3), 2),
+                                  lambda work: aside(lambda: work(0))])  # fmt: skip
+def test_an_interruption_that_a_finaliser_discards_still_ends_the_threads(call, monkeypatch):
+    """The signal arrives in the main thread while Python runs code whose exceptions it drops."""
+
+    class Finalised:
+        def __del__(self):
+            signal.raise_signal(signal.SIGINT)
+
+    def work(_):
+        for _ in range(300):
+            if stop_flag()[0] != 0:
+                raise KeyboardInterrupt
+            time.sleep(0.01)
+
+    waits = interrupt.wait, Future.exception
+
+    def wait_after_signal(*arguments):
+        Finalised()
+        return waits[0](*arguments)
+
+    def exception_after_signal(*arguments):
+        Finalised()
+        return waits[1](*arguments)
+
+    monkeypatch.setattr(interrupt, "wait", wait_after_signal)
+    monkeypatch.setattr(Future, "exception", exception_after_signal)
+    with pytest.raises(KeyboardInterrupt):
+        call(work)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_a_deferred_interruption_is_raised_after_the_block():

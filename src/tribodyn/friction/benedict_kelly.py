@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import positive
 from tribodyn.errors import InputError, require_between, require_positive, warn
-from tribodyn.friction.base import LAWS, of_columns
+from tribodyn.friction.base import DRY_STEEL, LAWS, of_columns
 from tribodyn.model import Registry, choice, number
 from tribodyn.types import Array
 
@@ -73,7 +73,8 @@ def benedict_kelly(
     Returns
     -------
     float or array
-        Friction coefficient, never negative, of the common shape of the arguments.
+        Friction coefficient of the common shape of the arguments, from zero to that of dry
+        steel, 0.78.
 
     Raises
     ------
@@ -84,8 +85,8 @@ def benedict_kelly(
     -----
     ModelWarning
         Code ``friction-roughness`` above 0.8 um; code ``friction-range`` where the logarithm is
-        negative and the coefficient is set to zero, below an entrainment speed of 0.1 m/s and
-        where the coefficient exceeds 0.2.
+        negative and the coefficient is set to zero, below an entrainment speed of 0.1 m/s, where
+        the coefficient exceeds 0.2, and where it exceeds 0.78 and is limited to that.
 
     Fitted to ground steel discs with a factor ``1.13/(1.13 - S)`` of at most 3, S to 0.75 um.
     Source: Benedict and Kelley, ASLE Trans. 4 (1961), with the constants of later gear studies.
@@ -109,7 +110,7 @@ def benedict_kelly(
     argument = _UNITS * load / (viscosity * sliding * rolling**2)
     coefficient = _clipped(VARIANTS[variant] * rough * np.log10(argument))
     _warn_of_range(coefficient, rough, entrainment_speed)
-    return coefficient
+    return np.asarray(np.minimum(coefficient, DRY_STEEL))[()]
 
 
 def _roughness_factor(roughness: ArrayLike) -> Array:
@@ -148,12 +149,18 @@ def _clipped(coefficient: Array) -> Array:
 
 
 def _warn_of_range(coefficient: Array, rough: Array, entrainment_speed: ArrayLike) -> None:
-    """Say where the surfaces creep, or that roughness lifts friction above that of steel."""
+    """Say where surfaces creep, or where roughness lifts friction above that of steel."""
     greatest, slowest = float(np.max(coefficient)), float(np.min(entrainment_speed))
     factor = float(np.max(rough))
     observation = f"benedict-kelly: friction coefficient up to {greatest:.3g}"
     steel = f"lubricated steel stays below {_GREATEST:g}"
-    if slowest < _CREEP:
+    if greatest > DRY_STEEL:
+        cause = (
+            f"is limited to {DRY_STEEL:g}, that of dry steel: the roughness factor "
+            f"1.13/(1.13 - S) has grown to {factor:.3g}. Give the rms roughness of run-in flanks, "
+            "or choose another friction law."
+        )
+    elif slowest < _CREEP:
         cause = (
             f"at entrainment speeds from {slowest:.3g} m/s on; the formula was fitted to running "
             f"films, and {steel}. Do not use it below {_CREEP:g} m/s: choose another friction law."

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import positive
 from tribodyn.errors import InputError, require_between
-from tribodyn.friction.base import LAWS, Range, of_columns, warn_outside
+from tribodyn.friction.base import DRY_STEEL, LAWS, Range, of_columns, warn_outside
 from tribodyn.types import Array
 
 #: Constants b1 to b9 of the regression.
@@ -64,7 +64,7 @@ def xu_2007(
     ------
     InputError
         If a value is not finite or not positive (the roughness may be zero), or so far out of
-        range that the coefficient exceeds 1.
+        range that the coefficient exceeds 0.78, that of dry steel.
 
     Warns
     -----
@@ -121,11 +121,11 @@ def _regression(
 
 def _require_plausible(coefficient: Array, roughness: float) -> None:
     """Refuse what the double exponential of the roughness makes of a slip in a unit."""
-    if np.all(coefficient <= 1.0):  # false for NaN as well
+    if np.all(coefficient <= DRY_STEEL):  # false for NaN as well
         return
     raise InputError(
         f"xu-2007 gives a friction coefficient of {np.max(coefficient):.3g} "
-        f"with a roughness of up to {roughness:.4g} um",
+        f"with a roughness of up to {roughness:.4g} um; dry steel has {DRY_STEEL:g}",
         where="argument roughness",
         why="The regression grows with exp(exp(S)) and means nothing far beyond the 0.6 um "
         "and the other limits of its fit",

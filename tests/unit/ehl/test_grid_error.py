@@ -96,6 +96,22 @@ def test_the_estimate_bounds_the_error_of_a_domain_that_begins_too_near(draws):
             assert np.all(true <= _errors(each) + 2e-4 * fine), (M, L, law, inlet)
 
 
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
+def test_automatic_grids_of_nearly_rigid_contacts_hold_their_tolerance(tolerance):
+    """M = 1.04 with an isoviscous oil, and its neighbourhood, against a domain twice as long."""
+    oil = Lubricant(11.27e-3, 880.0, 1e-9)
+    for factor in (1.0, 0.7, 1.6):
+        for law in ("isoviscous", "roelands"):
+            contact = factor * 9378.0, 6.6548e-3, 2.44892, oil, 2.2e11
+            options = {"viscosity_law": law, "compressible": False}
+            film = solve_line_contact(*contact, film_tolerance=tolerance, **options)
+            extent = 2.0 * film.domain[0], film.domain[1] + 1.0
+            fine = solve_line_contact(*contact, nodes=8193, domain=extent, **options)
+            exact = fine.central_film_extrapolated
+            assert abs(film.central_film - exact) < tolerance * exact
+            assert abs(film.central_film - exact) < film.central_film_error
+
+
 @pytest.mark.slow
 def test_the_film_of_a_case_warns_of_too_few_nodes():
     slow = td.load_case("fzg-film").replace(

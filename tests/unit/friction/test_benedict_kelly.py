@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -152,3 +153,11 @@ def test_a_rough_flank_is_named_as_the_cause():
     text = str(caught[0].message)
     assert "by 2.97 at S = 0.75 um" in text
     assert "Do not use it below" not in text
+
+
+def test_close_to_the_pole_the_coefficient_is_that_of_dry_steel():
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        limited = benedict_kelly(133022.0, 0.913038, 1.407953, 0.082, [0.53e-6, 1.073e-6])
+    assert any("up to 1.11 is limited to 0.78" in str(each.message) for each in caught)
+    assert limited == pytest.approx([0.105843, 0.78], rel=1e-4)

@@ -286,6 +286,7 @@ def _in_order(work: Callable[[int], Value], size: int, threads: int | None) -> I
                 while not future.done():
                     # A wait with an end lets Ctrl-C through on every system.
                     wait([future], timeout=0.2)
+                    pool.refuse_interrupted()
                 yield future.result()
 
 
