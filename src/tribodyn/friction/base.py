@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 #: Thermal contact coefficients of two bodies of gear steel [J/(m^2 K s^0.5)].
 STEEL_BODIES = (STEEL_THERMAL_CONTACT_COEFFICIENT, STEEL_THERMAL_CONTACT_COEFFICIENT)
 
-#: Friction coefficient of dry hard steel at rest (Marks' Standard Handbook for Mechanical Engineers),
-#: which slides at less: a regression of lubricated contacts that exceeds it means nothing any more.
+#: Static friction coefficient of dry hard steel (Marks' Standard Handbook for Mechanical
+#: Engineers); sliding has less. A regression of lubricated contacts means nothing above it.
 DRY_STEEL = 0.78
 
 _POSITIVE = (
