@@ -19,7 +19,7 @@ from tribodyn.gear.hypoid.contact_lines import ContactLines
 from tribodyn.gear.hypoid.envelope import envelope, turned
 from tribodyn.gear.hypoid.tooth_contact import exact_contact, lightest, start_values
 from tribodyn.mesh import HypoidLoadedContact, hypoid_loaded_contact
-from tribodyn.mesh.hypoid.loaded_contact import carried, lag_under
+from tribodyn.mesh.hypoid.cells import carried, lag_under
 
 #: Lines whose cells the rival looks for, of those of a mesh cycle.
 _LINES = 3
@@ -98,7 +98,7 @@ def balance(loaded: HypoidLoadedContact) -> np.ndarray:
 
         def lacks(turn: float, phase: int = phase, lag: np.ndarray = lag) -> float:
             lag[phase] = turn
-            return carried(loaded.cells, loaded.line_stiffness, lag)[1][phase] - loaded.wheel_torque
+            return carried(loaded.cells, loaded.springs, lag)[1][phase] - loaded.wheel_torque
 
         found.append(brentq(lacks, 0.0, 1e-2, xtol=1e-18, rtol=1e-14))
     return np.array(found)
@@ -126,9 +126,7 @@ def main(words: Sequence[str] | None = None) -> None:
             "general lines": work(lambda: cells(loaded, number), number / len(loaded.cells.row)),
             "exact contact": work(exact.own),
             "general exact contact": work(exact.general),
-            "balance": work(
-                lambda: lag_under(loaded.cells, loaded.line_stiffness, loaded.wheel_torque)
-            ),
+            "balance": work(lambda: lag_under(loaded.cells, loaded.springs, loaded.wheel_torque)),
             "general balance": work(lambda: balance(loaded)),
         },
         rounds,

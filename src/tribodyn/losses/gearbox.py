@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,10 +14,11 @@ from tribodyn.checks import one_or_more
 from tribodyn.contact import gear_loss_factor as integrated
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError, require_between, warn
-from tribodyn.gear import SpurPair
+from tribodyn.gear import HypoidFlanks, SpurPair
 from tribodyn.losses.bearings import RollingBearing, bearing_moments
 from tribodyn.losses.no_load import churning_loss, seal_loss, windage_loss
 from tribodyn.lubricant import Lubricant
+from tribodyn.nomenclature import GEARS
 from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.types import Array
 
@@ -307,7 +308,7 @@ class GearboxLosses(Record):
 
 
 def gearbox_losses(
-    pair: SpurPair,
+    pair: SpurPair | HypoidFlanks,
     gearbox: Gearbox,
     gear: ArrayLike,
     *,
@@ -320,7 +321,7 @@ def gearbox_losses(
 
     Parameters
     ----------
-    pair : SpurPair
+    pair : SpurPair or HypoidFlanks
         The gears.
     gearbox : Gearbox
         Shafts, seals and oil.
@@ -349,7 +350,9 @@ def gearbox_losses(
     Notes
     -----
     Bearings carry the force of the nominal torque along the line of action; weights and friction
-    of the teeth are left out. Source: the single laws, each named in its function.
+    of the teeth are left out. The thrust of a hypoid gear loads one of its bearings. Churning and
+    windage are those of a cylinder: of hypoid gears with the outer pitch radius and the face width.
+    Source: the single laws, each named in its function.
 
     Examples
     --------
@@ -371,13 +374,13 @@ def gearbox_losses(
         raise InputError(what, Argument("gear"), why, "Give one value for each gear")
     lost: dict[str, Array] = {part: np.zeros(shape) for part in PARTS}
     lost["gear"] = np.array(np.broadcast_to(teeth, shape))
-    for name, turns in (("pinion", 1.0), ("wheel", 1.0 / abs(pair.ratio))):
+    for name, body in turning_bodies(pair).items():
         _require_oil(getattr(gearbox, name), lubricant, name)
         for row, column in np.ndindex(shape):
-            turning = turns * float(speed[column])
-            force = float(torque[row]) / pair.pinion.base_radius
+            turning = body.speed_ratio * float(speed[column])
+            force = (float(torque[row]) * body.radial, float(torque[row]) * body.axial)
             parts = _shaft_losses(getattr(gearbox, name), turning, force, lubricant)
-            parts |= _oil_losses(pair, gearbox, name, turning, lubricant)
+            parts |= _oil_losses(body, gearbox, name, turning, lubricant)
             for part, power in parts.items():
                 lost[part][row, column] += power
     return GearboxLosses(torque, speed, **lost, torque_balance=torque_balance)
@@ -390,43 +393,89 @@ def _require_oil(shaft: ShaftParts, lubricant: Lubricant | None, gear: str) -> N
             raise InputError("there is no oil", Argument(name, gear), why, "Give the oil")
 
 
+class TurningBody(NamedTuple):
+    """A gear as its bearings and the oil see it."""
+
+    speed_ratio: float  #: its speed over that of the pinion
+    radial: float  #: force across its axis over the torque on the pinion [1/m]
+    axial: float  #: force along its axis over the torque on the pinion [1/m]
+    pitch_radius: float  #: of a cylinder that churns alike [m]
+    face_width: float  #: [m]
+    module: float  #: normal module [m]
+
+
+def turning_bodies(pair: SpurPair | HypoidFlanks) -> dict[str, TurningBody]:
+    """Both gears of a pair by name."""
+    if isinstance(pair, HypoidFlanks):
+        return _hypoid_bodies(pair)
+    force, module = 1.0 / pair.pinion.base_radius, pair.pinion.normal_module
+    # The operating pitch circles: that is where the two gears roll on each other.
+    radius = abs(pair.center_distance / (1.0 + pair.ratio))
+    widths = pair.pinion.face_width, pair.wheel.face_width
+    turns = 1.0, 1.0 / abs(pair.ratio)
+    return {
+        name: TurningBody(turn, force, 0.0, radius / turn, width, module)
+        for name, turn, width in zip(GEARS, turns, widths, strict=True)
+    }
+
+
+def _hypoid_bodies(flanks: HypoidFlanks) -> dict[str, TurningBody]:
+    blank, touch = flanks.blank, flanks.conjugate.touch(np.zeros(2))
+    force = blank.ratio / float(touch.lever)
+    bodies = {}
+    # The axis of the pinion is y, that of the wheel z.
+    for name, turn, axis in zip(GEARS, (1.0, 1.0 / blank.ratio), (1, 2), strict=True):
+        thrust = abs(float(touch.contact.wheel.normal[axis]))
+        outer = getattr(blank, f"outer_cone_distance_{name}")
+        bodies[name] = TurningBody(
+            turn,
+            force * math.sqrt(1.0 - thrust**2),
+            force * thrust,
+            outer * math.sin(getattr(blank, f"pitch_angle_{name}")),
+            getattr(blank, f"face_width_{name}"),
+            blank.mean_normal_module,
+        )
+    return bodies
+
+
 def _shaft_losses(
-    shaft: ShaftParts, speed: float, load: float, lubricant: Lubricant | None
+    shaft: ShaftParts, speed: float, load: tuple[float, float], lubricant: Lubricant | None
 ) -> dict[str, float]:
-    """Power of bearings and seals [W] at a speed [rad/s] under the force of the teeth [N]."""
+    """Power of bearings and seals [W] at a speed [rad/s] under radial and axial force [N]."""
     losses = {}
     if shaft.seal_diameter:
         losses["seal"] = shaft.seals * float(seal_loss(shaft.seal_diameter, speed))
     if shaft.bearing is not None and lubricant is not None:
         viscosity, bath = lubricant.kinematic_viscosity, shaft.bearing_oil_level
-        moments = bearing_moments(
-            shaft.bearing,
-            speed,
-            viscosity,
-            load / shaft.bearings,
-            drag_factor=shaft.bearing_drag_factor,
-            oil_level=bath,
-        )
-        power = shaft.bearings * speed
-        losses |= {f"bearing_{part}": power * moment for part, moment in vars(moments).items()}
+        radial, thrust = load[0] / shaft.bearings, load[1]
+        for count, axial in ((1, thrust), (shaft.bearings - 1, 0.0)):
+            moments = bearing_moments(
+                shaft.bearing,
+                speed,
+                viscosity,
+                radial,
+                axial,
+                drag_factor=shaft.bearing_drag_factor,
+                oil_level=bath,
+            )
+            for part, moment in vars(moments).items():
+                key = f"bearing_{part}"
+                losses[key] = losses.get(key, 0.0) + count * speed * moment
     return losses
 
 
 def _oil_losses(
-    pair: SpurPair, gearbox: Gearbox, name: str, speed: float, lubricant: Lubricant | None
+    body: TurningBody, gearbox: Gearbox, name: str, speed: float, lubricant: Lubricant | None
 ) -> dict[str, float]:
     """Churning and windage of one gear [W]."""
     depth, losses = getattr(gearbox, name).immersion, {}
-    # The operating pitch circle: that is where the two gears roll on each other.
-    ratio = 1.0 if name == "pinion" else pair.ratio
-    radius = abs(pair.center_distance / (1.0 + pair.ratio) * ratio)
-    width = getattr(pair, name).face_width
+    radius, width = body.pitch_radius, body.face_width
     if depth > radius:
         why = f"The gear is immersed to at most its pitch radius, {1e3 * radius:.4g} mm"
         what, where = f"immersion = {1e3 * depth:.4g} mm", Argument("immersion", name)
         raise InputError(what, where, why, "Give the depth of the lowest point of its pitch circle")
     if depth and lubricant is not None:
-        module, volume = pair.pinion.normal_module, gearbox.oil_volume
+        module, volume = body.module, gearbox.oil_volume
         oil = (volume, lubricant.density, lubricant.kinematic_viscosity)
         losses["churning"] = churning_loss(radius, width, module, depth, speed, *oil)
     if gearbox.windage:

@@ -51,15 +51,15 @@ def quasi_static_loads(
     """Share the load among the pairs and find their films."""
     if cycle.slices is not None and FILM_MODELS[settings.film_model].method:
         with shared_films(persistent=True):
-            return _under_load(
+            return under_load(
                 cycle, teeth, settings, _film_of_slices(settings, cycle, teeth, pairs)
             )
     if (tabled := look_up_film(settings, cycle, teeth, pairs)) is not None:
         # What the table cannot settle, films of its own may.
         with suppress(OutsideTableError, ComputationError):
-            return _under_load(cycle, teeth, settings, tabled)
+            return under_load(cycle, teeth, settings, tabled)
     film = film_of(settings, cycle, teeth, pairs, speed, progress)
-    return _under_load(cycle, teeth, settings, film)
+    return under_load(cycle, teeth, settings, film)
 
 
 def _film_of_slices(
@@ -80,12 +80,14 @@ def _film_of_slices(
     return film
 
 
-def _under_load(
+def under_load(
     cycle: MeshCycle,
     teeth: Teeth,
     settings: ToothContact,
     film: FormulaFilm | PathFilm | FilmLookup,
 ) -> Loads:
+    """Share the load among the pairs with some films, in series with the teeth if requested."""
+
     def solve(loads: Array, checked: tuple[int, ...]) -> FilmAt:
         raised = np.maximum(loads, film.least_load)
         return film.solve(np.where(cycle.in_contact, raised, 0.0), checked)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import ComputationError, Problem, collected, warn
-from tribodyn.mesh.gears import COORDINATES
+from tribodyn.mesh.gears import column_of
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import Progress
 from tribodyn.study.case.to_models import mesh_law_of
@@ -22,7 +22,11 @@ from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.computed import Coupling
 from tribodyn.study.pipeline.motion import motion_of
 from tribodyn.study.pipeline.response_series import mesh_force, one_sided_phase
-from tribodyn.study.pipeline.tooth_contact import contact_settings, mesh_of
+from tribodyn.study.pipeline.tooth_contact import (
+    contact_settings,
+    hypoid_friction_of,
+    mesh_of,
+)
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -96,14 +100,17 @@ def _mesh_under_load(case: Case, nominal: MeshTable, loading: Array) -> MeshTabl
     """Compute the mesh under given forces; static results stay those of the nominal torque."""
     from tribodyn.mesh.build import loaded_mesh
 
-    settings = contact_settings(case)
-    table = loaded_mesh(
-        case.gear_pair,
-        settings,
-        case.operating_point,
-        force_law=mesh_law_of(case) == "force-law",
-        loading=loading,
-    ).table(settings)
+    if case.hypoid_flanks is not None:
+        table = hypoid_friction_of(case, loading=loading).table()
+    else:
+        settings = contact_settings(case)
+        table = loaded_mesh(
+            case.gear_pair,
+            settings,
+            case.operating_point,
+            force_law=mesh_law_of(case) == "force-law",
+            loading=loading,
+        ).table(settings)
     return replace(
         table,
         static_transmission_error=nominal.static_transmission_error
@@ -141,10 +148,10 @@ def balanced_load(case: Case, mesh: MeshTable) -> Array:
     for gear in GEARS:
         if held_gear not in (gear, None):
             continue
-        turn = COORDINATES.index(f"{gear}_theta")
-        lever = direction[:, turn] / (1.0 if held_gear else body[f"moment_of_inertia_{gear}"])
-        numerator = numerator + lever * direction[:, turn]
-        denominator = denominator + lever * (direction[:, turn] + friction[:, turn])
+        pushes, rubs = (column_of(each, f"{gear}_theta") for each in (direction, friction))
+        lever = pushes / (1.0 if held_gear else body[f"moment_of_inertia_{gear}"])
+        numerator = numerator + lever * pushes
+        denominator = denominator + lever * (pushes + rubs)
     return np.asarray(numerator / denominator)
 
 

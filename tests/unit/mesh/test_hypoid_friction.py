@@ -191,7 +191,7 @@ def test_wrong_arguments_are_refused(loaded):
         {"loaded": h1043()}, {"pinion_speed": 0.0}, {"pinion_speed": "3000 rpm"},
         {"lubricant": 0.01}, {"composite_roughness": 0.4}, {"composite_roughness": -1e-7},
         {"friction_law": "glue"}, {"friction_options": {"slope": 1.0}}, {"friction_options": 0.1},
-        {"film_model": "newton"},
+        {"film_model": "newtonian"}, {"film_options": {"nodes": 513}},
         {"film_model": "none"}, {"entrainment": "moving"}, {"friction_law": "ehl"},
         {"friction_law": "niemann"},
     ):  # fmt: skip

@@ -11,7 +11,7 @@ from tribodyn.gear import Misalignment, hypoid_flanks, tooth_contact
 from tribodyn.gear.hypoid.contact_lines import ContactLines
 from tribodyn.gear.hypoid.flank import SIDES
 from tribodyn.mesh import hypoid_loaded_contact
-from tribodyn.mesh.hypoid.loaded_contact import contact_cells, first_touch
+from tribodyn.mesh.hypoid.cells import contact_cells, first_touch
 
 COARSE = {"steps": 16, "cells": 16}
 

@@ -13,11 +13,15 @@ from tribodyn.dynamics import steady_state
 from tribodyn.errors import InputError, ModelWarning, collected
 from tribodyn.exchange import write_tables
 from tribodyn.gear import tooth_contact
+from tribodyn.losses import BEARINGS, bearing_moments
+from tribodyn.losses.gearbox import PARTS, turning_bodies
 from tribodyn.plot import FIGURES
 from tribodyn.report.figure_blocks import HYPOID_SECTIONS
 from tribodyn.study.case.read import read_case
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.citations import cite
+from tribodyn.study.pipeline.preview import gearbox_losses_of
+from tribodyn.study.pipeline.run import prepare_run
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 NAME = "hypoid-mixed-ehl"
@@ -98,8 +102,15 @@ def test_only_the_design_is_required():
         ({"kind": '"spur"'}, "gears.offset", 'It belongs to kind = "hypoid"'),
         ({"driver": '"wheel"'}, "gears.driver", "The pinion of a hypoid pair must be the driver"),
         ({"dynamics": '"spur-6dof"'}, "dynamics.model", "takes gears of the kind spur or table"),
-        ({"law": '"ehl"'}, "friction.law", "computed from a formula"),
-        ({"more": "[losses]\nwindage = false"}, "losses", "Only spur gears have these losses"),
+        ({"law": '"ehl"'}, "friction.law", "needs the pressure of a solved film"),
+        (
+            {
+                "more": '[losses]\noil_volume = "1 l"\n[losses.wheel]\nimmersion = "170 mm"\n'
+                '[lubricant]\nname = "80W"\ntemperature = "60 degC"'
+            },
+            "losses.wheel.immersion",
+            "at most its pitch radius, 168 mm",
+        ),
         ({"more": '[gears.ease_off]\nbias = "20 um"'}, "gears.ease_off.bias", "cut into"),
         ({"ease_of": "1"}, "ease_of", 'Did you mean "ease_off"'),
     ],
@@ -161,6 +172,64 @@ def test_friction_takes_power_that_engine_and_load_account_for(result):
     at_rest = float(result.mesh.grid.mean(result.hypoid_friction.power))
     assert 0.0 < at_rest == pytest.approx(lost, rel=0.03)
     assert figures["efficiency"] == pytest.approx(0.995, abs=1e-3)
+
+
+LOSSES = {
+    "losses.pinion.bearing": "6308", "losses.pinion.seal_diameter": 40e-3,
+    "losses.wheel.bearing": "NJ 406", "losses.wheel.bearings": 3,
+    "losses.wheel.immersion": 30e-3, "losses.oil_volume": 1.5e-3,
+}  # fmt: skip
+
+
+def test_losses_add_up_and_bearings_carry_the_teeth(result):
+    case = built_in(**LOSSES)
+    lost = gearbox_losses_of(case, 800.0)
+    powers = [float(getattr(lost, part)[0, 0]) for part in PARTS]
+    assert all(power > 0.0 for power in powers[:3])
+    assert float(lost.total[0, 0]) == pytest.approx(sum(powers), rel=1e-12)
+    power = case.pinion_torque * case.pinion_speed
+    # The wheel turns its load with what is left.
+    load_torque = (power - sum(powers)) / (case.pinion_speed * RATIO)
+    assert float(lost.efficiency[0, 0]) == pytest.approx(
+        load_torque * case.pinion_speed * RATIO / power, rel=1e-12
+    )
+    forces = result.hypoid_friction.loaded
+    for (name, body), sums in zip(
+        turning_bodies(case.hypoid_flanks).items(),
+        (forces.pinion_direction, forces.wheel_direction), strict=True,
+    ):  # fmt: skip
+        sums = forces.grid.mean(forces.mesh_force[:, None] * sums[:, :3])
+        assert body.axial * 500.0 == pytest.approx(abs(sums[1]), rel=0.03), name
+        assert body.radial * 500.0 == pytest.approx(np.hypot(sums[0], sums[2]), rel=0.06), name
+    bodies = turning_bodies(case.hypoid_flanks)
+    assert bodies["wheel"].pitch_radius == pytest.approx(0.168, rel=1e-3)
+    # The thrust loads one of three bearings.
+    args = BEARINGS["NJ 406"], case.pinion_speed * RATIO, 0.01 / 769.0
+    radial, axial = (500.0 * each for each in (bodies["wheel"].radial / 3.0, bodies["wheel"].axial))
+    moments = [bearing_moments(*args, radial, each).sliding for each in (axial, 0.0, 0.0)]
+    pinion = gearbox_losses_of(built_in(**{"losses.pinion.bearing": "6308"}), 0.0)
+    assert float((lost.bearing_sliding - pinion.bearing_sliding)[0, 0]) == pytest.approx(
+        args[1] * sum(moments), rel=1e-9
+    )
+
+
+def test_heat_and_load_settle_together():
+    oil = {"lubricant.name": "ISO VG 220", "lubricant.heat_transfer": 20.0}
+    oil |= dict.fromkeys(
+        f"lubricant.{n}" for n in ("dynamic_viscosity", "density", "pressure_viscosity_coefficient")
+    )
+    case = built_in(**LOSSES, **oil, **{"film.model": "moes", "solver.coupling": "static"})
+    with collected():
+        prepared = prepare_run(case)
+    heat, mesh = prepared.heat, prepared.mesh
+    assert heat.power_loss[-1] == pytest.approx(heat.dissipated[-1], rel=1e-6)
+    assert heat.temperature[-1] > 310.0
+    assert prepared.case.contact_models == ("contact lines", "moes")
+    # Teeth and friction balance the torque of the gear that has it, at every phase.
+    column = 4 if case.operation.torque_balance == "drive" else 10
+    pushes, rubs = mesh.direction[:, column], mesh.friction[:, column]
+    torque = prepared.coupling.loading * (pushes + rubs) / pushes
+    assert torque == pytest.approx(1.0, abs=1e-5)
 
 
 def test_slow_gears_follow_the_loaded_transmission_error():

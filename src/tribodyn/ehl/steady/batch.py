@@ -310,7 +310,7 @@ def solved_films(
     lubricant: Lubricant,
     effective_modulus: float,
     *,
-    length: float,
+    length: ArrayLike,
     method: str,
     stiffness: str,
     nodes: int,
@@ -341,7 +341,7 @@ def solved_films(
     if sums:
         film_stiffness = _sums(solutions, length, stiffness).reshape(batch.central_film.shape)
     else:
-        film_stiffness = length * batch.film_stiffness
+        film_stiffness = np.asarray(length) * batch.film_stiffness
     if stiffness == "seed":
         warn(
             "seed-film-stiffness",
@@ -360,8 +360,12 @@ def solved_films(
     )
 
 
-def _sums(solutions: tuple[Any, ...], length: float, kind: str) -> Array:
+def _sums(solutions: tuple[Any, ...], length: ArrayLike, kind: str) -> Array:
     """Secant or printed sum of every solution; what the latter has to say is said once."""
+    lengths = np.broadcast_to(np.ravel(length), len(solutions))
     with quiet("seed-film-stiffness"):
-        each = [solution.film_stiffness(length, kind=kind) for solution in solutions]
+        each = [
+            s.film_stiffness(each, kind=kind)
+            for s, each in zip(solutions, lengths.tolist(), strict=True)
+        ]
     return np.array(each)

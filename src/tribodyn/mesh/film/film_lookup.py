@@ -95,7 +95,7 @@ def look_up_film(
     settings: ToothContact, cycle: MeshCycle, teeth: Teeth, pairs: PairsInContact
 ) -> FilmLookup | None:
     """Film of a tooth contact from the shared table, or None where it has to be solved."""
-    table = _table_for(settings, pairs)
+    table = table_for(settings, pairs)
     if table is None:
         return None
     # The pitch point has two sides: take the one after it.
@@ -103,7 +103,8 @@ def look_up_film(
     return FilmLookup(settings, table, pairs, cycle.in_contact, teeth.least_load, pitch)
 
 
-def _table_for(settings: ToothContact, pairs: PairsInContact) -> FilmTable | None:
+def table_for(settings: ToothContact, pairs: PairsInContact) -> FilmTable | None:
+    """Shared table of solved films; None where the settings need what no table has."""
     shared = _shared.get()
     if shared is None or not FILM_MODELS[settings.film_model].method:
         return None

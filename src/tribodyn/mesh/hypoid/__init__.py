@@ -2,8 +2,10 @@
 
 | module | what it answers |
 | --- | --- |
+| `cells` | contact lines in cells, and the forces of their springs |
 | `loaded_contact` | load of every cell, stiffness, transmission error, pressure |
 | `harris` | transmission error over phase and torque |
+| `film` | oil film of every cell, in series with the teeth |
 | `friction` | film and friction of every cell, and what they sum up to |
 | `table` | the same as a mesh table for the dynamics |
 """

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
@@ -15,95 +14,19 @@ from tribodyn.errors import (
     require_between,
 )
 from tribodyn.gear import HypoidFlanks, Material, Misalignment
-from tribodyn.gear.hypoid.conjugate import Touch
-from tribodyn.gear.hypoid.contact_lines import ContactLines
-from tribodyn.gear.hypoid.envelope import Curvature, cross
-from tribodyn.gear.hypoid.tooth_contact import gap_of
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
+from tribodyn.mesh.hypoid.cells import (
+    CellSprings,
+    ContactCells,
+    carried,
+    contact_cells,
+    first_touch,
+    lag_under,
+    wrench,
+)
 from tribodyn.record import Record, fact, figure_method, quantity, record
-from tribodyn.types import Array, Index, Mask
+from tribodyn.types import Array
 
-
-@dataclass(frozen=True, eq=False)
-class ContactCells:
-    """Contact lines in the order of phases, each cut into cells of one length."""
-
-    flanks: HypoidFlanks
-    misalignment: Misalignment
-    phase: Array  #: (p,) mesh cycles
-    in_contact: Mask  #: (p, pairs); pair i came into contact i cycles before phase 0
-    touch: Touch  #: of the cells' centres (lines, cells)
-    length: Array  #: (lines, cells)
-    gap: Array  #: (lines, cells) gap without load
-    edge_gap: Array  #: (lines, cells + 1) the same at the ends of each cell
-    edge_lever: Array  #: (lines, cells + 1) lever of the normal about the wheel's axis
-
-    @cached_property
-    def row(self) -> Index:
-        """Phase that each line belongs to (lines,)."""
-        return np.asarray(np.nonzero(self.in_contact)[0])
-
-    @cached_property
-    def curvature(self) -> Curvature:
-        """Curvature of the gap about each cell."""
-        return self.touch.curvature
-
-    @cached_property
-    def side_radius(self) -> Array:
-        """Radius of the gap along the line (lines, cells); infinite where it is not open."""
-        middle = 0.5 * (self.edge_gap[:, 1:] + self.edge_gap[:, :-1])
-        curvature = 8.0 * (middle - self.gap) / self.length**2
-        with np.errstate(divide="ignore"):
-            return 1.0 / np.maximum(curvature, 0.0)
-
-    def summed(self, values: Array) -> Array:
-        """Sum over all lines of each phase."""
-        total = np.zeros((self.phase.size, *values.shape[1:]))
-        np.add.at(total, self.row, values)
-        return total
-
-    def spread(self, values: Array, empty: float = 0.0) -> Array:
-        """Spread values of the lines (lines, ...) over phases and pairs (phase, pair, ...)."""
-        spread_values = np.full((*self.in_contact.shape, *values.shape[1:]), empty)
-        spread_values[self.in_contact] = values
-        return spread_values
-
-
-def contact_cells(
-    flanks: HypoidFlanks, misalignment: Misalignment, phase: Array, count: int
-) -> ContactCells:
-    """Lines of all pairs at mesh phases; phase 0 is where a pair comes into contact."""
-    lines = ContactLines(flanks.conjugate)
-    sense = lines.flanks.sense
-    first, last = sorted(sense * end for end in lines.span())
-    pitch = 2.0 * math.pi / flanks.blank.teeth_wheel
-    pairs = math.ceil((last - first) / pitch)
-    turn = first + pitch * (phase[:, None] + np.arange(pairs))
-    in_contact = turn < last
-    rotation = sense * turn[in_contact]
-    ends, meets = lines.ends(rotation)
-    in_contact[in_contact], rotation, ends = meets, rotation[meets], ends[meets]
-    # Ends and centres of cells in one line.
-    station = ends[:, :1] + np.linspace(0.0, 1.0, 2 * count + 1) * np.ptp(ends, axis=1)[:, None]
-    touch = lines.touch(rotation[:, None], station)
-    steps = np.linalg.norm(np.diff(touch.contact.wheel.position, axis=1), axis=-1)
-    gap = gap_of(lines.flanks, touch, misalignment)
-    return ContactCells(
-        flanks,
-        misalignment,
-        phase,
-        in_contact,
-        touch.at((slice(None), slice(1, None, 2))),
-        steps[:, ::2] + steps[:, 1::2],
-        gap[:, 1::2],
-        gap[:, ::2],
-        touch.lever[:, ::2],
-    )
-
-
-#: Steps of Newton's method, which comes down a convex curve, and the parts of
-#: the torque at which it ends and that are refused.
-_STEPS, _CLOSE, _REFUSED = 60, 1e-13, 1e-9
 _PHASES, _PAIRS, _CELLS = ("phase",), ("phase", "pair"), ("phase", "pair", "cell")
 
 
@@ -151,6 +74,10 @@ class HypoidLoadedContact(Record):
         The contact lines.
     material : Material
         Material of both gears.
+    film_springs : CellSprings, optional
+        Springs of the teeth with the oil film of each cell in series; None without films.
+    loading : array (phase,) or float
+        Torque of each phase over the nominal one.
     """
 
     phase: Array = quantity(*_PHASES, unit="1", axis=True)
@@ -172,6 +99,13 @@ class HypoidLoadedContact(Record):
     grid: PhaseGrid = field()
     cells: ContactCells = field()
     material: Material = field()
+    film_springs: CellSprings | None = field(default=None)
+    loading: Array | float = field(default=1.0)
+
+    @property
+    def springs(self) -> CellSprings:
+        """Springs of the cells."""
+        return self.film_springs or CellSprings(self.line_stiffness)
 
     @property
     def wheel_torque(self) -> float:
@@ -228,6 +162,16 @@ class HypoidLoadedContact(Record):
         """
         torque = _required_torque(pinion_torque)
         return _loaded(self.cells, self.grid, torque, self.line_stiffness, self.material)
+
+    def with_film(self, springs: CellSprings | None) -> HypoidLoadedContact:
+        """Find the contact under the same torque with oil films in series with the teeth."""
+        contact = self.cells, self.grid, self.pinion_torque, self.line_stiffness, self.material
+        return _loaded(*contact, springs, self.loading)
+
+    def under_loading(self, loading: Array) -> HypoidLoadedContact:
+        """Find the contact of the teeth at the nominal torque times a factor (phase,)."""
+        contact = self.cells, self.grid, self.pinion_torque, self.line_stiffness, self.material
+        return _loaded(*contact, None, loading)
 
     plot_pressure = figure_method("hypoid_pressure", "Draw the pressure over the flank.")
     plot_load = figure_method("hypoid_load", "Draw load sharing, transmission error and stiffness.")
@@ -326,85 +270,26 @@ def _lines(
     return lines
 
 
-def carried(cells: ContactCells, line_stiffness: float, lag: Array) -> tuple[Array, Array, Array]:
-    """Forces of the cells of a wheel that lags (p,) [rad], its torque, and the slope of that."""
-    over = cells.edge_lever * lag[cells.row, None] - cells.edge_gap
-    first, second = over[:, :-1], over[:, 1:]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        turn = first / (first - second)
-    # The closed part of the cell, between shares of its length.
-    begin = np.where(first >= 0.0, 0.0, np.where(second > 0.0, turn, 1.0))
-    end = np.where(second >= 0.0, 1.0, np.where(first > 0.0, turn, begin))
-    closed, middle = end - begin, 0.5 * (begin + end)
-    spring = line_stiffness * cells.length * closed
-    lever = cells.edge_lever
-    force = spring * np.maximum(first + (second - first) * middle, 0.0)
-    slope = spring * (lever[:, :-1] + (lever[:, 1:] - lever[:, :-1]) * middle)
-    arm = cells.touch.lever
-    torque, rate = (cells.summed((each * arm).sum(axis=1)) for each in (force, slope))
-    return force, torque, rate
-
-
 def wheel_torque_at(loaded: HypoidLoadedContact, lag: Array) -> Array:
     """Torque on a wheel that lags by some angles (..., phase) [rad]."""
     lags = np.reshape(lag, (-1, loaded.phase.size))
-    torques = [carried(loaded.cells, loaded.line_stiffness, each)[1] for each in lags]
+    torques = [carried(loaded.cells, loaded.springs, each)[1] for each in lags]
     return np.reshape(torques, np.shape(lag))
 
 
-def first_touch(cells: ContactCells) -> Array:
-    """Lag of the wheel at which the first cell of each phase closes (p,) [rad]."""
-    least = np.full(cells.phase.size, np.inf)
-    np.minimum.at(least, cells.row, (cells.edge_gap / cells.edge_lever).min(axis=1))
-    return least
-
-
-def lag_under(cells: ContactCells, line_stiffness: float, wheel_torque: float) -> Array:
-    """Lag of the wheel at which the cells of each phase balance a torque (p,) [rad].
-
-    The torque is convex in the lag: from above Newton's method comes down to it.
-    """
-    spring = line_stiffness * (cells.length * cells.touch.lever**2).sum(axis=1)
-    most = np.zeros(cells.phase.size)
-    np.maximum.at(most, cells.row, (cells.edge_gap / cells.edge_lever).max(axis=1))
-    lag = most + 1.1 * wheel_torque / cells.summed(spring)
-    for _ in range(_STEPS):
-        _, torque, rate = carried(cells, line_stiffness, lag)
-        left = float(np.max(np.abs(torque - wheel_torque))) / wheel_torque
-        if left < _CLOSE:
-            break
-        lag = lag - (torque - wheel_torque) / rate
-    if not left < _REFUSED:
-        raise ComputationError(
-            f"a torque of {wheel_torque:.4g} N m on the wheel is balanced within {left:.2g} only",
-            why="It is too small for the gaps by ease-off and misalignment",
-            remedy="Increase the torque, or compute the tooth contact without load",
-        )
-    return lag
-
-
-def in_frame(vectors: Array, sense: float, gear: str) -> Array:
-    """Vectors of the fixed frame in that of a gear, whose y axis lies along its rotation."""
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    turned = (x, sense * y, sense * z) if gear == "pinion" else (x, -sense * z, sense * y)
-    return np.stack(turned, axis=-1)
-
-
-def wrench(cells: ContactCells, forces: Array, gear: str) -> Array:
-    """Force and moment (lines, cells, 6) of forces at the cells on a gear, in its frame."""
-    axes, position = cells.flanks.conjugate.axes, cells.touch.contact.wheel.position
-    arm = position - axes.origin if gear == "pinion" else position
-    sense = cells.flanks.conjugate.sense
-    parts = [in_frame(each, sense, gear) for each in (forces, cross(arm, forces))]
-    return np.concatenate(parts, axis=-1)
-
-
 def _loaded(
-    cells: ContactCells, grid: PhaseGrid, torque: float, line_stiffness: float, material: Material
+    cells: ContactCells,
+    grid: PhaseGrid,
+    torque: float,
+    line_stiffness: float,
+    material: Material,
+    film_springs: CellSprings | None = None,
+    loading: Array | float = 1.0,
 ) -> HypoidLoadedContact:
-    wheel_torque = torque * cells.flanks.blank.ratio
-    lag, start = lag_under(cells, line_stiffness, wheel_torque), first_touch(cells)
-    force, balanced, rate = carried(cells, line_stiffness, lag)
+    wheel_torque = torque * cells.flanks.blank.ratio * loading
+    springs = film_springs or CellSprings(line_stiffness)
+    lag, start = lag_under(cells, springs, wheel_torque), first_touch(cells, springs.lead)
+    force, balanced, rate = carried(cells, springs, lag)
     normals = force[..., None] * cells.touch.contact.wheel.normal
     pinion, wheel = (
         cells.summed(wrench(cells, normals, gear).sum(axis=1)) for gear in ("pinion", "wheel")
@@ -433,6 +318,8 @@ def _loaded(
         grid=grid,
         cells=cells,
         material=material,
+        film_springs=film_springs,
+        loading=loading,
     )
 
 

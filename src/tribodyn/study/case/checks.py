@@ -67,7 +67,6 @@ def _roughness(inputs: UserInput) -> KeyedProblems:
 
 #: Kind of gears -> keys restricted to some of their names, these names, and the reason.
 _TABLE_HAS = "A mesh table has its films and friction coefficients as columns"
-_CELLS_HAVE = "The contact lines of a hypoid pair have their own films and compliance"
 _ALLOWED_NAMES: dict[str, tuple[tuple[str, tuple[str, ...], str], ...]] = {
     "table": (
         ("film.model", ("none",), _TABLE_HAS),
@@ -75,7 +74,6 @@ _ALLOWED_NAMES: dict[str, tuple[tuple[str, tuple[str, ...], str], ...]] = {
         ("dynamics.friction_load", ("nominal",), _TABLE_HAS),
     ),
     "hypoid": (
-        ("film.model", ("none",), _CELLS_HAVE),
         ("gears.driver", ("pinion",), "The pinion of a hypoid pair must be the driver"),
         (
             "dynamics.friction_load",
@@ -99,12 +97,8 @@ def _kind(inputs: UserInput) -> KeyedProblems:
             if kind == "table":
                 remedy += ', or give the gears with kind = "spur"'
             yield key, Problem(inputs.show(key), "", why, remedy)
-    if restrictions and "losses" in inputs:
-        why = (
-            f"{_NO_BODIES} that turn in oil"
-            if kind == "table"
-            else "Only spur gears have these losses"
-        )
+    if kind == "table" and "losses" in inputs:
+        why = f"{_NO_BODIES} that turn in oil"
         yield "losses", Problem("[losses] is given", "", why, "Remove the table")
     for key in inputs.typed:
         if is_idle(key, kind) and key.split(".")[0] in ("gears", "stiffness"):
@@ -194,11 +188,6 @@ def _film_of_friction(
     """Check the film model and thermal properties for a law that shears the solved film."""
     if law is None or film is None or not law.needs_film:
         return
-    if inputs.get("gears.kind") == "hypoid":
-        why = "The film of a hypoid pair is computed from a formula"
-        remedy = 'Choose law = "mixed-ehl"'
-        yield "friction.law", Problem(f'law = "{law.name}" for a hypoid pair', "", why, remedy)
-        return
     if not film.method:
         what = f'law = "{law.name}" and film model = "{film.name}"'
         why = "The law needs the pressure of a solved film, which this model does not compute"
@@ -254,7 +243,6 @@ def _solver(inputs: UserInput) -> KeyedProblems:
 #: Kinds of gears for which load, film and friction are not coupled.
 _UNCOUPLED = {
     "table": ("table", "A mesh table of another program has no film model"),
-    "hypoid": ("hypoid", "Its films are computed at the static load"),
 }
 
 

@@ -398,7 +398,7 @@ Gears.fields |= {**HYPOID_KEYS, **_gear_tables}
 _OF_ALL = ("kind", "driver", "teeth", "mass", "moment_of_inertia")
 _OF = {"table": (*_OF_ALL, "table"), "hypoid": (*_OF_ALL, *_ALSO_OF_HYPOID)}
 #: Tables of a case that say nothing about such a pair.
-_IDLE = {"table": ("stiffness", "material", "film"), "hypoid": ("stiffness", "film")}
+_IDLE = {"table": ("stiffness", "material", "film"), "hypoid": ("stiffness",)}
 _REQUIRED = {
     "spur": ("gears.normal_module", "gears.normal_pressure_angle"),
     "hypoid": tuple(f"gears.{n}" for n, o in HYPOID_KEYS.items() if getattr(o, "required", False)),

@@ -410,7 +410,7 @@ class Losses(Section):
 
 
 def _heat_balance(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
-    """Check that a heat balance has an oil with temperature dependence, and spur gears."""
+    """Check that a heat balance has an oil with temperature dependence, and gears."""
     key, other = "lubricant.heat_transfer", "lubricant.ambient_temperature"
     if key not in inputs:
         if other in inputs:
@@ -422,8 +422,8 @@ def _heat_balance(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
         why = "The balance needs the viscosity at others"
         remedy = 'Name an oil, for example name = "ISO VG 220", or give the figures of a data sheet'
         yield key, Problem(what, "", why, f"{remedy}, or remove heat_transfer")
-    if inputs.get("gears.kind", "spur") != "spur":
-        why = "Only spur gears have losses at other temperatures"
+    if inputs.get("gears.kind", "spur") == "table":
+        why = "A mesh table has its friction at one temperature"
         yield key, Problem(inputs.show(key), "", why, "Remove it")
 
 

@@ -212,7 +212,7 @@ def _gearbox_losses(case: CaseData) -> object:
     from tribodyn.losses import gearbox_losses
 
     return case.gearbox and gearbox_losses(
-        case.gear_pair,
+        case.gear_pair if case.hypoid_flanks is None else case.hypoid_flanks,
         case.gearbox,
         0.0,
         pinion_torque=case.pinion_torque,
@@ -347,7 +347,8 @@ def contact_models(case: CaseData) -> tuple[str, str]:
     from tribodyn.mesh.hypoid.friction import ELLIPTICAL
 
     if case.gears.kind == "hypoid":
-        return "contact lines", ELLIPTICAL
+        film = case.film.model
+        return "contact lines", ELLIPTICAL if film == "none" else film
     stiffness = case.stiffness.model if case.gears.table is None else f"table {case.gears.table}"
     return str(stiffness), str(case.film.model)
 
@@ -412,11 +413,11 @@ def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
         return _table_problems(case)
     if case.gears.kind == "hypoid":
         problems = _faults("gears", lambda: case.hypoid_flanks)
-        return problems + _faults("lubricant", lambda: case.lubricant_properties)
-    problems = _faults("gears", lambda: case.gear_pair)
+    else:
+        problems = _faults("gears", lambda: case.gear_pair)
     problems += _faults("lubricant", lambda: case.lubricant_properties)
     problems += [] if problems else _faults("losses", lambda: _gearbox_losses(case))
-    return problems + _bores(case)
+    return problems if case.gears.kind == "hypoid" else problems + _bores(case)
 
 
 def chosen_options(case: CaseData, section: str) -> dict[str, Any]:

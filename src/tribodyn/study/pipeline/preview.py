@@ -80,7 +80,7 @@ def gearbox_losses_of(case: Case, lost: Any, **point: Any) -> GearboxLosses:
 
     point = {"pinion_torque": case.pinion_torque, "pinion_speed": case.pinion_speed, **point}
     return gearbox_losses(
-        case.gear_pair,
+        case.gear_pair if case.hypoid_flanks is None else case.hypoid_flanks,
         case.gearbox or Gearbox(windage=False),
         lost,
         **point,

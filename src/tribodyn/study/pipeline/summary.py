@@ -225,7 +225,7 @@ def _static_error_figures(result: Computed) -> dict[str, Any]:
         figures = (grid.mean(error), np.ptp(error), grid._harmonics(error, _HARMONICS))
     mean, most, amplitudes = figures
     parts = _error_apart(result.mesh)
-    if parts and result.case.gear_pair.teeth_differ:
+    if parts and pair is not None and pair.teeth_differ:
         # The loaded contact of all teeth has no film.
         parts |= {f"mean_{name}_teeth": mean, f"peak_to_peak_{name}_teeth": most}
         mean = mean + parts[f"mean_{name}_film"]

@@ -77,7 +77,6 @@ def mesh_of(
     """Compute the tooth contact of a case over one mesh cycle."""
     # A rehearsal has few phases and a film by formula: it only has to raise the input errors.
     # about_load: the force law has few ramps, or is its tangent where the case takes no more.
-    from tribodyn.friction import LAWS
     from tribodyn.mesh.build import mesh_table
 
     if case.mesh_table is not None:
@@ -88,23 +87,14 @@ def mesh_of(
             pinion_torque=case.pinion_torque,
             friction_coefficient=friction_of_table(case),
         )
+    settings = _rehearsed(contact_settings(case)) if rehearsal else contact_settings(case)
     if case.hypoid_flanks is not None:
-        return hypoid_friction_of(case, load=load, rehearsal=rehearsal).table()
-    settings = contact_settings(case)
+        fewest = {"steps": _FEWEST, "cells": _FEWEST} if rehearsal else {}
+        loaded = hypoid_loaded_contact_of(case, load=load, **fewest)
+        return _friction_in_cells(case, loaded, settings).table()
     fitted: FittedLaw = mesh_law_of(case) == "force-law"
     if about_load:
         fitted = "about-load" if fitted else "tangent"
-    if rehearsal:
-        film = "none" if settings.film_model == "none" else "dowson-higginson"
-        settings = replace(settings, film_model=film, film_options={})
-        if settings.stiffness_model == "fe3d":  # solids take seconds, plane sections do not
-            settings = replace(settings, stiffness_model="fe2d")
-        law = LAWS[case.friction.law]
-        if law.needs_film:
-            other = LAWS[law.rehearsal]
-            options = settings.friction_options.items()
-            shared_options = {name: value for name, value in options if name in other.options}
-            settings = replace(settings, friction_law=other.name, friction_options=shared_options)
     return mesh_table(
         case.gear_pair,
         settings,
@@ -114,6 +104,23 @@ def mesh_of(
         force_law=fitted,
         progress=progress,
     )
+
+
+def _rehearsed(settings: ToothContact) -> ToothContact:
+    """Settings that take no solution of a film and raise the same input errors."""
+    from tribodyn.friction import LAWS
+
+    film = "none" if settings.film_model == "none" else "dowson-higginson"
+    settings = replace(settings, film_model=film, film_options={})
+    if settings.stiffness_model == "fe3d":  # solids take seconds, plane sections do not
+        settings = replace(settings, stiffness_model="fe2d")
+    law = LAWS[settings.friction_law]
+    if not law.needs_film:
+        return settings
+    other = LAWS[law.rehearsal]
+    options = settings.friction_options.items()
+    shared_options = {name: value for name, value in options if name in other.options}
+    return replace(settings, friction_law=other.name, friction_options=shared_options)
 
 
 def teeth_contact_ratio(case: Case) -> float | None:
@@ -156,21 +163,20 @@ def _repeat_warnings(table: MeshTable, model_warnings: Sequence[ModelWarning]) -
     return table
 
 
-def hypoid_friction_of(case: Case, *, load: float = 1.0, rehearsal: bool = False) -> HypoidFriction:
+def hypoid_friction_of(case: Case, *, loading: Array | None = None) -> HypoidFriction:
     """Load, film and friction of a hypoid pair in every cell of its contact lines."""
-    from tribodyn.mesh import hypoid_friction
+    loaded = hypoid_loaded_contact_of(case)
+    if loading is not None:
+        loaded = loaded.under_loading(loading)
+    return _friction_in_cells(case, loaded, contact_settings(case))
 
-    fewest = {"steps": _FEWEST, "cells": _FEWEST} if rehearsal else {}
-    loaded = hypoid_loaded_contact_of(case, load=load, **fewest)
-    return hypoid_friction(
-        loaded,
-        case.pinion_speed,
-        lubricant=case.lubricant_properties or to_models.unused_lubricant(),
-        composite_roughness=case.composite_roughness or 0.0,
-        friction_law=case.friction.law,
-        friction_options=chosen_options(case, "friction"),
-        entrainment=case.gears.entrainment,
-    )
+
+def _friction_in_cells(
+    case: Case, loaded: HypoidLoadedContact, settings: ToothContact
+) -> HypoidFriction:
+    from tribodyn.mesh.hypoid.friction import friction_in_cells
+
+    return friction_in_cells(loaded, case.pinion_speed, settings, case.gears.entrainment)
 
 
 def hypoid_loaded_contact_of(
