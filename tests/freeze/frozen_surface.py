@@ -21,8 +21,8 @@ PACKAGE = Path(str(files("tribodyn")))
 
 _PARTS = """
 analysis cases cli contact dynamics ehl errors exchange friction gear losses lubricant machine
-measurement mesh nomenclature plot progress report stiffness study surrogate uncertainty units
-variants
+measurement mesh nomenclature plot progress report signals stiffness study surrogate uncertainty
+units variants
 """
 
 #: Pages of public names.

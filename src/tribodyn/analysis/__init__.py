@@ -7,6 +7,25 @@ from tribodyn.nonlinear.bifurcation import Bifurcation, bifurcation
 from tribodyn.nonlinear.lyapunov import LyapunovExponents, lyapunov_exponents
 from tribodyn.nonlinear.parameter_map import ParameterMap, parameter_map
 from tribodyn.nonlinear.poincare import PhasePortrait, PoincareSection, phase_portrait, poincare
+from tribodyn.signals import (
+    ConditionIndicators,
+    NarrowbandDemodulation,
+    SynchronousAverage,
+    condition_indicators,
+    energy_ratio,
+    fm0,
+    fm4,
+    kurtosis,
+    m6a,
+    m8a,
+    na4,
+    na4_star,
+    narrowband_demodulation,
+    nb4,
+    sideband_index,
+    sideband_level_factor,
+    time_synchronous_average,
+)
 from tribodyn.signals.angular_resampling import AngularSignal, angular_resampling
 from tribodyn.signals.envelope import Sidebands, envelope, envelope_spectrum, sidebands
 from tribodyn.signals.indicators import (
@@ -33,13 +52,6 @@ from tribodyn.signals.run_up_orders import (
     run_up_order_map,
 )
 from tribodyn.signals.spectrum import Peak, SignalSpectrum, spectrum, zoom_spectrum
-from tribodyn.signals.synchronous_average import (
-    ConditionIndicators,
-    SynchronousAverage,
-    condition_indicators,
-    kurtosis,
-    time_synchronous_average,
-)
 
 __all__ = [
     "AngularSignal",
@@ -48,6 +60,7 @@ __all__ = [
     "Bifurcation",
     "ConditionIndicators",
     "LyapunovExponents",
+    "NarrowbandDemodulation",
     "OrderCut",
     "OrderMap",
     "OverallLevel",
@@ -70,14 +83,23 @@ __all__ = [
     "crest_factor",
     "direction_shares",
     "dynamic_factor",
+    "energy_ratio",
     "envelope",
     "envelope_spectrum",
     "extremes",
+    "fm0",
+    "fm4",
     "kurtosis",
     "line_of_action_indicator",
     "lyapunov_exponents",
+    "m6a",
+    "m8a",
     "mean",
     "mesh_harmonics",
+    "na4",
+    "na4_star",
+    "narrowband_demodulation",
+    "nb4",
     "order_cut",
     "order_map",
     "overall_level",
@@ -88,6 +110,8 @@ __all__ = [
     "resonances",
     "rms",
     "run_up_order_map",
+    "sideband_index",
+    "sideband_level_factor",
     "sidebands",
     "spectrogram",
     "spectrum",

@@ -20,16 +20,12 @@ from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, in_si
 from tribodyn.measurement.shaft_speed import ShaftSpeed, shaft_speed
 from tribodyn.record import Parts, Record, fact, quantity, record
+from tribodyn.signals.condition_indicators import ConditionIndicators, condition_indicators
 from tribodyn.signals.envelope import envelope, envelope_spectrum
+from tribodyn.signals.gear_indicators import kurtosis
 from tribodyn.signals.order_map import OrderMap
 from tribodyn.signals.spectrum import SignalSpectrum, distinct_peaks, spectrum
-from tribodyn.signals.synchronous_average import (
-    ConditionIndicators,
-    SynchronousAverage,
-    condition_indicators,
-    kurtosis,
-    time_synchronous_average,
-)
+from tribodyn.signals.synchronous_average import SynchronousAverage, time_synchronous_average
 from tribodyn.types import Array
 
 #: Peaks of a spectrum and mesh harmonics among the figures.
@@ -248,7 +244,13 @@ def _average_figures(
             "average_kurtosis": indicators.kurtosis,
             "fm0": indicators.fm0,
             "fm4": indicators.fm4,
+            "m6a": indicators.m6a,
+            "m8a": indicators.m8a,
             "na4": indicators.na4,
+            "nb4": indicators.nb4,
+            "energy_ratio": indicators.energy_ratio,
+            "sideband_index": indicators.sideband_index,
+            "sideband_level_factor": indicators.sideband_level_factor,
         }
     return {f"{name}{ending}": value for name, value in numbers.items()}
 
@@ -426,7 +428,7 @@ def _averages(
 ) -> dict[str, Any]:
     """Mean revolution and condition indicators of each shaft whose teeth are known."""
     if SHAFT not in teeth:
-        what = "no mean revolution, no gear indicators (FM0, FM4, NA4)"
+        what = "no mean revolution, no gear indicators (FM0, FM4, NA4 and others)"
         why = "They need the number of teeth of the gear on the shaft"
         remedy = "Give it (--teeth 29, with its mate --teeth 29/67, or --case CASE)"
         notes.append(Problem(what, "", why, remedy))

@@ -66,6 +66,7 @@ from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.papers import paper_comparison
 from tribodyn.plot.signals.analysed import signal_analysis, signal_history
 from tribodyn.plot.signals.bands import bands
+from tribodyn.plot.signals.diagnosis import narrowband_demodulation
 from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.lines import (
     harmonic_spectrum,
@@ -157,6 +158,7 @@ __all__ = [
     "mesh_stiffness",
     "mixed_line_contact",
     "mode_shapes",
+    "narrowband_demodulation",
     "order_cut",
     "order_map",
     "order_spectrum",

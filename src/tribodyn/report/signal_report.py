@@ -46,7 +46,13 @@ _AVERAGE = {
     "average_kurtosis": ("kurtosis", "", "of the mean revolution"),
     "fm0": ("FM0", "", "peak to peak over the sum of the mesh amplitudes"),
     "fm4": ("FM4", "", "kurtosis of the difference: 3 or less for sound teeth"),
+    "m6a": ("M6A", "", "sixth moment of the difference: 15 or less for sound teeth"),
+    "m8a": ("M8A", "", "eighth moment of the difference: 105 or less for sound teeth"),
     "na4": ("NA4", "", "fourth moment of the residual: 3 or less for sound teeth"),
+    "nb4": ("NB4", "", "fourth moment of the envelope of the strongest mesh harmonic"),
+    "energy_ratio": ("energy ratio", "", "rms of the difference over that of the regular mesh"),
+    "sideband_index": ("sideband index", "unit", "mean of the first sidebands of the mesh"),
+    "sideband_level_factor": ("sideband level factor", "", "their sum over the rms"),
 }
 _SMEARED = (
     " The speed varies: shaft-synchronous lines are smeared in this figure and too "

@@ -1,14 +1,58 @@
 """Signal analysis: indicators and spectra of a response or of a measured signal.
 
-The public names are listed on the page of :mod:`tribodyn.analysis`.
+The page of :mod:`tribodyn.analysis` lists the public names of all modules; the indicators of gears
+and the methods of diagnosis can be imported from this page too.
 
 | module | what it answers |
 |---|---|
 | ``angular_resampling`` | what a signal is over the rotation of a shaft |
+| ``condition_indicators`` | all indicators of a gear at once |
+| ``demodulation`` | amplitude and phase of a mesh harmonic over a revolution |
 | ``envelope`` | how strong a signal is at each moment, how that repeats, what modulates it |
+| ``gear_indicators`` | whether teeth are damaged: FM0, FM4, NA4, NB4, M6A, M8A and others |
 | ``indicators`` | mean, rms, ranges, dynamic factor, direction and harmonics of a response |
 | ``order_map`` | how strong each multiple of the rotation is over the speed |
 | ``run_up_orders`` | orders and levels of a run-up, and the natural modes of its peaks |
 | ``spectrum`` | how strong each frequency is |
-| ``synchronous_average`` | what repeats with the rotation, and damage indicators from it |
+| ``synchronous_average`` | what repeats with the rotation |
 """
+
+from tribodyn.arguments import guard
+from tribodyn.signals.condition_indicators import ConditionIndicators, condition_indicators
+from tribodyn.signals.demodulation import NarrowbandDemodulation, narrowband_demodulation
+from tribodyn.signals.gear_indicators import (
+    energy_ratio,
+    fm0,
+    fm4,
+    kurtosis,
+    m6a,
+    m8a,
+    na4,
+    na4_star,
+    nb4,
+    sideband_index,
+    sideband_level_factor,
+)
+from tribodyn.signals.synchronous_average import SynchronousAverage, time_synchronous_average
+
+__all__ = [
+    "ConditionIndicators",
+    "NarrowbandDemodulation",
+    "SynchronousAverage",
+    "condition_indicators",
+    "energy_ratio",
+    "fm0",
+    "fm4",
+    "kurtosis",
+    "m6a",
+    "m8a",
+    "na4",
+    "na4_star",
+    "narrowband_demodulation",
+    "nb4",
+    "sideband_index",
+    "sideband_level_factor",
+    "time_synchronous_average",
+]
+
+guard(__name__)

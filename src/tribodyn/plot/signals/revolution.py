@@ -22,7 +22,7 @@ _POINTS = 6000
 _FINE = 4
 
 
-def _fine(values: Array) -> Array:
+def finer(values: Array) -> Array:
     """Evaluate the Fourier series of a signal at more angles, for a smooth curve."""
     from scipy.signal import resample
 
@@ -46,7 +46,7 @@ def synchronous_average(average: SynchronousAverage) -> Any:
     def label(quantity: str) -> str:
         return f"{quantity} [{unit}]" if unit else quantity
 
-    mean = _fine(average.signal)
+    mean = finer(average.signal)
     angle = 360.0 * np.arange(mean.size) / mean.size
     error = 2.0 * np.interp(angle, np.degrees(average.angle), average.scatter, period=360.0)
     edge: Trace = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
@@ -55,7 +55,7 @@ def synchronous_average(average: SynchronousAverage) -> Any:
         {**edge, "x": angle, "y": mean - error, "fill": "tonexty", "fillcolor": FILLS[PINION],
          "name": "2 standard errors"},
     ]  # fmt: skip
-    residual, difference = _fine(average.residual()), _fine(average.difference())
+    residual, difference = finer(average.residual()), finer(average.difference())
     curve = line(angle, mean, "mean revolution", PINION, unit=unit, width=1.4)
     zero = {"zeroline": True, "zerolinecolor": "#c5ccd3"}
     panels = [
