@@ -148,7 +148,9 @@ def _friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:
     if "friction_coefficients" not in data:
         return None
     facts = (float(data.attrs[f"friction_{name}"]) for name in ("load", "limit", "fit_error"))
-    return MeshFriction(mesh.grid, data["friction_coefficients"].values, *facts)
+    couple = data.get("friction_couple_coefficients")
+    tilting = None if couple is None else couple.values
+    return MeshFriction(mesh.grid, data["friction_coefficients"].values, *facts, couple=tilting)
 
 
 def _coupling(mesh: MeshTable, data: xarray.Dataset) -> Coupling | None:

@@ -299,6 +299,17 @@ class MeshColumns(Record):
         return np.asarray(self._plane_friction[2])
 
     @property
+    def friction_couple(self) -> Array:
+        """Moment of friction about the line of action over total normal force (n,) [m].
+
+        It tilts gears whose contacts are slices of lines of contact; zero for whole pairs.
+        """
+        if self.face_position is None:
+            return np.zeros(self.phase.size)
+        sense = 1.0 if self.driver == "pinion" else -1.0
+        return sense * self.by_share(self._directed_friction * self.face_position)
+
+    @property
     def friction(self) -> Array:
         """Generalized friction force of all pairs over their normal force (n, 6 or 12) [1 or m]."""
         if self.friction_direction is None:

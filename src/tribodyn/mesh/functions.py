@@ -109,6 +109,8 @@ _ROUNDING = 1e-13
 CHANNELS = ("friction_sum", "friction_moment_pinion", "friction_moment_wheel")
 #: Part of the first of them that asperities cause, where the friction law has such a part.
 ASPERITIES = "asperity_friction_sum"
+#: Moment about the line of action that tilts gears in space, where contacts are slices of lines.
+COUPLE = "friction_couple"
 #: Loads over the nominal load at which a mesh is looked at: dense where friction laws bend.
 LOADS = (0.04, 0.12, 0.27, 0.48, 0.74, 1.0, 1.3, 1.65, 2.05, 2.45, 2.8, 3.0)
 _TERMS = 7
@@ -131,6 +133,9 @@ class MeshFriction:
         Load over the nominal load above which friction over normal force stays [1].
     fit_error : float
         Largest distance of a friction force from its polynomial, over the largest one [1].
+    couple : array (n, terms), optional
+        Coefficients of the moment of friction about the line of action over the normal force [m],
+        where contacts are slices of lines of contact.
     """
 
     grid: PhaseGrid
@@ -138,6 +143,7 @@ class MeshFriction:
     load: float
     limit: float
     fit_error: float
+    couple: Array | None = None
 
     def channel(self, name: str) -> PhaseFunction:
         """Coefficients of one of the sums as a function of phase.
@@ -145,13 +151,16 @@ class MeshFriction:
         Parameters
         ----------
         name : str
-            One of ``CHANNELS``, or ``"asperity_friction_sum"`` where ``splits``.
+            One of ``CHANNELS``, ``"asperity_friction_sum"`` where ``splits``, or
+            ``"friction_couple"`` where there is a ``couple``.
 
         Returns
         -------
         PhaseFunction
             Gives arrays whose last axis is the power of the load.
         """
+        if name == COUPLE and self.couple is not None:
+            return PhaseFunction(self.grid, self.couple)
         place = (*CHANNELS, ASPERITIES).index(name)
         return PhaseFunction(self.grid, self.coefficients[:, :, place])
 
@@ -228,7 +237,8 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
     ratio = np.array([table.total_normal_force for table in tables]) / nominal.total_normal_force
     _check(tables, nominal, ratio)
     split = all(getattr(table, ASPERITIES) is not None for table in tables)
-    names = (*CHANNELS, ASPERITIES) if split else CHANNELS
+    in_slices = nominal.face_position is not None
+    names = (*CHANNELS, *(COUPLE,) * in_slices, *(ASPERITIES,) * split)
     sums = np.array([[getattr(table, name) for name in names] for table in tables])
     powers = ratio[:, None] ** np.arange(_TERMS)
     by_force = np.linalg.lstsq(
@@ -238,10 +248,13 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
     force = ratio[:, None, None] * sums
     largest = np.abs(force).max(axis=(0, 2))[None, :, None]
     fit = np.abs(residual.reshape(force.shape)) / np.where(largest > 0.0, largest, 1.0)
-    fit = fit[:, : len(CHANNELS)]
+    fit = fit[:, : len(CHANNELS) + in_slices]
+    columns = dict(zip(names, by_force.reshape(_TERMS, len(names), -1).swapaxes(0, 1), strict=True))
+    couple = columns.pop(COUPLE, None)
     return MeshFriction(
         grid=nominal.grid,
-        coefficients=np.moveaxis(by_force.reshape(_TERMS, len(names), -1), -1, 0),
+        coefficients=np.moveaxis(np.stack(list(columns.values()), axis=1), -1, 0),
+        couple=None if couple is None else couple.T,
         load=nominal.total_normal_force,
         limit=float(ratio.max()),
         fit_error=float(fit.max()),

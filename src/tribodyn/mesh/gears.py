@@ -164,17 +164,10 @@ def spatial_columns(mesh: MeshColumns) -> dict[str, Array]:
         *(zero, -towards, -lean * towards),
         *(-face - sense * second * lean, -towards * lean * opposite, -towards * levers[1]),
     )
-    across, couple = mesh.friction_sum, sense * _friction_couple(mesh)
+    across, couple = mesh.friction_sum, mesh.friction_couple
     turns = mesh.friction_moment_pinion, mesh.friction_moment_wheel
     friction = (
         *(across, zero, zero, zero, -couple, turns[0]),
         *(-across, zero, zero, zero, couple, -turns[1]),
     )
     return {"direction": np.stack(direction, axis=1), "friction": np.stack(friction, axis=1)}
-
-
-def _friction_couple(mesh: MeshColumns) -> Array:
-    """Moment of friction about the line of action, over the force of the mesh (n,) [m]."""
-    if mesh.face_position is None:
-        return np.zeros(mesh.phase.size)
-    return mesh.by_share(mesh._directed_friction * mesh.face_position)

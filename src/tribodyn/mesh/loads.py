@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import Kinematics, hertz_line
-from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.steady.batch import Films
-from tribodyn.errors import ComputationError, InputError, quiet, warn
+from tribodyn.errors import ComputationError, quiet, warn
 from tribodyn.friction import PitchPoint, TribologicalContact
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film.film_columns import smallest_film
@@ -20,7 +19,7 @@ from tribodyn.mesh.film.film_lookup import (
     FilmLookup,
     OutsideTableError,
     look_up_film,
-    shared_films,
+    look_up_slices,
 )
 from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
 from tribodyn.mesh.film.path_film import FilmAt, FormulaFilm, PathFilm, film_of
@@ -49,35 +48,14 @@ def quasi_static_loads(
     progress: Progress,
 ) -> Loads:
     """Share the load among the pairs and find their films."""
-    if cycle.slices is not None and FILM_MODELS[settings.film_model].method:
-        with shared_films(persistent=True):
-            return under_load(
-                cycle, teeth, settings, _film_of_slices(settings, cycle, teeth, pairs)
-            )
+    if (film_of_slices := look_up_slices(settings, cycle, teeth, pairs)) is not None:
+        return under_load(cycle, teeth, settings, film_of_slices)
     if (tabled := look_up_film(settings, cycle, teeth, pairs)) is not None:
         # What the table cannot settle, films of its own may.
         with suppress(OutsideTableError, ComputationError):
             return under_load(cycle, teeth, settings, tabled)
     film = film_of(settings, cycle, teeth, pairs, speed, progress)
     return under_load(cycle, teeth, settings, film)
-
-
-def _film_of_slices(
-    settings: ToothContact, cycle: MeshCycle, teeth: Teeth, pairs: PairsInContact
-) -> FilmLookup:
-    """Films of slices, from a table of solved contacts over load and speed."""
-    film = look_up_film(settings, cycle, teeth, pairs)
-    if film is None:
-        law = settings.friction_law
-        raise InputError(
-            f'film.model = "{settings.film_model}" with friction.law = "{law}"',
-            where="film of slices of the lines of contact",
-            why="Slices interpolate their films in a table of solved contacts, which has film "
-            "thicknesses and stiffnesses, but neither the pressures that this law shears nor the "
-            'stiffness "seed"',
-            remedy="Choose a friction law by formula, or a film by formula",
-        )
-    return film
 
 
 def under_load(

@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 
 from tribodyn.contact import face_contacts, hertz_line, path_of_contact
+from tribodyn.dynamics import follow_load, helical12
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.errors import InputError
+from tribodyn.ehl.traction.film_state import FilmState
+from tribodyn.errors import InputError, ModelWarning
+from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.gear import FlankModification, Material, cylindrical_pair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh import build
+from tribodyn.mesh import LOADS, build, mesh_friction
 from tribodyn.stiffness import MODELS, iso6336_single_stiffness, loaded_contact
 from tribodyn.stiffness.loaded.contact import contact_problem
 
@@ -189,9 +192,48 @@ def test_a_film_in_series_softens_the_mesh_of_slices():
     assert 1.0 / wet.mesh_stiffness == pytest.approx(1.0 / film + 1.0 / teeth, rel=2e-2)
 
 
-def test_a_law_that_shears_the_film_is_refused_for_slices():
-    with pytest.raises(InputError, match="Slices interpolate their films"):
-        table(helical(), film_model="newton", friction_law="ehl")
+def test_friction_of_a_slice_that_shears_its_film_is_that_of_a_spur_contact():
+    mesh = table(helical(), stiffness_model="iso6336", film_model="newton", friction_law="ehl")
+    chosen = tuple(np.argwhere(mesh.load_share > 1e-3)[[40, 500, 1200, 2000, 2700]].T)
+    load, radius, entrainment, sliding = (
+        getattr(mesh, name)[chosen]
+        for name in ("load_per_width", "equivalent_radius", "entrainment_speed", "sliding_speed")
+    )
+    modulus = Material().youngs_modulus / (1.0 - Material().poissons_ratio ** 2)
+    films = FILM_MODELS["newton"].films(load, radius, entrainment, OIL, modulus)
+    contact = TribologicalContact(
+        load,
+        hertz_line(load, radius, modulus).maximum_pressure,
+        sliding,
+        entrainment,
+        sliding / entrainment,
+        radius,
+        OIL.dynamic_viscosity,
+        0.0,
+        FilmState.from_solutions(films.solutions),
+    )
+    expected = LAWS["ehl"](contact)
+    assert mesh.friction_coefficient[chosen] == pytest.approx(expected, rel=1e-2, abs=5e-5)
+    assert mesh.central_film[chosen] == pytest.approx(films.central_film, rel=1e-3)
+
+
+def test_sheared_films_of_a_vanishing_helix_angle_are_those_of_the_spur_pair():
+    options = {"stiffness_model": "iso6336", "film_model": "newton", "friction_law": "ehl"}
+    options["film_options"] = {"stiffness": "secant"}
+    spur, nearly = (table(helical(helix), steps=128, **options) for helix in (0.0, 1e-3))
+    for name in ("mean_friction_coefficient", "mean_friction_power", "mean_mesh_stiffness"):
+        assert getattr(nearly, name) == pytest.approx(getattr(spur, name), rel=1e-3), name
+    for name in ("central_film", "minimum_film", "film_stiffness"):
+        assert nearly.at_pitch_point(name) == pytest.approx(spur.at_pitch_point(name), rel=2e-3)
+
+
+def test_the_printed_film_sum_is_reported_of_slices():
+    options = {"stiffness_model": "iso6336", "film_model": "newton", "steps": 32}
+    options["film_options"] = {"stiffness": "seed"}
+    with pytest.warns(ModelWarning, match="is shown, and is no spring"):
+        spur, nearly = (table(helical(helix), **options) for helix in (0.0, 1e-3))
+    expected = spur.at_pitch_point("film_stiffness")
+    assert nearly.at_pitch_point("film_stiffness") == pytest.approx(expected, rel=1e-2)
 
 
 def test_maps_over_the_face_follow_the_table():
@@ -329,3 +371,22 @@ def test_stiffness_of_iso_6336_of_a_helical_pair():
     steel = Material(youngs_modulus=206e9)
     found = iso6336_single_stiffness(pair, steel, 50e3)
     assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_friction_of_slices_that_follows_the_load_tilts_the_gears_as_under_that_load():
+    """All twelve generalized forces at each load are those of the mesh built at that load."""
+    pair, options = helical(), {"stiffness_model": "iso6336", "steps": 32}
+    tables = [table(pair, pinion_torque=TORQUE * load, **options) for load in LOADS]
+    nominal = tables[LOADS.index(1.0)]
+    friction = mesh_friction(tables, nominal)
+    body = {"mass": 5.0, "moment_of_inertia": 0.01, "torque": (TORQUE, TORQUE * pair.ratio)}
+    system = follow_load(helical12(nominal.functions(), **body), friction)
+    for load, mesh in zip(LOADS[3:], tables[3:], strict=True):
+        expected = mesh.functions().spatial_friction(mesh.phase)
+        rows = [
+            (rub.coefficients(mesh.phase) @ load ** np.arange(7))[:, None] * rub.direction
+            for rub in system.frictions
+        ]
+        error = np.abs(np.sum(rows, axis=0) - expected).max(axis=0)
+        assert np.all(error <= 0.03 * np.abs(expected).max(axis=0))
+    assert np.abs(nominal.friction_couple).max() > 1e-5

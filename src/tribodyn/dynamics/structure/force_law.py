@@ -207,7 +207,8 @@ def follow_load(system: System, friction: MeshFriction) -> System:
     Notes
     -----
     Friction acts on the pinion against its sliding relative to the wheel, for either driving gear,
-    with the radius of curvature as lever. Load shares are those of the static loads.
+    with the radius of curvature as lever, and tilts gears in space by its couple. Load shares are
+    those of the static loads.
 
     Examples
     --------
@@ -234,7 +235,7 @@ def follow_load(system: System, friction: MeshFriction) -> System:
             limit=friction.limit,
             events=events,
         )
-        for name, direction in _directions(tuple(system.names)).items()
+        for name, direction in _directions(tuple(system.names), friction).items()
         if direction.any()
     ]
     contacts = [
@@ -244,11 +245,16 @@ def follow_load(system: System, friction: MeshFriction) -> System:
     return replace(system, contacts=contacts, frictions=(*system.frictions, *frictions))
 
 
-def _directions(names: tuple[str, ...]) -> dict[str, Array]:
+def _directions(names: tuple[str, ...], friction: MeshFriction) -> dict[str, Array]:
     """Direction of each friction sum of the mesh over the coordinates."""
     missing = [name for name in (f"{gear}_theta" for gear in GEARS) if name not in names]
     if missing:
         why = f"Friction acts on the gears, and the coordinates are {', '.join(names)}"
         remedy = "Name the coordinates accordingly, or pass LoadFriction to System"
         raise InputError(f"no coordinate is named {missing[0]}", "argument system", why, remedy)
-    return dict(zip(FRICTION_SUMS, plane_rows(names)[1:], strict=True))
+    rows = dict(zip(FRICTION_SUMS, plane_rows(names)[1:], strict=True))
+    tilts = [names.index(name) for name in (f"{gear}_theta_y" for gear in GEARS) if name in names]
+    if tilts and getattr(friction, "couple", None) is not None:
+        rows["friction_couple"] = np.zeros(len(names))
+        rows["friction_couple"][tilts] = -1.0, 1.0
+    return rows

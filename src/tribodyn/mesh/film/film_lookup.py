@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -24,7 +24,7 @@ from tribodyn.errors import TribodynError, quiet
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
-from tribodyn.mesh.film.film_columns import friction_by_law
+from tribodyn.mesh.film.film_columns import film_places, friction_by_law
 from tribodyn.mesh.film.film_refinement import (
     PRESSURE,
     QUANTITIES,
@@ -35,6 +35,7 @@ from tribodyn.mesh.film.film_refinement import (
 )
 from tribodyn.mesh.film.film_table import FilmTable
 from tribodyn.mesh.film.path_film import LoadedFilms
+from tribodyn.mesh.film.sheared_film import ShearedFilms
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import SILENT
 from tribodyn.types import Array, Index, Mask
@@ -91,35 +92,59 @@ def shared_films(*, persistent: bool = False) -> Iterator[None]:
         _shared.reset(token)
 
 
+def look_up_slices(
+    settings: ToothContact, cycle: MeshCycle, teeth: Teeth, pairs: PairsInContact
+) -> FilmLookup | None:
+    """Film of slices of lines of contact from a table; None of whole pairs and of formulas."""
+    if cycle.slices is None:
+        return None
+    with shared_films(persistent=True):
+        return look_up_film(settings, cycle, teeth, pairs)
+
+
 def look_up_film(
     settings: ToothContact, cycle: MeshCycle, teeth: Teeth, pairs: PairsInContact
 ) -> FilmLookup | None:
     """Film of a tooth contact from the shared table, or None where it has to be solved."""
-    table = table_for(settings, pairs)
+    of_slices = cycle.slices is not None
+    table = table_for(settings, pairs, of_slices=of_slices)
     if table is None:
         return None
     # The pitch point has two sides: take the one after it.
     pitch = np.flatnonzero(np.abs(pairs.age - pitch_point_age(cycle.contact)) < _SAME)[-1:]
-    return FilmLookup(settings, table, pairs, cycle.in_contact, teeth.least_load, pitch)
+    return FilmLookup(settings, table, pairs, cycle.in_contact, teeth.least_load, pitch, of_slices)
 
 
-def table_for(settings: ToothContact, pairs: PairsInContact) -> FilmTable | None:
+def table_for(
+    settings: ToothContact, pairs: PairsInContact, *, of_slices: bool = False
+) -> FilmTable | None:
     """Shared table of solved films; None where the settings need what no table has."""
     shared = _shared.get()
     if shared is None or not FILM_MODELS[settings.film_model].method:
         return None
-    # A law that shears the film needs its pressure at all nodes; so does the stiffness "seed".
-    if LAWS[settings.friction_law].needs_film or settings.film["stiffness"] == "seed":
+    # A law that shears the film needs its pressure at all nodes: whole pairs solve their path.
+    sheared = LAWS[settings.friction_law].needs_film or settings.film["stiffness"] == "seed"
+    if sheared and not of_slices:
         return None
     options = {name: value for name, value in settings.film.items() if name != "positions"}
     oil, modulus = pairs.lubricant, pairs.effective_modulus
     key = (settings.film_model, oil, modulus, repr(sorted(options.items())))
+
+    def table() -> FilmTable:
+        """Table of solved contacts of any load and speed."""
+        slope = _YIELDING if options["stiffness"] == "tangent" else np.inf
+        tolerance = np.array([_EXACT, _EXACT, np.inf, slope, _EXACT, np.inf, np.inf, np.inf])
+        solver = _Contacts(settings.film_model, options, oil, modulus)
+        return FilmTable(solver, tolerance, tolerance < _YIELDING)
+
+    return _cached_table(shared, key, table)
+
+
+def _cached_table(shared: _Shared, key: Any, make: Callable[[], FilmTable]) -> FilmTable:
+    """Table of a key, the same object in the blocks that share it."""
     with shared.lock:
         if key not in shared.tables:
-            slope = _YIELDING if options["stiffness"] == "tangent" else np.inf
-            tolerance = np.array([_EXACT, _EXACT, np.inf, slope, _EXACT, np.inf, np.inf, np.inf])
-            solver = _Contacts(settings.film_model, options, oil, modulus)
-            shared.tables[key] = FilmTable(solver, tolerance, tolerance < _YIELDING)
+            shared.tables[key] = make()
             if len(shared.tables) > _MOST_TABLES:
                 shared.tables.popitem(last=False)
         return shared.tables[key]
@@ -151,13 +176,21 @@ class _Contacts:
         speed = 0.5 * twice * self.modulus * radius / oil.dynamic_viscosity
         load = load_number * np.sqrt(twice) * self.modulus * radius
         pairs = PairsInContact(np.zeros(load.size), radius, speed, oil, self.modulus, 1.0)
-        with quiet():
-            films = pairs.films(self.model, load, **self.options)
-        index, every = np.zeros(load.size, dtype=np.int64), np.ones(load.size, dtype=bool)
-        places = places_of(pairs, index, load, films, every)
-        errors = [each.central_film_error / each.central_film for each in films.solutions]
-        more = np.array([places.distance, places.peak_drop, places.peak_place, errors])
-        return np.concatenate([places.values, more])
+        return _quantities(pairs, load, self.model, self.options)
+
+
+def _quantities(pairs: PairsInContact, load: Array, model: str, options: dict[str, Any]) -> Array:
+    """Quantities of a table (q, n) of solved contacts."""
+    with quiet():
+        films = pairs.films(model, load, **options)
+    if options["stiffness"] == "seed":  # a length: times the pressure it is a stiffness
+        pressure = pairs.scales(load)["film_pressure"]
+        films = replace(films, film_stiffness=films.film_stiffness * pressure)
+    index, every = np.zeros(load.size, dtype=np.int64), np.ones(load.size, dtype=bool)
+    places = places_of(pairs, index, load, films, every)
+    errors = [each.central_film_error / each.central_film for each in films.solutions]
+    more = np.array([places.distance, places.peak_drop, places.peak_place, errors])
+    return np.concatenate([places.values, more])
 
 
 #: Place between two nodes of the tip whose peak is the highest.
@@ -174,6 +207,7 @@ class FilmLookup:
     in_contact: Mask
     least_load: float  #: lower bound of the load for which a film is computed [N/m]
     pitch: Index  #: contact at the pitch point, if there is one
+    of_slices: bool = False  #: whether contacts beyond the table are solved for themselves
 
     def solve(self, load_per_width: Array, checked: tuple[int, ...] = ()) -> FilmsFromTable:
         """Films under the loads of a mesh table."""
@@ -183,23 +217,35 @@ class FilmLookup:
         groups = line_contact_groups(*contacts, *oil, pairs.effective_modulus)
         number = np.log(groups.moes_load)
         values = self.table(number, np.log(groups.moes_material))
-        if np.any(np.isnan(values)):
+        outside = np.flatnonzero(np.isnan(values).any(axis=0))
+        if outside.size and not self.of_slices:
             raise OutsideTableError
+        if outside.size:
+            values[:, outside] = self._solved(outside, loads)
         doubtful = np.zeros((len(QUANTITIES), loads.size), dtype=bool)
         # The pressure is certain only where it is solved. The stiffness of the approach differs by
         # several percent from node to node: a study reports only its value at the pitch point,
         # which is solved.
         doubtful[PRESSURE] = True
+        yielding = values[STIFFNESS]
+        if self.settings.film["stiffness"] == "seed":
+            yielding = yielding * pairs.scales(loads)["film_pressure"]
         return FilmsFromTable(
             pairs=pairs,
             keeps_distance=self.settings.film["stiffness"] == "approach",
             factors=np.exp(values[:STIFFNESS]),
-            yielding=values[STIFFNESS],
+            yielding=yielding,
             doubtful=doubtful,
             loads=PathLoads(np.zeros(0), loads, loads > least),
             path=self,
             values=np.vstack([values, number]),
         )
+
+    def _solved(self, contacts: Index, loads: Array) -> Array:
+        """Quantities of contacts that lie where the table has no films."""
+        settings, some = self.settings, self.pairs.some(contacts)
+        with film_places(lambda index: f"{some.age[index]:.3f} base pitches after its entry"):
+            return _quantities(some, loads[contacts], settings.film_model, settings.film)
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,8 +267,12 @@ class FilmsFromTable(LoadedFilms):
     def friction(
         self, contact: TribologicalContact, motion: Any, settings: ToothContact
     ) -> Array | FrictionParts:
-        """Evaluate the friction law."""
-        return friction_by_law(settings.friction_law, contact, settings.friction_options)
+        """Evaluate the friction law; one that shears the film has a table of its own."""
+        if not LAWS[settings.friction_law].needs_film:
+            return friction_by_law(settings.friction_law, contact, settings.friction_options)
+        sheared = ShearedFilms(settings, self.pairs, motion.sliding_speed)
+        table = _cached_table(_shared.get() or _persistent, sheared.key, sheared.table)
+        return sheared.friction(table, contact.load_per_width)
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
         """Solve the contacts that results report; also return a mask of the certain quantities."""
@@ -232,7 +282,8 @@ class FilmsFromTable(LoadedFilms):
         # One call for all of them, because starting threads takes time.
         chosen = np.unique([*least, *self.path.pitch, *self._trials(columns["film_pressure"])])
         settings = self.path.settings
-        with quiet():
+        # The printed sum "seed" warns of what it is, wherever it is reported.
+        with nullcontext() if settings.film["stiffness"] == "seed" else quiet():
             solved = self.pairs.some(chosen).films(
                 settings.film_model, load[chosen], **settings.film, progress=SILENT
             )

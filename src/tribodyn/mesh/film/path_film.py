@@ -373,18 +373,13 @@ def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact
         if not np.any(in_zone):
             continue
         sliding = np.abs(motion.sliding_speed[in_zone])
-        speeds = _speeds(sliding)
+        speeds = sampled_speeds(sliding)
         chosen = np.flatnonzero(places.zone == zone)
         friction = _friction_over_speed(solved, settings, chosen, speeds, np.copysign(1.0, sign))
-        over_speed = lobatto_polynomial(np.arcsinh(speeds / _SLOW), np.arcsinh(sliding / _SLOW))
+        over_speed = speed_weights(speeds, sliding)
         curve = path.memory.curves.get((zone, PRESSURE), False)
         shared = isinstance(friction, FrictionParts)
-        parts = (
-            (friction.film, friction.asperities, friction.film_load_share)
-            if isinstance(friction, FrictionParts)
-            else (friction,)
-        )
-        for column, values in zip(columns, parts, strict=False):
+        for column, values in zip(columns, parts_of(friction), strict=False):
             along = joined_over_age(
                 path.places,
                 places,
@@ -397,12 +392,24 @@ def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact
     return FrictionParts(*columns) if shared else columns[0]
 
 
-def _speeds(sliding: Array) -> Array:
+def parts_of(friction: Friction) -> tuple[Array, ...]:
+    """Coefficient, or film, asperities and load share of the film where the law has them."""
+    if isinstance(friction, FrictionParts):
+        return friction.film, friction.asperities, friction.film_load_share
+    return (friction,)
+
+
+def sampled_speeds(sliding: Array) -> Array:
     """Sliding speeds of a zone [m/s], dense near zero, from its least to its greatest."""
     ends = np.arcsinh(np.array([np.min(sliding), np.max(sliding)]) / _SLOW)
     count = max(_LEAST, int(np.ceil(_DENSITY * (ends[1] - ends[0]))) + 1)
     inner = ends.mean() + 0.5 * (ends[1] - ends[0]) * lobatto_points(count)
     return np.asarray(_SLOW * np.sinh(inner))
+
+
+def speed_weights(speeds: Array, sliding: Array) -> Array:
+    """Weights (k, s) of values at sampled speeds for each sliding speed."""
+    return lobatto_polynomial(np.arcsinh(speeds / _SLOW), np.arcsinh(sliding / _SLOW))
 
 
 def _friction_over_speed(
@@ -415,23 +422,21 @@ def _friction_over_speed(
 
     def friction(some: Index) -> Friction:
         index, speed = np.repeat(some, speeds.size), np.tile(speeds, some.size)
-        return _of_places(solved, settings, index, sign * speed)
+        return sheared_friction(places, solved.path.pairs, settings, index, sign * speed)
 
     return warn_of_loaded(
         lambda: friction(chosen), lambda: friction(loaded) if loaded.size else None
     )
 
 
-def _of_places(
-    solved: SolvedPath, settings: ToothContact, index: Index, sliding: Array
+def sheared_friction(
+    places: Places, pairs: PairsInContact, settings: ToothContact, index: Index, sliding: Array
 ) -> Friction:
     """Friction of solved places, one sliding speed for each."""
-    places = solved.places
     load, radius = places.load_per_width[index], places.equivalent_radius[index]
     entrainment = places.entrainment_speed[index]
     most = _MOST_SLIDING * entrainment
     speed = np.clip(sliding, -most, most)
-    pairs = solved.path.pairs
     contact = TribologicalContact(
         load_per_width=load,
         hertz_pressure=hertz_line(load, radius, pairs.effective_modulus).maximum_pressure,

@@ -307,6 +307,9 @@ def _ends(result: Computed) -> dict[str, Any]:
         attributes = {"long_name": "friction over powers of the load: force [1], moments [m]"}
         dims = ("knot", "power", "channel")
         variables["friction_coefficients"] = (dims, friction.coefficients, attributes)
+        if friction.couple is not None:
+            attributes = {"long_name": "tilting moment of friction over powers of the load [m]"}
+            variables["friction_couple_coefficients"] = (dims[:2], friction.couple, attributes)
     if (coupling := result.coupling) is not None:
         attributes = _attributes_of(
             "1", "change of each quantity from one pass of the coupling to the next"
