@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any
 
 import numba as nb
+from numba.core.runtime import rtsys
 
 from tribodyn.compiled import announce
 
@@ -18,6 +19,7 @@ def cached_njit(**options: Any) -> Callable[[Any], Any]:
         try:
             kernel = nb.njit(cache=True, **options)(function)
             _ignore_outdated_index(kernel)
+            _load_code_alone(kernel)
             return kernel
         except RuntimeError as error:
             # Neither the source folder nor the home directory can be written: a container perhaps.
@@ -44,6 +46,23 @@ def _ignore_outdated_index(kernel: Any) -> None:
         return index
 
     cache_file._load_index = load_index
+
+
+def _load_code_alone(kernel: Any) -> None:
+    """Load cached code without all that Numba can compile, which takes 0.7 s once in a process.
+
+    Where the code is missing the compiler loads it after all.
+    """
+    cached: Any = getattr(kernel, "_cache", None)
+    if not hasattr(cached, "_load_overload"):  # private: another version of Numba may lack it
+        return
+
+    def load_overload(signature: Any, context: Any) -> Any:
+        rtsys.initialize(context)
+        with cached._guard_against_spurious_io_errors():
+            return cached._load_overload(signature, context)
+
+    cached.load_overload = load_overload
 
 
 @cache

@@ -41,6 +41,18 @@ def test_an_index_with_classes_that_have_moved_counts_as_empty(
     assert cache_lock.is_cached(kernel)
 
 
+def test_cached_code_is_loaded_without_all_that_numba_can_compile(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    assert cached_njit(nogil=True)(_double)(21.0) == 42.0
+    kernel = cached_njit(nogil=True)(_double)
+    monkeypatch.setattr(type(kernel.targetctx), "refresh", None)
+    assert kernel(21.0) == 42.0
+    with pytest.raises(TypeError):  # nothing is cached for whole numbers: the compiler needs all
+        kernel(21)
+
+
 def test_without_a_cache_folder_kernels_are_compiled_with_one_message(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
