@@ -11,26 +11,30 @@ from collections.abc import Iterator
 
 from tribodyn.exchange.rexs_file import Component, RexsFile
 
+_FACES = ("datum_face", "non_datum_face")
 #: Kind -> supported attributes; a form with any other value except zero is left out.
 _READ = {
     "tip_relief": ("tip_relief_depth", "tip_relief_datum_length", "tip_relief_datum_diameter"),
     "root_relief": ("root_relief_depth", "root_relief_datum_length"),
     "profile_crowning": ("profile_crowning_at_root", "profile_crowning_at_tip"),
     "helix_crowning": ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
+    **{
+        f"end_relief_{face}": (f"end_relief_depth_{face}", f"end_relief_length_{face}")
+        for face in _FACES
+    },
 }
-#: Forms that a case does not have, or whose sign differs between programs.
-_NOT_READ = (
-    "profile_slope",
-    "helix_slope",
-    "helix_deviation",
-    "profile_deviation",
-    "profile_twist",
-    "triangular_tip_relief",
-    "triangular_root_relief",
-    "end_relief_datum_face",
-    "end_relief_non_datum_face",
-    "topographical_modification",
-)
+#: Forms whose sign or place depends on conventions that differ between programs -> key of a case
+#: that does the same; empty where there is none.
+_NOT_READ = {
+    "profile_slope": "profile_slope",
+    "helix_slope": "lead_slope",
+    "helix_deviation": "",
+    "profile_deviation": "",
+    "profile_twist": "flank_twist",
+    "triangular_tip_relief": "",
+    "triangular_root_relief": "",
+    "topographical_modification": "",
+}
 _KINDS = (*_READ, *_NOT_READ)
 
 
@@ -52,7 +56,20 @@ def forms_of(
             elif any(_values(side) != _values(sides[0]) for side in sides):
                 remarks.append(f"{gear}: {kind} of its flanks differs; the left one is used")
             modification.update(keys)
+    ends = [_take_end(modification, face) for face in _FACES]
+    if ends[0] == ends[1]:
+        modification.update(ends[0])
+    else:
+        sizes = (" over ".join(f"{1e3 * value:.4g} mm" for value in end.values()) for end in ends)
+        remarks.append(f"{gear}: end_relief is ignored: {' and '.join(s or '0 mm' for s in sizes)} "
+                       "at both ends of the face, while a case relieves them alike")  # fmt: skip
     return modification, remarks
+
+
+def _take_end(modification: dict[str, float], face: str) -> dict[str, float]:
+    """Remove the relief of one end of the face; its keys as a case has them for both ends."""
+    keys = [key for key in modification if key.startswith(f"end_relief_{face}")]
+    return {key.replace(f"_{face}", ""): modification.pop(key) for key in keys}
 
 
 def _on(file: RexsFile, number: int, kind: str) -> list[Component]:
@@ -74,7 +91,11 @@ def _values(parts: list[Component]) -> list[dict[str, object]]:
 def _read(part: Component, radii: tuple[float, float] | None) -> tuple[dict[str, float], str]:
     """Keys of one form, or the reason why it is ignored."""
     if part.kind not in _READ:
-        return {}, "a case does not have this form, or its sign differs between programs"
+        if not (key := _NOT_READ[part.kind]):
+            return {}, "a case does not have this form"
+        amount = part.number(part.kind, "m")
+        size = "" if amount is None else f" of {1e6 * amount:.4g} um"
+        return {}, f"its sign{size} differs between programs; check it, and set {key} of the gear"
     odd = [name for name in _odd(part) if name not in _READ[part.kind]]
     if odd:
         return {}, f"a case has no key for {odd[0]}"

@@ -26,21 +26,20 @@ WHOLE_CASE = "custom_tribodyn_case"
 _UNIT, _CASING, _STAGE, _OIL, _MATERIAL, _LOAD = 1, 2, 3, 4, 5, 6
 _SHAFTS, _GEARS, _TOOL = (7, 8), (9, 10), 11
 _FLANKS = ((12, 13), (14, 15))
-#: Key of a modification -> kind of component, attributes of its amount, attribute of its length.
-_FORMS: dict[str, tuple[str, tuple[str, ...], str]] = {
-    "tip_relief": ("tip_relief", ("tip_relief_depth",), "tip_relief_datum_length"),
-    "root_relief": ("root_relief", ("root_relief_depth",), "root_relief_datum_length"),
-    "profile_crowning": (
-        "profile_crowning",
-        ("profile_crowning_at_root", "profile_crowning_at_tip"),
-        "",
+#: Key of a modification, kind of component, attributes of its amount, attribute of its length.
+_FORMS: tuple[tuple[str, str, tuple[str, ...], str], ...] = (
+    ("tip_relief", "tip_relief", ("tip_relief_depth",), "tip_relief_datum_length"),
+    ("root_relief", "root_relief", ("root_relief_depth",), "root_relief_datum_length"),
+    ("profile_crowning", "profile_crowning",
+     ("profile_crowning_at_root", "profile_crowning_at_tip"), ""),
+    ("crowning", "helix_crowning",
+     ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"), ""),
+    *(
+        ("end_relief", f"end_relief_{face}", (f"end_relief_depth_{face}",),
+         f"end_relief_length_{face}")
+        for face in ("datum_face", "non_datum_face")
     ),
-    "crowning": (
-        "helix_crowning",
-        ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
-        "",
-    ),
-}
+)  # fmt: skip
 _TO_MM, _TO_DEG = 1e3, 180.0 / math.pi
 
 Attribute = tuple[str, str, Any]  # name, unit, value
@@ -172,7 +171,7 @@ def _forms(case: Case) -> list[tuple[tuple[int, int], dict[str, Any]]]:
     """Reliefs and crownings, each with the flanks to which it is attached."""
     forms: list[tuple[tuple[int, int], dict[str, Any]]] = []
     for flanks, gear in zip(_FLANKS, case.gears.by_name.values(), strict=True):
-        for key, (kind, amounts, length) in _FORMS.items():
+        for key, kind, amounts, length in _FORMS:
             amount = getattr(gear.modification, key, 0.0)
             if amount:
                 values = [(name, "mm", amount * _TO_MM) for name in amounts]

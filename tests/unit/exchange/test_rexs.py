@@ -215,6 +215,9 @@ def test_reliefs_and_crownings_of_the_flanks_are_read(tree, tmp_path) -> None:
     hang(tree, flanks, "root_relief", root_relief_depth=0.01)
     hang(tree, flanks, "helix_crowning", helix_crowning_amount_datum_face=0.005,
          helix_crowning_amount_non_datum_face=0.005)  # fmt: skip
+    for face in ("datum_face", "non_datum_face"):
+        hang(tree, flanks, f"end_relief_{face}",
+             **{f"end_relief_depth_{face}": 0.008, f"end_relief_length_{face}": 6.0})  # fmt: skip
     case = case_from_rexs(read_rexs(stored(tree, tmp_path)), 19)
     modified = case.gears.pinion.modification
     assert modified.tip_relief == pytest.approx(20e-6)
@@ -222,6 +225,7 @@ def test_reliefs_and_crownings_of_the_flanks_are_read(tree, tmp_path) -> None:
     assert modified.root_relief == pytest.approx(10e-6)
     assert modified.root_relief_length is None
     assert modified.crowning == pytest.approx(5e-6)
+    assert (modified.end_relief, modified.end_relief_length) == pytest.approx((8e-6, 6e-3))
     assert case.gears.wheel.modification is None
 
 
@@ -245,7 +249,13 @@ def test_a_relief_from_a_diameter_on_is_as_long_as_the_involute_rolls(tmp_path: 
 @pytest.mark.parametrize(
     ("kind", "values", "message"),
     [
-        ("profile_slope", {"profile_slope": 0.01}, "its sign differs between programs"),
+        ("profile_slope", {"profile_slope": 0.01}, "its sign of 10 um differs between programs"),
+        ("profile_twist", {"profile_twist": -0.006}, "sign of -6 um differs between programs; "
+         "check it, and set flank_twist"),
+        ("topographical_modification", {}, "a case does not have this form"),
+        ("end_relief_datum_face", {"end_relief_depth_datum_face": 0.008,
+                                   "end_relief_length_datum_face": 6.0},
+         "0.008 mm over 6 mm and 0 mm"),
         ("tip_relief", {"tip_relief_depth": 0.02,
                         "tip_relief_length_of_tangential_transition_start": 1.0}, "no key for"),
         ("tip_relief", {}, "it has no depth"),
@@ -258,7 +268,8 @@ def test_a_relief_from_a_diameter_on_is_as_long_as_the_involute_rolls(tmp_path: 
 def test_unsupported_forms_are_reported_and_left_out(tree, tmp_path, kind, values, message):
     hang(tree, flanks_of(tree, 15), kind, **values)
     model = read_rexs(stored(tree, tmp_path))
-    assert any(kind in remark and message in remark for remark in model.remarks)
+    name = kind.removesuffix("_datum_face")
+    assert any(name in remark and message in remark for remark in model.remarks)
     assert case_from_rexs(model, 19).gears.pinion.modification is None
 
 
@@ -271,7 +282,8 @@ def test_flanks_of_different_forms_are_reported(tree, tmp_path) -> None:
 
 
 def test_modifications_are_written_for_other_programs(tmp_path: Path) -> None:
-    keys = {"tip_relief": 2e-5, "tip_relief_length": 2e-3, "crowning": 4e-6}
+    keys = {"tip_relief": 2e-5, "tip_relief_length": 2e-3, "crowning": 4e-6,
+            "end_relief": 6e-6, "end_relief_length": 4e-3}  # fmt: skip
     changes = {f"gears.wheel.modification.{key}": value for key, value in keys.items()}
     case, path = td.load_case("fzg-roughness").replace(changes), tmp_path / "case.rexs"
     write_rexs(case, path)
