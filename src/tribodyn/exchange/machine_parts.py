@@ -63,6 +63,13 @@ class Axis:
         values = (part.number(name, "m") for name in names)
         return next((value for value in values if value is not None), None)
 
+    def along_x(self, gear: Component) -> float | None:
+        """Place of the middle of a gear along x of the machine [m]; None without positions."""
+        coordinate = self.coordinate(gear, "u_coordinate_on_shaft")
+        if coordinate is None or self.start is None:
+            return None
+        return self.sense * float(self.start @ self.along + coordinate)
+
 
 def add_remark(model: GearboxModel, text: str) -> None:
     """Add a remark to those of the model, once."""

@@ -34,6 +34,8 @@ from tribodyn.study.machine.read_parts import in_si
 from tribodyn.study.machine.user_tables import changed_tables
 
 _SPUR = 1e-6
+#: Part of a face without a mate that is rounding of the positions [m].
+_FACE = 1e-5
 #: Deviation of the axes from a centre distance that is worth a remark [m].
 _APART = 1e-5
 _FORCES = ("force_u_direction", "force_v_direction", "force_w_direction",
@@ -170,6 +172,7 @@ def _parts(
             tables["gears"][f"gear_{gear.id}"] = gear_table(model, gear, axes[number])
         name = f"stage_{stage.id}"
         ends = axes[numbers[0]], axes[numbers[1]]
+        _check_faces(model, stage, ends)
         tables["meshes"][name], note = _mesh(model, stage, ends, directions)
         if note:
             assumed[f"meshes.{name}.angle"] = note
@@ -213,6 +216,31 @@ def _mesh(
         )
     table["angle"] = math.atan2(z, y)
     return table, ""
+
+
+def _check_faces(model: GearboxModel, stage: Stage, ends: tuple[Axis, Axis]) -> None:
+    """Remark on faces of which only a part meets, and refuse those that do not meet."""
+    faces = [
+        (place, gear.face_width)
+        for axis, gear in zip(ends, (stage.gear_1, stage.gear_2), strict=True)
+        if (place := axis.along_x(model.file.components[gear.id])) is not None and gear.face_width
+    ]
+    if len(faces) < 2:
+        return
+    (first, width), (second, other) = faces
+    narrow, shift = min(width, other), abs(first - second)
+    common = 0.5 * (width + other) - shift
+    where = f"gear_{stage.gear_1.id} and gear_{stage.gear_2.id} of stage {stage.id}"
+    what = f"the middles of {where} are {1e3 * shift:.4g} mm apart along their axes"
+    if common <= 0.0:
+        why = f"Their faces of {1e3 * width:.4g} and {1e3 * other:.4g} mm do not meet"
+        raise InputError(
+            what, model.path, why, "Correct the positions of the gears on their shafts"
+        )
+    if common < narrow - _FACE:
+        meet = f"{1e3 * common:.4g} mm of the narrower face of {1e3 * narrow:.4g} mm meet"
+        add_remark(model, f"{what}, so that {meet}; it is computed with the whole face, as if both "
+                   "had one mid plane: correct the positions, or set face_width")  # fmt: skip
 
 
 def _operation(

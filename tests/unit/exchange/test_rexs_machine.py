@@ -307,3 +307,21 @@ def test_import_writes_the_case_file_of_the_machine(tmp_path, capsys) -> None:
     assert "tip_diameter = 1 mm is ignored" in capsys.readouterr().err
     with pytest.raises(InputError, match="--machine writes the case of all stages"):
         import_(path, machine=True)
+
+
+def test_faces_that_do_not_meet_whole_are_reported_with_what_meets(
+    tree: dict[str, Any], tmp_path: Path
+) -> None:
+    """Faces of 50 mm whose middles are 0, 12 and 50.5 mm apart have 50, 38 and 0 mm in common."""
+    middle = part(tree, 17)["support_vector"]["floating_point_array"]
+    remarks = {}
+    for shift in (0.0, -12.0):
+        middle[0] = 47.0 + shift
+        model = read_rexs(stored(tree, tmp_path))
+        machine_from_rexs(model, changes=STIFF)
+        remarks[shift] = [remark for remark in model.remarks if "mid plane" in remark]
+    assert remarks[0.0] == []
+    assert "12 mm apart along their axes, so that 38 mm of the narrower" in remarks[-12.0][0]
+    middle[0] = 97.5
+    with pytest.raises(InputError, match=r"stage 19 are 50\.5 mm apart along their axes"):
+        machine_from_rexs(read_rexs(stored(tree, tmp_path)), changes=STIFF)

@@ -82,7 +82,7 @@ def test_axes_of_an_open_loop_state_what_closes_them() -> None:
 def test_faces_of_a_loop_that_are_not_in_one_plane() -> None:
     message = broken(put("gears", "lower pinion", position=0.110), split_path())
     assert "gears.bull.position: gear bull lies 10 mm along x from gear lower pinion" in message
-    assert "overlap by 20 mm" in message
+    assert "overlap by 20 mm of 30 mm" in message
     assert "do not overlap" in broken(put("gears", "lower pinion", position=0.2), split_path())
 
 

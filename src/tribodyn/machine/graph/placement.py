@@ -96,8 +96,10 @@ def placement_problems(
             )
         gap = abs(float(shift[0] - wanted[0]))
         if gap > _FACE:
-            overlap = 0.5 * sum(gears[gear].face_width for gear in mesh.gears) - gap
-            faces = f"overlap by {display(overlap, 'm')}" if overlap > 0.0 else "do not overlap"
+            widths = [gears[gear].face_width for gear in mesh.gears]
+            overlap, face = 0.5 * sum(widths) - gap, display(min(widths), "m")
+            overlapping = f"overlap by {display(min(overlap, min(widths)), 'm')} of {face}"
+            faces = overlapping if overlap > 0.0 else "do not overlap"
             problems.append(
                 Problem(
                     f"gear {mesh.gears[1]} lies {display(gap, 'm')} along x from gear "
