@@ -58,6 +58,7 @@ def _load_code_alone(kernel: Any) -> None:
         return
 
     def load_overload(signature: Any, context: Any) -> Any:
+        """Code of a signature; None if it is not cached."""
         rtsys.initialize(context)
         with cached._guard_against_spurious_io_errors():
             return cached._load_overload(signature, context)
