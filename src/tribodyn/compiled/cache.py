@@ -49,10 +49,8 @@ def _ignore_outdated_index(kernel: Any) -> None:
 
 
 def _load_code_alone(kernel: Any) -> None:
-    """Load cached code without all that Numba can compile, which takes 0.7 s once in a process.
-
-    Where the code is missing the compiler loads it after all.
-    """
+    """Load cached code without all that Numba can compile, which takes 0.7 s once in a process."""
+    # Where code is not cached, the compiler loads it after all.
     cached: Any = getattr(kernel, "_cache", None)
     if not hasattr(cached, "_load_overload"):  # private: another version of Numba may lack it
         return
