@@ -11,7 +11,7 @@ import pytest
 from scipy.io import savemat, wavfile
 from scipy.io.matlab import MatlabOpaque
 
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, ModelWarning
 from tribodyn.measurement import Recording, read
 
 RATE = 5000.0
@@ -308,6 +308,59 @@ def test_a_table_of_matlab_names_the_way_out(tmp_path: Path, monkeypatch) -> Non
     savemat(tmp_path / "t.mat", {"a": ACC})
     with pytest.raises(InputError, match="table2struct"):
         read(tmp_path / "t.mat")
+
+
+def test_rates_in_headers(tmp_path: Path) -> None:
+    """A header structure describes the channels next to it, that of one channel only this one."""
+    savemat(tmp_path / "a.mat", {"acc": ACC, "File_Header": {"SampFreq": "5000", "rate": 3.0}})
+    assert read(tmp_path / "a.mat").sample_rate == RATE
+    channels = {f"Channel_{n}_Data": ACC for n in (1, 10)} | {"sound": SOUND}
+    headers = {"Channel_1_Header": {"XInc": 1e-3}, "Channel_10_Header": {"XInc": 1.0 / RATE}}
+    savemat(tmp_path / "b.mat", channels | headers | {"Info": {"Acq": {"SampFreq": 2e4}}})
+    for name, rate in (("Channel_1_Data", 1000.0), ("Channel_10_Data", RATE), ("sound", 2e4)):
+        assert read(tmp_path / "b.mat", channels=[name]).sample_rate == pytest.approx(rate)
+    savemat(tmp_path / "c.mat", {"Channel_1": {"Data": ACC, "XInc": 1.0 / RATE}, "ramp": {"dt": 9}})
+    assert read(tmp_path / "c.mat").sample_rate == pytest.approx(RATE)
+    with h5py.File(tmp_path / "d.h5", "w") as file:
+        file["rig/acc"] = ACC
+        file.create_group("rig/header").attrs["SampFreq"] = RATE
+    assert read(tmp_path / "d.h5").sample_rate == RATE
+    savemat(tmp_path / "e.mat", {"acc": ACC, "A": {"fs": 1e3}, "B": {"fs": 2e3}})
+    with pytest.raises(InputError, match="different sampling rates"):
+        read(tmp_path / "e.mat")
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "XInc,2e-4\nXOrg,0\nacc,sound\n",
+        "Sample Rate [kHz];5\nacc;sound\n",
+        "# SampFreq = 5000 Hz\n# acc sound\n",
+        "Sample interval: 200 us\n",
+    ],
+)
+def test_rates_above_the_columns_of_text(tmp_path: Path, head: str) -> None:
+    separator = ";" if ";" in head else "," if "," in head else " "
+    table = "\n".join(f"{a:.6f}{separator}{b:.6f}" for a, b in zip(ACC, SOUND, strict=True))
+    (tmp_path / "run.csv").write_text(head + table + "\n")
+    recording = read(tmp_path / "run.csv")
+    assert recording.sample_rate == pytest.approx(RATE)
+    first, second = recording.channels
+    assert first == ("acc" if "acc" in head else "column 1")
+    np.testing.assert_allclose(recording[second], SOUND, atol=1e-6)
+
+
+def test_the_second_of_duplicate_variables_counts(tmp_path: Path) -> None:
+    parts = []
+    for name, values in {"first": 0.0 * ACC, "second": ACC}.items():
+        savemat(tmp_path / f"{name}.mat", {"acc": values, "fs": RATE})
+        parts.append((tmp_path / f"{name}.mat").read_bytes())
+    (tmp_path / "run.mat").write_bytes(parts[0] + parts[1][128:])
+    with pytest.warns(ModelWarning) as raised:
+        recording = read(tmp_path / "run.mat")
+    assert [each.message.code for each in raised] == ["duplicate-variables"]
+    assert "holds acc, fs twice: the second of each is read" in str(raised[0].message)
+    np.testing.assert_allclose(recording["acc"], ACC)
 
 
 BAD = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, warn
 from tribodyn.interrupt import deferred
 from tribodyn.measurement.readers.recording_data import (
     RecordingData,
@@ -22,6 +23,8 @@ from tribodyn.measurement.readers.recording_data import (
 from tribodyn.types import Array
 from tribodyn.validated_files import read_dataset
 
+#: Warning of SciPy.
+_DUPLICATE = re.compile(r'Duplicate variable name "(.*?)"')
 #: UFF 58: function types of time histories and abscissa types of time; HDF5: depth to which groups
 #: are read.
 _GENERAL, _HISTORY, _TIME, _DEEPEST = 0, 1, (0, 17), 8
@@ -214,7 +217,14 @@ def mat(path: Path) -> RecordingData:
     from scipy.io import loadmat
     from scipy.io.matlab import MatlabOpaque
 
-    variables = loadmat(path, squeeze_me=True, struct_as_record=True)
+    with warnings.catch_warnings(record=True) as raised:
+        warnings.simplefilter("always")
+        variables = loadmat(path, squeeze_me=True, struct_as_record=True)
+    twice = dict.fromkeys(m[1] for w in raised if (m := _DUPLICATE.search(str(w.message))))
+    if twice:
+        few = ", ".join([*list(twice)[:5], *(["..."] if len(twice) > 5 else [])])
+        message = f"{path} holds {few} twice: the second of each is read; save each variable once"
+        warn("duplicate-variables", message)
     named: dict[str, Any] = {}
     for name, value in variables.items():
         if isinstance(value, MatlabOpaque) or name == "None":

@@ -28,9 +28,15 @@ _UNEVEN = 0.3
 
 #: Names of scalars that hold the sampling rate, the time step or a unit; in lower case, without
 #: blanks, underscores and hyphens.
-_RATES = {"fs", "samplerate", "samplingrate", "samplingfrequency", "samplefrequency", "rate"}
-_STEPS = {"dt", "ts", "sampletime", "samplingtime", "sampleperiod", "step", "wfincrement"}
+_HEADER_RATES = {"fs", "samplerate", "samplingrate", "samplingfrequency", "samplefrequency",
+                 "sampfreq", "samplingfreq", "samplefreq"}  # fmt: skip
+_HEADER_STEPS = {"dt", "deltat", "sampletime", "samplingtime", "sampleperiod", "sampleinterval",
+                 "samplinginterval", "wfincrement", "xinc", "xincrement"}  # fmt: skip
+#: Names that mean this only where they are right at the channel.
+_RATES, _STEPS = _HEADER_RATES | {"rate"}, _HEADER_STEPS | {"ts", "step"}
 _LABELS = {"unit", "units", "unitstring"}
+#: End of the name of a structure that describes the channel or the group before it.
+_HEADER = re.compile(r"(header|hdr|info|properties|settings|param\w*|meta\w*)$", re.IGNORECASE)
 _KINDS = {"c": "complex numbers", "O": "objects", "U": "text", "S": "text", "V": "records"}
 
 
@@ -110,7 +116,8 @@ def text_of(value: Any) -> str:
 def from_arrays(named: Mapping[str, Any], path: Path) -> RecordingData:
     """Extract the channels of values with names such as ``rig/acc`` and ``rig/acc/units``.
 
-    A rate, time vector or unit applies to the channel, group or file that contains it.
+    A rate, time vector or unit applies to the channel, group or file that contains it; a rate in a
+    header, a structure without channels, to the channels next to that header.
     """
     channels: dict[str, Array] = {}
     rates: dict[str, dict[str, float]] = {}
@@ -149,8 +156,12 @@ def from_arrays(named: Mapping[str, Any], path: Path) -> RecordingData:
         name: labels.get(name) or (labels.get(scope, "") if scopes.count(scope) == 1 else "")
         for name, scope in zip(channels, scopes, strict=True)
     }
-    channel_rates = {name: _nearest(name, rates) for name in channels}
     channel_times = {name: _nearest(name, times) for name in channels}
+    channel_rates = {name: _nearest(name, rates) for name in channels}
+    headers = _headers(rates, channels)
+    for name, clock in channel_times.items():
+        if clock is None and not channel_rates[name]:
+            channel_rates[name] = _header_rates(name, headers, channels)
     what, remedy = "has different sampling rates for one channel", "Correct one of them in the file"
     differ = str(path), what, remedy
     return RecordingData(
@@ -181,6 +192,52 @@ def _enclosing_scopes(name: str) -> Iterator[str]:
 def _nearest(name: str, by_scope: Mapping[str, Any]) -> Any:
     """Value of the innermost scope around a channel: the channel, its groups, or the file."""
     return next((by_scope[scope] for scope in _enclosing_scopes(name) if scope in by_scope), None)
+
+
+def _headers(
+    rates: Mapping[str, Mapping[str, float]], channels: Mapping[str, Array]
+) -> dict[str, dict[str, float]]:
+    """Rates with unmistakable names in scopes that contain no channel."""
+    enclosing = {scope for name in channels for scope in _enclosing_scopes(name)}
+    sure = _HEADER_RATES | _HEADER_STEPS
+    headers = {
+        scope: {f"{scope}.{name}": rate for name, rate in each.items() if _plain(name) in sure}
+        for scope, each in rates.items()
+        if scope not in enclosing
+    }
+    return {scope: each for scope, each in headers.items() if each}
+
+
+def _header_rates(
+    channel: str, headers: Mapping[str, Mapping[str, float]], channels: Mapping[str, Array]
+) -> dict[str, float] | None:
+    """Rates of the headers whose names begin like the channel, or else of those of its scope."""
+    stems = {name: _HEADER.sub("", name) for name in headers}
+    for scope in _enclosing_scopes(_split_name(channel)[0]):
+        within = (f"{scope}.", f"{scope}/") if scope else ""
+        inside = [name for name in headers if name.startswith(within)]
+        single = [name for name in inside if len(stems[name]) > len(scope) + 1]
+        alike = [name for name in single if channel.startswith(stems[name])]
+        longest = max((len(stems[name]) for name in alike), default=0)
+        others = {name for name in single if any(each.startswith(stems[name]) for each in channels)}
+        nearest = [name for name in alike if len(stems[name]) == longest]
+        chosen = nearest or [name for name in inside if name not in others]
+        if chosen:
+            return {k: v for name in chosen for k, v in headers[name].items()}
+    return None
+
+
+def header_rate(name: str, number: float, unit: str) -> float | None:
+    """Sampling rate of a line in the header of a text file [Hz]; None for other lines."""
+    plain = _plain(name)
+    try:
+        if plain in _HEADER_RATES:
+            return number * convert(1.0, unit or "Hz", "Hz")
+        if plain in _HEADER_STEPS:
+            return 1.0 / (number * _UNITS.get((unit or "s").lower(), 0.0))
+    except (UnitProblemError, ZeroDivisionError):
+        return None
+    return None
 
 
 def consistent_rate(rates: Mapping[str, float], where: str, what: str, remedy: str) -> float:

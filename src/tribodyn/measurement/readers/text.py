@@ -12,7 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.measurement.readers.recording_data import MEASURED, RecordingData, in_seconds, is_time
+from tribodyn.measurement.readers.recording_data import (
+    MEASURED,
+    RecordingData,
+    consistent_rate,
+    header_rate,
+    in_seconds,
+    is_time,
+)
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, convert
 from tribodyn.validated_files import LARGEST
@@ -23,6 +30,11 @@ _MISSING = {"", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
 _CLOCK = re.compile(r"(\d{4}-\d\d-\d\d)?[T ]?(\d\d?):(\d\d):(\d\d(?:[.,]\d*)?)Z?")
 _WITH_UNIT = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*")
 _BEFORE_UNIT = re.compile(r"(.*?)\s*[/,]\s*([^/,].*)")
+_FACT = re.compile(
+    r"[#% ]*\"?([^:=;,\t\d\[(\"]+?)\"?\s*(?:[\[(]([^\])]*)[\])])?\s*[:=;,\t]+\s*\"?"
+    r"([0-9.,]+(?:e[+-]?\d+)?)[\";,\t ]*([a-zµμ]*)[\";,\t ]*",
+    re.IGNORECASE,
+)
 #: Lines that are searched for the first row of numbers; rows at the end that the truncation check
 #: compares.
 _HEAD, _LOOK = 200, 100
@@ -52,7 +64,8 @@ def read_columns(path: Path) -> RecordingData:
     text = _text(path)
     lines = [line for line in text.splitlines() if line.strip()]
     layout = _layout(lines, path)
-    names, units = _column_names_and_units(lines[: layout.first], layout, path)
+    rates, head = _header_rates(lines[: layout.first])
+    names, units = _column_names_and_units(head, layout, path)
     table = _numbers(lines, layout, path)
     if not text.endswith(("\n", "\r")):
         _refuse_cut(lines[layout.first :], layout, path)
@@ -60,13 +73,31 @@ def read_columns(path: Path) -> RecordingData:
     unit_of = dict(zip(names, units, strict=True))
     clock = next((name for name in names if is_time(name, unit_of[name])), None)
     if clock is None:
-        return RecordingData(columns, unit_of)
+        what, remedy = "has different sampling rates in its header", "Correct one of them"
+        rate = consistent_rate(rates, str(path), what, remedy) if rates else None
+        return RecordingData(columns, unit_of, dict.fromkeys(columns, rate) if rate else {})
     time = in_seconds(columns.pop(clock), unit_of.pop(clock), path)
     if not columns:
         raise InputError(
             "has a time column but no channels", where=str(path), remedy="Add a column"
         )
     return RecordingData(columns, unit_of, times=dict.fromkeys(columns, time))
+
+
+def _header_rates(head: Sequence[str]) -> tuple[dict[str, float], list[str]]:
+    """Sampling rates in the lines above the columns, and the other lines."""
+    rates: dict[str, float] = {}
+    others = []
+    for line in head:
+        match = _FACT.fullmatch(line)
+        value = match and header_rate(
+            match[1], float(match[3].rstrip(",").replace(",", ".") or 0), match[4] or match[2] or ""
+        )
+        if match and value:
+            rates[match[1].strip()] = value
+        else:
+            others.append(line)
+    return rates, others
 
 
 def _text(path: Path) -> str:
