@@ -97,7 +97,11 @@ def coupled(
 
 
 def _mesh_under_load(case: Case, nominal: MeshTable, loading: Array) -> MeshTable:
-    """Compute the mesh under given forces; static results stay those of the nominal torque."""
+    """Compute the mesh under given forces; static results stay those of the nominal torque.
+
+    Every stiffness is that of teeth and films under these forces. Where the mesh force is the
+    tangent of its law, the static transmission error is that of the tangent at the nominal torque.
+    """
     from tribodyn.mesh.build import loaded_mesh
 
     if case.hypoid_flanks is not None:
@@ -111,13 +115,15 @@ def _mesh_under_load(case: Case, nominal: MeshTable, loading: Array) -> MeshTabl
             force_law=mesh_law_of(case) == "force-law",
             loading=loading,
         ).table(settings)
+    if mesh_law_of(case) == "tangent":
+        missing_force = (1.0 - loading) * table.total_normal_force
+        error = table.static_transmission_error + missing_force / table.mesh_stiffness_tangent
+    else:
+        error = nominal.static_transmission_error - nominal.film_offset + table.film_offset
     return replace(
         table,
-        static_transmission_error=nominal.static_transmission_error
-        - nominal.film_offset
-        + table.film_offset,
+        static_transmission_error=error,
         tooth_transmission_error=nominal.tooth_transmission_error,
-        mesh_stiffness_tangent=nominal.mesh_stiffness_tangent,
     )
 
 
@@ -186,11 +192,12 @@ def _changes(before: MeshTable, after: MeshTable) -> tuple[float, float, float, 
         "friction_coefficient": float(after.friction_coefficient.max()) or 1.0,
         "mesh_stiffness": after.mean_mesh_stiffness,
     }
-    share, friction, stiffness = (
+    scales["mesh_stiffness_tangent"] = after.mean_mesh_stiffness_tangent
+    share, friction, secant, tangent = (
         float(np.abs(getattr(after, name) - getattr(before, name)).max()) / scale
         for name, scale in scales.items()
     )
-    return share, film, friction, stiffness
+    return share, film, friction, max(secant, tangent)
 
 
 def _viscosity_change(before: Case, after: Case) -> float:

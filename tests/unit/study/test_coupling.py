@@ -328,3 +328,15 @@ def test_teeth_that_are_solved_together_follow_the_load_too() -> None:
     ])  # fmt: skip
     np.testing.assert_allclose(law, force, rtol=5e-3)
     assert dataclasses.asdict(result.coupling)["kind"] == "dynamic"
+
+
+def test_tangent_and_secant_have_one_orbit_where_they_follow_its_load(dynamic: Any) -> None:
+    """Both go through force and deflection of every phase, with the films of that force."""
+    law = {"dynamics__mesh_law": "tangent", "film__stiffness": "tangent"}
+    apart = _run(**law).summary()["peak_mesh_force"]
+    tangent = _run(**law, solver__coupling="dynamic")
+    peak = dynamic.summary()["peak_mesh_force"]
+    assert tangent.summary()["peak_mesh_force"] == pytest.approx(peak, rel=1e-3)
+    assert abs(apart / peak - 1.0) > 1e-2
+    mesh, nominal = tangent.mesh, mesh_of(tangent.case)
+    assert not np.allclose(mesh.mesh_stiffness_tangent, nominal.mesh_stiffness_tangent, rtol=1e-4)
