@@ -108,6 +108,8 @@ temperature_viscosity_coefficient | beta | 1/K | 1/K | fall of ln(viscosity) per
 eyring_stress | tau_0 | Pa | MPa | shear stress from which the oil thins under shear | "5 MPa"
 limiting_stress | tau_L0 | Pa | MPa | limiting shear stress of the oil at ambient pressure | "2 MPa"
 heat_transfer | hA | W/K | W/K | heat that surroundings take up per kelvin that gears and oil are warmer | "15 W/K"
+gear_heat_transfer | hA_g | W/K | W/K | heat that the oil takes up per kelvin that the gears are warmer than it | "20 W/K"
+gear_temperature | theta_M | K | degC | bulk temperature of the gears | "95 degC"
 ambient_temperature | T_amb | K | degC | temperature of the surroundings | "20 degC"
 specific_heat | c_p | J/kg/K | J/kg/K | heat that warms a kilogram by one kelvin | "460 J/kg/K"
 limiting_stress_slope | Lambda_L | | | rise of the limiting shear stress of the oil per pressure | 0.05

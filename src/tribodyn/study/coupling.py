@@ -97,11 +97,7 @@ def coupled(
 
 
 def _mesh_under_load(case: Case, nominal: MeshTable, loading: Array) -> MeshTable:
-    """Compute the mesh under given forces; static results stay those of the nominal torque.
-
-    Every stiffness is that of teeth and films under these forces. Where the mesh force is the
-    tangent of its law, the static transmission error is that of the tangent at the nominal torque.
-    """
+    """Compute the mesh under given forces; static errors stay those of the nominal torque."""
     from tribodyn.mesh.build import loaded_mesh
 
     if case.hypoid_flanks is not None:
@@ -116,6 +112,7 @@ def _mesh_under_load(case: Case, nominal: MeshTable, loading: Array) -> MeshTabl
             loading=loading,
         ).table(settings)
     if mesh_law_of(case) == "tangent":
+        # The tangent through force and deflection of each phase, at the nominal torque.
         missing_force = (1.0 - loading) * table.total_normal_force
         error = table.static_transmission_error + missing_force / table.mesh_stiffness_tangent
     else:
@@ -201,7 +198,7 @@ def _changes(before: MeshTable, after: MeshTable) -> tuple[float, float, float, 
 
 
 def _viscosity_change(before: Case, after: Case) -> float:
-    viscous_before, viscous_after = before.lubricant_properties, after.lubricant_properties
+    viscous_before, viscous_after = before.film_lubricant, after.film_lubricant
     if viscous_before is None or viscous_after is None:
         return 0.0
     return abs(float(np.log(viscous_after.dynamic_viscosity / viscous_before.dynamic_viscosity)))

@@ -35,7 +35,8 @@ def _balance(case: Any) -> Any:
         return point, mesh_of(point), None
 
     summary, _, _, heat = balanced(case, mesh_at)
-    assert calls == heat.temperature.tolist()
+    gears = heat.temperature if heat.gear_temperature is None else heat.gear_temperature
+    assert calls == gears.tolist()
     return summary, heat
 
 
@@ -137,9 +138,11 @@ def test_a_run_ends_at_the_balance_with_and_without_coupling(law: str, local: bo
           "lubricant.density": "880 kg/m^3",
           "lubricant.pressure_viscosity_coefficient": "21.9 1/GPa"}, "at one temperature"),
         ({"lubricant.heat_transfer": None, "lubricant.ambient_temperature": "30 degC"},
-         "temperature is fixed"),
+         "temperatures are fixed"),
         ({"lubricant.heat_transfer": "5 W"}, "heat_transfer"),
         ({"lubricant.heat_transfer": "0 W/K"}, "heat_transfer"),
+        ({"lubricant.gear_temperature": "90 degC"}, "The balance finds"),
+        ({"lubricant.heat_transfer": None, "lubricant.gear_heat_transfer": "5 W/K"}, "are fixed"),
     ],
 )  # fmt: skip
 def test_wrong_keys_are_refused(changes: dict[str, Any], message: str) -> None:
@@ -169,3 +172,31 @@ def test_range_of_an_oil_is_where_it_can_be_made() -> None:
             td.lubricant.from_library(name, temperature)
     with pytest.raises(InputError):
         td.lubricant.from_library("ISO VG 100", temperature_range("ISO VG 100")[1] + 0.1)
+
+
+def test_gears_and_oil_each_dissipate_what_heats_them() -> None:
+    """Heat flows of both nodes, with losses computed anew at the temperatures that result."""
+    bath = {"losses__wheel__immersion": "20 mm", "losses__oil_volume": "1.2 l"}
+    local = {"friction__law": "benedict-kelly", "gears__composite_roughness": "0.3 um"}
+    point, heat = _balance(_case("5 W/K", lubricant__gear_heat_transfer="20 W/K", **bath, **local))
+    oil, gears = point.lubricant.temperature, point.lubricant.gear_temperature
+    lost = td.loss_map(point, torque=point.operation.torque, speed=point.operation.speed)
+    assert float(lost.gear[0, 0]) == pytest.approx(20.0 * (gears - oil), rel=1e-6)
+    assert float(lost.total[0, 0]) == pytest.approx(5.0 * (oil - 293.15), rel=1e-6)
+    assert (heat.temperature[-1], heat.gear_temperature[-1]) == (oil, gears)
+    # The film has the temperature of the gears, the bath that of the oil.
+    keys = ("heat_transfer", "gear_heat_transfer", "gear_temperature")
+    one_temperature = {f"lubricant.{key}": None for key in keys}
+    warm = point.replace({**one_temperature, "lubricant.temperature": gears})
+    assert mesh_of(warm).mean_friction_power == mesh_of(point).mean_friction_power
+    other = td.loss_map(warm, torque=point.operation.torque, speed=point.operation.speed)
+    assert other.churning[0, 0] < 0.99 * lost.churning[0, 0]
+
+
+def test_a_good_transfer_between_gears_and_oil_makes_one_node_of_them() -> None:
+    alone, _ = _balance(_case())
+    together, heat = _balance(_case(lubricant__gear_heat_transfer="1e9 W/K"))
+    assert together.lubricant.temperature == pytest.approx(alone.lubricant.temperature, abs=1e-4)
+    assert heat.gear_temperature[-1] == pytest.approx(heat.temperature[-1], abs=1e-5)
+    with pytest.raises(ComputationError, match="a greater gear_heat_transfer"):
+        _balance(_case(lubricant__gear_heat_transfer="0.5 W/K"))

@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.labels import axis_label, engineering, significant
 from tribodyn.plot.theme.panels import from_zero, stack
-from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, line, marked
+from tribodyn.plot.theme.style import PAIR_COLORS, PINION, TOTAL, WHEEL, line, marked
 from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     "heat_balance",
     heading="Heat balance",
     caption="The loss at every computed temperature, and the straight line of the heat dissipated "
-    "to the surroundings. Gears and oil settle at the temperature at which they intersect.",
+    "to the surroundings. Gears and oil settle at the temperature at which they intersect. Gears "
+    "with a heat transfer to the oil are warmer than it, by the loss of their teeth over it.",
     of="HeatBalance",
     made_by="Use Result.heat of a case with lubricant.heat_transfer.",
 )
@@ -38,10 +39,27 @@ def heat_balance(balance: HeatBalance) -> Any:
         unit="W",
     )  # fmt: skip
     number, unit = engineering(float(balance.power_loss[-1]), "W", 4)
+    settled = f"Gears and oil settle at {significant(float(celsius[-1]), 4)} °C"
+    label, gears = "Temperature of gears and oil", []
+    if balance.gear_temperature is not None and balance.gear_power_loss is not None:
+        label = "Temperature of the oil, and of the gears for the loss of their teeth"
+        warm = balance.gear_temperature - ZERO_CELSIUS
+        settled = (
+            f"The oil settles at {significant(float(celsius[-1]), 4)} °C, the gears at "
+            f"{significant(float(warm[-1]), 4)} °C,"
+        )
+        rising = np.argsort(warm, kind="stable")
+        loss_of_teeth, color = balance.gear_power_loss, PAIR_COLORS[0]
+        gears = [
+            line(warm[rising], loss_of_teeth[rising], "loss of the teeth", color, unit="W"),
+            line(
+                np.array([celsius[-1], warm[-1]]), np.array([0.0, loss_of_teeth[-1]]),
+                "heat from the gears to the oil", color, unit="W", dash="dash",
+            ),
+        ]  # fmt: skip
     return stack(
-        f"Gears and oil settle at {significant(float(celsius[-1]), 4)} °C with a loss of "
-        f"{number} {unit}",
-        axis_label("temperature", "Temperature of gears and oil"),
+        f"{settled} with a loss of {number} {unit}",
+        axis_label("temperature", label),
         [
             from_zero(
                 axis_label("power", "Power"),
@@ -49,6 +67,7 @@ def heat_balance(balance: HeatBalance) -> Any:
                     {**loss, "mode": "lines+markers"},
                     line(ends, given_off, "dissipated heat", PINION, unit="W", dash="dash"),
                     state,
+                    *gears,
                 ],
                 1.4,
             )

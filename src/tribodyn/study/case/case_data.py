@@ -145,6 +145,14 @@ class CaseData(CaseTables):
         return None if self.lubricant is None else to_models.lubricant(self.lubricant)
 
     @cached_property
+    def film_lubricant(self) -> Lubricant | None:
+        """The oil at the bulk temperature of the gears, at which it enters the film."""
+        oil = self.lubricant
+        if oil is None or oil.gear_temperature is None:
+            return self.lubricant_properties
+        return to_models.lubricant(oil, oil.gear_temperature)
+
+    @cached_property
     def gearbox(self) -> Gearbox | None:
         """Shafts, seals and oil bath; None if the case has no ``[losses]``."""
         return None if self.losses is None else to_models.gearbox(self.losses)

@@ -182,6 +182,23 @@ class LubricantData(Section):
     ambient_temperature: float | None = number(
         None, 233.15, 473.15, "20 degC if not given with heat_transfer", of="ambient_temperature"
     )
+    gear_heat_transfer: float | None = number(
+        None,
+        1e-3,
+        1e12,
+        "gears and oil have one temperature if not given",
+        of="gear_heat_transfer",
+        meaning="heat transfer coefficient times area between gears and oil: the gears, which take "
+        "up the friction of the teeth, and the film are warmer than the oil",
+    )
+    gear_temperature: float | None = number(
+        None,
+        233.15,
+        473.15,
+        "that of the oil if not given",
+        of="gear_temperature",
+        meaning="bulk temperature of the gears, at which the oil enters the film",
+    )
 
 
 class Operation(Section):
@@ -412,11 +429,20 @@ class Losses(Section):
 def _heat_balance(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
     """Check that a heat balance has an oil with temperature dependence, and gears."""
     key, other = "lubricant.heat_transfer", "lubricant.ambient_temperature"
+    gears = "lubricant.gear_temperature"
+    if gears in inputs and "lubricant.dynamic_viscosity" in inputs:
+        why, remedy = "The film needs the viscosity at it", "State the viscosity at it"
+        what = f"{inputs.show(gears)} with properties at one temperature"
+        yield gears, Problem(what, "", why, f"{remedy} and remove gear_temperature")
     if key not in inputs:
-        if other in inputs:
-            why, remedy = "Without heat_transfer the oil temperature is fixed", "Remove it"
-            yield other, Problem(inputs.show(other), "", why, f"{remedy}, or add heat_transfer")
+        for name in (other, "lubricant.gear_heat_transfer"):
+            if name in inputs:
+                why, remedy = "Without heat_transfer the temperatures are fixed", "Remove it"
+                yield name, Problem(inputs.show(name), "", why, f"{remedy}, or add heat_transfer")
         return
+    if gears in inputs and "lubricant.gear_heat_transfer" not in inputs:
+        why, remedy = "The balance finds this temperature", "Remove it, or add gear_heat_transfer"
+        yield gears, Problem(f"{inputs.show(gears)} with heat_transfer", "", why, remedy)
     if "lubricant.dynamic_viscosity" in inputs:
         what = f"{inputs.show(key)} with properties at one temperature"
         why = "The balance needs the viscosity at others"

@@ -167,15 +167,16 @@ def thermal_contact_coefficients(case: CaseData) -> tuple[float, float]:
 
 
 @lru_cache(maxsize=64)
-def lubricant(data: LubricantData) -> Lubricant:
-    """Build the oil: of the library, of a data sheet, or from its properties."""
+def lubricant(data: LubricantData, temperature: float | None = None) -> Lubricant:
+    """Build the oil at its own or another temperature: by name, data sheet or properties."""
     from tribodyn.lubricant import Lubricant, from_data_sheet, from_library
 
+    temperature = temperature or data.temperature
     if data.name is not None:
-        return from_library(data.name, data.temperature)
+        return from_library(data.name, temperature)
     if data.density_at_15 is not None:
         return from_data_sheet(
-            data.temperature or 0.0,
+            temperature or 0.0,
             data.density_at_15,
             viscosity_at_40=data.kinematic_viscosity_at_40,
             viscosity_at_100=data.kinematic_viscosity_at_100,
@@ -416,6 +417,7 @@ def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
     else:
         problems = _faults("gears", lambda: case.gear_pair)
     problems += _faults("lubricant", lambda: case.lubricant_properties)
+    problems += [] if problems else _faults("lubricant", lambda: case.film_lubricant)
     problems += [] if problems else _faults("losses", lambda: _gearbox_losses(case))
     return problems if case.gears.kind == "hypoid" else problems + _bores(case)
 

@@ -71,10 +71,11 @@ def papers(case: Case) -> dict[str, dict[str, Any]]:
 
 def _loss_papers(case: Case) -> list[str]:
     """Keys of the papers behind the losses of bearings, seals and oil of a case."""
-    box = case.gearbox
+    box, oil, used = case.gearbox, case.lubricant, list[str]()
+    used += ["changenet-oviedo-velex"] if oil and oil.gear_heat_transfer else []
     if box is None:
-        return []
-    shafts, used = [getattr(box, gear) for gear in GEARS], list[str]()
+        return used
+    shafts = [getattr(box, gear) for gear in GEARS]
     used += ["skf"] if any(each.bearing for each in shafts) else []
     used += ["iso-14179"] if any(each.seal_diameter for each in shafts) else []
     used += ["changenet-velex"] if any(each.immersion for each in shafts) else []

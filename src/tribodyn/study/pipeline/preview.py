@@ -48,6 +48,8 @@ def operating_figures(case: Case) -> dict[str, float]:
         }
         if oil.temperature is not None:
             figures["oil_temperature"] = oil.temperature
+        if case.lubricant is not None and case.lubricant.gear_temperature is not None:
+            figures["gear_temperature"] = case.lubricant.gear_temperature
     return figures
 
 

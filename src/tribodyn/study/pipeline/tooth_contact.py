@@ -44,7 +44,7 @@ def model_settings(case: Case) -> dict[str, Any]:
         "material": case.material_properties,
         "stiffness_model": case.stiffness.model,
         "stiffness_options": chosen_options(case, "stiffness"),
-        "lubricant": case.lubricant_properties or to_models.unused_lubricant(),
+        "lubricant": case.film_lubricant or to_models.unused_lubricant(),
         "composite_roughness": case.composite_roughness or 0.0,
         "film_model": case.film.model,
         "film_options": chosen_options(case, "film"),

@@ -53,7 +53,7 @@ def _contacts(case: Case) -> TribologicalContact:
     from tribodyn.ehl import FILM_MODELS
     from tribodyn.friction import TribologicalContact, pitch_point
 
-    pair, oil = case.gear_pair, case.lubricant_properties
+    pair, oil = case.gear_pair, case.film_lubricant
     assert oil is not None
     path = path_of_contact(pair)
     step = 1e-9 * path.direction * pair.base_pitch
