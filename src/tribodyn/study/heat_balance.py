@@ -87,11 +87,9 @@ class _Pass(NamedTuple):
 def balanced(
     case: Case, mesh_at: Callable[[Case], tuple[Case, MeshTable, Extra]]
 ) -> tuple[Case, MeshTable, Extra, HeatBalance]:
-    """Solve ``loss(T) = hA (T - T_amb)``; return the case, its mesh, extras and the iteration.
-
-    Gears with a heat transfer of their own are warmer than the oil by the friction of their teeth
-    over it; the film has their temperature, bearings, seals and bath have that of the oil.
-    """
+    """Solve ``loss(T) = hA (T - T_amb)``; return the case, its mesh, extras and the iteration."""
+    # Gears with a heat transfer of their own are warmer than the oil by the friction of their teeth
+    # over it; the film has their temperature, bearings, seals and bath have that of the oil.
     # Secants within a bracket: the loss is positive at the temperature of the surroundings, and has
     # to be smaller than the dissipated heat at the highest temperature of the oil data.
     oil = case.lubricant
