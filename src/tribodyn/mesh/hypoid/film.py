@@ -39,7 +39,7 @@ from tribodyn.mesh.loads import (
     warn_of_rigid_films,
 )
 from tribodyn.mesh.sharing import LEAST_SHARE, FilmSprings, ToothContact
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Index, Mask
 
 #: Film model of each line as an elliptical contact; the other models are for line contacts.
 ELLIPTICAL = "hamrock-dowson"
@@ -62,7 +62,7 @@ class CellFilms:
 class _EllipseFilm(FormulaFilm):
     """Each line as an elliptical contact under its whole force."""
 
-    line: Array  #: number of the line of each cell
+    line: Index  #: number of the line of each cell
     side_radius: Array  #: radius of the gap along the line [m]
 
     def __call__(self, load_per_width: Array) -> Films:
@@ -89,7 +89,7 @@ class _CellTeeth:
     def __init__(self, loaded: HypoidLoadedContact, active: Mask, least: float) -> None:
         cells = loaded.cells
         self._dry, self._cells, self._active = loaded, cells, active
-        self.in_contact = self._spread(active, False)
+        self.in_contact: Mask = self._spread(active.astype(float)) > 0.5
         self._torque = (loaded.wheel_torque * np.broadcast_to(loaded.loading, cells.phase.shape))[
             cells.row, None
         ]
@@ -100,9 +100,9 @@ class _CellTeeth:
         self.least_load = least
         self.loaded = loaded
 
-    def _spread(self, values: Array, empty: Any = 0.0) -> Array:
-        columns = self._cells.spread(values, empty)
-        return np.asarray(columns.reshape(columns.shape[0], -1)).astype(values.dtype)
+    def _spread(self, values: Array) -> Array:
+        columns = self._cells.spread(values)
+        return np.asarray(columns.reshape(columns.shape[0], -1))
 
     def _of_lines(self, columns: Array) -> Array:
         spread = columns.reshape(*self._cells.in_contact.shape, -1)
@@ -178,7 +178,7 @@ def _loads(
     film: FormulaFilm | FilmLookup
     with shared_films(persistent=True):
         if settings.film_model == "none":
-            line = np.nonzero(active)[0]
+            line = np.asarray(np.nonzero(active)[0])
             film = _EllipseFilm(settings, pairs, teeth.least_load, line, side_radius)
         elif not FILM_MODELS[settings.film_model].method:
             film = FormulaFilm(settings, pairs, teeth.least_load)
@@ -256,10 +256,10 @@ def _sheared(
     lines = np.unique(np.linspace(0, count - 1, min(_LINES, count)).round().astype(int))
     columns = np.unique(np.linspace(0, on_line - 1, min(_ON_LINE, on_line)).round().astype(int))
     chosen = np.ix_(order[lines], columns)
-    flat = SimpleNamespace(**{name: column[chosen] for name, column in motion._asdict().items()})
-    shape = flat.equivalent_radius.shape
-    flat = SimpleNamespace(**{n: v.reshape(lines.size * columns.size, *v.shape[2:])
-                              for n, v in vars(flat).items()})  # fmt: skip
+    shape = lines.size, columns.size
+    flat: Any = SimpleNamespace(
+        **{n: v[chosen].reshape(-1, *v.shape[2:]) for n, v in motion._asdict().items()}
+    )
     load = np.maximum((loaded.line_force / cells.length)[chosen].ravel(), least)
     modulus = effective_modulus(settings.material, settings.material)
     oil, radius = settings.lubricant, flat.equivalent_radius
