@@ -36,10 +36,12 @@ from tribodyn.gear.hypoid import (
     HypoidFlanks,
     HypoidKinematics,
     Misalignment,
+    MisalignmentStudy,
     ToothContact,
     hypoid_blank,
     hypoid_flanks,
     hypoid_kinematics,
+    misalignment_study,
     tooth_contact,
 )
 from tribodyn.gear.mass_properties import MassProperties, Material, mass_properties, section_moments
@@ -72,6 +74,7 @@ __all__ = [
     "Material",
     "MeshGeometry",
     "Misalignment",
+    "MisalignmentStudy",
     "ProfileMap",
     "SpurGear",
     "SpurPair",
@@ -89,6 +92,7 @@ __all__ = [
     "hypoid_kinematics",
     "lead_gap",
     "mass_properties",
+    "misalignment_study",
     "operating_pressure_angle",
     "pitch_gap",
     "profile_gap",

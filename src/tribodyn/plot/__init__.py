@@ -19,6 +19,7 @@ from tribodyn.plot.gear.gear_pair import gear_pair
 from tribodyn.plot.gear.heat import heat_balance
 from tribodyn.plot.gear.hypoid import ease_off, hypoid_blank, hypoid_contact, hypoid_pair
 from tribodyn.plot.gear.hypoid_loaded import hypoid_friction, hypoid_load, hypoid_pressure
+from tribodyn.plot.gear.hypoid_misalignment import hypoid_misalignment
 from tribodyn.plot.gear.hypoid_motion import hypoid_kinematics
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
@@ -131,6 +132,7 @@ __all__ = [
     "hypoid_friction",
     "hypoid_kinematics",
     "hypoid_load",
+    "hypoid_misalignment",
     "hypoid_pair",
     "hypoid_pressure",
     "lead_optimum",

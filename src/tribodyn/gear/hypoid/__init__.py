@@ -11,6 +11,7 @@
 | `conjugate` | one side of a pair: both surfaces and the ends of the flanks |
 | `flank` | both flanks as grids of points, for export |
 | `tooth_contact` | path of contact, transmission error, pattern, with axes that are misplaced |
+| `misalignment_study` | contact and transmission error with displaced gears |
 | `contact_lines` | contact lines of conjugate flanks, with exact ends |
 | `kinematics` | how the flanks roll and slide in every cell |
 """
@@ -19,6 +20,7 @@ from tribodyn.gear.hypoid.blank import HypoidBlank, hypoid_blank
 from tribodyn.gear.hypoid.ease_off import EaseOff
 from tribodyn.gear.hypoid.flank import HypoidFlanks, hypoid_flanks
 from tribodyn.gear.hypoid.kinematics import HypoidKinematics, hypoid_kinematics
+from tribodyn.gear.hypoid.misalignment_study import MisalignmentStudy, misalignment_study
 from tribodyn.gear.hypoid.tooth_contact import Misalignment, ToothContact, tooth_contact
 
 __all__ = [
@@ -27,9 +29,11 @@ __all__ = [
     "HypoidFlanks",
     "HypoidKinematics",
     "Misalignment",
+    "MisalignmentStudy",
     "ToothContact",
     "hypoid_blank",
     "hypoid_flanks",
     "hypoid_kinematics",
+    "misalignment_study",
     "tooth_contact",
 ]

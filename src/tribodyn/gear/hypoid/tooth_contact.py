@@ -42,7 +42,12 @@ class Misalignment:
 
     Notes
     -----
-    The four values E, P, G and alpha of the usual E-P-G checks of bevel gears.
+    The four values of V-H checks of bevel gears, also called E, P, G and alpha: V = E is the change
+    of the offset, H = P that of the pinion's and J = G that of the wheel's mounting distance.
+    Positive values move the axes, or the gear from the crossing point, apart: the pinion against
+    its hand's x axis by ``offset``, along its axis towards its heel by ``pinion_axial``, the wheel
+    likewise by ``wheel_axial``; a positive ``shaft_angle`` turns the pinion's axis away from the
+    wheel's. They are the same for both sides of the teeth and both hands.
 
     Examples
     --------

@@ -8,6 +8,7 @@ module                  what it draws
 ``flank_modification``  modifications and deviations of the flanks
 ``heat``                power loss and dissipated heat over the temperature
 ``hypoid``              a hypoid pair: blanks, in space, ease-off, contact pattern
+``hypoid_misalignment`` contact patterns with displaced gears
 ``hypoid_motion``       kinematics of hypoid flanks along their contact lines
 ``mesh_deformation``    deformation of the teeth under load
 ``outlines``            outlines of both gears, unloaded and deformed

@@ -22,6 +22,7 @@ from tribodyn.plot.theme.style import (
     figure,
     line,
     marked,
+    translucent,
 )
 from tribodyn.types import Array
 
@@ -89,7 +90,7 @@ _LINES = 24
 _PAIRS = (-1, 0, 1)
 
 
-def _outline(contact: ToothContact) -> Trace:
+def outline(contact: ToothContact) -> Trace:
     """Ends of all contact lines: the common flank of both gears."""
     ends = [
         np.concatenate([cells[:, 0], cells[::-1, -1], cells[:1, 0]]) * 1e3
@@ -108,20 +109,29 @@ def _lines(contact: ToothContact) -> Trace:
     return trace | {"hoverinfo": "skip", "hovertemplate": None}
 
 
-def _pattern(contact: ToothContact) -> Trace:
+def pattern(contact: ToothContact, label: str, color: str) -> Trace:
     """Outline of the marked parts of all contact lines."""
     inside = contact.marked & contact.leads[:, None]
     rows = np.flatnonzero(inside.any(axis=1))
     first = inside[rows].argmax(axis=1)
     last = inside.shape[1] - 1 - inside[rows, ::-1].argmax(axis=1)
-    edge = [
-        1e3
-        * np.concatenate([cells[rows, first], cells[rows, last][::-1], cells[rows[:1], first[:1]]])
-        for cells in (contact.cell_along, contact.cell_across)
-    ]
-    label = f"marked at {contact.marking_thickness * 1e6:.3g} µm"
-    area = line(edge[0], edge[1], label, PINION, unit="mm", width=1.0)
-    return area | {"fill": "toself", "fillcolor": FILLS[PINION]}
+    gap, thickness = contact.clearance, contact.marking_thickness
+    shares = []
+    for cell, step in ((first, -1), (last, 1)):
+        # The compound ends between the last marked cell and the next.
+        beyond = np.clip(cell + step, 0, gap.shape[1] - 1)
+        rise = gap[rows, beyond] - gap[rows, cell]
+        share = (thickness - gap[rows, cell]) / np.where(rise > 0.0, rise, np.inf)
+        shares.append((cell, beyond, np.clip(share, 0.0, 1.0)))
+    edge = []
+    for cells in (contact.cell_along, contact.cell_across):
+        starts, stops = (
+            cells[rows, cell] + share * (cells[rows, beyond] - cells[rows, cell])
+            for cell, beyond, share in shares
+        )
+        edge.append(1e3 * np.concatenate([starts, stops[::-1], starts[:1]]))
+    area = line(edge[0], edge[1], label, color, unit="mm", width=1.0)
+    return area | {"fill": "toself", "fillcolor": FILLS.get(color, translucent(color, 0.14))}
 
 
 def _path(contact: ToothContact) -> list[Trace]:
@@ -166,7 +176,9 @@ def _error(contact: ToothContact) -> Panel:
 )
 def hypoid_contact(contact: ToothContact) -> Any:
     """Draw contact pattern, path of contact and transmission error."""
-    flank = [_outline(contact), _lines(contact), _pattern(contact), *_path(contact)]
+    label = f"marked at {contact.marking_thickness * 1e6:.3g} µm"
+    marking = pattern(contact, label, PINION)
+    flank = [outline(contact), _lines(contact), marking, *_path(contact)]
     rows = [
         Row(
             "Along the pitch cone of the wheel, towards the heel [mm]",
