@@ -180,6 +180,21 @@ def test_new_writes_a_case_that_checks(
     assert [path.name for path in in_new_folder.iterdir()] == ["my.toml"]
 
 
+def test_new_takes_the_files_of_a_machine_along(
+    in_new_folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = [f"my-two-stage-spur-housing-{matrix}.mtx" for matrix in "KM"]
+    assert call(["new", "my.toml", "--from", "two-stage-spur", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"path": "my.toml", "files": names}
+    machine, origin = map(tribodyn.load_case, ("my.toml", "two-stage-spur"))
+    assert sorted(machine.housing_files.values()) == [str(in_new_folder / name) for name in names]
+    assert (machine.housing.stiffness == origin.housing.stiffness).all()
+    (in_new_folder / "my.toml").unlink()
+    assert call(["new", "my.toml", "--from", "two-stage-spur"]) == 2
+    assert f"{names[0]}: this exists already" in capsys.readouterr().err
+    assert not (in_new_folder / "my.toml").exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.study.case.read import named_files, parse_toml, read_text
 from tribodyn.study.machine.case import MachineCase, is_machine
+from tribodyn.study.machine.housing_files import copy_housing
 from tribodyn.study.machine.read import machine_files, read_any_case
 
 if TYPE_CHECKING:
@@ -102,11 +103,7 @@ class Workspace:
             raise OutputExistsError(f'"{self.relative_name(place)}" exists already', "", "", remedy)
         self._parent(place)
         if isinstance(case, MachineCase):
-            files, case = case.housing_files, case.with_files(f"{place.stem}-")
-            for key, path in files.items():
-                target = place.parent / case.housing_files[key]
-                if target.resolve() != Path(path).resolve():
-                    shutil.copyfile(path, target)
+            case = copy_housing(case, place.parent, f"{place.stem}-")
         write_file(place, case.to_toml())
         return place
 

@@ -98,12 +98,12 @@ def new(
     force: Flag = False,
     json: Flag = False,
 ) -> None:
-    """Write a commented case file to start from.
+    """Write a commented case file to start from, with the files that it needs.
 
     Parameters
     ----------
     path : Path
-        File to write.
+        File to write; the matrices of a housing are copied beside it.
     from_ : str
         Built-in case or case file to take all values from; by default a short file of no
         particular gears is written, to be filled in.
@@ -114,12 +114,22 @@ def new(
     """
     from tribodyn.cases.load import load_case
     from tribodyn.study.case.reference import start_toml
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.housing_files import copy_housing
     from tribodyn.study.pipeline.save import write_file
 
     check_file(path, force)
-    write_file(path, load_case(from_).to_toml() if from_ else start_toml())
+    source = load_case(from_) if from_ else None
+    files = []
+    if isinstance(source, MachineCase):
+        prefix = f"{path.stem}-"
+        files = [path.parent / name for name in source.with_files(prefix).housing_files.values()]
+        for file in files:
+            check_file(file, force)
+        source = copy_housing(source, path.parent, prefix)
+    write_file(path, source.to_toml() if source else start_toml())
     if json:
-        say_json({"path": str(path)})
+        say_json({"path": str(path)} | ({"files": [str(file) for file in files]} if files else {}))
     else:
-        say(str(path))
+        say("\n".join(map(str, (path, *files))))
         tell(f"Edit it, then: tribodyn check {path}")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.machine.read_parts import built, table_of
 from tribodyn.study.machine.tables import HousingTable
 from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.study.machine.case import MachineCase
 
 _MATRICES = {"stiffness": "K", "mass": "M", "damping": "C"}
 _NODES = "Write [housing.nodes] with six coordinate numbers a node, counted from 0, -1 at rest"
@@ -81,3 +85,13 @@ def _market(key: str, path: str) -> Array:
         what = f"{Path(path).name} cannot be read: {error}"
         raise InputError(what, key, "It is a Matrix Market file", "Check the file") from None
     return np.asarray(matrix.toarray() if hasattr(matrix, "toarray") else matrix, dtype=float)
+
+
+def copy_housing(case: MachineCase, folder: Path, prefix: str) -> MachineCase:
+    """Copy the files of a housing into a folder, and return the case that refers to the copies."""
+    moved = case.with_files(prefix)
+    for key, path in case.housing_files.items():
+        target = folder / moved.housing_files[key]
+        if target.resolve() != Path(path).resolve():
+            shutil.copyfile(path, target)
+    return moved

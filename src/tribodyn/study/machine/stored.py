@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ import numpy as np
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.record import Parts, labels_of
+from tribodyn.study.machine.housing_files import copy_housing
 from tribodyn.study.machine.motion import MachineMotion
 from tribodyn.study.machine.result import LoadResult, MachineResult
 from tribodyn.validated_files import read_bytes, read_dataset, write_dataset
@@ -30,9 +30,7 @@ _REMEDY = "Give the directory that tribodyn run or MachineResult.save wrote"
 
 def write_machine(result: MachineResult, place: Path) -> None:
     """Write case, summary, mesh tables and motions of all loads; without the report."""
-    case = result.case.with_files(HOUSING)
-    for key, path in result.case.housing_files.items():
-        shutil.copyfile(path, place / case.housing_files[key])
+    case = copy_housing(result.case, place, HOUSING)
     texts = {
         "case.toml": case.to_toml(),
         "summary.json": json.dumps(result.summary(), indent=2, allow_nan=False) + "\n",
