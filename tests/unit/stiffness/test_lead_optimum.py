@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -44,12 +45,30 @@ def test_misalignment_that_grows_with_the_torque_needs_a_compromise():
 
 
 def test_the_pair_that_is_found_has_the_load_that_is_reported():
-    best = optimize_lead(helical(), 600.0, provider="fe2d", reference="rim", phases=8)
-    loaded = loaded_contact(
-        best.modified_pair, 600.0, provider="fe2d", reference="rim", phases=8, slices=24
-    )
-    assert float(loaded.face_load_factor) == pytest.approx(best.face_load_factor_after[0], rel=1e-9)
-    assert best.face_load_factor_after[0] <= best.face_load_factor_before[0] + 1e-6
+    class Counting:
+        tasks: ClassVar[list[str]] = []
+        steps = 0
+
+        def start(self, task, total=None):
+            self.tasks.append(task)
+
+        def advance(self, steps=1):
+            self.steps += steps
+
+        def finish(self):
+            self.tasks.append("")
+
+    options = {"provider": "fe2d", "reference": "rim", "phases": 8}
+    torques, progress = [300.0, 400.0, 600.0], Counting()
+    best = optimize_lead(helical(), torques, progress=progress, **options)
+    for torque, before, after in zip(
+        torques, best.face_load_factor_before, best.face_load_factor_after, strict=True
+    ):
+        loaded = loaded_contact(best.modified_pair, torque, slices=24, **options)
+        assert float(loaded.face_load_factor) == pytest.approx(after, rel=1e-9)
+        assert after <= before + 1e-6
+    assert progress.tasks[-2:] == ["crowning and slope over the face", ""]
+    assert progress.steps > 21  # a grid of so many, and the simplex
 
 
 def test_a_spur_pair_is_searched_slice_by_slice():

@@ -15,9 +15,11 @@ from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.gear import FlankModification, Material, SpurPair
 from tribodyn.gear.modification import LARGEST_AMOUNT
 from tribodyn.model import NO_OPTIONS
+from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Labels, Record, fact, figure_method, quantity, record
 from tribodyn.stiffness.loaded.contact import contact_problem, contact_settings
 from tribodyn.stiffness.loaded.problem import ContactProblem
+from tribodyn.stiffness.model import MODELS
 from tribodyn.stiffness.tip_relief.search import torques_and_weights
 from tribodyn.types import Array
 
@@ -108,6 +110,7 @@ def optimize_lead(
     material: Material | None = None,
     slices: int = SLICES,
     options: Mapping[str, Any] = NO_OPTIONS,
+    progress: Progress = SILENT,
 ) -> LeadOptimum:
     """Find the crowning and the slope that spread the load most evenly over torques.
 
@@ -140,6 +143,8 @@ def optimize_lead(
         Slices of the face.
     options
         As there.
+    progress : Progress
+        Receiver of the progress: a step for every form of the face that is examined.
 
     Returns
     -------
@@ -176,7 +181,9 @@ def optimize_lead(
         provider, np.arange(phases) / phases, False, reference, material, slices, options
     )
     plain = _with_lead(pair, gear, 0.0, 0.0)
+    progress.start("compliance of the teeth")
     search, before = (_FaceLoads(each, torques, lean, settings) for each in (plain, pair))
+    progress.start("crowning and slope over the face")
     along = search.face_position / getattr(pair, gear).face_width
 
     def loads(place: Array) -> Array:
@@ -184,9 +191,11 @@ def optimize_lead(
 
     def value(place: Array) -> float:
         factors = loads(place).max(axis=1)
+        progress.advance()
         return float(factors.max() if objective == "largest" else weights @ factors)
 
     best = _least(value, bounds)
+    progress.finish()
     return LeadOptimum(
         gear_pair=pair,
         modified_pair=_with_lead(pair, gear, *best.tolist()),
@@ -231,7 +240,10 @@ class _FaceLoads:
         totals = torques / pair.pinion.base_radius
         # One problem for each torque: each has its own misalignment.
         self.totals, self.lean, self.width = totals, lean, pair.common_face_width
-        self.problems = [contact_problem(pair, total_force=f, **settings) for f in totals]
+        forces = totals[:1] if MODELS[settings["provider"]].influence else totals
+        problems = [contact_problem(pair, total_force=f, **settings) for f in forces]
+        # Influences of teeth are the same under every torque.
+        self.problems = problems if len(problems) > 1 else problems * len(totals)
         count = settings["slices"]
         self.face_position = face_positions(path_of_contact(pair), count)
 
