@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import Argument, ComputationError, InputError, ModelOption, Problem
+from tribodyn.errors import ComputationError, InputError, ModelOption, Problem
 from tribodyn.gear import Material, SpurPair
 from tribodyn.model import Model, Registry, choice
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence
@@ -138,7 +138,7 @@ class StiffnessModel(Model):
         if self.external_only and pair.is_internal:
             raise InputError(
                 f'the stiffness model "{self.name}" of a pair with internal teeth',
-                where=Argument("stiffness_model"),
+                where=ModelOption("stiffness", self.name),
                 why="It describes teeth that grow thinner outwards, not those of a ring",
                 remedy='Choose "fe2d", "fe3d" or "iso6336", or give the stiffness',
             )

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tribodyn.contact import face_contacts, hertz_line, path_of_contact
+from tribodyn.contact import effective_modulus, face_contacts, hertz_line, path_of_contact
 from tribodyn.dynamics import follow_load, helical12
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.traction.film_state import FilmState
@@ -17,7 +17,13 @@ from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.gear import FlankModification, Material, cylindrical_pair
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import LOADS, build, mesh_friction
-from tribodyn.stiffness import MODELS, iso6336_single_stiffness, loaded_contact
+from tribodyn.stiffness import (
+    MODELS,
+    iso6336_single_stiffness,
+    load_point,
+    loaded_contact,
+    weber_banaschek_compression,
+)
 from tribodyn.stiffness.loaded.contact import contact_problem
 
 OIL = Lubricant(0.05, 880.0, 2e-8)
@@ -390,3 +396,22 @@ def test_friction_of_slices_that_follows_the_load_tilts_the_gears_as_under_that_
         error = np.abs(np.sum(rows, axis=0) - expected).max(axis=0)
         assert np.all(error <= 0.03 * np.abs(expected).max(axis=0))
     assert np.abs(nominal.friction_couple).max() > 1e-5
+
+
+@pytest.mark.parametrize("model", ["weber", "potential-energy"])
+def test_local_compression_of_a_slice_is_that_of_the_normal_section(model):
+    """Curvature and depth across the line, 1/cos(beta_b) of the compression along the path."""
+    pair, load, material = helical(), 1e5, Material()
+    options = {"reference": "rim"}
+    problem = contact_problem(pair, provider=model, phase=np.array([0.3]), total_force=9e3,
+                              material=material, options=options, slices=5)  # fmt: skip
+    parts, places = problem.compliance, problem.places
+    cosine = math.cos(pair.base_helix_angle)
+    radii = places.pinion_curvature_radius, places.wheel_curvature_radius
+    normal = radii[0] * radii[1] / (radii[0] + radii[1]) / cosine
+    width = hertz_line(load, normal, effective_modulus(material, material)).half_width
+    gears = zip((pair.pinion, pair.wheel), radii, strict=True)
+    depths = (load_point(gear, radius).depth * cosine for gear, radius in gears)
+    across = sum(weber_banaschek_compression(load, width, depth, material) for depth in depths)
+    along = load * (parts.local - parts.logarithm * math.log(load))
+    assert along[places.on_path] == pytest.approx((across / cosine)[places.on_path], rel=1e-9)

@@ -160,6 +160,14 @@ def test_faults_of_rings_name_the_key(change: str, text: str) -> None:
         read_case(CASE.replace("teeth = -72", change))
 
 
+def test_a_model_of_external_teeth_is_refused_by_its_key() -> None:
+    case = read_case(CASE).replace({"stiffness.model": "weber"})
+    with pytest.raises(
+        InputError, match=r'stiffness\.model: the stiffness model "weber" of a pair'
+    ):
+        td.run(case)
+
+
 def test_faults_of_the_pinion() -> None:
     hands = CASE.replace("teeth = 21", 'teeth = 21\nhand = "right"')
     with pytest.raises(InputError, match=r"gears.wheel.hand: .*have equal hands"):
