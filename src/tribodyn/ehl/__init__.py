@@ -4,6 +4,7 @@
 |---|---|
 | ``models`` | film models by name, as a case file picks them |
 | ``formulas`` | films by formula: which groups, which regime, which film |
+| ``area`` | pressure and film of points, ellipses and lines of finite length |
 | ``steady`` | pressure and film of a contact at rest in its frame, one or many |
 | ``transient`` | pressure and film while load, radius and speed change |
 | ``stiffness`` | stiffness and damping of the film |
@@ -17,8 +18,16 @@
 from __future__ import annotations
 
 from tribodyn.arguments import guard
+from tribodyn.ehl.area.friction import AreaFriction
+from tribodyn.ehl.area.point_contact import solve_point_contact
+from tribodyn.ehl.area.solution import PointContactSolution
 from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.ehl.formulas.dimensionless_groups import Groups, line_contact_groups
+from tribodyn.ehl.formulas.elliptic import (
+    hamrock_dowson_central,
+    nijenbanning_central,
+    nijenbanning_dimensionless_central,
+)
 from tribodyn.ehl.formulas.moes import moes_central, moes_dimensionless_central
 from tribodyn.ehl.formulas.power_laws import (
     dowson_1968_minimum,
@@ -49,6 +58,7 @@ from tribodyn.ehl.transient.transient import TransientLineContact, solve_transie
 __all__ = [
     "FILM_MODELS",
     "SHEAR_MODELS",
+    "AreaFriction",
     "Asperities",
     "FilmModel",
     "FilmState",
@@ -56,6 +66,7 @@ __all__ = [
     "LineContactBatch",
     "LineContactSolution",
     "MixedLineContact",
+    "PointContactSolution",
     "RoughnessProfile",
     "Traction",
     "TransientLineContact",
@@ -68,6 +79,7 @@ __all__ = [
     "dowson_toyoda_central",
     "film_load_share",
     "film_traction",
+    "hamrock_dowson_central",
     "hamrock_dowson_minimum",
     "inlet_heating_factor",
     "line_contact_groups",
@@ -76,12 +88,15 @@ __all__ = [
     "moes_central",
     "moes_dimensionless_central",
     "newtonian_shear_stress",
+    "nijenbanning_central",
+    "nijenbanning_dimensionless_central",
     "pan_hamrock_central",
     "pan_hamrock_minimum",
     "ree_eyring_shear_stress",
     "solve_line_contact",
     "solve_line_contact_moes",
     "solve_line_contacts",
+    "solve_point_contact",
     "solve_transient_line_contact",
 ]
 

@@ -4,5 +4,6 @@
 |---|---|
 | ``dimensionless_groups`` | which numbers describe a contact, and its regime after Moes |
 | ``power_laws`` | Dowson, Dowson-Toyoda, Pan-Hamrock; Hamrock-Dowson for ellipses |
+| ``elliptic`` | central film of points and ellipses in all regimes |
 | ``moes`` | central film in all regimes, and how it follows the load |
 """

@@ -1,0 +1,165 @@
+"""The solved point or elliptical contact: pressure and film over its area."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tribodyn.ehl.area.friction import AreaFriction, area_friction
+from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
+from tribodyn.ehl.traction.shear_models import EYRING_STRESS
+from tribodyn.lubricant import Lubricant
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array
+
+
+class AreaSolution(Record):
+    """What solved contacts over an area share."""
+
+    def friction(
+        self,
+        sliding_speed: float,
+        *,
+        shear_model: str = "ree-eyring",
+        eyring_stress: float = EYRING_STRESS,
+        flash_temperature: bool = False,
+        bodies: tuple[float, float] = (STEEL_THERMAL_CONTACT_COEFFICIENT,) * 2,
+        **oil: float | None,
+    ) -> AreaFriction:
+        """Friction of the sheared film.
+
+        Parameters
+        ----------
+        sliding_speed : float [m/s]
+            Difference of the surface speeds, along the entrainment.
+        shear_model : str
+            How the oil shears: a name of :data:`tribodyn.ehl.SHEAR_MODELS`.
+        eyring_stress : float [Pa]
+            Stress from which an oil thins, by the models that have it.
+        flash_temperature : bool
+            Take the viscosity of every line along the entrainment at its mean temperature: inlet
+            plus mean flash temperature of Blok plus the rise across the oil.
+        bodies : (float, float) [J/(m^2 K s^0.5)]
+            ``sqrt(k rho c)`` of each body; gear steel by default.
+        **oil : float
+            Other numbers of the shear model, such as ``limiting_stress`` [Pa].
+
+        Returns
+        -------
+        AreaFriction
+            Coefficient, force and temperature rise.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range, or the oil lacks the thermal data that are needed.
+
+        The film is that of a Newtonian oil at the temperature of the inlet. Source: Johnson and
+        Tevaarwerk (1977); Blok (1963).
+        """
+        return area_friction(
+            self, sliding_speed, shear_model, eyring_stress, flash_temperature, bodies, oil
+        )
+
+
+@record
+class PointContactSolution(AreaSolution):
+    """Pressure and film of a lubricated point or elliptical contact, steady and isothermal.
+
+    Parameters
+    ----------
+    x, y : (nx,), (ny,) arrays [m]
+        Positions along both principal axes of the gap, from its middle.
+    pressure : (ny, nx) array [Pa]
+        Pressure above ambient.
+    film : (ny, nx) array [m]
+        Gap between the bodies.
+    central_film, minimum_film : float [m]
+        Film in the middle, and least film where the oil carries pressure.
+    central_film_error : float [m]
+        Estimate of the error of ``central_film`` by the grid, from one half as fine.
+    central_film_extrapolated : float [m]
+        Central film extrapolated to an infinitely fine grid.
+    hertz_pressure, semi_axis_x, semi_axis_y, hertz_approach : float [Pa], [m], [m], [m]
+        Greatest pressure, half axes and approach of the dry contact.
+    maximum_pressure : float [Pa]
+        Greatest pressure of the oil; a spike is not converged on uniform grids.
+    approach : float [m]
+        By how much distant points of both bodies come nearer: that of the dry contact, less what
+        the film lifts.
+    moes_load, moes_viscosity : float [-]
+        Numbers M and L of Moes, with the radius along the entrainment.
+    ellipticity : float [-]
+        Half axis along y over that along x.
+    outside_load : float [N]
+        Part of the normal force that the oil outside the grid carries, in the far inlet.
+    load_error : float [-]
+        Relative difference between the normal force and the integral of the pressure over the
+        grid with ``outside_load``.
+    residual : float [-]
+        Mean imbalance of the flow where there is pressure, over the mean change of the flow that
+        is carried along.
+    cycles, nodes_x, nodes_y : int
+        Multigrid cycles on the finest grid, and its nodes.
+    attempts : tuple of str
+        What was tried in vain before.
+    normal_force, radius_x, radius_y, entrainment_speed, entrainment_angle, effective_modulus
+        Arguments of :func:`tribodyn.ehl.solve_point_contact`.
+    lubricant, viscosity_law, compressible
+        As there; the law that was used.
+    """
+
+    x: Array = quantity("x", unit="m", axis=True)
+    y: Array = quantity("y", unit="m", axis=True)
+    pressure: Array = quantity("y", "x", unit="Pa")
+    film: Array = quantity("y", "x", unit="m")
+    central_film: float = fact()
+    minimum_film: float = fact()
+    central_film_error: float = fact()
+    central_film_extrapolated: float = fact()
+    hertz_pressure: float = fact()
+    semi_axis_x: float = fact()
+    semi_axis_y: float = fact()
+    hertz_approach: float = fact()
+    maximum_pressure: float = fact()
+    approach: float = fact()
+    moes_load: float = fact()
+    moes_viscosity: float = fact()
+    ellipticity: float = fact()
+    outside_load: float = fact()
+    load_error: float = fact()
+    residual: float = fact()
+    cycles: int = fact()
+    nodes_x: int = fact()
+    nodes_y: int = fact()
+    attempts: tuple[str, ...]
+    normal_force: float = fact()
+    radius_x: float = fact()
+    radius_y: float = fact()
+    entrainment_speed: float = fact()
+    entrainment_angle: float = fact()
+    effective_modulus: float = fact()
+    lubricant: Lubricant
+    viscosity_law: str = fact()
+    compressible: bool = fact()
+
+    @property
+    def line_half_width(self) -> Any:
+        """Half width of the dry contact at every position across the entrainment [m]."""
+        across, half, side = self.y, self.semi_axis_x, self.semi_axis_y
+        if abs(np.sin(self.entrainment_angle)) > abs(np.cos(self.entrainment_angle)):
+            across, half, side = self.x, self.semi_axis_y, self.semi_axis_x
+        return half * np.sqrt(np.maximum(1.0 - (across / side) ** 2, 0.0))
+
+    def __repr__(self) -> str:
+        """One line with the figures that tell contacts apart."""
+        spread = self.central_film_error / self.central_film
+        return (
+            f"PointContactSolution(central film {self.central_film * 1e6:.4f} um +- {spread:.1g} "
+            f"of it, minimum {self.minimum_film * 1e6:.4f} um, Hertz pressure "
+            f"{self.hertz_pressure * 1e-9:.4f} GPa over {self.semi_axis_x * 1e3:.4g} mm by "
+            f"{self.semi_axis_y * 1e3:.4g} mm half axes, M {self.moes_load:.4g}, "
+            f"L {self.moes_viscosity:.4g}, {self.nodes_x} x {self.nodes_y} nodes, "
+            f"{self.cycles} cycles)"
+        )

@@ -1,0 +1,173 @@
+"""Central film of point and elliptical contacts: Nijenbanning and others, Hamrock and Dowson."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribodyn.checks import positive
+from tribodyn.errors import Argument, real_numbers, require_between
+from tribodyn.types import Array
+
+
+def nijenbanning_dimensionless_central(
+    load: ArrayLike, material: ArrayLike, radius_ratio: ArrayLike = 1.0
+) -> Array:
+    """Central film of an elliptical contact in the numbers of Moes, joining its asymptotes.
+
+    ``H = [(RI^(3/2) + (EI^-4 + H0^-4)^(-3/8))^(2s/3) + (RP^-8 + EP^-8)^(-s/8)]^(1/s)`` with
+    ``s = 3/2 (1 + exp(-1.2 EI/EP))``, ``H0 = 1.8/lambda``, the ratio of radii
+    ``lambda = R_x/R_y`` and the asymptotes
+
+    - ``RI = 145 (1 + 0.796 lambda^(14/15))^(-15/7) lambda^-1 M^-2``
+    - ``RP = 1.29 (1 + 0.691 lambda)^(-2/3) L^(2/3)``
+    - ``EI = 3.18 (1 + 0.006 ln lambda + 0.63 lambda^(4/7))^(-14/25) lambda^(-1/15) M^(-2/15)``
+    - ``EP = 1.48 (1 + 0.006 ln lambda + 0.63 lambda^(4/7))^(-7/20) lambda^(-1/24) M^(-1/12)
+      L^(3/4)``
+
+    Parameters
+    ----------
+    load : float or array [-]
+        Load number ``M = F/(E' R_x^2) (2U)^(-3/4)`` with ``U = eta0 u_e/(E' R_x)``.
+    material : float or array [-]
+        Material number ``L = alpha E' (2U)^(1/4)``, not negative.
+    radius_ratio : float or array [-]
+        Radius along the entrainment over that across it; made for 1 and less.
+
+    Returns
+    -------
+    float or array
+        ``H = (h/R_x) (2U)^(-1/2)``, of the common shape of the arguments.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite and positive (the material number may be zero).
+
+    Valid for an incompressible oil. Source: Nijenbanning, Venner and Moes, Wear 176 (1994),
+    217-229.
+
+    Examples
+    --------
+    >>> round(float(nijenbanning_dimensionless_central(20.0, 10.0)), 3)
+    4.265
+    """
+    load, ratio = positive(load=load, radius_ratio=radius_ratio)
+    require_between("material", material, 0.0, np.inf)
+    thick = np.maximum(np.asarray(material, dtype=float), 1e-12)
+    shape = 1.0 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)
+    rigid = 145.0 * (1.0 + 0.796 * ratio ** (14 / 15)) ** (-15 / 7) / (ratio * load**2)
+    rigid_thick = 1.29 * (1.0 + 0.691 * ratio) ** (-2 / 3) * thick ** (2 / 3)
+    elastic = 3.18 * shape ** (-14 / 25) * ratio ** (-1 / 15) * load ** (-2 / 15)
+    elastic_thick = 1.48 * shape ** (-7 / 20) * ratio ** (-1 / 24) * load ** (-1 / 12) * thick**0.75
+    s = 1.5 * (1.0 + np.exp(-1.2 * elastic / elastic_thick))
+    soft = (elastic**-4.0 + (1.8 / ratio) ** -4.0) ** (-3 / 8)
+    isoviscous = (rigid**1.5 + soft) ** (2 / 3)
+    piezoviscous = (rigid_thick**-8.0 + elastic_thick**-8.0) ** (-1 / 8)
+    return np.asarray((isoviscous**s + piezoviscous**s) ** (1.0 / s))[()]
+
+
+def nijenbanning_central(
+    normal_force: ArrayLike,
+    equivalent_radius: ArrayLike,
+    side_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    pressure_viscosity_coefficient: ArrayLike,
+    effective_modulus: ArrayLike,
+) -> Array:
+    """Central film of an elliptical contact: see :func:`nijenbanning_dimensionless_central`.
+
+    Parameters
+    ----------
+    normal_force, equivalent_radius, side_radius, entrainment_speed, dynamic_viscosity
+        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`; the side radius is finite.
+    pressure_viscosity_coefficient, effective_modulus
+        As there.
+
+    Returns
+    -------
+    float or array [m]
+
+    Raises
+    ------
+    InputError
+        If a value is not finite and positive.
+
+    Valid for an incompressible oil, with the smaller radius along the entrainment. Source:
+    Nijenbanning, Venner and Moes, Wear 176 (1994), 217-229.
+
+    Examples
+    --------
+    >>> film = nijenbanning_central(100.0, 0.01, 0.01, 1.0, 0.05, 2e-8, 2.2e11)
+    >>> round(float(film) * 1e6, 4)
+    0.2953
+    """
+    force, radius, side, speed, viscosity, coefficient, modulus = positive(
+        normal_force=normal_force,
+        equivalent_radius=equivalent_radius,
+        side_radius=side_radius,
+        entrainment_speed=entrainment_speed,
+        dynamic_viscosity=dynamic_viscosity,
+        pressure_viscosity_coefficient=pressure_viscosity_coefficient,
+        effective_modulus=effective_modulus,
+    )
+    viscous = 2.0 * viscosity * speed / (modulus * radius)
+    load = force / (modulus * radius**2) * viscous**-0.75
+    material = coefficient * modulus * viscous**0.25
+    film = nijenbanning_dimensionless_central(load, material, radius / side)
+    return np.asarray(film * radius * np.sqrt(viscous))[()]
+
+
+def hamrock_dowson_central(
+    normal_force: ArrayLike,
+    equivalent_radius: ArrayLike,
+    side_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    pressure_viscosity_coefficient: ArrayLike,
+    effective_modulus: ArrayLike,
+) -> Array:
+    """Central film of an ellipse: ``2.69 U^0.67 G^0.53 W^-0.067 (1 - 0.61 exp(-0.73 k))``.
+
+    Parameters
+    ----------
+    normal_force, equivalent_radius, side_radius, entrainment_speed, dynamic_viscosity
+        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`.
+    pressure_viscosity_coefficient, effective_modulus
+        As there.
+
+    Returns
+    -------
+    float or array [m]
+
+    Raises
+    ------
+    InputError
+        If a value is not positive, or not finite; the side radius may be infinite.
+
+    Groups and ellipticity ``k`` as for :func:`tribodyn.ehl.hamrock_dowson_minimum`, valid in the
+    elastic-piezoviscous regime. Source: Hamrock and Dowson, Trans. ASME J. Lubr. Technol. 99
+    (1977), 264-276.
+
+    Examples
+    --------
+    >>> film = hamrock_dowson_central(5000.0, 0.03, 0.5, 5.0, 0.01, 2e-8, 2.2637e11)
+    >>> f"{float(film):.5e}"
+    '4.91422e-07'
+    """
+    force, radius, speed, viscosity, coefficient, modulus = positive(
+        normal_force=normal_force,
+        equivalent_radius=equivalent_radius,
+        entrainment_speed=entrainment_speed,
+        dynamic_viscosity=dynamic_viscosity,
+        pressure_viscosity_coefficient=pressure_viscosity_coefficient,
+        effective_modulus=effective_modulus,
+    )
+    side = real_numbers(Argument("side_radius"), side_radius)
+    require_between("side_radius", np.minimum(side, 1e9), 1e-12, 1e9, "m")
+    k = 1.03 * (side / radius) ** 0.64
+    moving = (viscosity * speed / (modulus * radius)) ** 0.67
+    loaded = (force / (modulus * radius**2)) ** -0.067
+    ends = 1.0 - 0.61 * np.exp(-0.73 * k)
+    return np.asarray(2.69 * moving * (coefficient * modulus) ** 0.53 * loaded * ends * radius)[()]
