@@ -116,8 +116,7 @@ def entrained_radius(radius_x: float, radius_y: float, angle: float) -> float:
 
 def point_case(
     normal_force: Any,
-    radius_x: Any,
-    radius_y: Any,
+    principal_radii: tuple[Any, Any],
     entrainment_speed: Any,
     lubricant: Any,
     effective_modulus: Any,
@@ -127,6 +126,7 @@ def point_case(
 ) -> PointCase:
     """Check a contact in SI."""
     force = _scalar("normal_force", normal_force, "[N]")
+    radius_x, radius_y = principal_radii
     radii = _scalar("radius_x", radius_x, "[m]"), _scalar("radius_y", radius_y, "[m]")
     speed = _scalar("entrainment_speed", entrainment_speed, "[m/s]")
     modulus = _scalar("effective_modulus", effective_modulus, "[Pa]")

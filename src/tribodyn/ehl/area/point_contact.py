@@ -93,7 +93,7 @@ def solve_point_contact(
     (1.065, 0.27)
     """
     case = point_case(
-        normal_force, radius_x, radius_y, entrainment_speed, lubricant, effective_modulus,
+        normal_force, (radius_x, radius_y), entrainment_speed, lubricant, effective_modulus,
         entrainment_angle, viscosity_law, compressible,
     )  # fmt: skip
     require_between("tolerance", require_number("tolerance", tolerance), 1e-8, 1e-2)
