@@ -14,57 +14,8 @@ from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
 
-class AreaSolution(Record):
-    """What solved contacts over an area share."""
-
-    def friction(
-        self,
-        sliding_speed: float,
-        *,
-        shear_model: str = "ree-eyring",
-        eyring_stress: float = EYRING_STRESS,
-        flash_temperature: bool = False,
-        bodies: tuple[float, float] = (STEEL_THERMAL_CONTACT_COEFFICIENT,) * 2,
-        **oil: float | None,
-    ) -> AreaFriction:
-        """Friction of the sheared film.
-
-        Parameters
-        ----------
-        sliding_speed : float [m/s]
-            Difference of the surface speeds, along the entrainment.
-        shear_model : str
-            How the oil shears: a name of :data:`tribodyn.ehl.SHEAR_MODELS`.
-        eyring_stress : float [Pa]
-            Stress from which an oil thins, by the models that have it.
-        flash_temperature : bool
-            Take the viscosity of every line along the entrainment at its mean temperature: inlet
-            plus mean flash temperature of Blok plus the rise across the oil.
-        bodies : (float, float) [J/(m^2 K s^0.5)]
-            ``sqrt(k rho c)`` of each body; gear steel by default.
-        **oil : float
-            Other numbers of the shear model, such as ``limiting_stress`` [Pa].
-
-        Returns
-        -------
-        AreaFriction
-            Coefficient, force and temperature rise.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range, or the oil lacks the thermal data that are needed.
-
-        The film is that of a Newtonian oil at the temperature of the inlet. Source: Johnson and
-        Tevaarwerk (1977); Blok (1963).
-        """
-        return area_friction(
-            self, sliding_speed, shear_model, eyring_stress, flash_temperature, bodies, oil
-        )
-
-
 @record
-class PointContactSolution(AreaSolution):
+class PointContactSolution(Record):
     """Pressure and film of a lubricated point or elliptical contact, steady and isothermal.
 
     Parameters
@@ -151,6 +102,51 @@ class PointContactSolution(AreaSolution):
         if abs(np.sin(self.entrainment_angle)) > abs(np.cos(self.entrainment_angle)):
             across, half, side = self.x, self.semi_axis_y, self.semi_axis_x
         return half * np.sqrt(np.maximum(1.0 - (across / side) ** 2, 0.0))
+
+    def friction(
+        self,
+        sliding_speed: float,
+        *,
+        shear_model: str = "ree-eyring",
+        eyring_stress: float = EYRING_STRESS,
+        flash_temperature: bool = False,
+        bodies: tuple[float, float] = (STEEL_THERMAL_CONTACT_COEFFICIENT,) * 2,
+        **oil: float | None,
+    ) -> AreaFriction:
+        """Friction of the sheared film.
+
+        Parameters
+        ----------
+        sliding_speed : float [m/s]
+            Difference of the surface speeds, along the entrainment.
+        shear_model : str
+            How the oil shears: a name of :data:`tribodyn.ehl.SHEAR_MODELS`.
+        eyring_stress : float [Pa]
+            Stress from which an oil thins, by the models that have it.
+        flash_temperature : bool
+            Take the viscosity of every line along the entrainment at its mean temperature: inlet
+            plus mean flash temperature of Blok plus the rise across the oil.
+        bodies : (float, float) [J/(m^2 K s^0.5)]
+            ``sqrt(k rho c)`` of each body; gear steel by default.
+        **oil : float
+            Other numbers of the shear model, such as ``limiting_stress`` [Pa].
+
+        Returns
+        -------
+        AreaFriction
+            Coefficient, force and temperature rise.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range, or the oil lacks the thermal data that are needed.
+
+        The film is that of a Newtonian oil at the temperature of the inlet. Source: Johnson and
+        Tevaarwerk (1977); Blok (1963).
+        """
+        return area_friction(
+            self, sliding_speed, shear_model, eyring_stress, flash_temperature, bodies, oil
+        )
 
     def __repr__(self) -> str:
         """One line with the figures that tell contacts apart."""
