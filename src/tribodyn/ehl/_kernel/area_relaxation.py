@@ -96,10 +96,7 @@ def _build_residual(digest: str) -> Any:
 def _tangent_row(
     j: int, i: int, steps: Array, P: Array, H: Array, fields: Array, cH: Array, cP: Array
 ) -> None:
-    """Slopes of ``L`` at a node by film and pressure of itself and six neighbours.
-
-    Order: own, i-1, i-2, i+1, j-1, j-2, j+1.
-    """
+    """Slopes of ``L`` by film and pressure of a node and of i-1, i-2, i+1, j-1, j-2, j+1."""
     rho, drho, eps, grow = fields[0], fields[1], fields[2], fields[3]
     ax, ay, bx, by = steps[0], steps[1], steps[2], steps[3]
     for k in range(7):
@@ -159,11 +156,9 @@ def _build_relax(digest: str) -> Any:
         hx: float, hy: float, ux: float, uy: float, switch: float, damping: Array, K: Array,
         P: Array, H: Array, fields: Array, r: Array, change: Array,
     ) -> None:  # fmt: skip
-        """One sweep of distributive line relaxation, with film and residual of its beginning.
-
-        A node whose mobility exceeds ``switch`` changes alone, another one as a dipole: itself,
-        less its share of the four neighbours. ``K`` holds the influence, rows across.
-        """
+        """One sweep of distributive line relaxation, with film and residual of its beginning."""
+        # A node whose mobility exceeds ``switch`` changes alone, another one as a dipole: itself,
+        # less its share of the four neighbours.
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         rows, nodes = P.shape
         eps = fields[2]

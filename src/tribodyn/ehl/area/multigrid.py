@@ -41,10 +41,7 @@ _COARSEST, _NARROWEST = 300, 6
 
 @lru_cache(maxsize=32)
 def influence(nx: int, ny: int, hx: float, hy: float) -> tuple[Array, ComplexArray]:
-    """Film by unit pressure on one cell at signed distances, and the transform of its sum.
-
-    Uniform pressure on a rectangle, Love (1929): the integral of 1/r over the cell.
-    """
+    """Integral of 1/r over a cell at each distance (Love 1929), and the transform of its sum."""
     x, y = (np.arange(nx + 2) - 0.5) * hx, (np.arange(ny + 2)[:, None] - 0.5) * hy
     corner = x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
     cells = corner[1:, 1:] - corner[1:, :-1] - corner[:-1, 1:] + corner[:-1, :-1]
@@ -103,15 +100,12 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class AreaProblem:
-    """A steady contact, dimensionless: lengths in ``a``, pressures in ``p_h``, films in ``a^2/R``.
-
-    ``ux``, ``uy`` are the direction of entrainment, not negative.
-    """
+    """A steady contact, dimensionless: lengths in ``a``, pressures in ``p_h``, films in ``a^2/R``."""
 
     gap: Array = field(repr=False)  #: undeformed gap at the nodes (ny + 1, nx + 1)
     hx: float
     hy: float
-    ux: float
+    ux: float  #: direction of entrainment, not negative
     uy: float
     lam: float
     oil: Array = field(repr=False)
