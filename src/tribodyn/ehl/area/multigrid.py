@@ -100,7 +100,7 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class AreaProblem:
-    """A steady contact, dimensionless: lengths in ``a``, pressures in ``p_h``, films in ``a^2/R``."""
+    """A steady contact: lengths in ``a``, pressures in ``p_h``, films in ``a^2/R``."""
 
     gap: Array = field(repr=False)  #: undeformed gap at the nodes (ny + 1, nx + 1)
     hx: float
