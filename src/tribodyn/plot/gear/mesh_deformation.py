@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.gear.outlines import BentMesh, bent_mesh, on_line_of_action
+from tribodyn.plot.gear.outlines import BentMesh, bent_mesh, on_line_of_action, wheel_center
 from tribodyn.plot.mesh.loaded_contact import several_cycles, torque_names
 from tribodyn.plot.theme.labels import axis_label, displayed, rounded, significant
 from tribodyn.plot.theme.style import FILLS, INK, MUTED, PINION, WHEEL, Trace, figure, player
 from tribodyn.types import ComplexArray
 
 if TYPE_CHECKING:
+    from tribodyn.gear import SpurPair
     from tribodyn.stiffness import LoadedContact
 
 #: Mesh phases of the slider.
@@ -51,19 +52,20 @@ def _trace(points: ComplexArray, name: str, **more: Any) -> dict[str, Any]:
     }
 
 
-def _gears(center_distance: float, mesh: BentMesh, factor: float) -> list[Trace]:
+def _gears(pair: SpurPair, mesh: BentMesh, factor: float) -> list[Trace]:
     """Grey outlines without load and filled, coloured outlines under load."""
     traces = []
     for name, color in _GEARS:
         outline = mesh.outline[name]
         bent = outline + factor * mesh.displacement[name]
-        center = 0.0 if name == "pinion" else center_distance
-        # Close the section towards the axis, far below the teeth.
+        center = 0.0 if name == "pinion" else wheel_center(pair)
+        # Close the section towards the axis, far below the teeth; that of a ring outwards.
+        far = 1.3 if name == "wheel" and pair.is_internal else 0.2
         closed = np.concatenate(
             (
                 bent,
-                [center + 0.2 * (bent[-1] - center)],
-                [center + 0.2 * (bent[0] - center)],
+                [center + far * (bent[-1] - center)],
+                [center + far * (bent[0] - center)],
                 bent[:1],
             )
         )
@@ -181,8 +183,7 @@ def mesh_deformation(
     factor = _exaggeration(meshes, pair.pinion.normal_module)
     greatest = max(load.force for mesh in meshes for load in mesh.loads)
     frames = [
-        [*_gears(pair.center_distance, mesh, factor), *_arrows(contact, mesh, factor, greatest)]
-        for mesh in meshes
+        [*_gears(pair, mesh, factor), *_arrows(contact, mesh, factor, greatest)] for mesh in meshes
     ]
     errors = np.reshape(contact.transmission_error, (-1, contact.phase.size))[torque]
     labels = [

@@ -128,18 +128,21 @@ def _bent_outline(
     loaded_teeth = {tooth for tooth, _, _ in loads}
     unloaded = [(k, middle, 0.0) for k in range(1 - _TEETH, _TEETH) if k not in loaded_teeth]
     outline, moved = deformed_gear(gear, Material(), [*loads, *unloaded], reference=support)
-    # deformed_gear loads the right flank, this frame the left flank.
-    turn = cmath.exp(1j * (angle - 0.5 * math.pi))
-    return center + turn * (-outline[0] + 1j * outline[1]), turn * (-moved[0] + 1j * moved[1])
+    # deformed_gear loads the right flank; this frame the left one of teeth that point outwards.
+    turn, mirror = cmath.exp(1j * (angle - 0.5 * math.pi)), -gear.sign
+    across, shift = mirror * outline[0], mirror * moved[0]
+    return center + turn * (across + 1j * outline[1]), turn * (shift + 1j * moved[1])
 
 
 def _contact_point(
     gear: SpurGear, center: float, angle: float, tooth: int, radius: float
 ) -> complex:
     """Point on the loaded flank of a gear with a radius of curvature."""
-    distance = min(math.hypot(gear.base_radius, radius), gear.tip_radius)
-    direction = angle + 2.0 * math.pi * tooth / gear.teeth
-    return center + cmath.rect(distance, direction + float(gear.half_tooth_angle(distance)))
+    distance = math.hypot(gear.base_radius, radius)
+    distance = gear.sign * min(gear.sign * distance, gear.sign * gear.tip_radius)
+    direction = angle + 2.0 * math.pi * tooth / abs(gear.teeth)
+    half = gear.sign * float(gear.half_tooth_angle(distance))
+    return center + cmath.rect(distance, direction + half)
 
 
 def bent_mesh(contact: LoadedContact, phase: int, torque: int = 0) -> BentMesh:
@@ -149,14 +152,14 @@ def bent_mesh(contact: LoadedContact, phase: int, torque: int = 0) -> BentMesh:
     middle = 0.5 * (path.A + path.E)
     anchor = float(contact.path[phase, np.argmin(np.abs(contact.path[phase] - middle))])
     steps = [round((load.path - anchor) / pair.base_pitch) for load in loads]
-    width, centers = pair.common_face_width, {"pinion": 0.0, "wheel": pair.center_distance}
+    width, centers = pair.common_face_width, {"pinion": 0.0, "wheel": wheel_center(pair)}
     outline = {}
     moved = {}
     angles = dict(zip(("pinion", "wheel"), tooth_angles(pair, anchor), strict=True))
     places: dict[str, list[complex]] = {}
     shifts: dict[str, list[complex]] = {}
-    for name, sense in (("pinion", 1), ("wheel", -1)):
-        radii = [float(getattr(load, f"{name}_curvature_radius")) for load in loads]
+    for name, sense in (("pinion", 1), ("wheel", -pair.wheel.sign)):
+        radii = [abs(getattr(load, f"{name}_curvature_radius")) for load in loads]
         # Teeth are numbered towards larger radii of curvature of this gear.
         tooth_loads = [
             (sense * step, radius, load.force / width)
@@ -170,8 +173,8 @@ def bent_mesh(contact: LoadedContact, phase: int, torque: int = 0) -> BentMesh:
     normal = cmath.rect(1.0, 0.5 * math.pi - pair.operating_pressure_angle)
     forces = np.array([load.force for load in loads])
     approach = (np.array(shifts["wheel"]) - np.array(shifts["pinion"])) * normal.conjugate()
-    turn = float(np.average(approach.real, weights=forces)) / pair.driving.base_radius
-    driver = pair.driver
+    driver, driving = pair.driver, pair.driving
+    turn = float(np.average(approach.real, weights=forces)) / (driving.sign * driving.base_radius)
     moved[driver] = moved[driver] + 1j * turn * (outline[driver] - centers[driver])
     driven = "wheel" if driver == "pinion" else "pinion"
     return BentMesh(outline, moved, np.array(places[driven]), np.array(shifts[driven]), loads)
