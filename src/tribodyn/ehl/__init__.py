@@ -54,10 +54,16 @@ from tribodyn.ehl.traction.shear_models import (
 )
 from tribodyn.ehl.traction.traction import Traction, film_traction
 from tribodyn.ehl.transient.transient import TransientLineContact, solve_transient_line_contact
+from tribodyn.ehl.transient.waviness import (
+    AmplitudeReduction,
+    amplitude_reduction,
+    solve_amplitude_reduction,
+)
 
 __all__ = [
     "FILM_MODELS",
     "SHEAR_MODELS",
+    "AmplitudeReduction",
     "AreaFriction",
     "Asperities",
     "FilmModel",
@@ -70,6 +76,7 @@ __all__ = [
     "RoughnessProfile",
     "Traction",
     "TransientLineContact",
+    "amplitude_reduction",
     "asperity_integral",
     "bair_winer_shear_stress",
     "balanced_load_share",
@@ -93,6 +100,7 @@ __all__ = [
     "pan_hamrock_central",
     "pan_hamrock_minimum",
     "ree_eyring_shear_stress",
+    "solve_amplitude_reduction",
     "solve_line_contact",
     "solve_line_contact_moes",
     "solve_line_contacts",

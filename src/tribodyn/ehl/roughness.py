@@ -16,6 +16,8 @@ from tribodyn.types import Array
 from tribodyn.units import convert
 from tribodyn.validated_files import plain_number, read_bytes
 
+#: Points of a sinusoidal wave.
+_WAVE_POINTS = 64
 #: Treatment of positions beyond the ends of a profile.
 BEYOND = ("refuse", "periodic", "level")
 
@@ -129,6 +131,36 @@ class RoughnessProfile:
             height = np.asarray(height - np.polyval(line, index), dtype=float)
         first = -0.5 * spacing * (height.size - 1) if start is None else start
         return cls(np.asarray(first + spacing * index, dtype=float), height, beyond)
+
+    @classmethod
+    def wave(cls, amplitude: float, wavelength: float, phase: float = 0.0) -> RoughnessProfile:
+        """Periodic profile of sinusoidal waves.
+
+        Parameters
+        ----------
+        amplitude : float [m]
+            Half of the height from trough to crest.
+        wavelength : float [m]
+            Length of a wave.
+        phase : float [rad]
+            Height at position zero is the amplitude times the sine of the phase.
+
+        Raises
+        ------
+        InputError
+            If the amplitude or the wavelength is not positive.
+
+        Examples
+        --------
+        >>> wave = RoughnessProfile.wave(1e-7, 5e-5)
+        >>> round(wave.rms * 1e7, 4), float((wave(1.25e-5) * 1e7).round(6))
+        (0.7071, -1.0)
+        """
+        require_positive("amplitude", amplitude, "m")
+        require_positive("wavelength", wavelength, "m")
+        part = np.arange(_WAVE_POINTS) / _WAVE_POINTS
+        heights = amplitude * np.sin(2.0 * np.pi * part + phase)
+        return cls(wavelength * part, heights, "periodic")
 
     @classmethod
     def read(cls, path: str | PathLike[str]) -> RoughnessProfile:

@@ -13,6 +13,7 @@ from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
 from tribodyn.plot.film.lubrication import film_over_operation, lubrication, lubrication_map
 from tribodyn.plot.film.mixed_contact import mixed_line_contact
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
+from tribodyn.plot.film.waviness import amplitude_reduction
 from tribodyn.plot.gear.contact_lines import contact_lines
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
@@ -88,6 +89,7 @@ __all__ = [
     "Drawing",
     "acceleration",
     "adaptive_solution",
+    "amplitude_reduction",
     "band",
     "bands",
     "basins",

@@ -26,7 +26,7 @@ from tribodyn.analysis import Spectrum as HarmonicSpectrum
 from tribodyn.cases import PaperComparison
 from tribodyn.drawing import FIGURES, Drawing, draw, load_figures
 from tribodyn.dynamics import AdaptiveSolution
-from tribodyn.ehl import MixedLineContact
+from tribodyn.ehl import AmplitudeReduction, MixedLineContact, amplitude_reduction
 from tribodyn.errors import InputError
 from tribodyn.gear import HypoidKinematics
 from tribodyn.record import Record
@@ -313,3 +313,17 @@ def test_printed_numbers_are_drawn_by_their_deviation() -> None:
     assert "-30 %" in other.customdata[0]
     with pytest.raises(InputError, match="No row"):
         PaperComparison(("a",), (none,), (), 0).plot()
+
+
+def test_waves_stand_over_their_number_with_the_fit() -> None:
+    waves = AmplitudeReduction(np.array([2e-4, 1e-4]), np.array([0.3, 0.6]), np.array([0.3, 0.6]),
+                               np.array([6.0, 3.0]), 1e-4, 5e-7, 0.5, 20.0, 10.0)  # fmt: skip
+    figure = waves.plot()
+    assert list(curve(figure, "transient solution").x) == [3.0, 6.0]
+    fit = curve(figure, "fit for pure rolling")
+    # 20^(3/4)/sqrt(10) b is a wave of the number 3 here: the fit is drawn over the number
+    length = fit.x[0] * 1e-4 / 3.0
+    assert fit.y[0] == pytest.approx(float(amplitude_reduction(length, 1e-4, 20.0, 10.0)))
+    assert "0.30 to 0.60 of their amplitude in a slide-to-roll ratio of 0.5" in (
+        figure.layout.title.text
+    )
