@@ -7,6 +7,7 @@
 | ``area`` | pressure and film of points, ellipses and lines of finite length |
 | ``steady`` | pressure and film of a contact at rest in its frame, one or many |
 | ``transient`` | pressure and film while load, radius and speed change |
+| ``thermal`` | the film with its heat: temperatures and shear across it, friction |
 | ``stiffness`` | stiffness and damping of the film |
 | ``traction`` | shear of the oil, and its temperature |
 | ``load_share`` | how much of the load the film carries between rough surfaces, and the regime |
@@ -43,6 +44,8 @@ from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.steady.batch import LineContactBatch, solve_line_contacts
 from tribodyn.ehl.steady.line_contact import solve_line_contact, solve_line_contact_moes
 from tribodyn.ehl.steady.solution import LineContactSolution
+from tribodyn.ehl.thermal.thermal_model import BodyHeat, ThermalModel
+from tribodyn.ehl.thermal.thermal_solution import ThermalLineContactSolution
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import blok_flash_temperature, inlet_heating_factor
 from tribodyn.ehl.traction.shear_models import (
@@ -66,6 +69,7 @@ __all__ = [
     "AmplitudeReduction",
     "AreaFriction",
     "Asperities",
+    "BodyHeat",
     "FilmModel",
     "FilmState",
     "Groups",
@@ -74,6 +78,8 @@ __all__ = [
     "MixedLineContact",
     "PointContactSolution",
     "RoughnessProfile",
+    "ThermalLineContactSolution",
+    "ThermalModel",
     "Traction",
     "TransientLineContact",
     "amplitude_reduction",

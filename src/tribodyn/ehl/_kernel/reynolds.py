@@ -4,7 +4,9 @@ Second-order upstream Couette flux, central Poiseuille flux, conservative; a squ
 backward formula enters as ``squeeze * rho H`` minus a history. Nodes 0..n.
 
 ``oil`` holds six numbers: the law (0 isoviscous, 1 Barus, 2 Roelands), ``a``, ``p_r``, ``z``,
-``d_1`` and ``d_2``. Pressures are in units of the Hertz pressure.
+``d_1`` and ``d_2``. Pressures are in units of the Hertz pressure. A film that is heated or thins
+under shear has two columns more, over the same domain: at evenly spaced nodes the logarithm of a
+factor on the viscosity, then a factor on the density.
 """
 
 from __future__ import annotations
@@ -20,6 +22,8 @@ from tribodyn.types import Array
 ISOVISCOUS, BARUS, ROELANDS = 0.0, 1.0, 2.0
 #: Roelands' law ends where its base vanishes; an iterate below is taken as being there.
 LOWEST = -0.3
+#: Numbers of an oil without the columns of a heated film.
+PLAIN = 6
 
 
 @nb.njit(**INNER)
@@ -43,6 +47,16 @@ def oil_state(
         share = 1.0 / (1.0 + d2 * max(P[i], 0.0))
         rho[i] = 1.0 + d1 * P[i] * share
         drho[i] = d1 * share * (share if P[i] > 0.0 else 1.0)
+    if oil.size > PLAIN:
+        last = (oil.size - PLAIN) // 2 - 1
+        for i in range(n + 1):
+            at = PLAIN + min(i * last // n, last - 1)
+            share = (i * last - (at - PLAIN) * n) / n
+            lneta[i] += (1.0 - share) * oil[at] + share * oil[at + 1]
+            at += last + 1
+            factor = (1.0 - share) * oil[at] + share * oil[at + 1]
+            rho[i] *= factor
+            drho[i] *= factor
 
 
 #: Least film in the mobility, so that an iterate with overlapping flanks stays computable.

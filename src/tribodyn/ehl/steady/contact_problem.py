@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Protocol
 
+import numpy as np
+
 from tribodyn.types import Array
 
 
@@ -24,6 +26,16 @@ class DiscreteContact:
     load: float
     tail: float
     shape: Array = field(repr=False)  #: gap of the undeformed bodies
+
+
+def heat_factors(oil: Array, n: int) -> tuple[Array, Array]:
+    """Logarithm of the factor on viscosity, and factor on density, of a film on n intervals."""
+    columns = oil[6:].reshape(2, -1)
+    if not columns.size:
+        return np.zeros(n + 1), np.ones(n + 1)
+    places = np.linspace(0.0, 1.0, columns.shape[1])
+    viscosity, density = (np.interp(np.linspace(0.0, 1.0, n + 1), places, c) for c in columns)
+    return viscosity, density
 
 
 @dataclass(frozen=True, eq=False)

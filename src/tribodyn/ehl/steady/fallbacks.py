@@ -9,7 +9,12 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
+from tribodyn.ehl.steady.contact_problem import (
+    ContactProblem,
+    DiscreteContact,
+    Outcome,
+    heat_factors,
+)
 from tribodyn.ehl.steady.grid import MOST
 from tribodyn.ehl.steady.multigrid_engine import multigrid_engine
 from tribodyn.ehl.steady.newton_engine import first_intervals, newton_engine
@@ -72,22 +77,30 @@ def _film(grid: DiscreteContact) -> Array:
     return np.asarray(grid.H0 + grid.shape + grid.dx * deflection)
 
 
-def verify(grid: DiscreteContact) -> Verification:
-    """Check a solution against the discrete equations, from its pressure alone."""
-    P, dx, k = grid.P, grid.dx, grid.free
-    H = _film(grid)
-    law, a, reference, z, rise, bound = grid.oil
-    density = 1.0 + rise * P / (1.0 + bound * P)
+def fluxes(grid: DiscreteContact, H: Array) -> Array:
+    """Mass flux through the faces between the nodes, over ``rho0 u_e b^2/R``."""
+    P = grid.P
+    law, a, reference, z, rise, bound = grid.oil[:6]
+    heated, factor = heat_factors(grid.oil, grid.n)
+    density = factor * (1.0 + rise * P / (1.0 + bound * P))
     if law == 2.0:
         growth = a * (np.maximum(1.0 + P / reference, 0.7) ** z - 1.0)
     else:
         growth = a * P if law == 1.0 else 0.0 * P
-    mobility = density * np.maximum(H, 1e-10) ** 3 * np.exp(-np.minimum(growth, 700.0)) / grid.lam
+    fluidity = np.exp(-np.minimum(growth + heated, 700.0))
+    mobility = density * np.maximum(H, 1e-10) ** 3 * fluidity / grid.lam
     mass = density * H
     carried = 1.5 * mass[:-1]
     carried[1:] -= 0.5 * mass[:-2]
     carried[0] = 0.5 * (mass[0] + mass[1])
-    flux = carried - 0.5 * (mobility[:-1] + mobility[1:]) * np.diff(P) / dx
+    return np.asarray(carried - 0.5 * (mobility[:-1] + mobility[1:]) * np.diff(P) / grid.dx)
+
+
+def verify(grid: DiscreteContact) -> Verification:
+    """Check a solution against the discrete equations, from its pressure alone."""
+    P, dx, k = grid.P, grid.dx, grid.free
+    H = _film(grid)
+    flux = fluxes(grid, H)
     wetted = flux[: k + 1]
     mean = float(np.mean(wetted))
     cavity = np.diff(flux)[k:] / dx

@@ -17,6 +17,9 @@ from tribodyn.ehl.steady.fallbacks import Verified, solve_problem
 from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, cut_error, estimate_film
 from tribodyn.ehl.steady.grid_error import GridError, grid_error
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
+from tribodyn.ehl.thermal.thermal_contact import HeatedFilm, solve_heated
+from tribodyn.ehl.thermal.thermal_model import ThermalModel
+from tribodyn.ehl.thermal.thermal_solution import with_heat
 from tribodyn.errors import InputError, real_numbers, require_between, warn
 from tribodyn.interrupt import aside
 from tribodyn.lubricant import Lubricant
@@ -43,6 +46,22 @@ class SolverOptions:
     levels: int | None = None  #: number of grids
     start: LineContactSolution | None = None  #: solution to start from
     profile: Profile | None = None  #: heights that are added to the gap
+    thermal: bool | ThermalModel = False  #: whether and how the film is heated
+    sliding_speed: float = 0.0  #: speed of surface 1 less that of surface 2, for a heated film
+
+    @property
+    def heat(self) -> ThermalModel | None:
+        """How the film is heated; None where it is not."""
+        model = ThermalModel() if self.thermal is True else self.thermal or None
+        if model is not None and not isinstance(model, ThermalModel):
+            what = f"thermal is of the type {type(model).__name__}"
+            remedy = "Give True, or ThermalModel(shear_model, ...)"
+            raise InputError(what, "argument thermal", "It says how the film is heated", remedy)
+        if model is None and self.sliding_speed != 0.0:
+            what = f"sliding_speed = {self.sliding_speed:g} m/s without thermal"
+            why = "the film at one temperature does not depend on the sliding"
+            raise InputError(what, "argument sliding_speed", why, "Add thermal=True")
+        return model
 
     @classmethod
     def among(cls, arguments: Mapping[str, Any]) -> SolverOptions:
@@ -72,8 +91,10 @@ def solve_line_contact(
     levels: int | None = None,
     start: LineContactSolution | None = None,
     profile: Profile | None = None,
+    thermal: bool | ThermalModel = False,
+    sliding_speed: float = 0.0,
 ) -> LineContactSolution:
-    """Pressure and film of a lubricated line contact: steady, isothermal, Newtonian.
+    """Pressure and film of a lubricated line contact: steady, isothermal and Newtonian, or heated.
 
     Parameters
     ----------
@@ -111,13 +132,20 @@ def solve_line_contact(
         Solution of a similar contact to start from.
     profile : callable, optional
         Heights [m] that are added to the gap, as a function of the position [m].
+    thermal : bool or ThermalModel
+        Solve the energy equation with it: oil and surfaces are heated by shear and compression.
+        ``True`` is a Newtonian oil between bodies of steel; a :class:`ThermalModel` says how the
+        oil shears. The solution is a :class:`ThermalLineContactSolution`.
+    sliding_speed : float [m/s]
+        Speed of surface 1 less that of surface 2, for ``thermal``.
 
     Raises
     ------
     InputError
         If a value is out of range; the message names it, its limits and a remedy.
     ComputationError
-        If no solver finds the solution, with a log of all attempts.
+        If no solver finds the solution, with a log of all attempts; if film and temperatures do
+        not settle, with their last changes.
 
     Warns
     -----
@@ -254,11 +282,21 @@ def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution
     if options.start is not None:
         problem = replace(problem, start=_start(options.start))
 
-    def solve() -> tuple[Verified, GridError]:
-        solved = solve_problem(problem, options.method)
-        return solved, grid_error(problem, solved.outcome, flooded)
+    heat = options.heat
 
-    return assemble(case, domain, *aside(solve))
+    def solve() -> tuple[Verified, GridError, HeatedFilm | None]:
+        solved = solve_problem(problem, options.method)
+        error = grid_error(problem, solved.outcome, flooded)
+        if heat is None:
+            return solved, error, None
+        hot, film = solve_heated(case, problem, solved, heat, options.sliding_speed)
+        return hot, error, film
+
+    solved, error, heated = aside(solve)
+    solution = assemble(case, domain, solved, error)
+    if heat is None or heated is None:
+        return solution
+    return with_heat(solution, heated, heat, options.sliding_speed)
 
 
 def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:

@@ -1,0 +1,240 @@
+"""Pressure, film and temperatures of a line contact together.
+
+The film is solved with factors on viscosity and density that stand for the heat and the shear
+across it, the temperatures with that film; in turn, until neither changes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from tribodyn.ehl.steady.contact_case import ContactCase
+from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact
+from tribodyn.ehl.steady.fallbacks import Verified, fluxes, solve_problem
+from tribodyn.ehl.thermal.surfaces import slowest_speed, surface_response
+from tribodyn.ehl.thermal.thermal_model import MODELS, ThermalModel
+from tribodyn.errors import ComputationError, require_between
+from tribodyn.types import Array
+
+#: Sweeps over the temperatures before the first film, and before each other one.
+_FIRST, _OTHER = 12, 3
+#: Passes whose differences predict the next factors.
+_MEMORY = 8
+#: Change of the factors that does not move the film, and traction over the load that is none.
+_NO_CHANGE, _IDLE = 1e-5, 1e-6
+#: How strongly short waves of the factors are damped.
+_SHORT = 0.03
+#: Weight of nodes that pressure drives no oil through.
+_LEAST_WEIGHT = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class HeatedFilm:
+    """Temperatures and shear of a film, on its nodes along and across."""
+
+    temperature: Array = field(repr=False)  #: (nodes along, nodes across) [K]
+    heat: Array = field(repr=False)  #: into both surfaces (2, nodes) [W/m^2]
+    shear_stress: Array = field(repr=False)  #: in the middle of the film [Pa]
+    viscosity: Array = field(repr=False)  #: harmonic mean over the film at low stress [Pa s]
+    balance: Array  #: heat by shear and compression, into both bodies, carried out [W/m]
+    passes: int  #: between film and temperatures
+    traction: float  #: [N/m], of the sign of the sliding
+
+
+class _Temperatures:
+    """Temperatures of one contact, which go on from one film to the next."""
+
+    def __init__(
+        self, case: ContactCase, grid: DiscreteContact, model: ThermalModel, sliding: float
+    ) -> None:
+        from tribodyn.ehl._kernel.heat import Across, Along, Sheared
+
+        lubricant = case.lubricant
+        assert lubricant is not None  # the dimensionless form has no heat
+        self.case, self.step = case, grid.dx * case.half_width
+        oil = model.oil(lubricant, case.compressible)
+        speeds = case.entrainment_speed + 0.5 * sliding, case.entrainment_speed - 0.5 * sliding
+        nodes, across = grid.n + 1, model.nodes_across
+        far = [oil.temperature if b.temperature is None else b.temperature for b in model.bodies]
+        self.oil = Sheared(
+            speeds[0], speeds[1], lubricant.dynamic_viscosity, lubricant.density, oil.expansion,
+            oil.temperature, oil.temperature_viscosity_coefficient,
+            case.scales.viscosity_law == "roelands", oil.thermal_conductivity,
+            oil.specific_heat, case.hertz_pressure, far[0], far[1], MODELS[model.shear_model],
+            *_stresses(model),
+        )  # fmt: skip
+        responses = []
+        for speed, body in zip(speeds, model.bodies, strict=True):
+            least = slowest_speed(body.diffusivity, case.equivalent_radius)
+            moving = math.copysign(max(abs(speed), least), speed)
+            conduction = body.thermal_conductivity, body.diffusivity
+            responses.append(surface_response(nodes, self.step, moving, *conduction))
+        self.responses = responses[0], responses[1]
+        fields = np.zeros((7, nodes, across))
+        self.across = Across(np.full((nodes, across), oil.temperature), *fields)
+        zeros, ones = np.zeros((5, nodes)), np.ones((4, nodes))
+        unsettled = np.full(nodes, math.inf)
+        self.along = Along(
+            zeros[:2], zeros[2], zeros[3:], ones[0], ones[1], ones[2], ones[3], unsettled
+        )
+        self.balance = np.zeros(5)
+
+    def solve(self, grid: DiscreteContact, sweeps: int) -> float:
+        """Improve the temperatures of a film; greatest change of the last sweep [K]."""
+        from tribodyn.ehl._kernel.heat import heat_film
+
+        film = grid.H * self.case.half_width**2 / self.case.equivalent_radius
+        flux = (
+            float(np.mean(fluxes(grid, grid.H)[: grid.free + 1]))
+            * self.case.entrainment_speed
+            * film[0]
+            / grid.H[0]
+        )
+        return float(
+            heat_film(
+                grid.n, grid.free, self.step, grid.oil, grid.P, film, self.oil, flux,
+                self.responses, self.across, self.along, sweeps, self.balance,
+            )
+        )  # fmt: skip
+
+    @property
+    def factors(self) -> Array:
+        """Logarithms of the factors on viscosity and density (2, nodes)."""
+        return np.stack([self.along.factors[0], np.log(self.along.factors[1])])
+
+    @property
+    def weight(self) -> Array:
+        """How much the flow depends on the factors (2, nodes)."""
+        return np.stack([np.minimum(self.along.driven, 1.0) + _LEAST_WEIGHT, self.along.driven**0])
+
+    @property
+    def traction(self) -> float:
+        """Traction of the sheared film, of the sign of the sliding [N/m]."""
+        return -float(np.sum(self.along.stress)) * self.step
+
+    def film(self, passes: int) -> HeatedFilm:
+        """The heated film as it is now."""
+        along = self.along
+        return HeatedFilm(
+            self.across.temperature, along.heat, along.stress, along.mean, self.balance, passes,
+            self.traction,
+        )  # fmt: skip
+
+
+def _stresses(model: ThermalModel) -> tuple[float, float, float, float, float, float]:
+    """Eyring's stress, Carreau's numbers, and the limit, infinite for none."""
+    numbers = model.numbers
+    return (
+        numbers.get("eyring_stress", 1.0),
+        numbers.get("carreau_stress", 1.0),
+        numbers.get("carreau_exponent", 1.0),
+        numbers.get("yasuda_exponent", 2.0),
+        numbers.get("limiting_stress", math.inf),
+        numbers.get("limiting_stress_slope", 0.0),
+    )
+
+
+class _Prediction:
+    """Next factors from the last passes: Anderson (1965)."""
+
+    def __init__(self) -> None:
+        self.points: list[Array] = []
+        self.changes: list[Array] = []
+
+    def next(self, point: Array, change: Array, weight: Array) -> Array:
+        """Point at which the changes of the last passes, combined, would vanish."""
+        self.points, self.changes = [*self.points, point], [*self.changes, change]
+        del self.points[: -_MEMORY - 1], self.changes[: -_MEMORY - 1]
+        if len(self.points) == 1:
+            return point + change
+        by_change, by_point = np.diff(self.changes, axis=0), np.diff(self.points, axis=0)
+        rows = (by_change * weight).reshape(len(by_change), -1).T
+        shares = np.linalg.lstsq(rows, (change * weight).ravel(), rcond=1e-6)[0]
+        return np.asarray(point + change - np.tensordot(shares, by_point + by_change, axes=1))
+
+
+def solve_heated(
+    case: ContactCase,
+    problem: ContactProblem,
+    cold: Verified,
+    model: ThermalModel,
+    sliding_speed: float,
+) -> tuple[Verified, HeatedFilm]:
+    """Heat a contact that is solved at one temperature."""
+    most = 20.0 * case.entrainment_speed
+    require_between("sliding_speed", sliding_speed, -most, most, "m/s")
+    grid = cold.outcome.grid
+    assert grid is not None  # a verified outcome has a grid
+    temperatures = _Temperatures(case, grid, model, sliding_speed)
+    problem = replace(
+        problem, nodes=grid.n + 1, film_tolerance=0.0, profile=_profile(problem, grid)
+    )
+    solved, point = cold, np.zeros((2, grid.n + 1))
+    prediction, traction, film = _Prediction(), math.inf, math.inf
+    for passes in range(1, model.passes + 1):
+        moved = temperatures.solve(grid, _FIRST if passes == 1 else _OTHER)
+        change = temperatures.factors - point
+        drag = abs(temperatures.traction - traction) / max(
+            abs(traction), _IDLE * case.load_per_width
+        )
+        traction = temperatures.traction
+        flow = float(np.max(np.abs(change * temperatures.weight)))
+        if flow < _NO_CHANGE or max(film, drag) < model.tolerance:
+            return _scaled(solved, cold, grid), temperatures.film(passes)
+        change = _smooth(change * temperatures.along.share, grid)
+        point = prediction.next(point, change, temperatures.weight)
+        oil = np.concatenate([problem.oil[:6], point[0], np.exp(point[1])])
+        solved = solve_problem(replace(problem, oil=oil, start=grid), cold.method)
+        before, grid = grid, solved.outcome.grid
+        assert grid is not None
+        film = float(np.max(np.abs(grid.H / before.H - 1.0)))
+    raise _not_settled(case, model, sliding_speed, (film, drag, moved))
+
+
+def _scaled(solved: Verified, cold: Verified, grid: DiscreteContact) -> Verified:
+    """A heated solution whose coarser grids have the films of the cold one, in proportion."""
+    cold_grid, films = cold.outcome.grid, np.array(cold.outcome.films)
+    assert cold_grid is not None
+    hot, before = (float(np.interp(0.0, each.X, each.H)) for each in (grid, cold_grid))
+    scaled = tuple((films * (hot / before)).tolist())
+    return replace(solved, outcome=replace(solved.outcome, films=scaled))
+
+
+def _smooth(change: Array, grid: DiscreteContact) -> Array:
+    """Damp short waves of a change (2, nodes), which shake the pressure.
+
+    The pressure follows a wave of the film in proportion to its wave number and the film, and the
+    temperature follows the pressure.
+    """
+    from scipy.fft import dct, idct
+
+    wave = np.pi / (grid.n * grid.dx) * np.arange(grid.n + 1)
+    damped = 1.0 + _SHORT * float(np.interp(0.0, grid.X, grid.H)) * wave
+    return np.asarray(idct(dct(change, type=1) / damped, type=1))
+
+
+def _profile(problem: ContactProblem, grid: DiscreteContact) -> Array | None:
+    """Heights on the nodes of a grid that may be coarser than that of the problem."""
+    if problem.profile is None:
+        return None
+    return np.ascontiguousarray(problem.profile[:: (problem.nodes - 1) // grid.n])
+
+
+def _not_settled(
+    case: ContactCase, model: ThermalModel, sliding: float, last: tuple[float, float, float]
+) -> ComputationError:
+    film, drag, moved = last
+    return ComputationError(
+        f"film and temperatures did not settle in {model.passes} passes: in the last one the film "
+        f"changed by {film:.2g} of it, the traction by {drag:.2g} and the temperature by "
+        f"{moved:.2g} K",
+        where="solve_line_contact(thermal=...)",
+        why=f"at {case.load_per_width:.4g} N/m, {case.entrainment_speed:.4g} m/s and "
+        f"{sliding:.4g} m/s of sliding with {model.shear_model} shear and a tolerance of "
+        f"{model.tolerance:g}",
+        remedy='Take shear_model = "ree-eyring" or give a limiting_stress: a Newtonian oil makes '
+        "too much heat at high pressure; or allow more passes or a larger tolerance",
+    )

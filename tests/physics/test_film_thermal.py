@@ -1,0 +1,168 @@
+"""The heated film: limits, balance of heat, closed solutions, order across the film."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from tribodyn.ehl import (
+    BodyHeat,
+    ThermalModel,
+    blok_flash_temperature,
+    inlet_heating_factor,
+    solve_line_contact,
+)
+from tribodyn.ehl.thermal.surfaces import surface_response
+from tribodyn.errors import InputError
+from tribodyn.lubricant import Lubricant, from_library
+
+OIL = from_library("80W")
+SPEED = 3.0722
+CONTACT = (147802.0, 8e-3, SPEED, OIL, 2.2e11)
+MODULUS, ALPHA = 2.2e11, 2.19e-8
+
+
+@cache
+def heated(ratio, shear="newtonian", across=17, nodes=513, **model):
+    """The gear contact at a slide-to-roll ratio."""
+    thermal = ThermalModel(shear, nodes_across=across, **model)
+    return solve_line_contact(*CONTACT, nodes=nodes, thermal=thermal, sliding_speed=ratio * SPEED)
+
+
+@cache
+def cold():
+    return solve_line_contact(*CONTACT, nodes=513)
+
+
+def test_heat_that_is_led_away_at_once_leaves_the_isothermal_film():
+    bodies = (BodyHeat(1e13, 1e12),) * 2
+    film = heated(1.0, bodies=bodies, thermal_conductivity=1e12)
+    assert film.central_film == pytest.approx(cold().central_film, rel=1e-4)
+    assert film.minimum_film == pytest.approx(cold().minimum_film, rel=1e-4)
+    assert np.abs(film.film_temperature - OIL.temperature).max() < 1e-3
+
+
+def test_sliding_and_rolling_that_make_no_heat_leave_the_isothermal_film():
+    slow = (*CONTACT[:2], 0.01, *CONTACT[3:])
+    plain = solve_line_contact(*slow, nodes=513)
+    film = solve_line_contact(*slow, nodes=513, thermal=True, sliding_speed=1e-8)
+    assert film.central_film == pytest.approx(plain.central_film, rel=1e-4)
+    assert film.friction_coefficient < 1e-3
+
+
+def rolling_power(film):
+    """Power of the pressure against the flow, ``int (u_e h - q) dp``: what rolling costs."""
+    mean = np.trapezoid(film.film_temperature, film.height, axis=1) - OIL.temperature
+    density = film.density - 0.7 / OIL.density * mean
+    carried = SPEED * density * film.film
+    flux = carried[np.argmax(film.pressure)] * np.ones_like(carried)
+    spare = (carried - flux) / density
+    return float(np.sum(0.5 * (spare[1:] + spare[:-1]) * np.diff(film.pressure)))
+
+
+@pytest.mark.parametrize("shear", ["newtonian", "ree-eyring"])
+def test_heat_made_is_heat_led_away(shear):
+    for ratio in (0.0, 0.5, 1.5):
+        film = heated(ratio, shear)
+        made = film.shear_heat + film.compression_heat
+        away = film.body_heat.sum() + film.carried_heat
+        assert away == pytest.approx(made, abs=1e-3 * film.shear_heat)
+        sliding, rolling = film.traction * film.sliding_speed, rolling_power(film)
+        assert film.shear_heat == pytest.approx(
+            sliding + rolling, abs=0.01 * sliding + 0.1 * rolling
+        )
+
+
+def test_more_sliding_makes_a_hotter_thinner_film():
+    films = [heated(ratio) for ratio in (0.0, 0.5, 1.0, 1.5)]
+    hottest = [film.film_temperature.max() for film in films]
+    assert np.all(np.diff(hottest) > 5.0)
+    assert np.all(np.diff([film.minimum_film for film in films]) < 0.0)
+    assert np.all(np.diff([film.friction_coefficient for film in films[1:]]) < 0.0)
+    # The slower surface stays longer in the contact and gets hotter.
+    first, second = heated(1.0).surface_temperatures.max(axis=1)
+    assert second > first + 5.0
+    mirrored = heated(-1.0)
+    assert mirrored.traction == pytest.approx(-heated(1.0).traction, rel=1e-3)
+    assert mirrored.surface_temperatures[::-1].max(axis=1) == pytest.approx(
+        [first, second], abs=0.1
+    )
+
+
+def test_temperatures_converge_with_the_square_of_the_nodes_across():
+    values = np.array(
+        [
+            (film.central_film, film.traction, film.film_temperature.max() - OIL.temperature)
+            for film in (heated(1.0, across=n, tolerance=1e-6) for n in (9, 17, 33))
+        ]
+    )
+    coarse, fine = np.abs(np.diff(values, axis=0))
+    assert np.all(coarse[1:] > 3.0 * fine[1:])
+    assert np.all(np.abs(values[1] / values[2] - 1.0) < 0.02)
+
+
+def test_slow_sheared_film_has_the_profile_of_plane_couette_flow():
+    """Constant stress, heat conducted across: ``exp(b (T - T_s)) = 1 + Br/8`` in the middle."""
+    oil = Lubricant(
+        0.5, 880.0, 1.5e-8, temperature=313.15, temperature_viscosity_coefficient=0.04,
+        thermal_conductivity=0.13,
+    )  # fmt: skip
+    contact = 6e4, 8e-3, 0.1, oil, MODULUS
+    speed = 0.1
+    film = solve_line_contact(
+        *contact, nodes=513, viscosity_law="barus", sliding_speed=speed,
+        thermal=ThermalModel(nodes_across=65),
+    )  # fmt: skip
+    at = int(np.argmin(np.abs(film.position)))
+    walls = film.surface_temperatures[:, at]
+    viscosity = 0.5 * math.exp(1.5e-8 * film.pressure[at] - 0.04 * (walls.mean() - 313.15))
+    brinkman = viscosity * 0.04 * speed**2 / 0.13
+    assert brinkman > 1.0
+    rise = film.film_temperature[at, 32] - walls.mean()
+    assert rise == pytest.approx(math.log1p(brinkman / 8.0) / 0.04, rel=0.03)
+    root = math.sqrt(brinkman / 8.0)
+    stress = viscosity * speed / film.film[at] * math.asinh(root) / (root * math.hypot(1.0, root))
+    assert -film.shear_stress[at] == pytest.approx(stress, rel=0.02)
+
+
+def test_surface_under_hertzian_heat_has_the_flash_temperature_of_blok():
+    half_width, speed, nodes = 1e-4, 4.0, 2001
+    x = np.linspace(-1.2e-4, 1.2e-4, nodes)
+    heat = np.sqrt(np.maximum(1.0 - (x / half_width) ** 2, 0.0))
+    response = surface_response(nodes, x[1] - x[0], speed, 47.0, (47.0 / 13.6e3) ** 2)
+    rise = np.convolve(heat, response)[nodes - 1 : 2 * nodes - 1]
+    total = float(heat.sum() * (x[1] - x[0]))
+    # Both bodies alike: each takes half of the heat.
+    assert rise.max() == pytest.approx(
+        blok_flash_temperature(2.0 * total, half_width, speed, speed), rel=0.01
+    )
+    backwards = surface_response(nodes, x[1] - x[0], -speed, 47.0, (47.0 / 13.6e3) ** 2)
+    assert backwards == pytest.approx(response[::-1])
+
+
+def test_rolling_film_is_as_much_thinner_as_inlet_factors_say():
+    """Gupta et al. (1992) 0.880 and Wilson and Sheu (1983) 0.896 at the loading 0.318."""
+    loading = 0.082 * 0.0533 * SPEED**2 / 0.13
+    gupta = inlet_heating_factor(SPEED, 0.0, cold().hertz_pressure, 0.082, 0.0533, 0.13, MODULUS)
+    wilson = 1.0 / (1.0 + 0.241 * loading**0.64)
+    factor = heated(0.0).central_film / cold().central_film
+    assert factor == pytest.approx(gupta, abs=0.05)
+    assert factor == pytest.approx(wilson, abs=0.03)
+
+
+def test_wrong_input_is_refused_with_the_remedy():
+    with pytest.raises(InputError, match=r"sliding_speed = 1 m/s without thermal.*thermal=True"):
+        solve_line_contact(*CONTACT, sliding_speed=1.0)
+    bare = dataclasses.replace(OIL, temperature_viscosity_coefficient=None)
+    with pytest.raises(InputError, match="temperature_viscosity_coefficient of the oil"):
+        solve_line_contact(*CONTACT[:3], bare, MODULUS, nodes=129, thermal=True)
+    with pytest.raises(InputError, match="shear_model"):
+        ThermalModel("honey")
+    with pytest.raises(InputError, match="does not belong to shear_model"):
+        ThermalModel("newtonian", {"carreau_stress": 5e6})
+    with pytest.raises(InputError, match="thermal is of the type str"):
+        solve_line_contact(*CONTACT, thermal="yes")
