@@ -263,10 +263,7 @@ def _flow(
     i: int, h: float, density: float, log_viscosity: float, o: Sheared, a: Across, b: Along,
     fluidity: Array,
 ) -> tuple[float, float]:  # fmt: skip
-    """Velocity and mass flux over the cold density, and the factors of a column.
-
-    Returns the flow by the surfaces, and that by pressure over its gradient.
-    """
+    """Flow of a column by the surfaces, and that by pressure over its gradient; its factors."""
     last, T = fluidity.size - 1, a.temperature[i]
     dz, difference = h / last, o.speed_2 - o.speed_1
     fluid = tilted = mass = by_shear = by_pressure = before = 0.0
@@ -421,10 +418,7 @@ def _build(digest: str) -> Any:
         flux: float, responses: tuple[Array, Array], a: Across, b: Along, sweeps: int,
         balance: Array,
     ) -> float:  # fmt: skip
-        """Solve the temperatures between the inlet and node k; greatest change of the last sweep.
-
-        ``balance`` takes the heat by shear, by compression, into both surfaces, and carried out.
-        """
+        """Temperatures from the inlet to node k, balance of heat; change in the last sweep."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         last = a.temperature.shape[1] - 1
         lneta, dlneta, rho, drho = np.empty((4, n + 1))

@@ -13,46 +13,19 @@ _EULER = 0.5772156649015329
 
 
 def slowest_speed(diffusivity: float, reach: float) -> float:
-    """Speed [m/s] below which a surface is as warm as one at rest that is cooled at a distance.
-
-    A line source on a half-space at rest heats it without end. About a source that moves at the
-    speed u the surface is as warm as if it were cooled at the distance ``4 kappa exp(-gamma)/u``
-    [m]: the body ends at ``reach`` [m].
-    """
+    """Speed [m/s] below which a surface counts as one at rest, cooled at a distance ``reach``."""
+    # A line source on a half-space at rest heats it without end. About a source at the speed u the
+    # surface is as warm as if it were cooled at the distance 4 kappa exp(-gamma)/u.
     return 4.0 * diffusivity * math.exp(-_EULER) / reach
 
 
 def surface_response(
     nodes: int, interval: float, speed: float, conductivity: float, diffusivity: float
 ) -> Array:
-    """Rise of the surface temperature by even heat over one interval about a node.
-
-    ``T = 1/(pi k) int q exp(u s/2 kappa) K_0(|u s|/2 kappa) ds`` with s the distance behind the
-    source, integrated exactly.
-
-    Parameters
-    ----------
-    nodes : int
-        Nodes of the grid.
-    interval : float [m]
-        Distance of two nodes.
-    speed : float [m/s]
-        Speed of the surface in the direction of increasing position, of either sign, not zero.
-    conductivity, diffusivity : float [W/m/K], [m^2/s]
-        Of the body.
-
-    Returns
-    -------
-    (2 nodes - 1,) array [K m^2/W]
-        By the distance of node and source, from ``-(nodes - 1)`` to ``nodes - 1`` intervals.
-
-    Source: Carslaw and Jaeger, Conduction of Heat in Solids (1959), section 10.7.
-
-    Examples
-    --------
-    >>> print(surface_response(3, 1e-6, 2.0, 47.0, 1.2e-5).round(10))
-    [1.11e-08 1.66e-08 2.91e-08 1.95e-08 1.55e-08]
-    """
+    """Rise of the surface temperature [K m^2/W] by even heat over one interval about a node."""
+    # T = 1/(pi k) int q exp(u s/2 kappa) K_0(|u s|/2 kappa) ds, with s the distance behind the
+    # source, integrated exactly; by the distance of node and source, from -(nodes - 1) intervals
+    # on. Carslaw and Jaeger, Conduction of Heat in Solids (1959), section 10.7.
     from scipy.special import k0e, k1e
 
     ratio = abs(speed) / (2.0 * diffusivity)

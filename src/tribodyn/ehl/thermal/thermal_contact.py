@@ -204,11 +204,9 @@ def _scaled(solved: Verified, cold: Verified, grid: DiscreteContact) -> Verified
 
 
 def _smooth(change: Array, grid: DiscreteContact) -> Array:
-    """Damp short waves of a change (2, nodes), which shake the pressure.
-
-    The pressure follows a wave of the film in proportion to its wave number and the film, and the
-    temperature follows the pressure.
-    """
+    """Damp short waves of a change (2, nodes)."""
+    # The pressure follows a wave of the film in proportion to its wave number and to the film, and
+    # the temperature follows the pressure.
     from scipy.fft import dct, idct
 
     wave = np.pi / (grid.n * grid.dx) * np.arange(grid.n + 1)
