@@ -68,7 +68,12 @@ from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.papers import paper_comparison
 from tribodyn.plot.signals.analysed import signal_analysis, signal_history
 from tribodyn.plot.signals.bands import bands
-from tribodyn.plot.signals.diagnosis import narrowband_demodulation
+from tribodyn.plot.signals.diagnosis import (
+    cepstrum,
+    cyclic_coherence,
+    kurtogram,
+    narrowband_demodulation,
+)
 from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.lines import (
     harmonic_spectrum,
@@ -97,12 +102,14 @@ __all__ = [
     "bearing_spectrum",
     "bifurcation",
     "campbell",
+    "cepstrum",
     "compare_line_contacts",
     "comparison",
     "comprehensive_stiffness",
     "contact_lines",
     "continuation",
     "coupling",
+    "cyclic_coherence",
     "data_set",
     "drawing",
     "ease_off",
@@ -137,6 +144,7 @@ __all__ = [
     "hypoid_misalignment",
     "hypoid_pair",
     "hypoid_pressure",
+    "kurtogram",
     "lead_optimum",
     "line_contact",
     "load_sharing",

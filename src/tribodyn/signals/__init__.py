@@ -6,11 +6,14 @@ and the methods of diagnosis can be imported from this page too.
 | module | what it answers |
 |---|---|
 | ``angular_resampling`` | what a signal is over the rotation of a shaft |
+| ``cepstrum`` | which families of evenly spaced lines a signal has, and what it is without them |
 | ``condition_indicators`` | all indicators of a gear at once |
+| ``cyclic_coherence`` | which carriers are modulated at which frequencies |
 | ``demodulation`` | amplitude and phase of a mesh harmonic over a revolution |
 | ``envelope`` | how strong a signal is at each moment, how that repeats, what modulates it |
 | ``gear_indicators`` | whether teeth are damaged: FM0, FM4, NA4, NB4, M6A, M8A and others |
 | ``indicators`` | mean, rms, ranges, dynamic factor, direction and harmonics of a response |
+| ``kurtogram`` | in which band a signal is most impulsive |
 | ``order_map`` | how strong each multiple of the rotation is over the speed |
 | ``run_up_orders`` | orders and levels of a run-up, and the natural modes of its peaks |
 | ``spectrum`` | how strong each frequency is |
@@ -18,7 +21,9 @@ and the methods of diagnosis can be imported from this page too.
 """
 
 from tribodyn.arguments import guard
+from tribodyn.signals.cepstrum import Cepstrum, cepstrum, lifter
 from tribodyn.signals.condition_indicators import ConditionIndicators, condition_indicators
+from tribodyn.signals.cyclic_coherence import CyclicCoherence, cyclic_coherence
 from tribodyn.signals.demodulation import NarrowbandDemodulation, narrowband_demodulation
 from tribodyn.signals.gear_indicators import (
     energy_ratio,
@@ -33,17 +38,25 @@ from tribodyn.signals.gear_indicators import (
     sideband_index,
     sideband_level_factor,
 )
+from tribodyn.signals.kurtogram import Kurtogram, kurtogram
 from tribodyn.signals.synchronous_average import SynchronousAverage, time_synchronous_average
 
 __all__ = [
+    "Cepstrum",
     "ConditionIndicators",
+    "CyclicCoherence",
+    "Kurtogram",
     "NarrowbandDemodulation",
     "SynchronousAverage",
+    "cepstrum",
     "condition_indicators",
+    "cyclic_coherence",
     "energy_ratio",
     "fm0",
     "fm4",
+    "kurtogram",
     "kurtosis",
+    "lifter",
     "m6a",
     "m8a",
     "na4",

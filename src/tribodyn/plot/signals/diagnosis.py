@@ -1,4 +1,4 @@
-"""Figures of diagnosis: demodulated mesh harmonic."""
+"""Figures of diagnosis: demodulated mesh harmonic, cepstrum, kurtogram, cyclic coherence."""
 
 from __future__ import annotations
 
@@ -7,13 +7,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.plot.signals.recorded import outline
 from tribodyn.plot.signals.revolution import finer
-from tribodyn.plot.theme.labels import significant
-from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import PINION, TOTAL, line
+from tribodyn.plot.theme.labels import axis_label, significant
+from tribodyn.plot.theme.panels import Panel, from_zero, stack
+from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.analysis import NarrowbandDemodulation
+    from tribodyn.analysis import Cepstrum, CyclicCoherence, Kurtogram, NarrowbandDemodulation
+
+#: Colours from the smallest to the largest value.
+_SCALE = [[0.0, "#ffffff"], [0.3, "#c6dbef"], [0.6, "#6baed6"], [0.8, "#2171b5"], [1.0, "#08306b"]]
+#: Height of a map over that of a curve, and most columns and rows of one.
+_MAP, _MOST = 1.8, 480
 
 _ZERO = {"zeroline": True, "zerolinecolor": "#c5ccd3"}
 
@@ -43,4 +50,161 @@ def narrowband_demodulation(demodulation: NarrowbandDemodulation) -> Any:
         "Angle of the shaft [°]",
         panels,
         {"xaxis": {"range": [0.0, 360.0], "dtick": 45}},
+    )
+
+
+@drawing(
+    "cepstrum",
+    heading="Cepstrum",
+    caption="Each peak gathers a family of evenly spaced lines; its quefrency is the inverse of "
+    "their spacing, such as the period of the shaft whose sidebands they are. Peaks at multiples "
+    "are rahmonics of the same family.",
+    of="Cepstrum",
+    made_by="Call tribodyn.analysis.cepstrum on a signal and its plot method.",
+)
+def cepstrum(result: Cepstrum, *, shortest: float = 0.0) -> Any:
+    """Draw the cepstrum over the quefrency.
+
+    Parameters
+    ----------
+    result : Cepstrum
+        What :func:`tribodyn.analysis.cepstrum` returns.
+    shortest : float
+        Quefrency at which the axis begins [s]; by default after the first hundredth, which holds
+        the smooth course of the spectrum.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    longest = float(result.quefrency[-1])
+    start = shortest or 0.01 * longest
+    top, size = result.peak(start, longest)
+    beyond = result.quefrency >= start
+    quefrency, values = outline(result.quefrency[beyond], result.cepstrum[beyond])
+    curves = [
+        line(1e3 * quefrency, values, "cepstrum", TOTAL, width=1.0),
+        marked(
+            np.array([1e3 * top]), np.array([size]), "largest", WHEEL, size=8, symbol="circle-open"
+        ),
+    ]
+    return stack(
+        f"Largest peak {significant(size)} at {significant(1e3 * top, 4)} ms: lines every "
+        f"{significant(1.0 / top, 4)} Hz",
+        "Quefrency [ms]",
+        [Panel("Cepstrum", curves, {"zeroline": True, "zerolinecolor": "#c5ccd3"}, 1.4)],
+    )
+
+
+def _heatmap(x: Array, y: Array, values: Array, title: str, hover: str, top: float) -> Trace:
+    """Map of values from zero, with its colour bar."""
+    return {
+        "type": "heatmap", "x": x, "y": y, "z": np.round(values, 4), "zmin": 0.0, "zmax": top,
+        "colorscale": _SCALE, "showlegend": False,
+        "hovertemplate": f"{hover}: %{{z:.3g}}<extra></extra>",
+        "colorbar": {
+            "title": {"text": title, "side": "top", "font": {"size": 13, "color": MUTED}},
+            "len": 0.62, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left",
+        },
+    }  # fmt: skip
+
+
+@drawing(
+    "kurtogram",
+    heading="Kurtogram",
+    caption="Spectral kurtosis of equal bands, more and narrower ones from top to bottom. The "
+    "darkest band contains the most impulsive vibration; its envelope shows how often the impacts "
+    "come. Bands below the limit of noise are white.",
+    of="Kurtogram",
+    made_by="Call tribodyn.analysis.kurtogram on a signal and its plot method.",
+)
+def kurtogram(result: Kurtogram) -> Any:
+    """Draw the spectral kurtosis over the frequency and the number of bands."""
+    counts = np.unique(result.splits)
+    half = float(result.width[0] * result.splits[0])
+    columns = min(int(counts.max()) * 3, 3 * _MOST)
+    frequency = half * (np.arange(columns) + 0.5) / columns
+    rows = []
+    for count in counts:
+        above = np.where(result.kurtosis > result.limit, result.kurtosis, 0.0)
+        above = above[result.splits == count]
+        # A row with more bands than columns shows the largest band of each column.
+        place = (np.arange(count) * columns) // count
+        wide = np.zeros(columns)
+        np.maximum.at(wide, place, above)
+        rows.append(above[(np.arange(columns) * count) // columns] if count <= columns else wide)
+    low, high = result.band
+    best = int(result.splits[result.best])
+    heatmap = _heatmap(
+        frequency,
+        np.arange(counts.size),
+        np.array(rows),
+        "kurtosis",
+        "%{x:.5g} Hz",
+        max(float(result.kurtosis.max()), 0.1),
+    )
+    title = (
+        f"Most impulsive from {significant(low)} to {significant(high)} Hz (one of {best} bands): "
+        f"kurtosis {significant(float(result.kurtosis[result.best]))}"
+    )
+    axis = {
+        "tickvals": np.arange(counts.size).tolist(),
+        "ticktext": [str(count) for count in counts],
+        "autorange": "reversed",
+        "showgrid": False,
+    }
+    row = float(np.searchsorted(counts, best))
+    corners = np.array([low, high, high, low, low]), row + 0.5 * np.array([-1, -1, 1, 1, -1])
+    frame = [line(*corners, "most impulsive", WHEEL, width=2.0)] if result.significant else []
+    return stack(
+        title if result.significant else "No band is more impulsive than noise",
+        axis_label("frequency"),
+        [Panel("Number of bands", [heatmap, *frame], axis, _MAP)],
+        {"hovermode": "closest", "showlegend": False},
+    )
+
+
+@drawing(
+    "cyclic_coherence",
+    heading="Cyclic coherence",
+    caption="Squared coherence over the frequency of the carrier and of its modulation. Random "
+    "impacts that repeat show as vertical lines at multiples of their rate. Below, the mean over "
+    "the carriers; the dotted line is its value for noise.",
+    of="CyclicCoherence",
+    made_by="Call tribodyn.analysis.cyclic_coherence on a signal and its plot method.",
+)
+def cyclic_coherence(result: CyclicCoherence) -> Any:
+    """Draw the coherence over carrier and modulation, and its mean over the carriers."""
+    alpha = result.cyclic_frequency
+    groups = np.arange(0, alpha.size, -(-alpha.size // _MOST))
+    most = np.maximum.reduceat(result.coherence, groups, axis=1)
+    ends = np.append(groups[1:], alpha.size)
+    top = [
+        a + int(np.argmax(result.coherence[:, a:b].max(axis=0)))
+        for a, b in zip(groups, ends, strict=True)
+    ]
+    mean = result.enhanced_envelope_spectrum()
+    largest = int(np.argmax(mean))
+    heatmap = _heatmap(
+        alpha[top],
+        result.frequency,
+        most,
+        "coherence",
+        "%{y:.5g} Hz modulated with %{x:.5g} Hz",
+        max(float(most.max()), result.threshold),
+    )
+    noise = np.full(2, 1.0 / result.blocks)
+    curves = [
+        line(alpha, mean, "mean", TOTAL, width=1.2),
+        line(alpha[[0, -1]], noise, "noise", PINION, dash="dot"),
+    ]
+    return stack(
+        f"Most coherent modulation at {significant(float(alpha[largest]), 4)} Hz: mean "
+        f"{significant(float(mean[largest]))}, noise {significant(float(noise[0]))}",
+        "Frequency of the modulation [Hz]",
+        [
+            Panel("Carrier [Hz]", [heatmap], {"showgrid": False}, _MAP),
+            from_zero("Mean coherence", curves),
+        ],
+        {"hovermode": "closest"},
     )
