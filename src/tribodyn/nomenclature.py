@@ -147,6 +147,7 @@ summit_radius | beta | m | um | mean radius of the summits of one flank
 roughness_ra | Ra | m | um | arithmetic mean roughness of one flank; Rq = 1.25 Ra is taken, as of ground flanks | "0.4 um"
 friction_coefficient | mu | | | friction force over normal force | 0.05
 asperity_friction_coefficient | mu_a | | | part of the friction coefficient that the asperities cause
+flash_temperature | Theta_fl | K | K | greatest rise of the surface temperature in a contact above that of the gears
 mesh_load_factor | K_gamma | | | greatest load of a planet over the mean of all planets
 gear_loss_factor | H_V | | | mean sliding work over transmitted work at unit friction
 tooth_stiffness | k_t | N/m | N/um | stiffness of the teeth of one pair without their oil film

@@ -11,6 +11,7 @@ import numpy as np
 
 from tribodyn.contact import Kinematics, path_of_contact
 from tribodyn.contact.face_contacts import SLICES
+from tribodyn.ehl import blok_flash_temperature
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ModelWarning, collected, require_positive, warn
 from tribodyn.friction import FrictionParts, TribologicalContact, pitch_point
@@ -203,6 +204,7 @@ class LoadedMesh:
             settings.composite_roughness,
             pitch_point(self.pair, *operation),
             self.films,
+            bodies=settings.bodies,
         )
         friction = loads.film_at.friction(contact, motion, settings)
         columns = columns_of(cycle, motion, loads, contact, self._reported, friction)
@@ -225,7 +227,21 @@ def columns_of(
         **as_columns(reported, contact.composite_roughness),
     }
     columns |= friction_columns(friction, columns.get("film_ratio"))
+    coefficient = columns["friction_coefficient"]
+    columns["flash_temperature"] = _flash_temperature(contact, coefficient, loads.load_per_width)
     return _spread(columns, cycle.in_contact)
+
+
+def _flash_temperature(contact: TribologicalContact, friction: Array, load: Array) -> Array:
+    """Greatest rise of the surface temperature in each contact, by Blok."""
+    sliding, entrainment = contact.sliding_speed, contact.entrainment_speed
+    return blok_flash_temperature(
+        friction * load * np.abs(sliding),
+        2.0 / np.pi * contact.load_per_width / contact.hertz_pressure,
+        entrainment + 0.5 * sliding,
+        entrainment - 0.5 * sliding,
+        *contact.bodies,
+    )
 
 
 def table_of(

@@ -126,6 +126,9 @@ class MeshColumns(Record):
     film_offset : float [m]
         Distance before perfect rigid flanks touch at which the first oil film in series begins to
         carry; ``static_transmission_error`` and the force law are counted from there.
+    flash_temperature : array (n, pairs) [K] or None
+        Greatest rise of the surface temperature in the contact above that of the gears, by
+        :func:`tribodyn.ehl.blok_flash_temperature`. None in tables of other programs.
     """
 
     grid: PhaseGrid
@@ -178,6 +181,7 @@ class MeshColumns(Record):
     face_position: Array | None = quantity("pair", default=None)
     contact_width: Array | None = quantity("knot", "pair", of="face_width", default=None)
     film_offset: float = fact(default=0.0)
+    flash_temperature: Array | None = quantity("knot", "pair", default=None)
 
     def __post_init__(self) -> None:
         if self.gears is not None:

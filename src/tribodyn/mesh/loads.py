@@ -13,6 +13,7 @@ from tribodyn.contact import Kinematics, hertz_line
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ComputationError, quiet, warn
 from tribodyn.friction import PitchPoint, TribologicalContact
+from tribodyn.friction.base import STEEL_BODIES
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact
 from tribodyn.mesh.film.film_columns import smallest_film
 from tribodyn.mesh.film.film_lookup import (
@@ -116,6 +117,8 @@ def tribological_contact(
     composite_roughness: float,
     pitch: PitchPoint | None,
     films: Films,
+    *,
+    bodies: tuple[float, float] = STEEL_BODIES,
 ) -> TribologicalContact:
     """Loaded contacts as the friction laws see them."""
     hertz = hertz_line(load_per_width, motion.equivalent_radius, pairs.effective_modulus)
@@ -132,6 +135,7 @@ def tribological_contact(
         film_thickness=smallest_film(films),
         pitch=pitch,
         central_film=films.central_film,
+        bodies=bodies,
     )
 
 

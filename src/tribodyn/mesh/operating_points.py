@@ -89,7 +89,9 @@ def _columns(pair: Gears, settings: ToothContact, points: Sequence[_Point]) -> d
 
     films: Films = _compute_rows(points, lambda: film_at(loads.tribological), films_of)
     roughness = settings.composite_roughness
-    contact = tribological_contact(motion, pairs, loads.tribological, roughness, None, films)
+    contact = tribological_contact(
+        motion, pairs, loads.tribological, roughness, None, films, bodies=settings.bodies
+    )
 
     def friction_of(row: int) -> Friction:
         pitch = pitch_point(pair, points[row].speed, points[row].torque)

@@ -16,6 +16,8 @@ from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.build import mesh_table
 from tribodyn.mesh.cycle import PathPositions, path_positions
+from tribodyn.mesh.face.lines import along_flank, slice_count
+from tribodyn.mesh.face.operation import films_over_flank
 from tribodyn.mesh.film.film_columns import as_columns, film_places
 from tribodyn.mesh.gears import Gears
 from tribodyn.mesh.sharing import LEAST_SHARE, ToothContact, teeth_of
@@ -62,7 +64,10 @@ class FilmOverOperation(Record):
     film_pressure : array (torques, speeds, positions) [Pa] or None
         Greatest pressure in the film, where it is solved.
     film_stiffness : array (torques, speeds, positions) [N/m] or None
-        Stiffness of the film over the common face width.
+        Stiffness of the film over the common face width, or that of the slice.
+    face_position : array (positions,) [m] or None
+        Where contacts are slices of lines of contact: the middle of the slice at each position,
+        from the middle of the face. Slices follow each other, each from its entry to its exit.
     """
 
     pinion_torque: Array = quantity("torque", axis=True)
@@ -77,6 +82,7 @@ class FilmOverOperation(Record):
     film_ratio: Array | None = quantity("torque", "speed", "position", default=None)
     film_pressure: Array | None = quantity("torque", "speed", "position", default=None)
     film_stiffness: Array | None = quantity("torque", "speed", "position", default=None)
+    face_position: Array | None = quantity("position", default=None)
 
     plot_lubrication_map = figure_method(
         "lubrication_map", "Draw the lubrication regime over speed and torque."
@@ -160,16 +166,21 @@ def film_over_operation(
     require_between("composite_roughness", composite_roughness, 0.0, 1e-4, "m")
     model = FILM_MODELS[film_model]
     options = model.complete(film_options)
-    require_whole_pairs(pair, stiffness_model)
-    contact = path_of_contact(pair)
-    places = path_positions(contact, options.get("positions", _POSITIONS))
-    path = contact.A + contact.direction * places.age * pair.base_pitch
     settings = ToothContact(
         material=material,
         lubricant=lubricant,
         stiffness_model=stiffness_model,
         stiffness_options=stiffness_options,
+        composite_roughness=composite_roughness,
+        film_model=film_model,
+        film_options=film_options,
     )
+    if has_slices(pair, MODELS[stiffness_model]):
+        fields = films_over_flank(pair, settings, torque, speed, progress)
+        return FilmOverOperation(pinion_torque=torque, pinion_speed=speed, **fields)
+    contact = path_of_contact(pair)
+    places = path_positions(contact, options.get("positions", _POSITIONS))
+    path = contact.A + contact.direction * places.age * pair.base_pitch
     share = _shares(pair, settings, places, torque)
     total_load = torque / (pair.pinion.base_radius * pair.common_face_width)
     # A pair that its relief separates has no film; the solver gets a small load instead.
@@ -199,17 +210,6 @@ def film_over_operation(
         entrainment_speed=motion.entrainment_speed,
         **_masked(as_columns(films, composite_roughness), touches),
     )
-
-
-def require_whole_pairs(pair: Gears, stiffness_model: str) -> None:
-    """Raise for contacts that are slices of lines: their places are not those of one path."""
-    if has_slices(pair, MODELS[stiffness_model]):
-        raise InputError(
-            "the contacts of this mesh are slices of the lines of contact",
-            where="maps over torque and speed of one tooth pair",
-            why="They follow one tooth pair along one path; a helical pair has as many as slices",
-            remedy="Build the mesh table of each operating point: tribodyn.mesh.build, or a sweep",
-        )
 
 
 def _masked(columns: dict[str, Array], touches: Mask) -> dict[str, Array]:
@@ -278,6 +278,9 @@ class ComprehensiveStiffness(Record):
         Stiffness of the teeth of all pairs.
     comprehensive_mesh_stiffness : array (t, s, p) [N/m]
         Stiffness of the whole mesh with its films.
+    face_position : array (m,) [m] or None
+        Where contacts are slices of lines of contact: the middle of the slice at each place, from
+        the middle of the face; load share and stiffnesses of a place are those of the slice.
     """
 
     gear_pair: Gears
@@ -296,6 +299,7 @@ class ComprehensiveStiffness(Record):
     film_mesh_stiffness: Array = quantity("torque", "speed", "phase", unit="N/m")
     tooth_mesh_stiffness: Array = quantity("torque", "speed", "phase", unit="N/m")
     comprehensive_mesh_stiffness: Array = quantity("torque", "speed", "phase", unit="N/m")
+    face_position: Array | None = quantity("place", unit="m", default=None)
 
     @property
     def mean_mesh_stiffness(self) -> Array:
@@ -400,7 +404,6 @@ def comprehensive_stiffness(
     """
     speeds, torques = one_or_more(pinion_speed=pinion_speed, pinion_torque=pinion_torque)
     _check_kind(film_model, kind)
-    require_whole_pairs(pair, stiffness_model)
     settings = ToothContact(
         material=material,
         lubricant=lubricant,
@@ -418,7 +421,8 @@ def comprehensive_stiffness(
     tables = [[table_at(torque, speed) for speed in speeds.tolist()] for torque in torques.tolist()]
     columns = [[_columns(table, kind) for table in row] for row in tables]
     table = tables[0][0]
-    path = _in_order(table, table.path)
+    path, face = _in_order(table, table.path), table.face_position
+    on_face = None if face is None else _in_order(table, np.broadcast_to(face, table.path.shape))
     radius = path if pair.driver == "pinion" else pair.line_of_action_length - path
     return ComprehensiveStiffness(
         gear_pair=pair,
@@ -428,6 +432,7 @@ def comprehensive_stiffness(
         pinion_torque=torques,
         pinion_speed=speeds,
         path=path,
+        face_position=on_face,
         roll_angle=radius / pair.driving.base_radius,
         phase=table.phase,
         **{
@@ -464,8 +469,8 @@ def _columns(table: MeshTable, kind: str) -> dict[str, Array]:
 
 
 def _in_order(table: MeshTable, column: Array) -> Array:
-    """Values of a pair from its entry to its exit: those of pair 0, then of pair 1 and so on."""
-    return np.asarray(column.T[table.in_contact.T])
+    """Values of a pair from its entry to its exit, of all slices one after the other."""
+    return along_flank(column, table.in_contact, slice_count(table))
 
 
 def _check_kind(film_model: str, kind: str) -> None:

@@ -37,6 +37,7 @@ class MeshTable(MeshColumns):
         "mesh_stiffness": Labels(("knot",)),
         "transmission_error_at_rest": Labels(("knot",), of="static_transmission_error"),
         "lubrication_regime": Labels(("knot", "pair")),
+        "friction_power": Labels(("knot", "pair"), of="power"),
         "friction_sum": Labels(("knot",)),
         "friction_moment_pinion": Labels(("knot",)),
         "friction_moment_wheel": Labels(("knot",)),
@@ -132,6 +133,12 @@ class MeshTable(MeshColumns):
         """Part of the mean friction coefficient from asperities; None if the law has none."""
         part = self.asperity_friction_coefficient
         return None if part is None else float(self.grid.mean(self.by_share(part)))
+
+    @property
+    def friction_power(self) -> Array:
+        """Sliding power lost in each contact of the quasi-static mesh (n, pairs) [W]."""
+        rubbing = self.friction_coefficient * self.normal_force * self.line_force_ratio
+        return np.asarray(rubbing * np.abs(self.sliding_speed))
 
     @property
     def mean_friction_power(self) -> float:

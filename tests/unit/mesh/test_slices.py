@@ -16,7 +16,14 @@ from tribodyn.errors import InputError, ModelWarning
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.gear import FlankModification, Material, cylindrical_pair
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh import LOADS, build, mesh_friction
+from tribodyn.mesh import (
+    LOADS,
+    build,
+    comprehensive_stiffness,
+    film_over_operation,
+    mesh_friction,
+    moving_film,
+)
 from tribodyn.stiffness import (
     MODELS,
     iso6336_single_stiffness,
@@ -415,3 +422,75 @@ def test_local_compression_of_a_slice_is_that_of_the_normal_section(model):
     across = sum(weber_banaschek_compression(load, width, depth, material) for depth in depths)
     along = load * (parts.local - parts.logarithm * math.log(load))
     assert along[places.on_path] == pytest.approx((across / cosine)[places.on_path], rel=1e-9)
+
+
+def test_heat_of_slices_sums_to_the_loss_and_warms_the_flanks_as_blok_says():
+    mesh = table(helical(), stiffness_model="iso6336")
+    lost = mesh.grid.mean(mesh.friction_power.sum(axis=1))
+    assert lost == pytest.approx(mesh.mean_friction_power, rel=1e-12)
+    knot, contact = np.argwhere(mesh.load_share > 0.01)[40]
+    load, friction, pressure = (
+        getattr(mesh, name)[knot, contact]
+        for name in ("load_per_width", "friction_coefficient", "hertz_pressure")
+    )
+    sliding, speed = mesh.sliding_speed[knot, contact], mesh.entrainment_speed[knot, contact]
+    width = 4.0 * load / (math.pi * pressure)  # of the contact, twice b
+    roots = math.sqrt(speed + 0.5 * sliding) + math.sqrt(speed - 0.5 * sliding)
+    expected = 1.1115 * friction * load * abs(sliding) / (13.6e3 * roots * math.sqrt(width))
+    assert mesh.flash_temperature[knot, contact] == pytest.approx(expected, rel=1e-3)
+    assert 5.0 < float(mesh.over_face("flash_temperature").max()) < 200.0
+
+
+def test_films_over_torque_and_speed_are_those_of_each_mesh_of_slices():
+    pair, loads, speeds = helical(), (300.0, 600.0), (75.0, 150.0)
+    settings = {"material": Material(), "stiffness_model": "iso6336", "lubricant": OIL}
+    operation = {"pinion_torque": loads, "pinion_speed": speeds}
+    films = film_over_operation(
+        pair, **settings, composite_roughness=0.4e-6, film_model="moes", **operation
+    )
+    for row, torque in enumerate(loads):
+        for column, speed in enumerate(speeds):
+            options = {"pinion_torque": torque, "pinion_speed": speed}
+            mesh = table(pair, stiffness_model="iso6336", **options)
+            flank = (mesh.in_contact.shape[1] // 24, 24)
+            ratio = np.where(mesh.in_contact, mesh.film_ratio, np.nan)
+            least = np.nanmin(ratio.reshape(-1, *flank), axis=(0, 1))
+            at_point = films.film_ratio[row, column]
+            faces = np.unique(films.face_position)
+            of_slices = [np.nanmin(at_point[films.face_position == face]) for face in faces]
+            assert of_slices == pytest.approx(least, rel=1e-12)
+    assert films.hertz_pressure.max() == pytest.approx(mesh.hertz_pressure.max(), rel=1e-12)
+    assert np.all(np.diff(films.path[films.face_position == faces[5]]) >= 0.0)
+
+
+def test_stiffness_over_torque_and_speed_sums_over_the_slices_of_all_pairs():
+    settings = {"material": Material(), "stiffness_model": "iso6336", "lubricant": OIL}
+    operation = {"pinion_torque": 600.0, "pinion_speed": (75.0, 150.0), "steps": 32}
+    found = comprehensive_stiffness(helical(), **settings, film_model="moes", **operation)
+    mesh = table(helical(), stiffness_model="iso6336", steps=32,
+                 film_options={"stiffness": "tangent"})  # fmt: skip
+    assert found.comprehensive_mesh_stiffness[0, 1] == pytest.approx(mesh.mesh_stiffness)
+    assert found.pair_stiffness[0].sum(axis=1) == pytest.approx(
+        found.comprehensive_mesh_stiffness[0].sum(axis=1), rel=1e-9
+    )
+    assert np.unique(found.face_position).size == 24
+
+
+def test_the_film_of_a_flank_line_follows_its_slice_through_the_mesh():
+    """It has the load of its slice, and a film near the steady one of its formula."""
+    mesh = table(helical(), stiffness_model="iso6336", steps=48)
+    face = 0.2 * mesh.common_face_width
+    film = moving_film(mesh, OIL, Material(), steps=100, nodes=257, face_position=face)
+    number = int(np.argmin(np.abs(mesh.face_position[:24] - face)))
+    alive = mesh.in_contact[:, number::24].T
+    age = (mesh.phase[None, :] + np.arange(len(alive))[:, None])[alive]
+    load = mesh.load_per_width[:, number::24].T[alive]
+    middle = film.time * mesh.mesh_frequency
+    expected = np.interp(middle, age - age[0], load)
+    inside = (middle > 0.1) & (middle < middle[-1] - 0.1)
+    assert film.load_per_width[inside] == pytest.approx(expected[inside], rel=1e-9)
+    steady = np.interp(middle, age - age[0], mesh.central_film[:, number::24].T[alive])
+    part = film.central_film[inside] / steady[inside]
+    assert 0.7 < np.nanmin(part) < np.nanmedian(part) < 1.1
+    with pytest.raises(InputError, match=r"face_position = 0\.1 m"):
+        moving_film(mesh, OIL, Material(), face_position=0.1)

@@ -36,6 +36,12 @@ def by_pair(values: NDArray[Any], slices: int) -> NDArray[Any]:
     return values.reshape(*values.shape[:-1], -1, slices)
 
 
+def along_flank(values: NDArray[Any], in_contact: Mask, slices: int) -> NDArray[Any]:
+    """Values (n, contacts) of a tooth pair from its entry to its exit, slice by slice (m,)."""
+    touching = by_pair(in_contact, slices).transpose(2, 1, 0)
+    return np.asarray(by_pair(values, slices).transpose(2, 1, 0)[touching])
+
+
 def pair_column(mesh: MeshColumns, column: str, *, in_middle: bool = False) -> tuple[Array, Mask]:
     """Values of whole pairs (n, pairs), and which pairs are in contact there."""
     values, slices = np.asarray(getattr(mesh, column)), slice_count(mesh)

@@ -18,6 +18,7 @@ from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.columns import FILM_COLUMNS
+from tribodyn.mesh.face.lines import slice_count
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.types import Array, Mask
@@ -182,6 +183,8 @@ def film_places(describe: Callable[..., str]) -> Iterator[None]:
 #: Time steps of an engagement: fewer leave the change of the load unresolved.
 _LEAST, _MOST = 50, 20000
 _NO_ROUGHNESS = (None, None)
+#: Load at entry and exit over which a film has at least this part everywhere.
+_LEAST_LOAD = 0.1
 
 
 def moving_film(
@@ -193,9 +196,13 @@ def moving_film(
     ramp: float = 0.05,
     least_share: float = 0.02,
     roughness: tuple[RoughnessProfile | None, RoughnessProfile | None] = _NO_ROUGHNESS,
+    face_position: float = 0.0,
     **options: Any,
 ) -> TransientLineContact:
     """Follow the film of one tooth pair through the mesh, with the squeeze of the oil.
+
+    Where contacts are slices of lines of contact, as of helical gears, the film is that of one
+    flank line through the mesh, in the transverse plane at a place on the face.
 
     Parameters
     ----------
@@ -212,6 +219,9 @@ def moving_film(
         Part of the load at the very entry and exit: a film needs some.
     roughness : two of RoughnessProfile or None
         Heights of both flanks, carried along at their speeds.
+    face_position : float [m]
+        Of the flank line, from the middle of the face; the nearest slice is followed. Whole pairs
+        are the same everywhere.
     **options : Any
         Further options of :func:`tribodyn.ehl.solve_transient_line_contact`, such as ``nodes``
         and ``keep_every``.
@@ -219,7 +229,7 @@ def moving_film(
     Returns
     -------
     TransientLineContact
-        Time counts from the entry of the pair.
+        Time counts from the entry of the pair, or of its slice.
 
     Raises
     ------
@@ -246,13 +256,17 @@ def moving_film(
     require_between("ramp", ramp, 1e-3, 0.5, "mesh cycles")
     require_between("least_share", least_share, 1e-3, 1.0)
     names = ("load_per_width", "equivalent_radius", "entrainment_speed", "sliding_speed")
-    age, columns = _life(mesh, names)
+    half = 0.5 * mesh.common_face_width
+    require_between("face_position", face_position, -half, half, "m")
+    age, columns = _life(mesh, names, face_position)
     cycles = np.linspace(0.0, age[-1], steps + 1)
     load, radius, speed, sliding = (np.interp(cycles, age, values) for values in columns)
+    # Relief and crowning leave parts of a flank line without load, where a film needs some.
+    least = _LEAST_LOAD * least_share * load.max()
     surfaces = (speed + 0.5 * sliding, speed - 0.5 * sliding)
     return solve_transient_line_contact(
         cycles / mesh.mesh_frequency,
-        load * _share(cycles, ramp, least_share),
+        np.maximum(load * _share(cycles, ramp, least_share), least),
         radius,
         speed,
         lubricant,
@@ -263,11 +277,16 @@ def moving_film(
     )
 
 
-def _life(mesh: MeshTable, names: tuple[str, ...]) -> tuple[Array, list[Array]]:
-    """Columns of the table in the order in which one pair passes them, over mesh cycles."""
-    alive = mesh.in_contact.T
+def _life(
+    mesh: MeshTable, names: tuple[str, ...], face_position: float
+) -> tuple[Array, list[Array]]:
+    """Columns in the order in which a pair passes them at a place on the face, over mesh cycles."""
+    slices = slice_count(mesh)
+    face = np.zeros(1) if mesh.face_position is None else mesh.face_position[:slices]
+    chosen = slice(int(np.argmin(np.abs(face - face_position))), None, slices)
+    alive = mesh.in_contact[:, chosen].T
     age = (mesh.phase[None, :] + np.arange(alive.shape[0])[:, None])[alive]
-    return age, [getattr(mesh, name).T[alive] for name in names]
+    return age - age[0], [getattr(mesh, name)[:, chosen].T[alive] for name in names]
 
 
 def _share(cycles: Array, ramp: float, least: float) -> Array:

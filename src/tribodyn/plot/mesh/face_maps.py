@@ -1,4 +1,4 @@
-"""Maps over path and face: load, pressure, film and friction of a mesh with slices."""
+"""Maps over path and face: load, pressure, film, friction and heat of a mesh with slices."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ _COLUMNS = (
     "central_film",
     "film_ratio",
     "friction_coefficient",
+    "flash_temperature",
 )
 _QUANTITIES = {"central_film": "film_thickness"}
 _NAMES = {
@@ -31,6 +32,7 @@ _NAMES = {
     "central_film": "Central film",
     "film_ratio": "Film ratio",
     "friction_coefficient": "Friction coefficient",
+    "flash_temperature": "Flash temperature",
 }
 _COLORS = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
 #: Part of the film whose values the colours resolve: slices that hardly carry have thick films.

@@ -12,7 +12,7 @@ from tribodyn.plot.mesh.loaded_contact import in_legend, torque_colors, torque_n
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, event_lines, from_zero, stack, stack_rows
 from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     from tribodyn.mesh import ComprehensiveStiffness
@@ -276,18 +276,28 @@ def _panel(
     study: ComprehensiveStiffness, number: int, styles: list[tuple[int, int, str, str, str]]
 ) -> Panel:
     column, quantity, label = _PANELS[number]
-    unit, angle = display_unit(quantity), displayed("roll_angle", study.roll_angle)
-    values, traces = getattr(study, column), []
+    chosen, slices = _middle_of_face(study)
+    unit, angle = display_unit(quantity), displayed("roll_angle", study.roll_angle[chosen])
+    values, traces = slices * getattr(study, column)[..., chosen], []
     for t, s, name, color, dash in styles:
         displayed_values = displayed(quantity, values[t, s])
         trace = line(angle, displayed_values, name, color, unit=unit, dash=dash)
         # One legend for all panels, next to the first.
         more = {"legendgroup": name, "showlegend": number == 0 and len(styles) > 1}
         traces.append({**trace, **more})
-    sizes = displayed(quantity, getattr(study, column))
+    sizes = displayed(quantity, values)
     sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
     wide = sizes.size > 0 and float(sizes.max()) > _WIDE * float(sizes.min())
     return Panel(axis_label(quantity, label), traces, {"type": "log"} if wide else {})
+
+
+def _middle_of_face(study: ComprehensiveStiffness) -> tuple[Mask, int]:
+    """Places in the middle of the face, and the number of slices of the face."""
+    face = study.face_position
+    if face is None:
+        return np.ones(study.path.size, dtype=bool), 1
+    positions = np.unique(face)
+    return np.asarray(face == positions[positions.size // 2]), positions.size
 
 
 def _series_caption(study: ComprehensiveStiffness) -> str:
@@ -295,6 +305,8 @@ def _series_caption(study: ComprehensiveStiffness) -> str:
         "Stiffness of a tooth pair from A to E: of its oil film, of its teeth, and of both in "
         "series. The softer of the two dominates."
     )
+    if study.face_position is not None:
+        caption += " Values of the slice in the middle of the face, as if all of the face were so."
     if study.kind == "seed":
         return f"{caption} Total stiffnesses of film and teeth are combined, as in the source."
     return caption

@@ -73,10 +73,12 @@ def mesh_of(
     load: float = 1.0,
     rehearsal: bool = False,
     about_load: bool = False,
+    friction_alone: bool = False,
 ) -> MeshTable:
     """Compute the tooth contact of a case over one mesh cycle."""
     # A rehearsal has few phases and a film by formula: it only has to raise the input errors.
     # about_load: the force law has few ramps, or is its tangent where the case takes no more.
+    # friction_alone: the force law is its tangent, which costs nothing.
     from tribodyn.mesh.build import mesh_table
 
     if case.mesh_table is not None:
@@ -95,6 +97,8 @@ def mesh_of(
     fitted: FittedLaw = mesh_law_of(case) == "force-law"
     if about_load:
         fitted = "about-load" if fitted else "tangent"
+    if friction_alone:
+        fitted = "tangent"
     return mesh_table(
         case.gear_pair,
         settings,
@@ -206,7 +210,8 @@ def load_friction_of(case: Case, nominal: MeshTable) -> MeshFriction | None:
     with collected():
         for load in LOADS:
             try:
-                tables.append(nominal if load == 1.0 else mesh_of(case, load=load))
+                same = load == 1.0
+                tables.append(nominal if same else mesh_of(case, load=load, friction_alone=True))
             except ComputationError:
                 # An oil film in series is softer than lightly loaded teeth. Light loads rub little.
                 if load > _LIGHT:

@@ -74,7 +74,8 @@ def loss_map(
         for column, turning in enumerate(speeds):
             point = {"operation.torque": load * turns, "operation.speed": turning / turns}
             with locate_errors(case), collected() as point_warnings:
-                lost[row, column] = mesh_of(case.replace(point)).mean_friction_power
+                at_point = mesh_of(case.replace(point), friction_alone=True)
+                lost[row, column] = at_point.mean_friction_power
             model_warnings += {warning.code: warning for warning in point_warnings}.values()
             progress.advance()
     progress.finish()
@@ -122,7 +123,9 @@ def rig_power_flow(case: Case, slave: Case | None = None) -> RigPowerFlow:
     for gearbox_case in (case, case if slave is None else slave):
         with locate_errors(gearbox_case), collected() as model_warnings:
             gearboxes.append(
-                gearbox_losses_of(gearbox_case, mesh_of(gearbox_case).mean_friction_power)
+                gearbox_losses_of(
+                    gearbox_case, mesh_of(gearbox_case, friction_alone=True).mean_friction_power
+                )
             )
         _warn_once(model_warnings, 1)
     return compute(*gearboxes)
