@@ -7,6 +7,7 @@
 | `blank` | a pair of blanks from the figures of a drawing |
 | `ease_off` | what a flank has less than its conjugate |
 | `formate` | the flank that a face-mill cutter leaves |
+| `wheel_flanks` | flanks of generated and of face-hobbed wheels |
 | `envelope` | the conjugate of any flank, its curvature and its undercut |
 | `conjugate` | one side of a pair: both surfaces and the ends of the flanks |
 | `flank` | both flanks as grids of points, for export |

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, Problem, require_between, require_one_of
@@ -12,6 +14,9 @@ from tribodyn.record import Parts, Record, fact, labels_of, quantity, record
 
 #: Hands of a pinion; the wheel has the other one.
 HANDS = ("left", "right")
+#: How the wheel's teeth are cut along their length, and across it.
+PROCESSES = ("face-milling", "face-hobbing")
+GENERATIONS = ("formate", "generated")
 
 
 @record
@@ -84,6 +89,10 @@ class HypoidBlank(Record):
         Apex of the tip cone.
     root_apex_pinion, root_apex_wheel : float [m]
         Apex of the root cone.
+    process, wheel_generation : str
+        ``"face-milling"`` or ``"face-hobbing"``; ``"formate"`` or ``"generated"``.
+    blade_groups : int
+        Blade groups of a face-hobbing cutter; zero for face milling.
 
     Notes
     -----
@@ -143,6 +152,9 @@ class HypoidBlank(Record):
     face_apex_wheel: float = quantity(unit="m")
     root_apex_pinion: float = quantity(unit="m")
     root_apex_wheel: float = quantity(unit="m")
+    process: str = fact(default="face-milling")
+    wheel_generation: str = fact(default="formate")
+    blade_groups: int = fact(default=0)
 
     @property
     def ratio(self) -> float:
@@ -211,8 +223,11 @@ def hypoid_blank(
     addendum_angle_wheel: float | None = None,
     dedendum_angle_wheel: float | None = None,
     hand_pinion: str = "left",
+    process: str = "face-milling",
+    wheel_generation: str = "formate",
+    blade_groups: int | None = None,
 ) -> HypoidBlank:
-    """Blank of a face-milled hypoid pair with a shaft angle of 90 deg.
+    """Blank of a hypoid or spiral bevel pair with a shaft angle of 90 deg.
 
     Parameters
     ----------
@@ -248,6 +263,13 @@ def hypoid_blank(
         standard taper.
     hand_pinion : str
         ``"left"`` or ``"right"``.
+    process : str
+        ``"face-milling"``, with teeth of standard taper along circles, or ``"face-hobbing"``, with
+        teeth of uniform depth along extended epicycloids.
+    wheel_generation : str
+        ``"formate"`` for a wheel that the cutter forms without rolling, or ``"generated"``.
+    blade_groups : int, optional
+        Blade groups of a face-hobbing cutter, which needs it.
 
     Raises
     ------
@@ -257,7 +279,8 @@ def hypoid_blank(
     Notes
     -----
     The wheel's mean radius is fixed, and the pitch cones are those whose limit curvature is that of
-    the cutter. ISO stops its iteration at 1 % of that, here it is solved to the last digit.
+    the trace that the cutter leaves. ISO stops its iteration at 1 % of that, here it is solved to
+    the last digit.
     Source: ISO 23509, clauses 6.3.2 and 7, data type II.
 
     Examples
@@ -272,12 +295,37 @@ def hypoid_blank(
     arguments = dict(locals())
     hand = require_one_of("hand_pinion", arguments.pop("hand_pinion"), HANDS)
     teeth = _teeth(arguments.pop("teeth_pinion"), arguments.pop("teeth_wheel"))
+    cut: dict[str, Any] = {
+        name: require_one_of(name, arguments.pop(name), choices)
+        for name, choices in (("process", PROCESSES), ("wheel_generation", GENERATIONS))
+    }
+    groups = _blade_groups(cut["process"], arguments.pop("blade_groups"), arguments)
     values = _checked(arguments)
-    pitch_input = PitchInput(
-        *teeth, *(values[name] for name in PitchInput._fields if name in values)
-    )
+    sizes: dict[str, Any] = {name: values[name] for name in PitchInput._fields if name in values}
+    pitch_input = PitchInput(*teeth, blade_groups=groups, **sizes)
     _require_face_fits(pitch_input)
-    return HypoidBlank(hand_pinion=hand, **dimensions(pitch_input, values))  # type: ignore[arg-type]
+    cut |= dimensions(pitch_input, values)
+    return HypoidBlank(hand_pinion=hand, blade_groups=groups, **cut)
+
+
+def _blade_groups(process: str, groups: int | None, arguments: Mapping[str, Any]) -> int:
+    """Blade groups of the cutter; zero for face milling."""
+    if process == "face-milling":
+        if groups is not None:
+            what, why = f"blade_groups = {groups} for face milling", "Only face hobbing has them"
+            raise InputError(what, Argument("blade_groups"), why, 'Set process = "face-hobbing"')
+        return 0
+    if groups is None:
+        why = "They decide by how much the work turns while one of them cuts"
+        remedy = "Give those of the cutter, for example blade_groups = 13"
+        raise InputError("blade_groups is missing", Argument("blade_groups"), why, remedy)
+    for name in ("addendum_angle_wheel", "dedendum_angle_wheel"):
+        if arguments[name]:
+            why = "Face hobbing cuts teeth of uniform depth"
+            raise InputError(f"{name} is given", Argument(name), why, "Remove it")
+    count = require_whole("blade_groups", groups, 3)
+    require_between("blade_groups", count, 3, 40)
+    return count
 
 
 def _teeth(pinion: int, wheel: int) -> tuple[int, int]:

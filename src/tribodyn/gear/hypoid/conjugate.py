@@ -1,4 +1,4 @@
-"""One side of a pair: the Formate wheel flank and the pinion flank that it envelops, eased off."""
+"""One side of a pair: the wheel flank and the pinion flank that it envelops, eased off."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from tribodyn.gear.hypoid.envelope import (
     relative_curvature,
     turned_surface,
 )
-from tribodyn.gear.hypoid.formate import FormateFlank, pair_axes
+from tribodyn.gear.hypoid.formate import pair_axes
+from tribodyn.gear.hypoid.wheel_flanks import wheel_flank
 from tribodyn.types import Array
 
 
@@ -51,7 +52,7 @@ class ConjugateFlanks:
 
     def __init__(self, blank: HypoidBlank, side: str, ease_off: EaseOff) -> None:
         self.blank, self.ease_off = blank, ease_off
-        self.wheel, self.axes = FormateFlank(blank, side), pair_axes(blank)
+        self.wheel, self.axes = wheel_flank(blank, side), pair_axes(blank)
         moment = cross(self.wheel.point, self.wheel.normal)
         #: 1 where the rotations grow while the pinion drives, else -1.
         self.sense = -math.copysign(1.0, moment[2])

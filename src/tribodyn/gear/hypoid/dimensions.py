@@ -37,6 +37,8 @@ def _depths(pitch_input: PitchInput, cones: PitchCones, values: dict[str, float]
     addendum = (working - wheel, wheel)
     dedendum = (addendum[1] + clearance, addendum[0] + clearance)
     standard = (math.atan(dedendum[0] / distance), math.atan(dedendum[1] / distance))
+    if pitch_input.blade_groups:  # face hobbing cuts a uniform depth
+        standard = (0.0, 0.0)
     taper = (
         values.get("addendum_angle_wheel", standard[0]),
         values.get("dedendum_angle_wheel", standard[1]),
@@ -133,22 +135,29 @@ class _Dimensions:
         raise InputError(what, where, why, "Reduce the face width")
 
     def _spirals(self, distance: tuple[float, float]) -> tuple[float, float]:
-        """Spiral angles at an end, of a trace that is a circle on the crown gear, clause 7.9."""
-        cones, radius = self.cones, self.pitch_input.cutter_radius
-        mean, turn = cones.cone_distance[1], cones.offset_angle
+        """Spiral angles at an end, of a trace cut on the crown gear, clause 7.9."""
+        cones, pitch_input = self.cones, self.pitch_input
+        mean, turn, radius = cones.cone_distance[1], cones.offset_angle, pitch_input.cutter_radius
+        spiral = cones.spiral_angle[1]
+        share = pitch_input.blade_groups * math.sin(cones.pitch_angle[1]) / pitch_input.teeth_wheel
+        sine = share * mean * math.cos(spiral) / radius
+        lead = math.asin(sine) if abs(sine) < 1.0 else math.nan
+        # Distances from the apex of the crown gear: to the cutter, and to the centre of motion.
+        cutter = math.sqrt(mean**2 + radius**2 - 2.0 * mean * radius * math.sin(spiral - lead))
+        motion = cutter / (1.0 + share)
         step = distance[0] - cones.cone_distance[0]
         # The place of the pinion's end on the crown gear of the wheel.
         on_wheel = math.sqrt(mean**2 + step**2 + 2.0 * mean * step * math.cos(turn))
         angles = []
         for place in (on_wheel, distance[1]):
-            chord = 2.0 * mean * radius * math.sin(cones.spiral_angle[1]) - mean**2 + place**2
-            sine = chord / (2.0 * place * radius)
-            if abs(sine) >= 1.0:
+            cosine = (place**2 + cutter**2 - radius**2) / (2.0 * place * cutter)
+            if not abs(cosine) < 1.0:
                 what = f"cutter_radius = {radius * 1e3:.6g} mm"
                 why = "The circle of the cutter does not reach both ends of the teeth"
                 remedy = "Choose a larger cutter or a smaller face width"
                 raise InputError(what, Argument("cutter_radius"), why, remedy)
-            angles.append(math.asin(sine))
+            across = motion * math.sqrt(1.0 - cosine**2)
+            angles.append(math.atan2(place - motion * cosine, across))
         return angles[0] + math.asin(mean * math.sin(turn) / on_wheel), angles[1]
 
     def _thickness(self, values: dict[str, float], pressure: float) -> tuple[float, float]:

@@ -25,6 +25,7 @@ class PitchInput(NamedTuple):
     face_width_wheel: float
     mean_spiral_angle_pinion: float
     cutter_radius: float
+    blade_groups: int = 0  #: of a face-hobbing cutter; zero for face milling
 
     @property
     def ratio(self) -> float:
@@ -51,11 +52,11 @@ class PitchCones(NamedTuple):
     cone_distance: tuple[float, float]
     offset_angle: float  #: in the pitch plane
     limit_pressure_angle: float
-    limit_curvature: float  #: of the tooth trace; that of the cutter without offset
+    limit_curvature: float  #: of the tooth trace; that of the cut one without offset
 
 
 def pitch_cones(pitch_input: PitchInput) -> PitchCones:
-    """Cones whose limit curvature is that of the cutter; the spiral bevel pair without offset."""
+    """Cones whose limit curvature is that of the trace; the spiral bevel pair without offset."""
     if pitch_input.offset == 0.0:
         return _spiral_bevel(pitch_input)
     _require_reach(pitch_input)
@@ -63,8 +64,9 @@ def pitch_cones(pitch_input: PitchInput) -> PitchCones:
     angle = sense * np.geomspace(_LEAST, _MOST, _SEARCHED)
     cones = _cones_at(angle, pitch_input)
     valid = _possible(cones)
-    excess = cones.limit_curvature - 1.0 / pitch_input.cutter_radius
-    crossing = valid[1:] & valid[:-1] & (excess[1:] * excess[:-1] <= 0.0)
+    excess = _excess(cones, pitch_input)
+    cut = valid & np.isfinite(excess)
+    crossing = cut[1:] & cut[:-1] & (excess[1:] * excess[:-1] <= 0.0)
     if not np.any(crossing):
         raise _no_cones(pitch_input, np.asarray(cones.limit_curvature)[valid])
     from scipy.optimize import brentq
@@ -72,9 +74,7 @@ def pitch_cones(pitch_input: PitchInput) -> PitchCones:
     # The smallest offset angle belongs to the cones that roll best on each other.
     first = int(np.argmax(crossing))
     root = brentq(
-        lambda x: (
-            float(_cones_at(x, pitch_input).limit_curvature) - 1.0 / pitch_input.cutter_radius
-        ),
+        lambda x: float(_excess(_cones_at(x, pitch_input), pitch_input)),
         angle[first],
         angle[first + 1],
         xtol=1e-18,
@@ -83,6 +83,30 @@ def pitch_cones(pitch_input: PitchInput) -> PitchCones:
     solution = _cones_at(root, pitch_input)
     pairs = [(float(pinion), float(wheel)) for pinion, wheel in solution[:3]]
     return PitchCones(pairs[0], pairs[1], pairs[2], *(float(value) for value in solution[3:]))
+
+
+def trace_curvature(
+    pitch_input: PitchInput, pitch: ArrayLike, spiral: ArrayLike, distance: ArrayLike
+) -> Array:
+    """Curvature of the trace of a circle or an extended epicycloid on the crown gear [1/m]."""
+    radius, groups = pitch_input.cutter_radius, pitch_input.blade_groups
+    if not groups:
+        return np.asarray(1.0 / radius)
+    cone, angle, mean = (np.asarray(each) for each in (pitch, spiral, distance))
+    with np.errstate(all="ignore"):
+        share = groups * np.sin(cone) / pitch_input.teeth_wheel
+        across = mean * np.cos(angle)
+        lead = np.arcsin(share * across / radius)
+        centre = np.sqrt(mean**2 + radius**2 - 2.0 * mean * radius * np.sin(angle - lead))
+        slope = np.tan(np.arccos(across * (1.0 + share) / centre))
+        bent = slope / (1.0 + np.tan(lead) * (np.tan(angle) + slope))
+        return np.asarray(1.0 / (across * (np.tan(angle) + bent)))
+
+
+def _excess(cones: Any, pitch_input: PitchInput) -> Array:
+    """Limit curvature of cones less that of the trace of their teeth."""
+    wheel = (each[1] for each in (cones.pitch_angle, cones.spiral_angle, cones.cone_distance))
+    return np.asarray(cones.limit_curvature - trace_curvature(pitch_input, *wheel))
 
 
 def limit_pressure_tangent(
@@ -145,7 +169,7 @@ def _spiral_bevel(pitch_input: PitchInput) -> PitchCones:
     distance = 0.5 * pitch_input.outer_pitch_diameter_wheel / math.sin(wheel)
     distance -= 0.5 * pitch_input.face_width_wheel
     spiral = pitch_input.mean_spiral_angle_pinion
-    curvature = 1.0 / pitch_input.cutter_radius
+    curvature = float(trace_curvature(pitch_input, wheel, spiral, distance))
     return PitchCones((pinion, wheel), (spiral,) * 2, (distance,) * 2, 0.0, 0.0, curvature)
 
 
@@ -171,6 +195,14 @@ def _no_cones(pitch_input: PitchInput, curvature: Array) -> InputError:
             "Every position of the calculation point leaves a cone angle or a spiral angle outside "
             "0 to 90 deg",
             "Reduce the offset, or give a larger spiral angle of the pinion",
+        )
+    if pitch_input.blade_groups:
+        return InputError(
+            f"cutter_radius = {pitch_input.cutter_radius * 1e3:.6g} mm with "
+            f"{pitch_input.blade_groups} blade groups",
+            Argument("cutter_radius"),
+            f"With {design} no pitch cones have the curvature of its teeth (ISO 23509, Method 1)",
+            "Change the cutter radius, the blade groups, the offset or the spiral angle",
         )
     low, high = float(np.min(curvature)), float(np.max(curvature))
     limits = f"from {1e3 / high:.4g} mm" if high > 0.0 else "no positive radius"

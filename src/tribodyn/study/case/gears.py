@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tribodyn.errors import Problem
-from tribodyn.gear.hypoid.blank import HANDS, RANGES, hypoid_blank
+from tribodyn.gear.hypoid.blank import GENERATIONS, HANDS, PROCESSES, RANGES, hypoid_blank
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
 from tribodyn.model import REQUIRED, Option, choice, file_path, flag, integer, number, numbers
 from tribodyn.study.case.section import Section, Table
@@ -293,6 +293,21 @@ HYPOID_KEYS: dict[str, Option | Table] = {
         meaning="side of the teeth that carries",
     ),
     "hand_pinion": choice("left", HANDS, meaning="hand of the pinion; the wheel has the other one"),
+    "process": choice(
+        "face-milling", PROCESSES, meaning="how the teeth are cut along their length"
+    ),
+    "wheel_generation": choice(
+        "formate", GENERATIONS, meaning="whether the wheel rolls with the cutter or is formed by it"
+    ),
+    "blade_groups": integer(
+        None,
+        3,
+        40,
+        "cutters in use have 5 to 19",
+        example="13",
+        meaning="blade groups of a face-hobbing cutter, which needs them",
+        basis="none, in face milling",
+    ),
     "line_stiffness": number(
         14e9,
         1e8,

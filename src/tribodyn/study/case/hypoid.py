@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from tribodyn.gear import HypoidFlanks, Misalignment
 
 
+#: Keys of the blank that are no figures of :data:`MEANINGS`.
+_CUTTING = ("hand_pinion", "process", "wheel_generation", "blade_groups")
+
+
 @contextmanager
 def _placed_in(table: str) -> Iterator[None]:
     """Map the arguments named by input errors to keys of a table of the case."""
@@ -50,7 +54,7 @@ def _built(gears: Gears) -> tuple[HypoidFlanks, tuple[ModelWarning, ...]]:
     from tribodyn.gear import EaseOff
     from tribodyn.gear import hypoid_flanks as flanks_of
 
-    values = {name: getattr(gears, name) for name in (*MEANINGS, "hand_pinion")}
+    values = {name: getattr(gears, name) for name in (*MEANINGS, *_CUTTING)}
     eased = {name: getattr(gears.ease_off, name) for name, _ in EaseOffData.specs()}
     with collected() as warnings:
         with _placed_in("ease_off."):
