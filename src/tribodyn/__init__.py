@@ -104,7 +104,7 @@ _ELSEWHERE = {
 
 _PACKAGES = (
     "analysis", "cases", "contact", "cookbook", "dynamics", "ehl", "errors", "exchange",
-    "friction", "gear", "losses", "lubricant", "machine", "measurement", "mesh", "nomenclature",
+    "faults", "friction", "gear", "losses", "lubricant", "machine", "measurement", "mesh", "nomenclature",
     "plot", "progress", "report", "stiffness", "study", "surrogate", "uncertainty", "units",
     "variants",
 )  # fmt: skip

@@ -36,6 +36,7 @@ PHYSICS = {
     "nonlinear",
     "signals",
     "machine",
+    "faults",
 }
 #: Types of options of commands that bring their own text.
 OPTIONS = {

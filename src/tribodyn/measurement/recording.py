@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -127,6 +128,39 @@ class Recording(Record):
         window = slice(*(int(np.ceil(at * self.sample_rate - 1e-9)) for at in (start, end)))
         parts = {name: values[window] for name, values in self.channels.items()}
         return Recording(parts, self.sample_rate, self.units)
+
+    def save(self, path: str | os.PathLike[str], *, truth: Mapping[str, Any] | None = None) -> Path:
+        """Write the recording as a measuring system would store it; :func:`read` reads it.
+
+        Parameters
+        ----------
+        path : str or path
+            File to write; its ending sets the format: ``.wav`` (32 bit floats in SI), ``.mat``,
+            ``.h5``, ``.uff`` (dataset 58, needs ``pip install "tribodyn[io]"``) or ``.csv``.
+        truth : mapping, optional
+            Labels, written beside it as JSON with the same name.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InputError
+            If the format or the folder is unknown.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> wave = Recording({"acc": np.zeros(64)}, 1000.0, {"acc": "m/s^2"})
+        >>> file = wave.save(f"{tempfile.mkdtemp()}/wave.csv", truth={"fault": "none"})
+        >>> read(file).units["acc"]
+        'm/s^2'
+        """
+        from tribodyn.measurement.writers import write
+
+        return write(self, path, truth)
 
     def __repr__(self) -> str:
         """Channels, size, rate and duration in one line."""

@@ -202,11 +202,7 @@ class Teeth:
 
     def ramps_about_load(self, shared: SharedLoad, film: FilmSprings | None) -> tuple[Array, Array]:
         """Few ramps that are exact at the load: where each begins [m], and its stiffness [N/m]."""
-        problem = self.with_film(film)
-        first = problem.least_gap
-        approach = first + _ABOUT_LOAD[:, None] * (shared.transmission_error - first)
-        force, tangent = problem.at_approach(approach)
-        return _chords(first, approach.T, force.T, tangent[-1])
+        return ramps_about(self.with_film(film), shared.transmission_error)
 
     def with_film(self, film: FilmSprings | None) -> ContactProblem:
         """Put the films in series with the teeth."""
@@ -406,6 +402,14 @@ def shared_load_columns(
         **alone,
     }
     return {name: np.copy(values)[()] for name, values in columns.items()}
+
+
+def ramps_about(problem: ContactProblem, loaded: Array) -> tuple[Array, Array]:
+    """Few ramps that are exact at approaches under load (p,): places [m], stiffnesses [N/m]."""
+    first = problem.least_gap
+    approach = first + _ABOUT_LOAD[:, None] * (loaded - first)
+    force, tangent = problem.at_approach(approach)
+    return _chords(first, approach.T, force.T, tangent[-1])
 
 
 def force_ramps(problem: ContactProblem, total_force: float) -> tuple[Array, Array, float]:

@@ -62,6 +62,7 @@ from tribodyn.plot.motion.time_histories import (
     tooth_force,
     transmission_error,
 )
+from tribodyn.plot.motion.turns import turning_motion
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
@@ -205,6 +206,7 @@ __all__ = [
     "tooth_force",
     "tracked_orders",
     "transmission_error",
+    "turning_motion",
     "waterfall",
 ]
 

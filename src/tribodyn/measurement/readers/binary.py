@@ -53,7 +53,7 @@ def wav(path: Path) -> RecordingData:
 
 def uff(path: Path) -> RecordingData:
     """Read the time histories (dataset 58, text or binary) of a universal file."""
-    pyuff = _library("pyuff", path)
+    pyuff = optional_library("pyuff", path)
     with open(path, "rb") as file:
         file.seek(-min(200, path.stat().st_size), 2)
         if not file.read().rstrip(b"\0\r\n\t ").endswith(b"-1"):
@@ -117,7 +117,7 @@ def _uff_name(dataset: dict[str, Any], channels: dict[str, Array]) -> str:
 
 def tdms(path: Path) -> RecordingData:
     """Read the channels of a TDMS file."""
-    library = _library("nptdms", path)
+    library = optional_library("nptdms", path)
     logging.getLogger("nptdms").addHandler(
         logging.NullHandler()
     )  # incomplete segments are reported below
@@ -198,13 +198,14 @@ def _values(name: str, dataset: Any, separator: str) -> dict[str, Any]:
     return {name: value}
 
 
-def _library(name: str, path: Path) -> Any:
+def optional_library(name: str, path: Path) -> Any:
+    """Import an optional library, or say how to install it."""
     import importlib
 
     try:
         return importlib.import_module(name)
     except ImportError:
-        what, why = f"{name} is needed to read this file", "It is not installed"
+        what, why = f"{name} is needed for this file", "It is not installed"
         raise InputError(what, str(path), why, 'Run: pip install "tribodyn[io]"') from None
 
 

@@ -193,7 +193,7 @@ class Case(CaseData, case=True):
             table, _, name = key.partition(".")
             spec, old = spec_of(self, key), self._user_input.get(key)
             numeric = type(value) is float and spec is not None and spec.kind == "number"
-            indirect = table == "gears" or key in self._spread or key in self._assumed
+            indirect = table in ("gears", "faults") or key in self._spread or key in self._assumed
             if not numeric or indirect or old is None or self._effective.get(key) is None:
                 return None
             try:

@@ -25,6 +25,7 @@ from tribodyn.study.case.sections import (
     Stiffness,
 )
 from tribodyn.study.case.user_input import Source, Stated, UserInput
+from tribodyn.study.faults.section import Faults
 
 if TYPE_CHECKING:
     from tribodyn.gear import HypoidFlanks, Material, SpurPair
@@ -50,6 +51,7 @@ class CaseData(CaseTables):
     dynamics: Dynamics = table(Dynamics, "the vibrating structure", "empty")
     losses: Losses | None = table(Losses, "power losses other than those of the teeth", "none")
     solver: Solver = table(Solver, "how the motion is computed", "empty")
+    faults: Faults | None = table(Faults, "faults that repeat with a shaft, by name", "none")
 
     _assumed: dict[str, str]
     _spread: dict[str, str]

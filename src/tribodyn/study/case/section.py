@@ -6,7 +6,7 @@ in addition to its declared keys. Options of another model and unknown keys are 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from inspect import Parameter, Signature
 from pathlib import Path
@@ -127,6 +127,15 @@ class Section:
         """The model that this table names."""
         return self.model_named(vars(self)[self.selector]) if self.selector else None
 
+    def _names(self) -> Iterable[str]:
+        """Names of the keys of this table."""
+        return type(self).section_keys().keys
+
+    @classmethod
+    def tables_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+        """Keys to read from data."""
+        return cls.fields
+
     @classmethod
     def spec(cls, name: str) -> Option | None:
         """Return the Option of a key, or None for an unknown key or a table."""
@@ -137,6 +146,37 @@ class Section:
     def specs(cls) -> Iterator[tuple[str, Option]]:
         """Iterate over all keys that are not tables, in order."""
         yield from ((k, o) for k, o in cls.section_keys().keys.items() if isinstance(o, Option))
+
+
+class _AnyName(dict[str, Any]):
+    """Fields of a table whose inner tables the user names: any name has the same one."""
+
+    def __init__(self, inner: Table) -> None:
+        super().__init__()
+        self.inner = inner
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return the same inner table for any name."""
+        return self.inner
+
+
+class NamedTables(Section):
+    """A table of tables of one kind, which the user names."""
+
+    def __init_subclass__(cls, inner: Table) -> None:
+        """Set the kind of the inner tables."""
+        cls.fields = _AnyName(inner)
+
+    def _names(self) -> Iterable[str]:
+        return vars(self)
+
+    @classmethod
+    def tables_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+        """One inner table for each name in the data."""
+        return dict.fromkeys(data, cls.fields.inner)  # type: ignore[attr-defined]
 
 
 def section_at(path: tuple[str, ...]) -> type[Section] | None:
@@ -229,7 +269,7 @@ def flat(section: Section, prefix: str = "") -> dict[str, Any]:
     """Return all values of a table and its inner tables by dotted key."""
     entries = vars(section)
     values: dict[str, Any] = {}
-    for name in section.section_keys().keys:
+    for name in section._names():
         value = entries.get(name)
         if isinstance(value, Section):
             values |= flat(value, f"{prefix}{name}.")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -411,7 +411,7 @@ def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
 def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
     """Find physical contradictions in a formally valid case."""
     if case.gears.kind == "table":
-        return _table_problems(case)
+        return _table_problems(case) or _fault_problems(case)
     if case.gears.kind == "hypoid":
         problems = _faults("gears", lambda: case.hypoid_flanks)
     else:
@@ -419,7 +419,19 @@ def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
     problems += _faults("lubricant", lambda: case.lubricant_properties)
     problems += [] if problems else _faults("lubricant", lambda: case.film_lubricant)
     problems += [] if problems else _faults("losses", lambda: _gearbox_losses(case))
+    problems += [] if problems else _fault_problems(case)
     return problems if case.gears.kind == "hypoid" else problems + _bores(case)
+
+
+def _fault_problems(case: CaseData) -> list[tuple[str, Problem]]:
+    """Find faults that are incomplete or that this pair cannot have."""
+    from tribodyn.study.faults.section import check_fault, fault_problems
+
+    problems = fault_problems(case.faults)
+    if case.faults is not None and not problems:
+        for name, fault in vars(case.faults).items():
+            problems += _faults(f"faults.{name}", partial(check_fault, case, fault))
+    return problems
 
 
 def chosen_options(case: CaseData, section: str) -> dict[str, Any]:

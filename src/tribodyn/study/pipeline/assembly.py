@@ -18,7 +18,7 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.gear import HypoidFlanks, SpurGear, SpurPair
-    from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.mesh import MeshFriction, MeshFunctions, MeshTable
     from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case import Case
 
@@ -249,7 +249,7 @@ def system_of(
     """Build the structure of a case with its tooth contact."""
     from tribodyn.dynamics import follow_load
 
-    system = _structure(case, mesh, damping)
+    system = structure_of(case, mesh.functions(), damping, mesh_law_of(case))
     return system if friction is None else follow_load(system, friction)
 
 
@@ -258,7 +258,8 @@ def whole_system(case: Case, mesh: MeshTable) -> System:
     return system_of(case, mesh, damping_of(case, mesh), load_friction_of(case, mesh))
 
 
-def _structure(case: Case, mesh: MeshTable, damping: Damping) -> System:
+def structure_of(case: Case, mesh: MeshFunctions, damping: Damping, mesh_force: str) -> System:
+    """Build the structure of a case with a mesh, whose force law is named."""
     from tribodyn.dynamics import STRUCTURES, Gearing
 
     body, torque = geometry(case), case.pinion_torque
@@ -268,12 +269,12 @@ def _structure(case: Case, mesh: MeshTable, damping: Damping) -> System:
         "backlash": case.backlash,
         "damping_in_gap": case.dynamics.damping_in_gap,
         "torque_balance": case.operation.torque_balance,
-        "mesh_force": mesh_law_of(case),
+        "mesh_force": mesh_force,
     }
     if case.dynamics.transmission_error_amplitude > 0.0:
         contact["error"] = lambda phase: static_error(case, phase)
     gearing = Gearing(
-        mesh.functions(),
+        mesh,
         mass=(body.get("mass_pinion", 0.0), body.get("mass_wheel", 0.0)),
         moment_of_inertia=(body["moment_of_inertia_pinion"], body["moment_of_inertia_wheel"]),
         base_radius=(body["base_radius_pinion"], body["base_radius_wheel"]),

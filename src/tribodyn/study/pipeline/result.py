@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -24,7 +25,9 @@ from tribodyn.validated_files import write_dataset
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, NaturalModes
     from tribodyn.gear import ToothContact
+    from tribodyn.measurement import Recording
     from tribodyn.mesh import HypoidFriction
+    from tribodyn.study.faults.motion import TurningMotion
 
 
 _PLOT = "plot_"
@@ -108,6 +111,85 @@ class Result(Computed):
         from tribodyn.study.studies.modes import diagram_of
 
         return diagram_of(self.system, self.case, self.mesh.mesh_frequency)
+
+    @cached_property
+    def turning_motion(self) -> TurningMotion:
+        """Motion over whole turns of the gears, with faults and deviations of single teeth."""
+        from tribodyn.study.faults.motion import turning_motion
+
+        return turning_motion(self)
+
+    @property
+    def turns(self) -> TurningMotion | None:
+        """Motion over whole turns; None where all teeth of a gear are alike."""
+        pair = self.case.spur_pair
+        differ = self.case.faults is not None or (pair is not None and pair.teeth_differ)
+        return self.turning_motion if differ else None
+
+    def recording(
+        self,
+        sensor: str | Sequence[str],
+        duration: float,
+        sample_rate: float = 25_600.0,
+        *,
+        noise: float = 0.0,
+        speed_fluctuation: float = 0.0,
+        tacho_jitter: float = 0.0,
+        seed: int = 0,
+    ) -> Recording:
+        """Sample the motion over whole turns as a measuring system would.
+
+        Parameters
+        ----------
+        sensor : str or sequence of str
+            A coordinate, whose acceleration is recorded, ``"mesh_force"`` or
+            ``"transmission_error"``; several make several channels.
+        duration : float
+            Length of the recording [s].
+        sample_rate : float
+            Samples per second [Hz]. What lies above half of it is filtered off.
+        noise : float
+            Standard deviation of white noise, in the unit of the sensor.
+        speed_fluctuation : float
+            Standard deviation of slow changes of the speed, over the speed [1].
+        tacho_jitter : float
+            Standard deviation of the edges of the tacho over a turn [1].
+        seed : int
+            Number of the draw of the start, the noise and all that scatters.
+
+        Returns
+        -------
+        Recording
+            One channel for each sensor, and ``tacho`` with one pulse a turn of the pinion.
+
+        Raises
+        ------
+        InputError
+            If there is no such sensor, a value is out of range, or the gears are no cylindrical
+            pair.
+
+        Examples
+        --------
+        >>> import tribodyn
+        >>> case = tribodyn.load_case("fzg-roughness").replace({
+        ...     "faults.crack.kind": "crack", "faults.crack.gear": "pinion",
+        ...     "faults.crack.tooth": 1, "faults.crack.depth": "1 mm"})
+        >>> tribodyn.run(case).recording("pinion_y", 1.0, noise=0.5)  # doctest: +SKIP
+        """
+        from tribodyn.study.faults.recording import recording_of
+        from tribodyn.study.faults.section import bearing_defects
+
+        return recording_of(
+            self.turning_motion,
+            tuple(bearing_defects(self.case).values()),
+            [sensor] if isinstance(sensor, str) else list(sensor),
+            duration,
+            sample_rate,
+            noise=noise,
+            speed_fluctuation=speed_fluctuation,
+            tacho_jitter=tacho_jitter,
+            seed=seed,
+        )
 
     def _parts(self) -> Parts:
         """Parts of the motion, ramps of a force law as one contact, and the summary."""

@@ -1,0 +1,201 @@
+"""Deviations over the turn of a gear: eccentricity, waviness, pitch deviations of a class."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tribodyn.checks import require_whole
+from tribodyn.errors import require_between
+from tribodyn.faults.fault import Fault, GearName
+from tribodyn.gear import SpurGear, SpurPair
+from tribodyn.stiffness.loaded.problem import ContactPlaces
+from tribodyn.types import Array
+
+#: Largest amplitude that is a deviation and not a slip of the unit [m].
+_MOST = 1e-3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Waviness(Fault):
+    """Waves on the flanks that run on from tooth to tooth: the ghost order of a machine tool.
+
+    Parameters
+    ----------
+    gear : "pinion" or "wheel"
+        Gear that has it.
+    amplitude : float
+        Half the distance of crest and trough along the line of action [m].
+    order : int
+        Waves in a turn of the gear. One is an eccentricity, the number of teeth a deviation that
+        all flanks share.
+    phase : float
+        Phase of the wave where tooth 1 comes into contact [rad].
+    lead_angle : float
+        Angle of the crests to the line of contact [rad]; the wave moves along the face with it.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Notes
+    -----
+    A wave of the machine tool is a function of the rotation of the gear blank, and so is the point
+    of the involute that it generates: all teeth in contact have the same deviation
+    ``amplitude cos(order theta + phase)``, whatever the transverse contact ratio.
+
+    Examples
+    --------
+    >>> Waviness(gear="wheel", amplitude=1e-6, order=97).order
+    97
+    """
+
+    amplitude: float
+    order: int
+    phase: float = 0.0
+    lead_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_between("amplitude", self.amplitude, 0.0, _MOST, "m")
+        object.__setattr__(self, "order", require_whole("order", self.order, 1))
+        require_between("phase", self.phase, -2.0 * math.pi, 2.0 * math.pi, "rad")
+        require_between("lead_angle", self.lead_angle, -1.5, 1.5, "rad")
+
+    @property
+    def varies_over_face(self) -> bool:  # type: ignore[override]
+        """Whether the crests are inclined."""
+        return self.lead_angle != 0.0
+
+    def gap(self, places: ContactPlaces, face: Array) -> Array:
+        """Gap (p, s, 1): negative at a crest."""
+        base = abs(self.gear_of(places.contact.pair).base_radius)
+        along = face * (math.tan(self.lead_angle) / base)
+        angle = self.order * (self.rotation(places)[:, None, None] + along) + self.phase
+        return np.asarray(-self.amplitude * np.cos(angle))
+
+
+def eccentricity(gear: GearName, amount: float, phase: float = 0.0) -> Waviness:
+    """Distance of the axis of the toothing from the axis of rotation: a wave a turn.
+
+    Parameters
+    ----------
+    gear : "pinion" or "wheel"
+        Gear that has it.
+    amount : float
+        Eccentricity [m]; the run-out of ISO 1328-2 is twice that.
+    phase : float
+        Rotation after which the flanks recede from their most proud place [rad].
+
+    Examples
+    --------
+    >>> eccentricity("pinion", 10e-6).amplitude
+    1e-05
+    """
+    return Waviness(gear=gear, amplitude=amount, order=1, phase=phase)
+
+
+def pitch_tolerances(gear: SpurGear, accuracy_class: int) -> tuple[float, float]:
+    """Tolerances of single and of total cumulative pitch deviation.
+
+    Parameters
+    ----------
+    gear : SpurGear
+        The gear.
+    accuracy_class : int
+        Class of ISO 1328-1, 1 to 11.
+
+    Returns
+    -------
+    (float, float) [m]
+
+    Raises
+    ------
+    InputError
+        If there is no such class.
+
+    Notes
+    -----
+    ISO 1328-1:2013, equations (3) and (5): f_pT = (0.001 d + 0.4 m + 5) sqrt(2)^(A - 5) and
+    F_pT = (0.002 d + 0.55 sqrt(d) + 0.7 m + 12) sqrt(2)^(A - 5) in um, with d and m in mm, without
+    the rounding of the standard.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=50, normal_module=5e-3,
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.02)
+    >>> [round(1e6 * value, 3) for value in pitch_tolerances(pair.pinion, 5)]
+    [7.1, 21.2]
+    """
+    require_between("accuracy_class", accuracy_class, 1, 11, "")
+    diameter, module = 2e3 * abs(gear.reference_radius), 1e3 * gear.normal_module
+    scale = 1e-6 * math.sqrt(2.0) ** (accuracy_class - 5)
+    single = 0.001 * diameter + 0.4 * module + 5.0
+    total = 0.002 * diameter + 0.55 * math.sqrt(diameter) + 0.7 * module + 12.0
+    return single * scale, total * scale
+
+
+@dataclass(frozen=True, kw_only=True)
+class PitchDeviations(Fault):
+    """Pitch deviations drawn from an accuracy class.
+
+    Parameters
+    ----------
+    gear : "pinion" or "wheel"
+        Gear that has them.
+    accuracy_class : int
+        Class of ISO 1328-1, 1 to 11.
+    seed : int
+        Number of the draw.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Notes
+    -----
+    Independent normal single deviations, less their mean, so that they sum to zero over the turn.
+    The largest is the tolerance of the class, unless the cumulative deviation would then exceed
+    its own tolerance.
+
+    Examples
+    --------
+    >>> PitchDeviations(gear="pinion", accuracy_class=6, seed=1).accuracy_class
+    6
+    """
+
+    accuracy_class: int
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_between("accuracy_class", self.accuracy_class, 1, 11, "")
+        object.__setattr__(self, "seed", require_whole("seed", self.seed, 0))
+
+    def single(self, gear: SpurGear) -> Array:
+        """Single pitch deviations of a gear, in the order of contact [m]; their sum is zero."""
+        single_tolerance, total_tolerance = pitch_tolerances(gear, self.accuracy_class)
+        drawn = np.random.default_rng(self.seed).standard_normal(abs(gear.teeth))
+        drawn -= drawn.mean()
+        scale = min(
+            single_tolerance / np.abs(drawn).max(), total_tolerance / np.ptp(np.cumsum(drawn))
+        )
+        return np.asarray(scale * drawn)
+
+    def on(self, pair: SpurPair) -> SpurPair:
+        """The pair with these deviations in place of its own."""
+        gear = self.gear_of(pair)
+        places = np.cumsum(self.single(gear))
+        modification = replace(
+            gear.modification,
+            single_pitch_deviation=(),
+            cumulative_pitch_deviation=tuple((places - places[0]).tolist()),
+        )
+        changed: dict[str, Any] = {self.gear: replace(gear, modification=modification)}
+        return replace(pair, **changed)

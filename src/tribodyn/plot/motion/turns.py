@@ -1,0 +1,84 @@
+"""Motion over whole turns of the gears: the mesh force, and the sidebands of the mesh harmonics."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.plot.signals.lines import strongest_lines
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.panels import Panel, Row, stack_rows
+from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, line
+
+if TYPE_CHECKING:
+    from tribodyn.study.faults.motion import TurningMotion
+
+#: Mesh harmonics of the spectrum, and points of a curve.
+_HARMONICS, _POINTS = 4.5, 8000
+#: Decades below the largest line that are shown.
+_DECADES = 5.0
+
+
+def _caption(motion: TurningMotion) -> str:
+    turns = [
+        f"{motion.cycles / teeth:g} turns of the {gear}"
+        for gear, teeth in (("pinion", motion.pinion_teeth), ("wheel", motion.wheel_teeth))
+    ]
+    return (
+        f"All repeats after {motion.cycles} mesh cycles: {' and '.join(turns)}. Above, the static "
+        "transmission error under the mean load; in the middle, the mesh force; below, the order "
+        "spectrum of the transmission error with dotted lines at the mesh harmonics. What differs "
+        "from tooth to tooth makes the lines between them: sidebands at the distance of one order "
+        "of the pinion, or of the wheel's turn."
+    )
+
+
+@drawing(
+    "turning_motion",
+    heading="Motion over whole turns",
+    caption=_caption,
+    of=("TurningMotion", "Result.turns"),
+    made_by="Give a case with [faults.NAME], run it, and read result.turning_motion.",
+)
+def turning_motion(motion: TurningMotion) -> Any:
+    """Draw transmission error and mesh force over the turns, and the orders of the motion."""
+    teeth = motion.pinion_teeth
+    turns = motion.time * motion.rotation_frequency("pinion")
+    step = -(-turns.size // _POINTS)
+    force, unit = displayed("mesh_force", motion.mesh_force), display_unit("mesh_force")
+    error_unit = display_unit("static_transmission_error")
+    static = displayed("static_transmission_error", motion.mesh.transmission_error)
+    frequency, lines = motion.harmonics("transmission_error")
+    order = frequency / motion.rotation_frequency("pinion")
+    shown = (order > 0.0) & (order <= _HARMONICS * teeth)
+    place, size = strongest_lines(
+        order[shown], displayed("static_transmission_error", np.abs(lines[shown]))
+    )
+    top = float(size.max())
+    floor = top * 10.0**-_DECADES
+    stems = np.stack([place, place, np.full(place.size, np.nan)], axis=1).ravel()
+    heights = np.stack([np.full(place.size, floor), size, np.full(place.size, np.nan)], axis=1)
+    axis = {
+        "type": "log",
+        "exponentformat": "power",
+        "range": [np.log10(floor), np.log10(top) + 0.3],
+    }
+    x_label = "Turns of the pinion since tooth 1 came into contact"
+    mesh_orders = [(f"{n} x mesh", n * teeth) for n in range(1, int(_HARMONICS) + 1)]
+    error_label = axis_label("static_transmission_error", "At rest")
+    at_rest = line(motion.mesh.phase / teeth, static, "at rest", PINION, unit=error_unit)
+    force_curve = line(turns[::step], force[::step], "mesh force", TOTAL, unit=unit, width=1.2)
+    orders = line(stems, heights.ravel(), "orders", WHEEL, unit=error_unit, width=1.2)
+    spectrum = Panel(axis_label("static_transmission_error", "In motion"), [orders], axis)
+    rows = [
+        Row(x_label, Panel(error_label, [at_rest])),
+        Row(x_label, Panel(axis_label("mesh_force", "Mesh force"), [force_curve])),
+        Row("Order of the pinion", spectrum, marks=mesh_orders),
+    ]
+    swing = rounded("mesh_force", float(np.ptp(motion.mesh_force)))
+    return stack_rows(
+        f"The mesh force varies by {swing} over {motion.cycles} mesh cycles",
+        rows,
+    )

@@ -1,0 +1,1 @@
+"""Faults in a case: their tables, the motion over whole turns, recordings of a sensor."""

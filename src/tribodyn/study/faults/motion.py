@@ -1,0 +1,214 @@
+"""Motion of a case with faults over whole turns of its gears."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribodyn.errors import InputError, collected, warn
+from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Record, fact, quantity, record
+from tribodyn.types import Array, ComplexArray
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response, System
+    from tribodyn.faults import TurningMesh
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.pipeline.result import Result
+
+#: Steps of the search for each mesh cycle, tried in turn, and even samples of the motion.
+_STEPS, SAMPLES = (128, 256, 512), 128
+#: Change of the motion with half the steps, over its size, that is small enough.
+_ACCURATE = 2e-3
+
+
+@record
+class TurningMotion(Record):
+    """Motion over whole turns, on evenly spaced samples of one period.
+
+    Parameters
+    ----------
+    time : (s,) array
+        Time since tooth 1 of both gears came into contact [s].
+    position, velocity, acceleration : (s, n) array
+        Coordinates of the structure and their derivatives [m or rad, ...].
+    mesh_force : (s,) array
+        Force along the line of action [N].
+    transmission_error : (s,) array
+        Compression of the mesh [m].
+    names : tuple of str
+        Names of the coordinates.
+    mesh : TurningMesh
+        The mesh over the same turns.
+    mesh_frequency : float
+        Mesh cycles per second [Hz].
+    cycles : int
+        Mesh cycles of the period.
+    pinion_teeth, wheel_teeth : int
+        Numbers of teeth.
+    response : Response
+        Motion on the steps of the search.
+    """
+
+    time: Array = quantity("time", unit="s", axis=True)
+    position: Array = quantity("time", "coordinate", unit="m or rad")
+    velocity: Array = quantity("time", "coordinate", unit="m/s or rad/s")
+    acceleration: Array = quantity("time", "coordinate", unit="m/s^2 or rad/s^2")
+    mesh_force: Array = quantity("time", unit="N")
+    transmission_error: Array = quantity("time", unit="m")
+    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
+    mesh: TurningMesh
+    mesh_frequency: float = fact()
+    cycles: int = fact()
+    pinion_teeth: int = fact()
+    wheel_teeth: int = fact()
+    response: Response
+
+    @property
+    def period(self) -> float:
+        """Time after which all repeats [s]."""
+        return self.cycles / self.mesh_frequency
+
+    def rotation_frequency(self, gear: str) -> float:
+        """Turns per second of the ``"pinion"`` or the ``"wheel"`` [Hz]."""
+        teeth = self.pinion_teeth if gear == "pinion" else self.wheel_teeth
+        return self.mesh_frequency / teeth
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """Signals of :meth:`signal`."""
+        return (*self.names, "mesh_force", "transmission_error")
+
+    def signal(self, sensor: str) -> tuple[Array, str]:
+        """A signal over the period, and its unit.
+
+        Parameters
+        ----------
+        sensor : str
+            A coordinate, whose acceleration is the signal, ``"mesh_force"`` or
+            ``"transmission_error"``.
+
+        Returns
+        -------
+        ((s,) array, str)
+
+        Raises
+        ------
+        InputError
+            If there is no such signal.
+        """
+        if sensor in self.names:
+            unit = "rad/s^2" if sensor.endswith("_theta") else "m/s^2"
+            return self.acceleration[:, self.names.index(sensor)], unit
+        if sensor not in self.sensors:
+            why, remedy = f"The sensors are {', '.join(self.sensors)}", "Name one of these"
+            raise InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
+        return getattr(self, sensor), "N" if sensor == "mesh_force" else "m"
+
+    def harmonics(self, sensor: str) -> tuple[Array, ComplexArray]:
+        """Lines of a signal over its period.
+
+        Parameters
+        ----------
+        sensor : str
+            As for :meth:`signal`.
+
+        Returns
+        -------
+        frequency : (k,) array [Hz]
+        amplitude : (k,) complex array
+            Peak amplitudes in the unit of the signal; the first is the mean.
+        """
+        values = self.signal(sensor)[0]
+        lines = np.fft.rfft(values) / values.size
+        lines[1:] *= 2.0
+        return np.arange(lines.size) / self.period, lines
+
+    def __repr__(self) -> str:
+        """One line."""
+        force = self.mesh_force
+        return (
+            f"TurningMotion({self.cycles} mesh cycles at {self.mesh_frequency:.6g} Hz, mesh force "
+            f"{force.min():.5g} to {force.max():.5g} N)"
+        )
+
+
+def turning_mesh_of(case: Case) -> TurningMesh:
+    """Force law of a case over whole turns, with its faults and its pitch deviations."""
+    from tribodyn.faults import turning_mesh
+    from tribodyn.study.faults.section import gear_faults
+    from tribodyn.study.pipeline.tooth_contact import loaded_settings
+
+    if case.gears.kind != "spur":
+        why = "The teeth of a cylindrical pair are computed one by one, others are not"
+        what = f"the gears are a {case.gears.kind} pair"
+        raise InputError(what, "gears.kind", why, "Give a cylindrical pair")
+    settings = loaded_settings(case)
+    faults = tuple(gear_faults(case).values())
+    return turning_mesh(case.gear_pair, abs(case.pinion_torque), faults, **settings)
+
+
+def turning_system(result: Result, mesh: TurningMesh) -> System:
+    """The structure of a result with the mesh over whole turns as its contact."""
+    from tribodyn.dynamics import law_contact
+    from tribodyn.study.pipeline.assembly import structure_of
+
+    functions = mesh.functions(result.mesh.functions())
+    system = structure_of(result.case, functions, result.damping, "stiffness")
+    first, *others = system.contacts
+    return replace(system, contacts=(law_contact(first, mesh.force_law), *others))
+
+
+def turning_motion(result: Result, progress: Progress = SILENT) -> TurningMotion:
+    """Compute the steady motion of a result over whole turns of its gears."""
+    from tribodyn.dynamics import harmonic_balance
+    from tribodyn.study.case.to_models import locate_errors
+
+    case = result.case
+    with locate_errors(case):
+        progress.start("Teeth over whole turns")
+        mesh = turning_mesh_of(case)
+        system = turning_system(result, mesh)
+        frequency = result.mesh.mesh_frequency / mesh.cycles
+        for steps in _STEPS:
+            with collected() as model_warnings:
+                response = harmonic_balance(
+                    system, frequency, steps=steps * mesh.cycles, progress=progress
+                )
+            if not response.step_error > _ACCURATE:
+                break
+        for warning in model_warnings:
+            warn(warning.code, warning.message)
+    return _sampled(case, mesh, response, result.mesh.mesh_frequency)
+
+
+def _sampled(
+    case: Case, mesh: TurningMesh, response: Response, mesh_frequency: float
+) -> TurningMotion:
+    """The motion on evenly spaced samples."""
+    fine, count = response.fine, SAMPLES * mesh.cycles
+    at = np.arange(count) / count
+
+    def over(values: Array) -> Array:
+        """Values on the samples of the period."""
+        columns = values.reshape(len(values), -1).T
+        even = [np.interp(at, fine.phase, column, period=1.0) for column in columns]
+        return np.asarray(np.stack(even, axis=-1).reshape(count, *values.shape[1:]))
+
+    return TurningMotion(
+        time=at * mesh.cycles / mesh_frequency,
+        position=over(fine.position),
+        velocity=over(fine.velocity),
+        acceleration=over(fine.acceleration),
+        mesh_force=over(fine.contact_force.sum(axis=1)),
+        transmission_error=over(fine.deflection[:, 0]),
+        names=response.names,
+        mesh=mesh,
+        mesh_frequency=mesh_frequency,
+        cycles=mesh.cycles,
+        pinion_teeth=case.gear_pair.pinion.teeth,
+        wheel_teeth=abs(case.gear_pair.wheel.teeth),
+        response=response,
+    )

@@ -1,0 +1,116 @@
+"""Recordings of a sensor: the motion over whole turns as a measuring system would store it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribodyn.checks import require_number, require_whole
+from tribodyn.errors import InputError, require_between, require_positive
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.faults import BearingDefect
+    from tribodyn.measurement import Recording
+    from tribodyn.study.faults.motion import TurningMotion
+
+#: Most samples of a recording.
+_MOST = 2**26
+#: Frequencies over the sampling rate between which the anti-alias filter falls from 1 to 0.
+_PASSED, _STOPPED = 0.4, 0.5
+#: Samples of the periodic signal for each period of its highest line.
+_OVERSAMPLED = 16
+
+
+def recording_of(
+    motion: TurningMotion,
+    defects: Sequence[tuple[str, BearingDefect]],
+    sensors: Sequence[str],
+    duration: float,
+    sample_rate: float,
+    *,
+    noise: float,
+    speed_fluctuation: float,
+    tacho_jitter: float,
+    seed: int,
+) -> Recording:
+    """Sample signals of a motion; arguments as those of ``Result.recording``."""
+    from tribodyn.measurement import Recording
+
+    require_number("duration", duration)
+    require_positive("duration", duration, "s")
+    require_positive("sample_rate", sample_rate, "Hz")
+    require_between("noise", noise, 0.0, 1e9, "")
+    require_between("speed_fluctuation", speed_fluctuation, 0.0, 0.1, "")
+    require_between("tacho_jitter", tacho_jitter, 0.0, 0.1, "")
+    require_whole("seed", seed, 0)
+    count = round(duration * sample_rate)
+    if not 16 <= count <= _MOST:
+        what = f"duration * sample_rate = {duration * sample_rate:.6g} samples"
+        why = f"A recording has 16 to {_MOST} samples"
+        raise InputError(what, "argument duration", why, "Change the duration or the rate")
+    rng = np.random.default_rng(seed)
+    time = np.arange(count) / sample_rate
+    turned = _mesh_cycles(motion, time, speed_fluctuation, rng)
+    channels: dict[str, Array] = {}
+    units: dict[str, str] = {}
+    for sensor in sensors:
+        values, unit = motion.signal(sensor)
+        samples = _resampled(motion, values, turned, sample_rate)
+        if unit == "m/s^2":
+            gear = sensor.partition("_")[0]
+            for number, (where, defect) in enumerate(defects):
+                if where == gear:
+                    draw = seed * 1009 + number
+                    samples = samples + defect.signal(motion.rotation_frequency(gear), time, draw)
+        channels[sensor] = samples + noise * rng.standard_normal(count)
+        units[sensor] = unit
+    channels["tacho"] = _tacho(turned / motion.pinion_teeth, tacho_jitter, rng)
+    units["tacho"] = "V"
+    return Recording(channels, sample_rate, units)
+
+
+def _mesh_cycles(
+    motion: TurningMotion, time: Array, fluctuation: float, rng: np.random.Generator
+) -> Array:
+    """Mesh cycles at each time; the speed wanders slowly about its mean."""
+    cycles = motion.mesh_frequency * time + motion.cycles * rng.random()
+    if fluctuation == 0.0:
+        return np.asarray(cycles)
+    # A few slow waves with random phases, shorter than ten turns of the pinion.
+    slow = motion.rotation_frequency("pinion") * (rng.random(4) * 0.2 + 0.05)
+    phases = 2.0 * np.pi * rng.random(4)
+    size = fluctuation * np.sqrt(2.0 / slow.size)  # rms of the speed over its mean
+    for frequency, phase in zip(slow, phases, strict=True):
+        omega = 2.0 * np.pi * frequency
+        cycles = cycles + motion.mesh_frequency * size / omega * (
+            np.sin(omega * time + phase) - np.sin(phase)
+        )
+    return np.asarray(cycles)
+
+
+def _resampled(motion: TurningMotion, values: Array, turned: Array, sample_rate: float) -> Array:
+    """A periodic signal at given mesh cycles, without what lies above half the sampling rate."""
+    from scipy.interpolate import CubicSpline
+
+    lines = np.fft.rfft(values)
+    frequency = np.arange(lines.size) / motion.period
+    fall = (frequency / sample_rate - _PASSED) / (_STOPPED - _PASSED)
+    lines *= 0.5 * (1.0 + np.cos(np.pi * np.clip(fall, 0.0, 1.0)))
+    highest = int(np.flatnonzero(fall < 1.0)[-1]) + 1
+    points = max(_OVERSAMPLED * highest, 64)
+    dense = np.fft.irfft(lines[:highest], points) * (points / values.size)
+    spline = CubicSpline(np.arange(points + 1) / points, [*dense, dense[0]], bc_type="periodic")
+    return np.asarray(spline((turned / motion.cycles) % 1.0))
+
+
+def _tacho(turns: Array, jitter: float, rng: np.random.Generator) -> Array:
+    """A pulse of 5 V a turn, a tenth of the turn long; its edges scatter by a part of the turn."""
+    whole = np.floor(turns).astype(int)
+    first = int(whole[0])
+    edges = jitter * rng.standard_normal(int(whole[-1]) - first + 2)
+    late = edges[whole - first]
+    place = turns - whole
+    return np.asarray(np.where((place >= late) & (place < 0.1 + late), 5.0, 0.0))

@@ -1,0 +1,209 @@
+"""The ``[faults.NAME]`` tables of a case, and the faults that they state."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.errors import InputError, Problem
+from tribodyn.model import REQUIRED, choice, integer, number
+from tribodyn.study.case.section import NamedTables, Section, table
+
+if TYPE_CHECKING:
+    from tribodyn.faults import BearingDefect, Fault
+
+_TURN = 2.0 * math.pi
+_GUARD = "guards against a wrong unit"
+_PART = "a part of the whole"
+
+#: Kinds, and the keys of each: required, then optional.
+KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "eccentricity": (("gear", "amplitude"), ("phase",)),
+    "waviness": (("gear", "amplitude", "order"), ("phase", "lead_angle")),
+    "pitch-deviations": (("gear", "accuracy_class"), ("seed",)),
+    "spall": (("gear", "tooth", "depth", "start", "end"), ("face_share",)),
+    "broken-tooth": (("gear", "tooth"), ("remaining",)),
+    "crack": (("gear", "tooth", "depth"), ("face_share",)),
+    "bearing-defect": (
+        (
+            "gear",
+            "place",
+            "rolling_elements",
+            "element_diameter",
+            "pitch_diameter",
+            "acceleration",
+            "resonance",
+        ),
+        ("contact_angle", "damping_ratio", "slip"),
+    ),
+}
+_MEANINGS = {
+    "eccentricity": "axis of the toothing beside the axis of rotation",
+    "waviness": "waves that run on from tooth to tooth, a ghost order",
+    "pitch-deviations": "pitch deviations drawn from an accuracy class",
+    "spall": "material missing on a part of one flank",
+    "broken-tooth": "a tooth whose upper part is gone",
+    "crack": "a crack at the root of one tooth",
+    "bearing-defect": "a local defect of a bearing of the gear's shaft",
+}
+
+
+def _length(meaning: str, high: float, example: str) -> Any:
+    return number(
+        None, 0.0, high, _GUARD, unit="m", display_unit="um" if high < 0.01 else "mm",
+        meaning=meaning, example=example,
+    )  # fmt: skip
+
+
+def _share(meaning: str) -> Any:
+    return number(None, 0.0, 1.0, _PART, meaning=meaning, example="0.5")
+
+
+class FaultTable(Section):
+    """A ``[faults.NAME]`` table: kind, gear, place and size."""
+
+    needed = ("kind", "gear")
+    kind: str = choice(REQUIRED, _MEANINGS, meaning="what it is")
+    gear: str | None = choice(None, ("pinion", "wheel"), meaning="gear, or shaft of it")
+    tooth: int | None = integer(
+        None, 1, 1000, "from 1 in the order of contact", meaning="number of the tooth", example="1"
+    )
+    depth: float | None = _length("depth of a spall or of a crack", 1.0, '"1 mm"')
+    start: float | None = _share("lower end of a spall on the used flank, from its lowest point")
+    end: float | None = _share("upper end of a spall on the used flank; 1 is the tip")
+    face_share: float | None = _share("part of the face width that is damaged; all by default")
+    remaining: float | None = _share("part of the used flank that is left; none by default")
+    amplitude: float | None = _length("eccentricity, or amplitude of a wave", 1e-3, '"10 um"')
+    order: int | None = integer(
+        None, 1, 100_000, "waves in a turn of the gear", meaning="order of a wave", example="97"
+    )
+    phase: float | None = number(
+        None, -_TURN, _TURN, "one turn", unit="rad", display_unit="deg",
+        meaning="phase where tooth 1 comes into contact", example='"90 deg"',
+    )  # fmt: skip
+    lead_angle: float | None = number(
+        None, -1.5, 1.5, "inclined crests", unit="rad", display_unit="deg",
+        meaning="angle of the crests to the line of contact", example='"5 deg"',
+    )  # fmt: skip
+    accuracy_class: int | None = integer(
+        None, 1, 11, "classes of ISO 1328-1", meaning="accuracy class", example="6"
+    )
+    seed: int | None = integer(
+        None, 0, 10**9, "any whole number", meaning="number of the random draw", example="1"
+    )
+    place: str | None = choice(
+        None, ("outer", "inner", "element"), meaning="ring or element of a bearing with a defect"
+    )
+    rolling_elements: int | None = integer(
+        None, 3, 1000, "a bearing has at least three", meaning="number of elements", example="9"
+    )
+    element_diameter: float | None = _length("diameter of a rolling element", 1.0, '"7.94 mm"')
+    pitch_diameter: float | None = _length("diameter of the circle of elements", 10.0, '"39 mm"')
+    contact_angle: float | None = number(
+        None, 0.0, 1.2, "bearings lie below 60 deg", unit="rad", display_unit="deg",
+        meaning="contact angle of a bearing", example='"15 deg"',
+    )  # fmt: skip
+    acceleration: float | None = number(
+        None,
+        0.0,
+        1e6,
+        _GUARD,
+        unit="m/s^2",
+        meaning="largest acceleration of an impact at a sensor",
+    )
+    resonance: float | None = number(
+        None, 1.0, 1e6, _GUARD, unit="Hz", meaning="natural frequency that an impact excites",
+        example='"3000 Hz"',
+    )  # fmt: skip
+    damping_ratio: float | None = number(
+        None, 1e-4, 0.9, "over the critical damping", meaning="damping of that resonance"
+    )
+    slip: float | None = number(
+        None, 0.0, 0.2, "scatter over the mean", meaning="scatter of the intervals of impacts"
+    )
+
+
+class Faults(NamedTables, inner=table(FaultTable, "a fault")):
+    """The ``[faults]`` table."""
+
+
+def _stated(fault: FaultTable) -> dict[str, Any]:
+    return {
+        name: value for name, value in vars(fault).items() if name != "kind" and value is not None
+    }
+
+
+def fault_problems(faults: Faults | None) -> list[tuple[str, Problem]]:
+    """Report missing keys, and keys that this kind of fault does not have."""
+    problems = []
+    for name, fault in vars(faults).items() if faults is not None else ():
+        required, optional = KINDS[fault.kind]
+        stated = _stated(fault)
+        for key in required:
+            if key not in stated:
+                option = FaultTable.spec(key)
+                example = option.example if option else ""
+                why = f'A fault of the kind "{fault.kind}" has: {", ".join((*required, *optional))}'
+                remedy = f"Add for example {key} = {example} to [faults.{name}]"
+                problems.append(
+                    (f"faults.{name}.{key}", Problem(f"{key} is missing", "", why, remedy))
+                )
+        for key in sorted(stated.keys() - {*required, *optional}):
+            why = f'A fault of the kind "{fault.kind}" has: {", ".join((*required, *optional))}'
+            what = f"{key} is given"
+            problems.append((f"faults.{name}.{key}", Problem(what, "", why, "Remove it")))
+    return problems
+
+
+def read_fault(fault: FaultTable) -> Fault | BearingDefect:
+    """The fault that a table states."""
+    from tribodyn import faults
+
+    values = _stated(fault)
+    if fault.kind == "eccentricity":
+        return faults.Waviness(order=1, **values)
+    if fault.kind == "bearing-defect":
+        return faults.BearingDefect(**{k: v for k, v in values.items() if k != "gear"})
+    kinds: dict[str, Any] = {
+        "waviness": faults.Waviness,
+        "pitch-deviations": faults.PitchDeviations,
+        "spall": faults.Spall,
+        "broken-tooth": faults.BrokenTooth,
+        "crack": faults.Crack,
+    }
+    made: Fault = kinds[fault.kind](**values)
+    return made
+
+
+def check_fault(case: Any, fault: FaultTable) -> None:
+    """Raise InputError if the pair of a case cannot have a fault."""
+    from tribodyn.faults import Fault
+
+    if case.gears.kind != "spur":
+        why = "Faults act on cylindrical pairs, whose teeth are computed one by one"
+        raise InputError(f"the gears are a {case.gears.kind} pair", "kind", why, "Remove [faults]")
+    made = read_fault(fault)
+    if isinstance(made, Fault):
+        made.check(case.gear_pair)
+
+
+def gear_faults(case: Any) -> dict[str, Fault]:
+    """Faults of the gears of a case, by name."""
+    from tribodyn.faults import Fault
+
+    tables = vars(case.faults) if case.faults is not None else {}
+    made = {name: read_fault(fault) for name, fault in tables.items()}
+    return {name: fault for name, fault in made.items() if isinstance(fault, Fault)}
+
+
+def bearing_defects(case: Any) -> dict[str, tuple[str, BearingDefect]]:
+    """Gear of the shaft and defect of the bearings of a case, by name."""
+    from tribodyn.faults import BearingDefect
+
+    tables = vars(case.faults) if case.faults is not None else {}
+    made = {name: (fault.gear, read_fault(fault)) for name, fault in tables.items()}
+    return {
+        name: (gear, defect)
+        for name, (gear, defect) in made.items()
+        if isinstance(defect, BearingDefect)
+    }
