@@ -104,9 +104,9 @@ _ELSEWHERE = {
 
 _PACKAGES = (
     "analysis", "cases", "contact", "cookbook", "dynamics", "ehl", "errors", "exchange",
-    "faults", "friction", "gear", "losses", "lubricant", "machine", "measurement", "mesh", "nomenclature",
-    "plot", "progress", "report", "stiffness", "study", "surrogate", "uncertainty", "units",
-    "variants",
+    "faults", "friction", "gear", "losses", "lubricant", "machine", "measurement", "mesh",
+    "nomenclature", "plot", "progress", "report", "stiffness", "study", "surrogate", "uncertainty",
+    "units", "variants",
 )  # fmt: skip
 
 

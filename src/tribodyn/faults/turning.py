@@ -23,8 +23,8 @@ from tribodyn.stiffness.loaded.problem import FAR, ContactProblem
 from tribodyn.stiffness.model import MODELS
 from tribodyn.types import Array
 
-#: Phases of a mesh cycle at which the teeth are solved.
-PHASES = 64
+#: Phases of a mesh cycle at which the teeth are solved, where the turns are not too many.
+_PHASES, _FEWEST = 256, 32
 #: Most phases of all turns: beyond it the table needs more memory than a notebook has.
 _MOST = 400_000
 #: Slices of the face where a fault is narrower than it.
@@ -157,7 +157,7 @@ def turning_mesh(
     extended_contact: bool = True,
     material: Material | None = None,
     options: Mapping[str, Any] = NO_OPTIONS,
-    phases: int = PHASES,
+    phases: int | None = None,
 ) -> TurningMesh:
     """Solve the loaded tooth contact over whole turns.
 
@@ -171,8 +171,8 @@ def turning_mesh(
         Faults, besides the deviations of the pair.
     provider, extended_contact, material, options
         As for :func:`tribodyn.stiffness.loaded_contact`.
-    phases : int
-        Phases of a mesh cycle.
+    phases : int, optional
+        Phases of a mesh cycle; 256 by default, fewer where the turns are many.
 
     Returns
     -------
@@ -205,6 +205,8 @@ def turning_mesh(
         fault.check(pair)
         pair = fault.on(pair)
     cycles = turns_of(pair, faults)
+    if phases is None:
+        phases = max(min(_PHASES, _MOST // cycles), _FEWEST)
     if cycles * phases > _MOST:
         what = f"all repeats after {cycles} mesh cycles, {cycles * phases} phases"
         remedy = (

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.result import Result
 
 #: Steps of the search for each mesh cycle, tried in turn, and even samples of the motion.
-_STEPS, SAMPLES = (128, 256, 512), 128
+_STEPS, SAMPLES = (128, 256, 512), 512
 #: Change of the motion with half the steps, over its size, that is small enough.
 _ACCURATE = 2e-3
 
@@ -37,7 +37,7 @@ class TurningMotion(Record):
     mesh_force : (s,) array
         Force along the line of action [N].
     transmission_error : (s,) array
-        Compression of the mesh [m].
+        Compression of the mesh from where the nominal flanks touch [m].
     names : tuple of str
         Names of the coordinates.
     mesh : TurningMesh
@@ -203,7 +203,7 @@ def _sampled(
         velocity=over(fine.velocity),
         acceleration=over(fine.acceleration),
         mesh_force=over(fine.contact_force.sum(axis=1)),
-        transmission_error=over(fine.deflection[:, 0]),
+        transmission_error=over(fine.deflection[:, 0]) - 0.5 * case.backlash,
         names=response.names,
         mesh=mesh,
         mesh_frequency=mesh_frequency,

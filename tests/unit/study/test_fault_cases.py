@@ -1,0 +1,168 @@
+"""Faults in a case: keys and their errors, the motion over whole turns, recordings."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tribodyn
+from tribodyn.errors import InputError
+from tribodyn.measurement import read
+from tribodyn.study import Case, Result
+from tribodyn.study.faults.motion import turning_mesh_of, turning_system
+
+CRACK = {
+    "faults.crack.kind": "crack", "faults.crack.gear": "pinion", "faults.crack.tooth": 3,
+    "faults.crack.depth": "2 mm",
+}  # fmt: skip
+WHEEL = {
+    "faults.run-out.kind": "eccentricity", "faults.run-out.gear": "wheel",
+    "faults.run-out.amplitude": "5 um",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def healthy() -> Case:
+    return tribodyn.load_case("fzg-roughness").replace(
+        {"stiffness.model": "analytic", "dynamics.mesh_law": "force-law"}
+    )
+
+
+@pytest.fixture(scope="module")
+def result(healthy: Case) -> Result:
+    with pytest.warns(tribodyn.ModelWarning):
+        return tribodyn.run(healthy.replace({**CRACK, **WHEEL}))
+
+
+def test_a_case_with_faults_reads_back(healthy: Case, tmp_path: Path) -> None:
+    case = healthy.replace({**CRACK, **WHEEL})
+    assert case != healthy
+    file = tmp_path / "case.toml"
+    file.write_text(case.to_toml(), encoding="utf-8")
+    assert tribodyn.load_case(file) == case
+    without = case.replace({"faults.crack": None})
+    assert without == healthy.replace(WHEEL)
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        ({"faults.crack.kind": "crak"}, 'Did you mean "crack"'),
+        ({"faults.crack.tooth": 17}, "16 teeth"),
+        ({"faults.crack.start": 0.5}, "has: gear, tooth, depth"),
+        ({"faults.crack.depth": None}, 'Add for example depth = "1 mm"'),
+        ({"faults.crack.depht": "1 mm"}, 'Did you mean "depth"'),
+        ({"faults.crack.depth": "9 mm"}, "at most 8.59 mm"),
+    ],
+)
+def test_a_wrong_fault_names_its_key(
+    healthy: Case, change: dict[str, object], expected: str
+) -> None:
+    with pytest.raises(InputError, match=expected) as raised:
+        healthy.replace({**CRACK, **change})
+    assert f"faults.crack.{next(iter(change)).rpartition('.')[2]}" in str(raised.value)
+
+
+def test_hypoid_gears_have_no_such_faults() -> None:
+    with pytest.raises(InputError, match=r"faults\.crack.*hypoid"):
+        tribodyn.load_case("hypoid-mixed-ehl").replace(CRACK)
+
+
+def test_motion_without_faults_is_that_of_the_mesh_cycle(healthy: Case) -> None:
+    with pytest.warns(tribodyn.ModelWarning):
+        sound = tribodyn.run(healthy)
+    assert sound.turns is None
+    motion, force = sound.turning_motion, sound.response.fine.contact_force.sum(axis=1)
+    assert motion.cycles == 1
+    # ten ramps about the load in place of the whole law
+    swing = np.ptp(force)
+    assert abs(motion.mesh_force.mean() / sound.response.fine.mean(force) - 1.0) < 1e-4
+    assert abs(motion.mesh_force.max() - force.max()) < 0.03 * swing
+    assert abs(motion.mesh_force.min() - force.min()) < 0.03 * swing
+
+
+def test_a_slow_motion_follows_the_error_at_rest(result: Result) -> None:
+    from tribodyn.dynamics import harmonic_balance
+
+    mesh = turning_mesh_of(result.case)
+    system = turning_system(result, mesh)
+    slow = harmonic_balance(system, 1.0, steps=256 * mesh.cycles)
+    at_rest = np.interp(slow.phase, mesh.phase / mesh.cycles, mesh.transmission_error)
+    # friction takes a part of the torque, so that the load is not that of the torque alone
+    lag = slow.deflection[:, 0] - result.half_backlash - at_rest
+    assert np.abs(lag).max() < 0.08 * np.ptp(mesh.transmission_error)
+
+
+def test_lines_stand_at_the_turns_of_the_faulty_gear(healthy: Case) -> None:
+    sound_pinion = {**CRACK, "faults.crack.depth": "0 mm"}
+    with pytest.warns(tribodyn.ModelWarning):
+        motion = tribodyn.run(healthy.replace({**sound_pinion, **WHEEL})).turning_motion
+    assert motion.cycles == 48
+    frequency, lines = motion.harmonics("pinion_y")
+    size = np.abs(lines)
+    order = np.round(frequency * motion.period).astype(int)  # 3 turns of the pinion, 2 of the wheel
+    assert size[order % 2 == 1].max() < 1e-6 * size.max()
+    mesh = int(np.argmax(size))
+    assert order[mesh] % 48 == 0
+    sidebands = size[mesh - 2], size[mesh + 2]
+    assert min(sidebands) > 1e-4 * size[mesh]
+
+
+def test_recordings_are_sampled_motions(result: Result, tmp_path: Path) -> None:
+    motion = result.turning_motion
+    recording = result.recording("transmission_error", 0.5, 20_000.0, seed=4)
+    samples = recording["transmission_error"]
+    frequency, lines = motion.harmonics("transmission_error")
+    seconds = 2.0 * motion.period  # two periods of 0.2 s
+    of_recording = np.fft.rfft(samples[: round(seconds * 20_000.0)])[::2]
+    size = 2.0 * np.abs(of_recording) / round(seconds * 20_000.0)
+    passed = np.flatnonzero((frequency > 0.0) & (frequency < 0.4 * 20_000.0))
+    expected = np.abs(lines)[passed]
+    np.testing.assert_allclose(size[passed], expected, atol=1e-4 * expected.max())
+    turns = np.diff(np.flatnonzero(np.diff(recording["tacho"]) > 0.0)) / 20_000.0
+    assert np.abs(turns * motion.rotation_frequency("pinion") - 1.0).max() < 1e-3
+    noisy = result.recording("pinion_y", 0.5, 20_000.0, noise=2.0, seed=4)
+    quiet = result.recording("pinion_y", 0.5, 20_000.0, seed=4)
+    assert abs(np.std(noisy["pinion_y"] - quiet["pinion_y"]) / 2.0 - 1.0) < 0.05
+    assert noisy.units["pinion_y"] == "m/s^2"
+    for name in ("a.wav", "a.mat", "a.h5", "a.uff", "a.csv"):
+        if name == "a.uff":
+            pytest.importorskip("pyuff")
+        saved = read(noisy.save(tmp_path / name, truth={"fault": "crack", "depth": 2e-3}))
+        first = next(iter(saved.channels))
+        np.testing.assert_allclose(
+            saved[first], noisy["pinion_y"], atol=1e-6 * np.abs(noisy["pinion_y"]).max()
+        )
+        assert abs(saved.sample_rate / 20_000.0 - 1.0) < 1e-6
+    truth = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))
+    assert truth["fault"] == "crack"
+    with pytest.raises(InputError, match="no ending of a recording"):
+        noisy.save(tmp_path / "a.xyz")
+    with pytest.raises(InputError, match="The sensors are pinion_x"):
+        result.recording("pinion_z", 0.5)
+    with pytest.raises(InputError, match="16 to"):
+        result.recording("pinion_y", 1e-4)
+
+
+def test_impacts_of_a_bearing_are_in_the_recording_of_its_gear(healthy: Case) -> None:
+    bearing = {
+        "kind": "bearing-defect", "gear": "pinion", "place": "outer", "rolling_elements": 9,
+        "element_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "acceleration": 2000.0,
+        "resonance": "6000 Hz",
+    }  # fmt: skip
+    changes = {f"faults.bearing.{key}": value for key, value in bearing.items()}
+    with pytest.warns(tribodyn.ModelWarning):
+        damaged = tribodyn.run(healthy.replace(changes))
+    pinion, wheel = (
+        damaged.recording(f"{gear}_y", 1.0)[f"{gear}_y"] for gear in ("pinion", "wheel")
+    )
+    assert np.abs(pinion).max() > 1000.0 > np.abs(wheel).max()
+
+
+def test_the_report_shows_the_turns(result: Result) -> None:
+    figure = result.plot_turning_motion()
+    assert "48 mesh cycles" in figure.layout.title.text
+    assert [trace.name for trace in figure.data] == ["at rest", "mesh force", "orders"]
