@@ -170,8 +170,8 @@ class CaseForm:
         return is_idle(key, self._chosen("gears.kind"))
 
     def _is_used(self, table: str) -> bool:
-        """Whether a table has an effect; tables of gears are filtered by key."""
-        return table.startswith("gears") or not self._idle(table)
+        """Whether a table has an effect and fixed keys; tables of gears are filtered by key."""
+        return table.startswith("gears") or not (table == "faults" or self._idle(table))
 
     def _chosen(self, key: str) -> Any:
         return self.typed.get(key) or self._effective.get(key)

@@ -149,10 +149,10 @@ class Section:
 
 
 class _AnyName(dict[str, Any]):
-    """Fields of a table whose inner tables the user names: any name has the same one."""
+    """Fields of a table whose inner tables the user names; reference pages show it as NAME."""
 
     def __init__(self, inner: Table) -> None:
-        super().__init__()
+        super().__init__(NAME=inner)
         self.inner = inner
 
     def __contains__(self, name: object) -> bool:
