@@ -132,7 +132,7 @@ class Section:
         return type(self).section_keys().keys
 
     @classmethod
-    def tables_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+    def _tables_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
         """Keys to read from data."""
         return cls.fields
 
@@ -174,7 +174,7 @@ class NamedTables(Section):
         return vars(self)
 
     @classmethod
-    def tables_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+    def _tables_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
         """One inner table for each name in the data."""
         return dict.fromkeys(data, cls.fields.inner)  # type: ignore[attr-defined]
 

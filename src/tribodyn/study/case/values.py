@@ -278,7 +278,7 @@ def read_fields(
     values: dict[str, Any] = {}
     model = chosen[path].model if path in chosen else None
     # The options of a model take precedence over keys of the same name.
-    fields = cls.tables_for(data)
+    fields = cls._tables_for(data)
     options = {**fields, **model.case_options} if model else fields
     for name, field in options.items():
         key = f"{path}.{name}" if path else name
