@@ -27,12 +27,12 @@ class BearingDefect:
         Number of rolling elements.
     element_diameter, pitch_diameter : float
         Diameters of an element and of the circle of their centres [m].
-    contact_angle : float
-        Contact angle [rad].
     acceleration : float
         Largest acceleration of an impact at the sensor [m/s^2].
     resonance : float
         Natural frequency that an impact excites [Hz].
+    contact_angle : float
+        Contact angle [rad].
     damping_ratio : float
         Damping of it over the critical one.
     slip : float
@@ -89,7 +89,17 @@ class BearingDefect:
         return self.element_diameter / self.pitch_diameter * math.cos(self.contact_angle)
 
     def frequency(self, shaft: float) -> float:
-        """Impacts per second at a speed of the shaft in turns per second [Hz]."""
+        """Impacts per second.
+
+        Parameters
+        ----------
+        shaft : float
+            Speed of the shaft in turns per second [Hz].
+
+        Returns
+        -------
+        float [Hz]
+        """
         half = 0.5 * self.rolling_elements * shaft
         return {
             "outer": half * (1.0 - self._ratio),
@@ -98,7 +108,17 @@ class BearingDefect:
         }[self.place]
 
     def modulation(self, shaft: float) -> float:
-        """Frequency with which the defect passes the loaded zone; 0 of an outer ring [Hz]."""
+        """Frequency with which the defect passes the loaded zone; 0 of an outer ring.
+
+        Parameters
+        ----------
+        shaft : float
+            Speed of the shaft in turns per second [Hz].
+
+        Returns
+        -------
+        float [Hz]
+        """
         cage = 0.5 * shaft * (1.0 - self._ratio)
         return {"outer": 0.0, "inner": shaft, "element": cage}[self.place]
 

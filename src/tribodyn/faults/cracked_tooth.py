@@ -36,7 +36,7 @@ def crack_compliance(
     depth : float
         Length of the crack from the surface into the tooth [m].
     refined : float
-        By how much the elements are smaller than those of whole gears.
+        Size of the elements of whole gears over that of these [1].
 
     Returns
     -------

@@ -36,8 +36,8 @@ class Spall(ToothFault):
 
     Examples
     --------
-    >>> Spall(tooth=3, depth=50e-6, start=0.4, end=0.6, face_share=0.5).varies_over_face
-    True
+    >>> Spall(tooth=3, depth=50e-6, start=0.4, end=0.6, face_share=0.5).face_share
+    0.5
     """
 
     depth: float
@@ -58,14 +58,14 @@ class Spall(ToothFault):
             raise InputError(what, "end", why, "Count from the lowest point of the flank")
 
     @property
-    def varies_over_face(self) -> bool:  # type: ignore[override]
+    def _varies_over_face(self) -> bool:  # type: ignore[override]
         """Whether it is narrower than the face."""
         return 0.0 < self.face_share < 1.0
 
-    def gap(self, places: ContactPlaces, face: Array) -> Array:
+    def _gap(self, places: ContactPlaces, face: Array) -> Array:
         """Gap (p, s, n)."""
-        share = self.flank_share(places)
-        inside = self.has_tooth(places) & (share > self.start) & (share < self.end)
+        share = self._flank_share(places)
+        inside = self._has_tooth(places) & (share > self.start) & (share < self.end)
         half = 0.5 * self.face_share * places.contact.pair.common_face_width
         across = np.abs(face) < half
         return np.asarray(self.depth * (inside[:, None, :] & across))
@@ -99,11 +99,11 @@ class BrokenTooth(ToothFault):
         super().__post_init__()
         require_between("remaining", self.remaining, 0.0, 1.0, "")
 
-    def gap(self, places: ContactPlaces, face: Array) -> Array:
+    def _gap(self, places: ContactPlaces, face: Array) -> Array:
         """Gap (p, 1, n)."""
-        gone = self.has_tooth(places)
+        gone = self._has_tooth(places)
         if self.remaining:
-            gone = gone & (self.flank_share(places) > self.remaining)
+            gone = gone & (self._flank_share(places) > self.remaining)
         return np.asarray(FAR * gone[:, None, :])
 
 
@@ -144,19 +144,19 @@ class Crack(ToothFault):
         require_between("depth", self.depth, 0.0, 1.0, "m")
         require_between("face_share", self.face_share, 0.0, 1.0, "")
 
-    def check(self, pair: SpurPair) -> None:
+    def _check(self, pair: SpurPair) -> None:
         """Raise InputError if there is no such tooth, or the gear is a ring."""
-        super().check(pair)
-        if self.gear_of(pair).is_ring:
+        super()._check(pair)
+        if self._gear_of(pair).is_ring:
             why = "The crack runs through a tooth of an external gear"
             raise InputError("the cracked gear is a ring", "gear", why, "Crack the other gear")
-        check_depth(self.gear_of(pair), self.depth)
+        check_depth(self._gear_of(pair), self.depth)
 
-    def compliance(self, places: ContactPlaces, material: Material, sound: Array) -> Array:
+    def _compliance(self, places: ContactPlaces, material: Material, sound: Array) -> Array:
         """Compliance that the crack adds where its tooth carries (p, n)."""
         if self.depth == 0.0 or self.face_share == 0.0:
             return np.zeros(places.path.shape)
-        radius, added = crack_compliance(self.gear_of(places.contact.pair), material, self.depth)
-        cracked = sound + np.interp(self.radius_of(places), radius, added)
+        radius, added = crack_compliance(self._gear_of(places.contact.pair), material, self.depth)
+        cracked = sound + np.interp(self._radius_of(places), radius, added)
         whole = 1.0 / (self.face_share / cracked + (1.0 - self.face_share) / sound)
-        return np.asarray(np.where(self.has_tooth(places), whole - sound, 0.0))
+        return np.asarray(np.where(self._has_tooth(places), whole - sound, 0.0))

@@ -67,15 +67,15 @@ class Waviness(Fault):
         require_between("lead_angle", self.lead_angle, -1.5, 1.5, "rad")
 
     @property
-    def varies_over_face(self) -> bool:  # type: ignore[override]
+    def _varies_over_face(self) -> bool:  # type: ignore[override]
         """Whether the crests are inclined."""
         return self.lead_angle != 0.0
 
-    def gap(self, places: ContactPlaces, face: Array) -> Array:
+    def _gap(self, places: ContactPlaces, face: Array) -> Array:
         """Gap (p, s, 1): negative at a crest."""
-        base = abs(self.gear_of(places.contact.pair).base_radius)
+        base = abs(self._gear_of(places.contact.pair).base_radius)
         along = face * (math.tan(self.lead_angle) / base)
-        angle = self.order * (self.rotation(places)[:, None, None] + along) + self.phase
+        angle = self.order * (self._rotation(places)[:, None, None] + along) + self.phase
         return np.asarray(-self.amplitude * np.cos(angle))
 
 
@@ -179,7 +179,17 @@ class PitchDeviations(Fault):
         object.__setattr__(self, "seed", require_whole("seed", self.seed, 0))
 
     def single(self, gear: SpurGear) -> Array:
-        """Single pitch deviations of a gear, in the order of contact [m]; their sum is zero."""
+        """Single pitch deviations of a gear in the order of contact; their sum is zero.
+
+        Parameters
+        ----------
+        gear : SpurGear
+            The gear.
+
+        Returns
+        -------
+        (z,) array [m]
+        """
         single_tolerance, total_tolerance = pitch_tolerances(gear, self.accuracy_class)
         drawn = np.random.default_rng(self.seed).standard_normal(abs(gear.teeth))
         drawn -= drawn.mean()
@@ -188,9 +198,9 @@ class PitchDeviations(Fault):
         )
         return np.asarray(scale * drawn)
 
-    def on(self, pair: SpurPair) -> SpurPair:
+    def _on(self, pair: SpurPair) -> SpurPair:
         """The pair with these deviations in place of its own."""
-        gear = self.gear_of(pair)
+        gear = self._gear_of(pair)
         places = np.cumsum(self.single(gear))
         modification = replace(
             gear.modification,

@@ -29,73 +29,58 @@ class Fault:
     gear: GearName = "pinion"
 
     #: Whether the flanks differ over the face, so that slices are needed.
-    varies_over_face = False
+    _varies_over_face = False
 
     def __post_init__(self) -> None:
         require_one_of("gear", self.gear, GEARS)
 
-    def on(self, pair: SpurPair) -> SpurPair:
+    def _on(self, pair: SpurPair) -> SpurPair:
         """The pair with what of the fault its flank modifications can state."""
         return pair
 
-    def gap(self, places: ContactPlaces, face: Array) -> Array | float:
-        """Material that is missing at each contact.
-
-        Parameters
-        ----------
-        places : ContactPlaces
-            Contacts (p, n); the whole part of their phase counts mesh cycles.
-        face : (s, 1) array
-            Place of each slice along the face, from its middle [m].
-
-        Returns
-        -------
-        array, to be broadcast to (p, s, n) [m]
-        """
+    def _gap(self, places: ContactPlaces, face: Array) -> Array | float:
+        """Material that is missing at each contact, to be broadcast to (p, s, n) [m]."""
+        # Face (s, 1): place of each slice along the face, from its middle [m].
         return 0.0
 
-    def compliance(self, places: ContactPlaces, material: Material, sound: Array) -> Array | float:
+    def _compliance(self, places: ContactPlaces, material: Material, sound: Array) -> Array | float:
         """Compliance per face width that is added to that of the sound teeth (p, n) [m^2/N]."""
         return 0.0
 
-    def gear_of(self, pair: SpurPair) -> SpurGear:
+    def _gear_of(self, pair: SpurPair) -> SpurGear:
         """The gear that has the fault."""
         return pair.pinion if self.gear == "pinion" else pair.wheel
 
-    def rotation(self, places: ContactPlaces) -> Array:
+    def _rotation(self, places: ContactPlaces) -> Array:
         """Rotation of the gear in its running sense since phase 0 (p,) [rad]."""
-        return np.asarray(2.0 * np.pi * places.phase / abs(self.gear_of(places.contact.pair).teeth))
+        return np.asarray(
+            2.0 * np.pi * places.phase / abs(self._gear_of(places.contact.pair).teeth)
+        )
 
-    def tooth_numbers(self, places: ContactPlaces) -> Index:
+    def _tooth_numbers(self, places: ContactPlaces) -> Index:
         """Tooth of the gear at each contact (p, n), from 1 in the order of contact."""
         cycle = np.floor(places.phase).astype(int)[:, None]
-        count = abs(self.gear_of(places.contact.pair).teeth)
+        count = abs(self._gear_of(places.contact.pair).teeth)
         return np.asarray((cycle - places.number) % count + 1)
 
-    def radius_of(self, places: ContactPlaces) -> Array:
+    def _radius_of(self, places: ContactPlaces) -> Array:
         """Radius of curvature of the gear at each contact (p, n) [m]."""
         own = self.gear == "pinion"
         return places.pinion_curvature_radius if own else places.wheel_curvature_radius
 
-    def check(self, pair: SpurPair) -> None:
+    def _check(self, pair: SpurPair) -> None:
         """Raise InputError if the pair cannot have this fault."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ToothFault(Fault):
-    """A damage of one tooth.
-
-    Parameters
-    ----------
-    tooth : int
-        Number of the tooth in the order of contact, from 1.
-    """
+    """A damage of one tooth, numbered in the order of contact from 1."""
 
     tooth: int = 1
 
-    def check(self, pair: SpurPair) -> None:
+    def _check(self, pair: SpurPair) -> None:
         """Raise InputError if there is no such tooth, or the teeth are helical."""
-        count = abs(self.gear_of(pair).teeth)
+        count = abs(self._gear_of(pair).teeth)
         if not 1 <= self.tooth <= count:
             what, why = f"tooth = {self.tooth}", f"The {self.gear} has {count} teeth, 1 to {count}"
             raise InputError(what, Argument("tooth"), why, "Count in the order of contact")
@@ -104,14 +89,14 @@ class ToothFault(Fault):
             remedy = "Give helix_angle = 0, or a deviation: eccentricity, waviness, pitch"
             raise InputError("the damaged tooth is helical", Argument("kind"), why, remedy)
 
-    def has_tooth(self, places: ContactPlaces) -> Mask:
+    def _has_tooth(self, places: ContactPlaces) -> Mask:
         """Whether the damaged tooth is at each contact (p, n)."""
-        return np.asarray(self.tooth_numbers(places) == self.tooth)
+        return np.asarray(self._tooth_numbers(places) == self.tooth)
 
-    def flank_share(self, places: ContactPlaces) -> Array:
+    def _flank_share(self, places: ContactPlaces) -> Array:
         """Place on the used flank (p, n), 0 at its lowest point and 1 at the tip."""
         from tribodyn.gear.mesh_geometry import flank_ranges
 
         pair = places.contact.pair
         flank = flank_ranges(pair)[GEARS.index(self.gear)]
-        return np.asarray((self.radius_of(places) - flank.lowest) / flank.length)
+        return np.asarray((self._radius_of(places) - flank.lowest) / flank.length)

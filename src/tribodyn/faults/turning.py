@@ -202,8 +202,8 @@ def turning_mesh(
     """
     require_positive("torque", torque, "N*m")
     for fault in faults:
-        fault.check(pair)
-        pair = fault.on(pair)
+        fault._check(pair)
+        pair = fault._on(pair)
     cycles = turns_of(pair, faults)
     if phases is None:
         phases = max(min(_PHASES, _MOST // cycles), _FEWEST)
@@ -253,7 +253,7 @@ def _problem(
 ) -> ContactProblem:
     """Loaded tooth contact with the gaps and compliances of all faults."""
     if not has_slices(pair, MODELS[settings["provider"]]):
-        varies = any(fault.varies_over_face for fault in faults)
+        varies = any(fault._varies_over_face for fault in faults)
         settings["slices"] = _SLICES if varies else None
     problem = contact_problem(pair, phase=phase, material=material, **settings)
     places, count = problem.places, problem.gaps.shape[1]
@@ -261,9 +261,9 @@ def _problem(
     gaps, structure = problem.gaps.copy(), problem.compliance.structure.copy()
     contacts = np.arange(structure.shape[1])
     for fault in faults:
-        gaps += fault.gap(places, face)
+        gaps += fault._gap(places, face)
         sound = structure[:, contacts, contacts]
-        structure[:, contacts, contacts] = sound + fault.compliance(places, material, sound)
+        structure[:, contacts, contacts] = sound + fault._compliance(places, material, sound)
     gaps = np.where(problem.gaps >= FAR, FAR, np.minimum(gaps, FAR))
     compliance = replace(problem.compliance, structure=structure)
     return replace(problem, gaps=gaps, compliance=compliance)

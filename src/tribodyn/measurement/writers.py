@@ -21,10 +21,7 @@ if TYPE_CHECKING:
 def write(
     recording: Recording, path: str | os.PathLike[str], truth: Mapping[str, Any] | None = None
 ) -> Path:
-    """Write a recording in the format of a file name, and its truth beside it as JSON.
-
-    ``truth`` holds labels: numbers and texts. WAV files hold 32 bit floats in SI.
-    """
+    """Write a recording in the format of a file name, and its truth beside it as JSON."""
     place = Path(path)
     writer = _WRITERS.get(place.suffix.lower())
     if writer is None:

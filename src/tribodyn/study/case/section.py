@@ -176,7 +176,8 @@ class NamedTables(Section):
     @classmethod
     def _tables_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
         """One inner table for each name in the data."""
-        return dict.fromkeys(data, cls.fields.inner)  # type: ignore[attr-defined]
+        inner: Table = cls.fields["NAME"]  # type: ignore[assignment]
+        return dict.fromkeys(data, inner)
 
 
 def section_at(path: tuple[str, ...]) -> type[Section] | None:

@@ -26,31 +26,7 @@ _ACCURATE = 2e-3
 
 @record
 class TurningMotion(Record):
-    """Motion over whole turns, on evenly spaced samples of one period.
-
-    Parameters
-    ----------
-    time : (s,) array
-        Time since tooth 1 of both gears came into contact [s].
-    position, velocity, acceleration : (s, n) array
-        Coordinates of the structure and their derivatives [m or rad, ...].
-    mesh_force : (s,) array
-        Force along the line of action [N].
-    transmission_error : (s,) array
-        Compression of the mesh from where the nominal flanks touch [m].
-    names : tuple of str
-        Names of the coordinates.
-    mesh : TurningMesh
-        The mesh over the same turns.
-    mesh_frequency : float
-        Mesh cycles per second [Hz].
-    cycles : int
-        Mesh cycles of the period.
-    pinion_teeth, wheel_teeth : int
-        Numbers of teeth.
-    response : Response
-        Motion on the steps of the search.
-    """
+    """Motion over whole turns of a period, on evenly spaced samples from tooth 1 on."""
 
     time: Array = quantity("time", unit="s", axis=True)
     position: Array = quantity("time", "coordinate", unit="m or rad")
@@ -59,12 +35,12 @@ class TurningMotion(Record):
     mesh_force: Array = quantity("time", unit="N")
     transmission_error: Array = quantity("time", unit="m")
     names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
-    mesh: TurningMesh
-    mesh_frequency: float = fact()
-    cycles: int = fact()
+    mesh: TurningMesh  #: over the same turns
+    mesh_frequency: float = fact()  #: mesh cycles per second [Hz]
+    cycles: int = fact()  #: mesh cycles of the period
     pinion_teeth: int = fact()
     wheel_teeth: int = fact()
-    response: Response
+    response: Response  #: on the steps of the search
 
     @property
     def period(self) -> float:
@@ -82,23 +58,7 @@ class TurningMotion(Record):
         return (*self.names, "mesh_force", "transmission_error")
 
     def signal(self, sensor: str) -> tuple[Array, str]:
-        """A signal over the period, and its unit.
-
-        Parameters
-        ----------
-        sensor : str
-            A coordinate, whose acceleration is the signal, ``"mesh_force"`` or
-            ``"transmission_error"``.
-
-        Returns
-        -------
-        ((s,) array, str)
-
-        Raises
-        ------
-        InputError
-            If there is no such signal.
-        """
+        """Return acceleration of a coordinate, mesh force or transmission error, with its unit."""
         if sensor in self.names:
             unit = "rad/s^2" if sensor.endswith("_theta") else "m/s^2"
             return self.acceleration[:, self.names.index(sensor)], unit
@@ -108,19 +68,7 @@ class TurningMotion(Record):
         return getattr(self, sensor), "N" if sensor == "mesh_force" else "m"
 
     def harmonics(self, sensor: str) -> tuple[Array, ComplexArray]:
-        """Lines of a signal over its period.
-
-        Parameters
-        ----------
-        sensor : str
-            As for :meth:`signal`.
-
-        Returns
-        -------
-        frequency : (k,) array [Hz]
-        amplitude : (k,) complex array
-            Peak amplitudes in the unit of the signal; the first is the mean.
-        """
+        """Frequencies (k,) [Hz] and complex peak amplitudes (k,) of a signal, from its mean on."""
         values = self.signal(sensor)[0]
         lines = np.fft.rfft(values) / values.size
         lines[1:] *= 2.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -24,17 +24,22 @@ _PASSED, _STOPPED = 0.4, 0.5
 _OVERSAMPLED = 16
 
 
+class Scatter(NamedTuple):
+    """What differs from one recording of a motion to the next."""
+
+    noise: float  #: standard deviation, in the unit of the sensor
+    speed_fluctuation: float  #: standard deviation of the speed over its mean
+    tacho_jitter: float  #: standard deviation of the edges of the tacho over a turn
+    seed: int
+
+
 def recording_of(
     motion: TurningMotion,
     defects: Sequence[tuple[str, BearingDefect]],
     sensors: Sequence[str],
     duration: float,
     sample_rate: float,
-    *,
-    noise: float,
-    speed_fluctuation: float,
-    tacho_jitter: float,
-    seed: int,
+    scatter: Scatter,
 ) -> Recording:
     """Sample signals of a motion; arguments as those of ``Result.recording``."""
     from tribodyn.measurement import Recording
@@ -42,18 +47,18 @@ def recording_of(
     require_number("duration", duration)
     require_positive("duration", duration, "s")
     require_positive("sample_rate", sample_rate, "Hz")
-    require_between("noise", noise, 0.0, 1e9, "")
-    require_between("speed_fluctuation", speed_fluctuation, 0.0, 0.1, "")
-    require_between("tacho_jitter", tacho_jitter, 0.0, 0.1, "")
-    require_whole("seed", seed, 0)
+    limits = {"noise": 1e9, "speed_fluctuation": 0.1, "tacho_jitter": 0.1}
+    for name, most in limits.items():
+        require_between(name, getattr(scatter, name), 0.0, most, "")
+    require_whole("seed", scatter.seed, 0)
     count = round(duration * sample_rate)
     if not 16 <= count <= _MOST:
         what = f"duration * sample_rate = {duration * sample_rate:.6g} samples"
         why = f"A recording has 16 to {_MOST} samples"
         raise InputError(what, "argument duration", why, "Change the duration or the rate")
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(scatter.seed)
     time = np.arange(count) / sample_rate
-    turned = _mesh_cycles(motion, time, speed_fluctuation, rng)
+    turned = _mesh_cycles(motion, time, scatter.speed_fluctuation, rng)
     channels: dict[str, Array] = {}
     units: dict[str, str] = {}
     for sensor in sensors:
@@ -63,11 +68,11 @@ def recording_of(
             gear = sensor.partition("_")[0]
             for number, (where, defect) in enumerate(defects):
                 if where == gear:
-                    draw = seed * 1009 + number
+                    draw = scatter.seed * 1009 + number
                     samples = samples + defect.signal(motion.rotation_frequency(gear), time, draw)
-        channels[sensor] = samples + noise * rng.standard_normal(count)
+        channels[sensor] = samples + scatter.noise * rng.standard_normal(count)
         units[sensor] = unit
-    channels["tacho"] = _tacho(turned / motion.pinion_teeth, tacho_jitter, rng)
+    channels["tacho"] = _tacho(turned / motion.pinion_teeth, scatter.tacho_jitter, rng)
     units["tacho"] = "V"
     return Recording(channels, sample_rate, units)
 

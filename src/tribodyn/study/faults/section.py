@@ -184,7 +184,7 @@ def check_fault(case: Any, fault: FaultTable) -> None:
         raise InputError(f"the gears are a {case.gears.kind} pair", "kind", why, "Remove [faults]")
     made = read_fault(fault)
     if isinstance(made, Fault):
-        made.check(case.gear_pair)
+        made._check(case.gear_pair)
 
 
 def gear_faults(case: Any) -> dict[str, Fault]:

@@ -176,7 +176,7 @@ class Result(Computed):
         ...     "faults.crack.tooth": 1, "faults.crack.depth": "1 mm"})
         >>> tribodyn.run(case).recording("pinion_y", 1.0, noise=0.5)  # doctest: +SKIP
         """
-        from tribodyn.study.faults.recording import recording_of
+        from tribodyn.study.faults.recording import Scatter, recording_of
         from tribodyn.study.faults.section import bearing_defects
 
         return recording_of(
@@ -185,10 +185,7 @@ class Result(Computed):
             [sensor] if isinstance(sensor, str) else list(sensor),
             duration,
             sample_rate,
-            noise=noise,
-            speed_fluctuation=speed_fluctuation,
-            tacho_jitter=tacho_jitter,
-            seed=seed,
+            Scatter(noise, speed_fluctuation, tacho_jitter, seed),
         )
 
     def _parts(self) -> Parts:
