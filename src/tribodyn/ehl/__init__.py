@@ -13,6 +13,7 @@
 | ``load_share`` | how much of the load the film carries between rough surfaces, and the regime |
 | ``asperities`` | summits of rough flanks from their roughness, and their contact |
 | ``mixed_contact`` | which part of its load the film of a rough line contact carries, solved |
+| ``flow_factors`` | mean flow between rough surfaces |
 | ``roughness`` | measured heights of a surface |
 """
 
@@ -23,6 +24,12 @@ from tribodyn.ehl.area.friction import AreaFriction
 from tribodyn.ehl.area.point_contact import solve_point_contact
 from tribodyn.ehl.area.solution import PointContactSolution
 from tribodyn.ehl.asperities import Asperities, asperity_integral
+from tribodyn.ehl.flow_factors import (
+    FlowFactors,
+    mean_gap,
+    pressure_flow_factor,
+    shear_flow_factor,
+)
 from tribodyn.ehl.formulas.dimensionless_groups import Groups, line_contact_groups
 from tribodyn.ehl.formulas.elliptic import (
     hamrock_dowson_central,
@@ -72,6 +79,7 @@ __all__ = [
     "BodyHeat",
     "FilmModel",
     "FilmState",
+    "FlowFactors",
     "Groups",
     "LineContactBatch",
     "LineContactSolution",
@@ -97,6 +105,7 @@ __all__ = [
     "inlet_heating_factor",
     "line_contact_groups",
     "lubrication_regime",
+    "mean_gap",
     "mixed_line_contact",
     "moes_central",
     "moes_dimensionless_central",
@@ -105,7 +114,9 @@ __all__ = [
     "nijenbanning_dimensionless_central",
     "pan_hamrock_central",
     "pan_hamrock_minimum",
+    "pressure_flow_factor",
     "ree_eyring_shear_stress",
+    "shear_flow_factor",
     "solve_amplitude_reduction",
     "solve_line_contact",
     "solve_line_contact_moes",

@@ -118,8 +118,8 @@ def shear_flow_factor(film_ratio: ArrayLike, orientation: float = 1.0) -> Array:
 def mean_gap(film_ratio: ArrayLike) -> Array:
     """Mean gap between rough surfaces over the distance of their mean surfaces.
 
-    Where asperities would overlap the gap is zero, not negative: ``h_T`` exceeds h, by 1e-4 of it at
-    a film ratio of 3.
+    Where asperities would overlap the gap is zero, not negative: ``h_T`` exceeds h, by 1e-4 of it
+    at a film ratio of 3.
 
     Parameters
     ----------
@@ -156,40 +156,45 @@ class FlowFactors:
     orientation : float
         Length of the asperities along the flow over that across it, 1/9 to 9; 1 is isotropic.
     first_share : float
-        Part of the mean square roughness that is on surface 1.
-    slide_to_roll_ratio : float
-        Speed of surface 1 less that of surface 2, over the entrainment speed.
+        Part of the mean square roughness that is on surface 1; it matters where they slide.
 
     Raises
     ------
     InputError
         If a value is out of range.
 
+    Source: Patir and Cheng (1978, 1979).
+
     Examples
     --------
-    >>> FlowFactors(3e-7, orientation=1 / 6).first_share
-    0.5
+    >>> from tribodyn.ehl import solve_line_contact
+    >>> from tribodyn.lubricant import Lubricant
+    >>> contact = 147802.0, 8e-3, 3.0722, Lubricant(0.082, 880.0, 2.19e-8), 2.2e11
+    >>> across = FlowFactors(5e-7, orientation=1 / 6)
+    >>> films = [solve_line_contact(*contact, flow_factors=each) for each in (None, across)]
+    >>> [round(film.central_film * 1e6, 2) for film in films]
+    [1.02, 1.17]
     """
 
     roughness: float
     orientation: float = 1.0
     first_share: float = 0.5
-    slide_to_roll_ratio: float = 0.0
 
     def __post_init__(self) -> None:
         """Check the fields."""
         require_positive("roughness", self.roughness, "m")
         require_between("orientation", self.orientation, 1.0 / 9.0 - 1e-12, 9.0 + 1e-12)
         require_between("first_share", self.first_share, 0.0, 1.0)
-        require_between("slide_to_roll_ratio", self.slide_to_roll_ratio, -2.0, 2.0)
 
-    def flow(self, film: Array) -> tuple[Array, Array]:
+    def flow(self, film: Array, slide_to_roll_ratio: float = 0.0) -> tuple[Array, Array]:
         """Factors on the flow by pressure and on that by entrainment.
 
         Parameters
         ----------
         film : array [m]
             Distance of the mean surfaces.
+        slide_to_roll_ratio : float
+            Speed of surface 1 less that of surface 2, over the entrainment speed.
 
         Returns
         -------
@@ -202,7 +207,7 @@ class FlowFactors:
         """
         ratio = film / self.roughness
         carried = (2.0 * self.first_share - 1.0) * shear_flow_factor(ratio, self.orientation)
-        sheared = 0.5 * self.slide_to_roll_ratio * carried / ratio
+        sheared = 0.5 * slide_to_roll_ratio * carried / ratio
         return pressure_flow_factor(ratio, self.orientation), mean_gap(ratio) + sheared
 
 

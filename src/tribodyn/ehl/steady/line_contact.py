@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
+from tribodyn.ehl.flow_factors import FlowFactors
 from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, si_case
 from tribodyn.ehl.steady.contact_problem import ContactProblem
 from tribodyn.ehl.steady.fallbacks import Verified, solve_problem
 from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, cut_error, estimate_film
 from tribodyn.ehl.steady.grid_error import GridError, grid_error
+from tribodyn.ehl.steady.rough_flow import solve_rough
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
 from tribodyn.ehl.thermal.thermal_contact import HeatedFilm, solve_heated
 from tribodyn.ehl.thermal.thermal_model import ThermalModel
@@ -47,7 +49,8 @@ class SolverOptions:
     start: LineContactSolution | None = None  #: solution to start from
     profile: Profile | None = None  #: heights that are added to the gap
     thermal: bool | ThermalModel = False  #: whether and how the film is heated
-    sliding_speed: float = 0.0  #: speed of surface 1 less that of surface 2, for a heated film
+    sliding_speed: float = 0.0  #: speed of surface 1 less that of surface 2
+    flow_factors: FlowFactors | None = None  #: of rough surfaces
 
     @property
     def heat(self) -> ThermalModel | None:
@@ -57,10 +60,14 @@ class SolverOptions:
             what = f"thermal is of the type {type(model).__name__}"
             remedy = "Give True, or ThermalModel(shear_model, ...)"
             raise InputError(what, "argument thermal", "It says how the film is heated", remedy)
-        if model is None and self.sliding_speed != 0.0:
+        if model is not None and self.flow_factors is not None:
+            what, why = "thermal and flow_factors", "the heat between rough surfaces is not solved"
+            raise InputError(what, "argument flow_factors", why, "Leave one of them out")
+        if model is None and self.flow_factors is None and self.sliding_speed != 0.0:
             what = f"sliding_speed = {self.sliding_speed:g} m/s without thermal"
             why = "the film at one temperature does not depend on the sliding"
-            raise InputError(what, "argument sliding_speed", why, "Add thermal=True")
+            remedy = "Add thermal=True, or flow_factors of rough surfaces"
+            raise InputError(what, "argument sliding_speed", why, remedy)
         return model
 
     @classmethod
@@ -93,6 +100,7 @@ def solve_line_contact(
     profile: Profile | None = None,
     thermal: bool | ThermalModel = False,
     sliding_speed: float = 0.0,
+    flow_factors: FlowFactors | None = None,
 ) -> LineContactSolution:
     """Pressure and film of a lubricated line contact: steady, isothermal and Newtonian, or heated.
 
@@ -137,7 +145,10 @@ def solve_line_contact(
         ``True`` is a Newtonian oil between bodies of steel; a :class:`ThermalModel` says how the
         oil shears. The solution is a :class:`ThermalLineContactSolution`.
     sliding_speed : float [m/s]
-        Speed of surface 1 less that of surface 2, for ``thermal``.
+        Speed of surface 1 less that of surface 2, for ``thermal`` and ``flow_factors``.
+    flow_factors : FlowFactors, optional
+        Roughness by its mean effect on the flow; the film is then the distance of the mean
+        surfaces.
 
     Raises
     ------
@@ -287,6 +298,8 @@ def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution
     def solve() -> tuple[Verified, GridError, HeatedFilm | None]:
         solved = solve_problem(problem, options.method)
         error = grid_error(problem, solved.outcome, flooded)
+        if (rough := options.flow_factors) is not None:
+            solved = solve_rough(case, problem, solved, rough, options.sliding_speed)
         if heat is None:
             return solved, error, None
         hot, film = solve_heated(case, problem, solved, heat, options.sliding_speed)
