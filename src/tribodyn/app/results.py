@@ -312,13 +312,14 @@ def _folder_name(desk: TabSession, job: Job) -> str:
 
 def files(desk: TabSession) -> list[Any]:
     """Cases to open, and the form to save this one."""
-    from tribodyn.cases.catalogue import cases
+    from tribodyn.cases.catalogue import cases, planetary_files
 
     case_names = desk.folder.cases()
     links = [html.Li(button(name, "open", f"file:{name}", className="link")) for name in case_names]
     built = [
         html.Li([button(name, "open", f"case:{name}", className="link"), " ", html.Span(title)])
         for name, title in cases(machines=True).items()
+        if name not in planetary_files()
     ]
     name = dcc.Input(id="case-name", value=desk.name or "my-gears.toml", autoComplete="off")
     write = button("Save", "save", id="save", data_from="case-name")

@@ -11,13 +11,14 @@ from tribodyn.app.case_form import CaseForm, key_label
 from tribodyn.app.jobs import Job, Jobs
 from tribodyn.app.machine_form import MachineForm
 from tribodyn.app.studies import STUDIES, first_values, form_of, numeric_keys
-from tribodyn.app.workspace import Workspace
+from tribodyn.app.workspace import Workspace, planets_in_app
 from tribodyn.cases.catalogue import case_files, machine_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.planetary.case import PlanetaryCase
 from tribodyn.study.result_comparison import differing
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
 from tribodyn.validated_files import plain_number
@@ -378,7 +379,10 @@ def initial_case(folder: Workspace, requested: str) -> tuple[AnyCase, str]:
     if not requested:
         return read_case(start_toml(), "case.toml"), ""
     if requested in {**case_files(), **machine_files()} or not Path(requested).exists():
-        return load_case(requested), ""  # raises with a list of cases if the name is unknown
+        case = load_case(requested)  # raises with a list of cases if the name is unknown
+        if isinstance(case, PlanetaryCase):
+            raise planets_in_app(requested)
+        return case, ""
     place = Path(requested).resolve()
     if not place.is_relative_to(folder.root):
         why = f"The page reads and writes only in {folder.root}"

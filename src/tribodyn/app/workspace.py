@@ -88,6 +88,8 @@ class Workspace:
         name = self.relative_name(place)
         data = parse_toml(text, name)
         files = [named for _, named in named_files(text, name)]
+        if "planets" in data:
+            raise planets_in_app(place.name)
         for named in [*files, *(machine_files(data) if is_machine(data) else ())]:
             if not (place.parent / named).resolve().is_relative_to(self.root):
                 raise self._outside(named)
@@ -123,3 +125,10 @@ class Workspace:
             raise InputError(
                 f'there is no folder "{parent_name}"', "", "", "Create it, or leave it out"
             )
+
+
+def planets_in_app(name: str) -> InputError:
+    """Error of a planetary stage, which the app has no form for."""
+    why = "The app computes gear pairs and machines with fixed axes"
+    remedy = f"Compute it with: tribodyn run {name}"
+    return InputError("this is a planetary stage", name, why, remedy)

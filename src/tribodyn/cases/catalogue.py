@@ -47,6 +47,12 @@ def machine_files() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.toml"), key=_name)}
 
 
+def planetary_files() -> dict[str, Path]:
+    """Files of the built-in planetary stages."""
+    folder = Path(str(files("tribodyn.cases"))) / "planets"
+    return {path.stem: path for path in sorted(folder.glob("*.toml"), key=_name)}
+
+
 @lru_cache(maxsize=1)
 def _external_cases() -> EntryPoints:
     """Cases of other packages; cached, since searching the installed packages takes a while."""
@@ -63,7 +69,7 @@ def cases(*, machines: bool = False) -> dict[str, str]:
     Parameters
     ----------
     machines : bool
-        Add the built-in machines to the gear pairs.
+        Add the built-in machines and planetary stages to the gear pairs.
 
     Returns
     -------
@@ -79,7 +85,10 @@ def cases(*, machines: bool = False) -> dict[str, str]:
 
     return {
         name: tomllib.loads(path.read_text(encoding="utf-8")).get("title", "")
-        for name, path in {**case_files(), **(machine_files() if machines else {})}.items()
+        for name, path in {
+            **case_files(),
+            **({**machine_files(), **planetary_files()} if machines else {}),
+        }.items()
     }
 
 

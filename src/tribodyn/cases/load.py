@@ -8,13 +8,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.cases.catalogue import case_files, machine_files
+from tribodyn.cases.catalogue import case_files, machine_files, planetary_files
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 
 if TYPE_CHECKING:
     from tribodyn.study import Case
     from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.planetary.case import PlanetaryCase
 
 #: Endings of gearbox models of other programs.
 _REXS = (".rexs", ".rexsj", ".rexsz")
@@ -32,8 +33,9 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Case or MachineCase
-        A machine, where the file has ``[meshes.NAME]`` or is a REXS model of another program.
+    Case, MachineCase or PlanetaryCase
+        A planetary stage, where the file has ``[planets.NAME]``; a machine, where it has
+        ``[meshes.NAME]``; a REXS model of another program is one of both.
 
     Raises
     ------
@@ -64,12 +66,12 @@ def load_changed_case(
 
 def _load_toml(name_or_path: str | os.PathLike[str]) -> Any:
     from tribodyn.cases.catalogue import with_known_reasons
+    from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_text
-    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.read import read_any_case
     from tribodyn.validated_files import file_kind
 
-    paths = {**case_files(), **machine_files()}
+    paths = {**case_files(), **machine_files(), **planetary_files()}
     name = os.fspath(name_or_path)
     path = paths.get(name, Path(name))
     kind = file_kind(path)
@@ -85,7 +87,7 @@ def _load_toml(name_or_path: str | os.PathLike[str]) -> Any:
     if name in paths:
         return read_any_case(read_text(path), path.name, path.parent)
     case = read_any_case(read_text(path), name)
-    return case if isinstance(case, MachineCase) else with_known_reasons(case)
+    return with_known_reasons(case) if isinstance(case, Case) else case
 
 
 def _not_found(name: str, path: Path, names: list[str]) -> Problem:
@@ -99,19 +101,21 @@ def _not_found(name: str, path: Path, names: list[str]) -> Problem:
     return Problem("no built-in case and no file has this name", name, why, remedy)
 
 
-def run(case: Case | MachineCase | str | os.PathLike[str], progress: Progress = SILENT) -> Any:
-    """Compute a case: a gear pair, or a machine of several shafts.
+def run(
+    case: Case | MachineCase | PlanetaryCase | str | os.PathLike[str], progress: Progress = SILENT
+) -> Any:
+    """Compute a case: a gear pair, a machine of several shafts, or a planetary stage.
 
     Parameters
     ----------
-    case : Case, MachineCase, str or path
+    case : Case, MachineCase, PlanetaryCase, str or path
         From :func:`tribodyn.load_case`, or what that function takes.
     progress : Progress
         Reports the steps of the run; silent by default.
 
     Returns
     -------
-    Result or MachineResult
+    Result, MachineResult or PlanetaryResult
 
     Raises
     ------
@@ -132,8 +136,12 @@ def run(case: Case | MachineCase | str | os.PathLike[str], progress: Progress = 
     from tribodyn.study import run as compute
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.run import run_machine
+    from tribodyn.study.planetary.case import PlanetaryCase
+    from tribodyn.study.planetary.run import run_planetary
 
     ready = load_case(case) if isinstance(case, (str, os.PathLike)) else case
+    if isinstance(ready, PlanetaryCase):
+        return run_planetary(ready, progress, stacklevel=3)
     if isinstance(ready, MachineCase):
         return run_machine(ready, progress, stacklevel=3)
     return compute(ready, progress, stacklevel=3)

@@ -37,6 +37,8 @@ _FACTS = ("mesh_frequency", "periods", "steady_state_error", "warnings", "cycles
 def load_result(directory: str | os.PathLike[str]) -> Any:
     """Read a saved result; only the forces along its motion are computed again.
 
+    A planetary stage is computed again from its case file.
+
     Parameters
     ----------
     directory : str or path
@@ -68,6 +70,8 @@ Give the directory that tribodyn run or Result.save wrote.
 
     folder = Path(directory)
     if (folder / MOTION).is_file():
+        if (stage := _stage(folder)) is not None:
+            return stage
         return read_machine(folder, load_case, read_summary)
     summary = read_summary(folder)
     case = load_case(folder / "case.toml")
@@ -96,6 +100,21 @@ Give the directory that tribodyn run or Result.save wrote.
         why = f"response.nc is damaged: {error or type(error).__name__}"
         raise InputError("this result cannot be read back", str(folder), why, _REMEDY) from None
     result = Result(case, mesh, system, response, damping, warnings, friction, coupling=coupling)
+    vars(result)["_summary"] = summary
+    return result
+
+
+def _stage(folder: Path) -> Any:
+    """Result of a planetary stage, computed again from its case; None of a machine."""
+    from tribodyn.study.planetary.case import PlanetaryCase
+    from tribodyn.study.planetary.run import run_planetary
+
+    summary = read_summary(folder)
+    case = load_case(folder / "case.toml")
+    if not isinstance(case, PlanetaryCase):
+        return None
+    with collected():
+        result = run_planetary(case)
     vars(result)["_summary"] = summary
     return result
 

@@ -16,6 +16,7 @@ from tribodyn.study.studies.range_syntax import UnreadError, read_range, read_va
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.planetary.case import PlanetaryCase
 
 
 Output = Path | None
@@ -98,9 +99,24 @@ def changed_case(name_or_path: str, settings: Sequence[str]) -> Case:
 
 def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | MachineCase:
     """Load the case of a gear pair or of a machine and change values."""
+    from tribodyn.study.planetary.case import PlanetaryCase
+
+    case = changed_case_of_any_kind(name_or_path, settings)
+    if isinstance(case, PlanetaryCase):
+        why = "This command computes gear pairs and machines with fixed axes"
+        remedy = "Planetary stages: tribodyn run and check"
+        raise InputError("this is a planetary stage", name_or_path, why, remedy)
+    return case
+
+
+def changed_case_of_any_kind(
+    name_or_path: str, settings: Sequence[str]
+) -> Case | MachineCase | PlanetaryCase:
+    """Load the case of a gear pair, a machine or a planetary stage and change values."""
     from tribodyn.cases.load import load_changed_case
 
-    case: Case | MachineCase = load_changed_case(name_or_path, read_changes(settings), by="--set")
+    case: Case | MachineCase | PlanetaryCase
+    case = load_changed_case(name_or_path, read_changes(settings), by="--set")
     return case
 
 

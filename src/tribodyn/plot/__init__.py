@@ -35,6 +35,7 @@ from tribodyn.plot.machine.levels import (
 )
 from tribodyn.plot.machine.modes import machine_campbell, machine_modes
 from tribodyn.plot.machine.orders import machine_orders
+from tribodyn.plot.machine.planetary import planetary_forces, planetary_stage
 from tribodyn.plot.machine.power import machine_power
 from tribodyn.plot.machine.side_view import machine
 from tribodyn.plot.mesh.face_maps import face_maps
@@ -180,7 +181,9 @@ __all__ = [
     "parameter_map",
     "path_of_contact",
     "phase_portrait",
+    "planetary_forces",
     "planetary_modes",
+    "planetary_stage",
     "poincare",
     "power_flow",
     "recording",

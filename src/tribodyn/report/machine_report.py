@@ -62,7 +62,7 @@ _CARDS = (
 _MOST_CARDS = 12
 
 
-def _number(key: str, value: float, digits: int = 5) -> Number:
+def number_of_part(key: str, value: float, digits: int = 5) -> Number:
     """A figure of a part, under the heading of the part."""
     return replace(describe(key, value, digits), label=in_words(key.rpartition(".")[2]))
 
@@ -76,7 +76,7 @@ def _cards(summary: dict[str, float]) -> list[Number]:
     ]
     cards = []
     for key in keys[:_MOST_CARDS]:
-        card = _number(key, summary[key], 4)
+        card = number_of_part(key, summary[key], 4)
         cards.append(replace(card, label=in_words(key)) if key.startswith("meshes.") else card)
     return cards
 
@@ -100,7 +100,7 @@ def machine_content(result: MachineResult) -> dict[str, Any]:
     summary = result.summary()
     rows = []
     for topic, keys in by_topic(summary).items():
-        numbers = [_number(key, summary[key]) for key in keys]
+        numbers = [number_of_part(key, summary[key]) for key in keys]
         rows += [[topic, n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers]
     return {
         "cards": [[card.label, card.value, card.unit] for card in _cards(summary)],
@@ -134,7 +134,9 @@ def render_machine_report(result: MachineResult) -> str:
             version=version(),
             operating_point=operating_point(result.case),
             cards=_cards(summary),
-            rows=[_number(k, summary[k]) for keys in by_topic(summary).values() for k in keys],
+            rows=[
+                number_of_part(k, summary[k]) for keys in by_topic(summary).values() for k in keys
+            ],
             modes=mode_rows(result.modes),
             modes_head=MODES_HEAD,
             modes_text="About the static load, at the speed of the case, with the mean stiffness "

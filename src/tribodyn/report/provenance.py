@@ -9,6 +9,7 @@ from typing import Any
 
 from tribodyn.plot.theme.labels import display_unit, displayed
 from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.planetary.case import PlanetaryCase
 
 #: Packages whose version may change a figure.
 _PACKAGES = ("numpy", "scipy", "numba")
@@ -27,6 +28,8 @@ def _with_unit(name: str, value: float) -> str:
 
 def operating_point(case: Any) -> list[tuple[str, str]]:
     """Speed, load, surfaces, oil and models of a case as formatted (name, value) pairs."""
+    if isinstance(case, PlanetaryCase):
+        return _of_stage(case)
     if isinstance(case, MachineCase):
         start, end = case.ends
         return [
@@ -55,6 +58,20 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
     if case.lubricant is not None and case.lubricant.name:
         point.insert(4, ("Oil", case.lubricant.name))
     return point
+
+
+def _of_stage(case: PlanetaryCase) -> list[tuple[str, str]]:
+    start, end = case.ends
+    teeth = [abs(case.gears[getattr(case.table, r)].teeth) for r in ("sun", "planet", "ring")]
+    return [
+        ("Speed", _with_unit("speed", case.operating_point.speed)),
+        ("Torque", _with_unit("torque", case.operating_point.torque)),
+        ("Input", f"{start} ({case.roles[0]})"),
+        ("Output", f"{end} ({case.roles[1]})"),
+        ("Held", f"{case.members[case.roles[2]]} ({case.roles[2]})"),
+        ("Planets", str(case.table.count)),
+        ("Teeth of sun, planet, ring", ", ".join(map(str, teeth))),
+    ]
 
 
 def provenance(result: Any) -> list[tuple[str, str]]:

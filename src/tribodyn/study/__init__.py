@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.pipeline.tooth_contact import loaded_contact
+    from tribodyn.study.planetary.case import PlanetaryCase
+    from tribodyn.study.planetary.motion import PlanetaryMotion
+    from tribodyn.study.planetary.result import PlanetaryLoadResult, PlanetaryResult
     from tribodyn.study.result_comparison import ResultComparison, compare_results
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.friction_experiment import friction_experiment
@@ -56,6 +59,10 @@ __all__ = [
     "MachineLevels",
     "MachineMotion",
     "MachineResult",
+    "PlanetaryCase",
+    "PlanetaryLoadResult",
+    "PlanetaryMotion",
+    "PlanetaryResult",
     "Result",
     "ResultComparison",
     "Sweep",
@@ -102,6 +109,9 @@ _NAMES = {
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",
     "pipeline.tooth_contact": "loaded_contact",
+    "planetary.case": "PlanetaryCase",
+    "planetary.motion": "PlanetaryMotion",
+    "planetary.result": "PlanetaryLoadResult PlanetaryResult",
     "result_comparison": "ResultComparison compare_results",
     "studies.bifurcation": "bifurcation",
     "studies.friction_experiment": "friction_experiment",

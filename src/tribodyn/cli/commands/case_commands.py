@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from tribodyn.cli.console import figures, say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import CaseName, Flag, Settings, changed_any_case, check_file
+from tribodyn.cli.settings import CaseName, Flag, Settings, changed_case_of_any_kind, check_file
 
 if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.planetary.case import PlanetaryCase
 
 
 def cases(*, json: Flag = False) -> None:
@@ -46,9 +47,10 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     from tribodyn.study.pipeline.preview import operating_figures
     from tribodyn.study.pipeline.run import rehearse
     from tribodyn.study.pipeline.summary_figures import summary_rows
+    from tribodyn.study.planetary.case import PlanetaryCase
 
-    ready = changed_any_case(case, set_ or [])
-    if isinstance(ready, MachineCase):
+    ready = changed_case_of_any_kind(case, set_ or [])
+    if isinstance(ready, MachineCase | PlanetaryCase):
         _check_machine(ready, json)
         return
     warnings = rehearse(ready)
@@ -65,20 +67,27 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     )
 
 
-def _check_machine(case: MachineCase, json: bool) -> None:
+def _check_machine(case: MachineCase | PlanetaryCase, json: bool) -> None:
     """Show speeds, torques and power of a machine, after rehearsing its teeth."""
     from tribodyn.errors import collected
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.first_look import (
         kinematic_figures,
         rehearse_machine,
         warn_of_period,
     )
     from tribodyn.study.pipeline.summary_figures import summary_rows
+    from tribodyn.study.planetary.run import rehearse_planetary
+    from tribodyn.study.planetary.summary import kinematic_figures as stage_figures
 
     with collected() as warnings:
-        rehearse_machine(case)
-        warn_of_period(case.machine())
-    values = kinematic_figures(case)
+        if isinstance(case, MachineCase):
+            rehearse_machine(case)
+            warn_of_period(case.machine())
+            values = kinematic_figures(case)
+        else:
+            rehearse_planetary(case)
+            values = stage_figures(case, case.kinematics(case.operating_point))
     if json:
         say_json(values)
     else:

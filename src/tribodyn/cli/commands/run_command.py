@@ -9,10 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from tribodyn.cli.console import figures, say, say_json, show_warnings, tell
-from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_any_case, check_place
+from tribodyn.cli.settings import (
+    CaseName,
+    Flag,
+    Force,
+    Settings,
+    changed_case_of_any_kind,
+    check_place,
+)
 
 if TYPE_CHECKING:
-    from tribodyn.study import MachineResult, Result
+    from tribodyn.study import MachineResult, PlanetaryResult, Result
 
 
 def run(
@@ -46,20 +53,14 @@ def run(
     from tribodyn.errors import ModelWarning
 
     target = out if out is not None else Path(Path(case).stem)
-    ready = changed_any_case(case, set_ or [])
+    ready = changed_case_of_any_kind(case, set_ or [])
     check_place(target, force)
     with progress_bar() as progress, warnings.catch_warnings():
         # They are shown below, from the result.
         warnings.simplefilter("ignore", ModelWarning)
-        from tribodyn.study.machine.case import MachineCase
-        from tribodyn.study.machine.run import run_machine
-        from tribodyn.study.pipeline.run import run as compute
+        from tribodyn.cases.load import run as compute
 
-        result: Result | MachineResult
-        if isinstance(ready, MachineCase):
-            result = run_machine(ready, progress)
-        else:
-            result = compute(ready, progress)
+        result: Result | MachineResult | PlanetaryResult = compute(ready, progress)
         progress.start("Report")
         result.save(target, force=force, csv=csv)
         progress.finish()

@@ -166,7 +166,9 @@ def planetary_plane_model(
     speed = require_number("carrier_speed", carrier_speed)
     system = _system(masses, stiffness, load, contacts, speed)
     require_between("damping_ratio", require_number("damping_ratio", damping_ratio), 0.0, 2.0)
-    return replace(system, damping=_damping(system, damping_ratio)) if damping_ratio else system
+    return (
+        replace(system, damping=modal_damping(system, damping_ratio)) if damping_ratio else system
+    )
 
 
 def _pressure_angles(sun: float, ring: float) -> tuple[float, float]:
@@ -211,7 +213,7 @@ def _contacts(
         Contact(
             direction=along[i],
             stiffness=stiffness[i],
-            error=_less(error[i], 0.5 * float(thickness[i])),
+            error=without_excess(error[i], 0.5 * float(thickness[i])),
             gap=float(gap),
             offset=float(offset[i]),
         )
@@ -301,7 +303,7 @@ def _entries(
     ]
 
 
-def _less(error: Any, thickness: float) -> Entry:
+def without_excess(error: Any, thickness: float) -> Entry:
     """Error of a mesh, less the excess thickness of the flank of the planet."""
     if not varies(error):
         return float(error) - thickness
@@ -346,7 +348,7 @@ def _system(
     )
 
 
-def _damping(system: System, ratio: float) -> Array:
+def modal_damping(system: System, ratio: float) -> Array:
     """Damping matrix that gives every mode at rest the same damping ratio."""
     modes = natural_modes(replace(system, gyroscopic=None))
     momentum = np.asarray(system.mass) @ modes.shape.T

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from copy import copy, deepcopy
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,8 +15,9 @@ from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.user_input import Source, spread_problem, unsound, without_spread
-from tribodyn.study.case.values import KeyedProblems, Plain
+from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.machine.housing_files import read_housing
+from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import (
     MESH_KEYS,
     SHARED,
@@ -32,18 +32,15 @@ from tribodyn.study.machine.read_parts import (
     read_bearing,
     read_gear,
     read_shaft,
-    read_share,
     table_of,
     tables_of,
     unknown_keys,
 )
 from tribodyn.study.machine.tables import (
     HousingTable,
-    LoadCaseTable,
     MeshDynamics,
     MeshTable,
     MotionTable,
-    OperationTable,
     ShaftTable,
 )
 from tribodyn.study.machine.user_tables import (
@@ -73,28 +70,6 @@ _OF_MESH = (
     "stiffness",
     "offset",
 )
-
-
-@dataclass(frozen=True)
-class LoadCase:
-    """Speed and torque of the input, and the share of the time with them.
-
-    Parameters
-    ----------
-    name : str
-        Name of the load case.
-    speed : float
-        Speed of the input [rad/s].
-    torque : float
-        Torque on the input [N*m].
-    share : float
-        Share of the time [1].
-    """
-
-    name: str
-    speed: float
-    torque: float
-    share: float
 
 
 def is_machine(data: Mapping[str, Any]) -> bool:
@@ -160,7 +135,9 @@ class MachineCase:
         self.housing: Housing | None = read_housing(self.data.get("housing"), problems)
         motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
-        self.load_cases: tuple[LoadCase, ...] = self._read_loads(problems)  #: of ``[[load_cases]]``
+        self.load_cases: tuple[LoadCase, ...] = ()  #: of ``[[load_cases]]``
+        if (loads := read_loads(self.data, problems)) is not None:
+            self.ends, self.operating_point, self.load_cases = loads
         if problems:
             raise InputError(origin.place(problems))
         self._check_meshes()
@@ -209,40 +186,6 @@ class MachineCase:
             law = {k: v for k, v in values.items() if k in MeshDynamics.fields}
             self._mesh_dynamics[name] = table_of(MeshDynamics, law, key, problems)
         return table
-
-    def _read_loads(self, problems: KeyedProblems) -> tuple[LoadCase, ...]:
-        if "operation" not in self.data:
-            remedy = "Add it with input, output, speed, torque"
-            missing = Problem("the table [operation] is missing", "", "", remedy)
-            problems.append(("operation", missing))
-            return ()
-        run = table_of(OperationTable, self.data["operation"], "operation", problems)
-        if run is None:
-            return ()
-        self.ends: tuple[str, str] = (run.input, run.output)
-        self.operating_point = LoadCase("operation", run.speed, run.torque, 1.0)
-        rows = self.data.get("load_cases", [])
-        if not isinstance(rows, list | tuple) or not all(isinstance(r, Mapping) for r in rows):
-            remedy = "Write [[load_cases]] with share, speed and torque"
-            problems.append(("load_cases", Problem("load_cases is no list", "", "", remedy)))
-            return ()
-        loads = []
-        for place, row in enumerate(rows):
-            body, key = dict(row), "load_cases"
-            share = read_share(f"{key}.share", body.pop("share", 1.0 / len(rows)), problems)
-            body = {"speed": Plain(run.speed), "torque": Plain(run.torque), **body}
-            table = table_of(LoadCaseTable, body, key, problems)
-            if table is not None and share is not None:
-                name = table.name or f"load case {place + 1}"
-                loads.append(LoadCase(name, table.speed, table.torque, share))
-        total = sum(load.share for load in loads)
-        if len(loads) == len(rows) and total > 1.0 + 1e-9:
-            what, why = f"the shares add up to {100.0 * total:.6g} %", "They are parts of one time"
-            problems.append(("load_cases", Problem(what, "", why, "Correct the shares")))
-        if len({load.name for load in loads}) < len(loads):
-            what = "two load cases have one name"
-            problems.append(("load_cases", Problem(what, "", "", "Rename one of them")))
-        return tuple(loads)
 
     def _check_meshes(self) -> None:
         """Refuse meshes whose gears do not exist."""

@@ -43,6 +43,7 @@ class PairSource(Source):
     mesh: str = ""
     gears: tuple[str, str] = ("", "")  #: pinion and wheel
     mesh_keys: frozenset[str] = frozenset()  #: keys inside the table of the mesh
+    group: str = "meshes"  #: table that holds that of the mesh
 
     def key(self, key: str) -> str:
         """Key of the machine for a key of the pair."""
@@ -51,11 +52,11 @@ class PairSource(Source):
             role, _, gear_key = name.partition(".")
             if role in _ROLES:
                 return f"gears.{self.gears[_ROLES.index(role)]}.{gear_key}".rstrip(".")
-            return f"meshes.{self.mesh}.{name}".rstrip(".")
+            return f"{self.group}.{self.mesh}.{name}".rstrip(".")
         if table == "dynamics":
-            return f"meshes.{self.mesh}.{name}" if name in self.mesh_keys else key
+            return f"{self.group}.{self.mesh}.{name}" if name in self.mesh_keys else key
         inside = {f"{table}.{name}", table} & self.mesh_keys
-        return f"meshes.{self.mesh}.{key}" if inside else key
+        return f"{self.group}.{self.mesh}.{key}" if inside else key
 
     def line(self, key: str) -> int:
         """Return the line of a key of the pair."""
@@ -88,10 +89,11 @@ def pair_case(
     operation: tuple[float, float],
     hand: str = "",
     misalignment: float = 0.0,
+    group: str = "meshes",
 ) -> Case:
     """Case of the pair of a mesh; hand, if helical, speed and torque are those of its pinion."""
     speed, torque = operation
-    body = data["meshes"][mesh]
+    body = data[group][mesh]
     inner = mesh_tables(body)
     tables = {
         name: _merged(name, data.get(name, {}), inner.get(name, {}))
@@ -114,7 +116,10 @@ def pair_case(
     mesh_keys = {*mesh_dynamics, *model_keys, *inner}
     origin = source or Source()
     return Case(
-        PairSource(origin.name, origin.find, origin.replaced, mesh, names, frozenset(mesh_keys)),
+        PairSource(
+            *(origin.name, origin.find, origin.replaced, mesh, names),
+            *(frozenset(mesh_keys), group),
+        ),
         title=f"{data.get('title', 'Machine')}: {mesh}",
         gears=pair,
         operation={"speed": Plain(speed), "torque": Plain(torque), "speed_of": "pinion"},

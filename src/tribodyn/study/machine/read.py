@@ -1,4 +1,4 @@
-"""Read a case file of either kind: a pair of gears, or a machine."""
+"""Read a case file of any kind: a pair of gears, a machine, or a planetary stage."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.case import MachineCase, is_machine
 from tribodyn.study.machine.tables import HousingTable
 from tribodyn.study.machine.user_tables import flat_keys
+from tribodyn.study.planetary.case import PlanetaryCase
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -28,9 +29,14 @@ def machine_files(data: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def read_any_case(text: str, name: str = "", folder: Path | None = None) -> Case | MachineCase:
-    """Check the text of a case file: of a machine, if it has shafts or meshes, or of a pair."""
+def read_any_case(
+    text: str, name: str = "", folder: Path | None = None
+) -> Case | MachineCase | PlanetaryCase:
+    """Check the text of a case file: of a stage with planets, of a machine, or of a pair."""
     data = parse_toml(text, name)
+    source = Source(name or "case", partial(key_lines, text))
+    if "planets" in data:
+        return PlanetaryCase(source, **data)
     if not is_machine(data):
         return read_case(text, name)
     place = Path(name).parent if folder is None else folder
@@ -39,4 +45,4 @@ def read_any_case(text: str, name: str = "", folder: Path | None = None) -> Case
         for key in HousingTable.fields:
             if isinstance(housing.get(key), str):
                 housing[key] = str((place / housing[key]).absolute())
-    return MachineCase(Source(name or "case", partial(key_lines, text)), **data)
+    return MachineCase(source, **data)

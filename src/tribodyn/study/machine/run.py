@@ -113,7 +113,7 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
         before = {name: static.meshes[name] for name in case.meshes_with_teeth}
         misalignment = {name: mesh.misalignment for name, mesh in before.items()}
         pairs = [case.pair(name, load, value) for name, value in misalignment.items()]
-        teeth = dict(zip(before, in_threads(_teeth, pairs, processors()), strict=True))
+        teeth = dict(zip(before, in_threads(teeth_of, pairs, processors()), strict=True))
         tables = {name: table for name, (table, _, _) in teeth.items()}
         laws = {name: law for name, (_, law, _) in teeth.items()}
         mesh_warnings = [  # those of the last pass are in force
@@ -132,7 +132,7 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
     return Balanced(static, tables, misalignment, mesh_warnings)
 
 
-def _teeth(pair: Case) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
+def teeth_of(pair: Case) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
     """Mesh table and force law of the teeth of a mesh, and their warnings."""
     with locate_errors(pair), collected() as caught:
         table = mesh_of(pair, about_load=True)

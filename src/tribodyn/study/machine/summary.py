@@ -10,6 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
+    from tribodyn.mesh import MeshTable
     from tribodyn.study.machine.result import LoadResult
 
 
@@ -80,6 +81,11 @@ def _of_table(result: LoadResult, name: str, table: Any) -> dict[str, float | No
     """Figures of computed teeth; of a constant stiffness there is only that."""
     if table is None:
         return {"mean_mesh_stiffness": float(result.static.meshes[name].stiffness[0, 0])}
+    return table_figures(table)
+
+
+def table_figures(table: MeshTable) -> dict[str, float | None]:
+    """Figures of computed teeth."""
     film = table.central_film if table.minimum_film is None else table.minimum_film
     sliced = table.face_load_factor
     return {

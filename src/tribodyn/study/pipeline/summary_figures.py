@@ -49,6 +49,16 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
         "maximum_hertz_pressure": ("hertz_pressure", "greatest contact pressure of the teeth"),
         "minimum_film_thickness": ("film_thickness", "least film of the computed teeth"),
     },
+    "planets": {
+        "ratio": ("", "speed of the input over that of the output"),
+        "rolling_power": ("power", "power that the meshes transmit relative to the carrier"),
+        "planet_speed": ("speed", "speed of a planet about its pin"),
+        "load_factor": ("", "K_gamma at rest: greatest load of a planet over the mean"),
+        "dynamic_load_factor": ("", "K_gamma in motion: of the mean loads over a mesh cycle"),
+        "planets_unloaded": ("", "number of planets without load at rest"),
+        "mean_pin_force": ("bearing_force", "greatest mean force of a planet on its pin"),
+        "sun_orbit": ("deflection", "root mean square of the radial motion of the sun"),
+    },
     "shafts": {
         "speed": ("speed", "speed of the shaft, negative where it turns against x"),
         "torque": ("torque", "torque that it transmits"),
@@ -74,6 +84,7 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
 _TOPICS = {
     "machine": "Machine",
     "meshes": "Mesh {0}",
+    "planets": "Planetary stage {0}",
     "shafts": "Shaft {0}",
     "bearings": "Bearing {0}",
     "housing": "Housing at {0}",

@@ -41,9 +41,15 @@ _ENDINGS = (
 
 #: A figure of a part of a machine: load case, kind of part, its name, figure.
 _OF_PART = re.compile(
-    r"(?:load_cases\.(.+?)\.)?(machine|meshes|shafts|bearings|housing)\.(?:(.+)\.)?([^.]+)"
+    r"(?:load_cases\.(.+?)\.)?(machine|meshes|planets|shafts|bearings|housing)\.(?:(.+)\.)?([^.]+)"
 )
-_KINDS = {"meshes": "mesh ", "shafts": "shaft ", "bearings": "bearing ", "housing": "housing at "}
+_KINDS = {
+    "meshes": "mesh ",
+    "planets": "stage ",
+    "shafts": "shaft ",
+    "bearings": "bearing ",
+    "housing": "housing at ",
+}
 
 
 def _split(name: str) -> tuple[str, list[str]]:

@@ -1,0 +1,154 @@
+"""Computed teeth in the plane model: lag of the ring meshes, and contacts over its coordinates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
+from tribodyn.machine.gear import Gear
+from tribodyn.machine.graph.directions import MeshDirection, mesh_direction
+from tribodyn.machine.mesh import Mesh
+from tribodyn.machine.plane_law import coordinate_count, pair_coordinates, projected
+from tribodyn.machine.planetary.phases import MeshPhases
+from tribodyn.machine.planetary.plane_model import without_excess
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.gear import CylindricalPair
+
+#: First coordinates of ring and sun.
+_RING, _SUN = 3, 6
+
+
+def sun_to_ring_lag(
+    sun_pair: CylindricalPair, ring_pair: CylindricalPair, *, sun_drives: bool = True
+) -> float:
+    """Mesh cycles by which the ring mesh of a planet lags behind its sun mesh.
+
+    Parameters
+    ----------
+    sun_pair, ring_pair : CylindricalPair
+        Sun and planet, planet and ring. The mesh phase is 0 where a pair of teeth begins contact.
+    sun_drives : bool
+        Whether power flows from the sun to the ring relative to the carrier; if not, the
+        ring mesh leads by the value.
+
+    Returns
+    -------
+    float
+        From 0 to below 1 [1]; ``sun_to_ring`` of :func:`mesh_phases`.
+
+    Notes
+    -----
+    Opposite flanks of a planet carry in its two meshes. From the angles of their involutes on the
+    base circle, ``lag p_b = r_b (pi - alpha_s - alpha_r) + rho_s + rho_r - s_b`` with the radii of
+    curvature of the planet's flanks where contact begins and its base tooth thickness.
+    """
+    planet = ring_pair.pinion
+    limits = sun_pair.path_limits
+    if sun_pair.pinion.teeth != planet.teeth or sun_pair.wheel.teeth == planet.teeth:
+        limits = tuple(sun_pair.line_of_action_length - path for path in reversed(limits))
+    begin = (limits[1], ring_pair.path_limits[0])
+    if not sun_drives:
+        begin = (limits[0], ring_pair.path_limits[1])
+    arc = math.pi - sun_pair.operating_pressure_angle - ring_pair.operating_pressure_angle
+    length = planet.base_radius * (arc - 2.0 * planet.base_half_angle) + sum(begin)
+    return (length / planet.base_pitch) % 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class PlanetMesh:
+    """Teeth of the sun meshes or of the ring meshes, which are equal but for their phases.
+
+    Parameters
+    ----------
+    member : str
+        ``"sun"`` or ``"ring"``.
+    mesh : Mesh
+        Gears in the order pinion, wheel, with contacts and frictions of one pair; ``hand`` is that
+        of the pinion.
+    gears : (Gear, Gear)
+        Pinion and wheel.
+    planet_first : bool
+        Whether the planet is the pinion.
+    """
+
+    member: str
+    mesh: Mesh
+    gears: tuple[Gear, Gear]
+    planet_first: bool
+
+    def direction(self, angle: float, *, sun_drives: bool) -> MeshDirection:
+        """Direction of the mesh of a planet at an angle; the torque on the sun is positive."""
+        turn = 1 if sun_drives else -1
+        torque = 1 if self.member == "sun" else -1
+        of_member = turn if self.member == "sun" else -turn
+        senses = (-turn, of_member) if self.planet_first else (of_member, -turn)
+        toward = angle + (math.pi if self.planet_first else 0.0)
+        mesh = replace(self.mesh, angle=toward)
+        return mesh_direction(mesh, self.gears, torque, senses)
+
+    def rows(self, planet: int, angle: float, size: int, *, sun_drives: bool) -> Array:
+        """Coordinates of the pair from those of the stage; ``size`` of the pair, (size, n)."""
+        direction = self.direction(angle, sun_drives=sun_drives)
+        first = 9 + 3 * planet, _SUN if self.member == "sun" else _RING
+        order = first if self.planet_first else first[::-1]
+        count = 12 + 3 * planet
+        gears = np.zeros((12, count))
+        for gear, (start, radius) in enumerate(zip(order, direction.base_radius, strict=True)):
+            gears[[6 * gear + 1, 6 * gear + 2], [start, start + 1]] = 1.0
+            gears[6 * gear + 3, start + 2] = 1.0 / radius
+        member_drives = sun_drives if self.member == "sun" else not sun_drives
+        first_drives = member_drives != self.planet_first
+        return pair_coordinates(direction, size, first_drives=first_drives) @ gears
+
+
+def with_computed_teeth(
+    stage: System,
+    phases: MeshPhases,
+    meshes: Sequence[PlanetMesh],
+    *,
+    sun_drives: bool = True,
+    thickness_errors: Array | float = 0.0,
+) -> System:
+    """Plane model whose contacts are force laws of computed teeth, with their friction.
+
+    Parameters
+    ----------
+    stage : System
+        Of :func:`planetary_plane_model`, in the direction in which the torque on the sun is
+        positive.
+    phases : MeshPhases
+        Phases of its meshes, with the lag of :func:`sun_to_ring_lag`.
+    meshes : (PlanetMesh, PlanetMesh)
+        Sun mesh and ring mesh, each with one contact.
+    sun_drives : bool
+        Whether the sun turns towards greater angles relative to the carrier; the phases of the
+        planets lead otherwise.
+    thickness_errors : (N,) array
+        Excess of the base tooth thickness of the planets [m].
+    """
+    contacts: list[Contact] = []
+    frictions: list[LoadFriction] = []
+    excess = np.broadcast_to(thickness_errors, phases.angles.shape)
+    for mesh in meshes:
+        lag = getattr(phases, mesh.member)
+        offsets = (-lag if sun_drives else lag) % 1.0 % 1.0
+        (contact,) = mesh.mesh.contacts
+        for planet, angle in enumerate(phases.angles):
+            rows = np.zeros((coordinate_count(contact), stage.size))
+            onto = mesh.rows(planet, float(angle), len(rows), sun_drives=sun_drives)
+            rows[:, : onto.shape[1]] = onto
+            error = without_excess(contact.error, 0.5 * float(excess[planet]))
+            changes: dict[str, Any] = {"offset": float(offsets[planet]), "error": error}
+            frictions += [
+                projected(friction, rows, contacts=(len(contacts),))
+                for friction in mesh.mesh.frictions
+            ]
+            contacts.append(projected(contact, rows, **changes))
+    return replace(stage, contacts=contacts, frictions=frictions)

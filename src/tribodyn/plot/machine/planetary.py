@@ -1,0 +1,173 @@
+"""A planetary stage in front view with moving planets, and its mesh forces."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.drawing import drawing
+from tribodyn.gear import gear_outline
+from tribodyn.plot.machine.orders import COLORS
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
+from tribodyn.types import Array, ComplexArray
+
+if TYPE_CHECKING:
+    from tribodyn.gear import CylindricalGear
+    from tribodyn.study import PlanetaryMotion, PlanetaryResult
+
+#: Points of a tooth, those of them that are drawn, and pictures of the movement.
+_POINTS, _DRAWN, _FRAMES = 40, [0, 5, 9, 13, 17, 21, 25, 29, 33], 24
+_CARRIER = PAIR_COLORS[0]
+
+
+def _outline(gear: CylindricalGear) -> ComplexArray:
+    """Closed outline of a gear with the middle of a tooth at angle 0 [mm]."""
+    x, y = gear_outline(gear, _POINTS)[:, :-1]
+    outline = (x + 1j * y).reshape(abs(gear.teeth), -1)[:, _DRAWN].ravel()
+    outline = outline * cmath.exp(-0.5j * math.pi)
+    return np.append(outline, outline[:1]) * 1e3
+
+
+def _trace(points: ComplexArray, name: str, color: str) -> Trace:
+    return {
+        "type": "scatter", "mode": "lines", "hoverinfo": "name", "name": name,
+        "x": points.real.astype(np.float32), "y": points.imag.astype(np.float32),
+        "line": {"color": color, "width": 1.2},
+    }  # fmt: skip
+
+
+def _start_angles(result: PlanetaryResult, angles: Array) -> tuple[float, list[float]]:
+    """Rotations of the ring and of the planets in which their teeth engage, the sun's is 0."""
+    teeth = {role: abs(result.case.gears[getattr(result.case.table, role)].teeth)
+             for role in ("sun", "planet", "ring")}  # fmt: skip
+    planets = []
+    for at in angles:
+        # The sun has a tooth at angle 0; a planet has a gap where one meets it.
+        phase = (at * teeth["sun"] / (2.0 * np.pi)) % 1.0
+        planets.append(at + np.pi + (0.5 + phase) * 2.0 * np.pi / teeth["planet"])
+    # The ring has a gap where the first planet has a tooth on the far side.
+    tooth = (planets[0] - angles[0]) * teeth["planet"] / (2.0 * np.pi) % 1.0
+    return float(angles[0] + (tooth + 0.5) * 2.0 * np.pi / teeth["ring"]), planets
+
+
+@drawing(
+    "planetary_stage",
+    heading="The stage in front view",
+    caption="Sun, planets and ring with their teeth in the transverse section, and the arms of the "
+    "carrier, to scale, seen against the axis. Press Play to turn the stage: one step of the "
+    "carrier from planet to planet, or the same time where the carrier is held.",
+    of=("PlanetaryResult",),
+    made_by="Run a case with planets: tribodyn.run.",
+)
+def planetary_stage(result: PlanetaryResult) -> Any:
+    """Draw a planetary stage with moving planets."""
+    case, stage = result.case, result.operation.kinematics
+    pairs = {mesh: pair.gear_pair for mesh, pair in case.pairs.items()}
+    sun_side = "pinion" if case.gears_of("sun")[0] == case.table.sun else "wheel"
+    sun = _outline(getattr(pairs["sun"], sun_side))
+    planet, ring = _outline(pairs["ring"].pinion), _outline(pairs["ring"].wheel)
+    angles = np.asarray(result.operation.phases.angles) * case.turn(result.operation.load)
+    ring_start, planet_starts = _start_angles(result, angles)
+    distance = 1e3 * case.center_distance
+    rates = stage.speeds
+    slowest = abs(rates["carrier"]) or abs(rates["ring"])
+    duration = 2.0 * np.pi / angles.size / slowest
+
+    def picture(time: float) -> list[Trace]:
+        """Traces of the stage at a time."""
+        pins = distance * np.exp(1j * (angles + rates["carrier"] * time))
+        turned = [
+            planet * cmath.exp(1j * (start + rates["planet"] * time)) + pin
+            for start, pin in zip(planet_starts, pins, strict=True)
+        ]
+        arms = np.concatenate([[0.0, pin, np.nan] for pin in pins])
+        return [
+            _trace(ring * cmath.exp(1j * (ring_start + rates["ring"] * time)), "ring", WHEEL),
+            _trace(np.concatenate([[*p, np.nan] for p in turned]), "planets", MUTED),
+            _trace(sun * cmath.exp(1j * rates["sun"] * time), "sun", PINION),
+            _trace(arms, "carrier", _CARRIER),
+        ]
+
+    frames = [picture(duration * k / _FRAMES) for k in range(_FRAMES)]
+    play = {"frame": {"duration": 80, "redraw": False}, "transition": {"duration": 0},
+            "fromcurrent": True}  # fmt: skip
+    buttons = [
+        {"label": "Play", "method": "animate", "args": [None, play]},
+        {"label": "Stop", "method": "animate",
+         "args": [[None], {"mode": "immediate", "frame": {"duration": 0}}]},
+    ]  # fmt: skip
+    reach = 1.05 * float(np.abs(ring).max())
+    axis = {"visible": False, "range": [-reach, reach]}
+    layout = {
+        "height": 620,
+        "hovermode": "closest",
+        "updatemenus": [{"type": "buttons", "direction": "left", "buttons": buttons, "x": 1.0,
+                         "xanchor": "right", "y": 1.0, "yanchor": "top"}],
+        "xaxis": axis,
+        "yaxis": {**axis, "scaleanchor": "x"},
+    }  # fmt: skip
+    turns = abs(stage.relative_speeds["planet"] / stage.speeds[stage.input])
+    title = (
+        f"{angles.size} planets turn {turns:.3g} times about their pins in a turn of the "
+        f"{stage.input}; ratio {stage.ratio:.4g}"
+    )
+    sketch = figure(title, frames[0], layout)
+    sketch.frames = [{"name": str(k), "data": data} for k, data in enumerate(frames)]
+    return sketch
+
+
+@drawing(
+    "planetary_forces",
+    heading="Mesh forces of all planets",
+    caption="Force of each sun mesh and of each ring mesh along its line of action over a mesh "
+    "cycle, and the radial motion of the sun.",
+    of=("PlanetaryMotion", "PlanetaryResult.motion"),
+    made_by="Run a case with planets: tribodyn.run.",
+)
+def planetary_forces(motion: PlanetaryMotion) -> Any:
+    """Draw the mesh forces of all planets and the motion of the sun over a mesh cycle."""
+    unit = display_unit("mesh_force")
+    panels = []
+    for mesh, force in (("Sun mesh", motion.sun_mesh_force), ("Ring mesh", motion.ring_mesh_force)):
+        traces = [
+            line(
+                motion.phase,
+                displayed("mesh_force", force[:, i]),
+                f"planet {i + 1}",
+                COLORS[i % len(COLORS)],
+                unit=unit,
+            )
+            for i in range(force.shape[1])
+        ]
+        panels.append(Panel(axis_label("mesh_force", f"{mesh} force"), traces))
+    sun = motion.displacement[:, motion.member.index("sun"), :2]
+    moved = sun - motion.mean(sun)
+    panels.append(
+        Panel(
+            axis_label("deflection", "Sun, about its mean"),
+            [
+                line(
+                    motion.phase,
+                    displayed("deflection", moved[:, k]),
+                    "xy"[k],
+                    COLORS[k],
+                    unit=display_unit("deflection"),
+                )
+                for k in range(2)
+            ],
+        )
+    )
+    peak = float(motion.sun_mesh_force.max())
+    mean = float(motion.mean(motion.sun_mesh_force).mean())
+    title = (
+        f"Sun meshes carry {rounded('mesh_force', mean)} in the mean and "
+        f"{rounded('mesh_force', peak)} at most"
+    )
+    return stack(
+        title, f"Phase of the mesh cycle, 1 = {1e3 / motion.mesh_frequency:.4g} ms", panels
+    )

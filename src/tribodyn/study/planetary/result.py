@@ -1,0 +1,234 @@
+"""Result of a planetary stage: its loads, summary, modes and report."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.drawing import draw, write_report_of
+from tribodyn.interrupt import single_blas_thread
+from tribodyn.machine import LoadShares, PlanetaryKinematics, planetary_modes, planetary_plane_model
+from tribodyn.record import html_table
+from tribodyn.study.pipeline.save import new_directory
+from tribodyn.study.pipeline.summary_figures import summary_rows
+from tribodyn.study.planetary.summary import summary_of
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response, System
+    from tribodyn.errors import ModelWarning
+    from tribodyn.machine import MeshPhases, PlanetaryModes
+    from tribodyn.mesh import MeshTable
+    from tribodyn.study.case.provenance import Assumption
+    from tribodyn.study.machine.load_cases import LoadCase
+    from tribodyn.study.planetary.case import PlanetaryCase
+    from tribodyn.study.planetary.motion import PlanetaryMotion
+
+
+@dataclass(frozen=True, eq=False)
+class PlanetaryLoadResult:
+    """A planetary stage under one load.
+
+    Parameters
+    ----------
+    load : LoadCase
+        Speed and torque.
+    kinematics : PlanetaryKinematics
+        Speeds, torques and power with the computed losses of the meshes.
+    tables : mapping of str to MeshTable
+        Tooth contact of a ``sun`` mesh and of a ``ring`` mesh.
+    data : mapping
+        Arguments of :func:`tribodyn.machine.planetary_plane_model` with the mean stiffness of the
+        meshes, in the direction of the torque on the sun.
+    shares : LoadShares
+        Static load sharing.
+    system : System
+        Equations of motion with the force laws of the teeth.
+    motion : PlanetaryMotion
+        Forces and displacements over a mesh cycle.
+    response : Response
+        Motion of all coordinates, in the direction of the torque on the sun.
+    """
+
+    load: LoadCase
+    kinematics: PlanetaryKinematics
+    tables: Mapping[str, MeshTable]
+    data: Mapping[str, Any]
+    shares: LoadShares
+    system: System
+    motion: PlanetaryMotion
+    response: Response
+
+    @property
+    def phases(self) -> MeshPhases:
+        """Phases of all meshes."""
+        phases: MeshPhases = self.data["phases"]
+        return phases
+
+
+@dataclass(frozen=True, eq=False)
+class PlanetaryResult:
+    """What :func:`tribodyn.run` returns for a planetary stage.
+
+    Parameters
+    ----------
+    case : PlanetaryCase
+        What was computed.
+    operation : PlanetaryLoadResult
+        At the speed and torque of ``[operation]``.
+    load_cases : tuple of PlanetaryLoadResult
+        Under each of ``[[load_cases]]``.
+    warnings : tuple of ModelWarning
+        Warnings of the models.
+    """
+
+    case: PlanetaryCase
+    operation: PlanetaryLoadResult
+    load_cases: tuple[PlanetaryLoadResult, ...]
+    warnings: tuple[ModelWarning, ...]
+
+    @property
+    def motion(self) -> PlanetaryMotion:
+        """Motion at the operating point."""
+        return self.operation.motion
+
+    @cached_property
+    def modes(self) -> PlanetaryModes:
+        """Natural modes with the mean stiffness of the meshes at the operating point."""
+        return planetary_modes(planetary_plane_model(**self.operation.data))
+
+    @cached_property
+    def _summary(self) -> dict[str, float]:
+        figures = summary_of(self.case, self.operation)
+        for each in self.load_cases:
+            values = summary_of(self.case, each)
+            figures |= {f"load_cases.{each.load.name}.{key}": v for key, v in values.items()}
+        return figures
+
+    def summary(self) -> dict[str, float]:
+        """All figures as one flat dictionary: ``planets.low.load_factor``, ...
+
+        Returns
+        -------
+        dict of str to float
+            In SI; those of load cases begin with ``load_cases.NAME.``.
+        """
+        return dict(self._summary)
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """What was assumed because the case does not give it."""
+        return self.case.assumptions
+
+    def cite(self, style: str = "text") -> str:
+        """Name the papers behind the tooth contacts and the motion of this result.
+
+        Parameters
+        ----------
+        style : str
+            ``"text"`` or ``"bibtex"``.
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        InputError
+            If there is no such style.
+        """
+        from tribodyn.study.pipeline.citations import cite
+
+        texts = [cite(pair, style) for pair in self.case.pairs.values()]
+        separator = "\n\n" if style == "bibtex" else "\n"
+        entries = [entry for text in texts for entry in text.split(separator) if entry.strip()]
+        return separator.join(dict.fromkeys(entries))
+
+    def to_xarray(self) -> Any:
+        """Motion at the operating point with units.
+
+        Returns
+        -------
+        xarray.Dataset
+        """
+        return self.motion.to_xarray()
+
+    def plot(self, figure: str = "planetary_stage") -> Any:
+        """Draw a figure: ``planetary_stage``, ``planetary_forces``.
+
+        Parameters
+        ----------
+        figure : str
+            Name in :data:`tribodyn.plot.FIGURES`.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return draw(self, figure)
+
+    def save(
+        self, directory: str | os.PathLike[str], *, force: bool = False, csv: bool = False
+    ) -> Path:
+        """Write case, summary, mesh tables, motion and report into a new directory.
+
+        Parameters
+        ----------
+        directory : str or path
+            Directory to make; it appears complete or not at all.
+        force : bool
+            Replace an earlier result there.
+        csv : bool
+            Write the mesh forces as ``response.csv`` as well.
+
+        Raises
+        ------
+        OutputExistsError
+            If it exists and is not to be replaced, or is no result.
+        InputError
+            If the place cannot be written to.
+        """
+        target = Path(directory)
+        with single_blas_thread(), new_directory(target, force=force) as place:
+            texts = {
+                "case.toml": self.case.to_toml(),
+                "summary.json": json.dumps(self.summary(), indent=2, allow_nan=False) + "\n",
+            }
+            for name, text in texts.items():
+                (place / name).write_text(text, encoding="utf-8")
+            for mesh, table in self.operation.tables.items():
+                table.save(place / f"mesh-{mesh}.nc")
+            self.motion.save(place / "motion.nc")
+            if csv:
+                frame = self.to_xarray().sun_mesh_force.to_pandas()
+                (place / "response.csv").write_text(frame.to_csv(), encoding="utf-8")
+            write_report_of(self, place / "report.html")
+        return target
+
+    def rows(self) -> list[tuple[str, str, str, str]]:
+        """Topic, key, value with unit and meaning of each figure of the summary.
+
+        Returns
+        -------
+        list of (str, str, str, str)
+        """
+        return summary_rows(self._summary)
+
+    def _repr_html_(self) -> str:
+        """Table of the summary by part for notebooks."""
+        return html_table(repr(self), ("part", "figure", "value", "meaning"), self.rows())
+
+    def __repr__(self) -> str:
+        """One line."""
+        figures, name = self.summary(), self.case.name
+        return (
+            f'PlanetaryResult("{self.case.title}": efficiency '
+            f"{100.0 * figures['machine.efficiency']:.4g} %, "
+            f"K_gamma {figures[f'planets.{name}.load_factor']:.4g}, peak mesh forces "
+            f"{figures['meshes.sun.peak_mesh_force']:.5g} N and "
+            f"{figures['meshes.ring.peak_mesh_force']:.5g} N)"
+        )

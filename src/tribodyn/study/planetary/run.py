@@ -1,0 +1,85 @@
+"""Compute a planetary stage: teeth of a sun and a ring mesh, load sharing, motion."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from dataclasses import replace
+
+from tribodyn.dynamics import harmonic_balance
+from tribodyn.errors import collected, frames
+from tribodyn.interrupt import single_blas_thread
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.machine.load_cases import LoadCase
+from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
+from tribodyn.study.pipeline.run import rehearse
+from tribodyn.study.planetary.case import PlanetaryCase
+from tribodyn.study.planetary.motion import planetary_motion
+from tribodyn.study.planetary.result import PlanetaryLoadResult, PlanetaryResult
+from tribodyn.study.planetary.stage import (
+    MESHES,
+    stage_data,
+    stage_shares,
+    stage_system,
+    stage_teeth,
+)
+
+#: Steps of a mesh cycle, which is the period of the motion.
+_STEPS = 200
+
+
+def run_planetary(
+    case: PlanetaryCase, progress: Progress = SILENT, *, stacklevel: int = 2
+) -> PlanetaryResult:
+    """Compute a planetary stage at its operating point and under its load cases."""
+    with collected() as caught, single_blas_thread():
+        of_meshes: list[MeshWarning] = []
+        loads = (case.operating_point, *case.load_cases)
+        results: dict[tuple[float, float], PlanetaryLoadResult] = {}
+        for load in loads:
+            point = load.speed, load.torque
+            if point not in results:
+                results[point] = run_load(case, load, progress, of_meshes)
+        warn_of_meshes(of_meshes)
+        listed = [replace(results[load.speed, load.torque], load=load) for load in loads]
+    unique = {str(warning): warning for warning in caught}
+    for warning in unique.values():
+        warnings.warn(warning, stacklevel=frames(stacklevel, sys._getframe()))
+    return PlanetaryResult(case, listed[0], tuple(listed[1:]), tuple(unique.values()))
+
+
+def run_load(
+    case: PlanetaryCase, load: LoadCase, progress: Progress, of_meshes: list[MeshWarning]
+) -> PlanetaryLoadResult:
+    """Compute a planetary stage under one load."""
+    progress.start(f"Tooth contact: {load.name}")
+    teeth = stage_teeth(case, load)
+    of_meshes += teeth.warnings
+    progress.finish()
+    progress.start(f"Motion: {load.name}")
+    lossless = case.kinematics(load)
+    rolling = lossless.rolling_power / case.table.count
+    efficiencies = {
+        f"{mesh}_efficiency": 1.0 - teeth.tables[mesh].mean_friction_power / rolling
+        for mesh in MESHES
+    }
+    data = stage_data(case, load, teeth.tables, case.phases(load))
+    system = stage_system(case, load, teeth, data)
+    response = harmonic_balance(system, lossless.mesh_frequency, steps=_STEPS)
+    progress.finish()
+    return PlanetaryLoadResult(
+        load=load,
+        kinematics=case.kinematics(load, **efficiencies),
+        tables=teeth.tables,
+        data=data,
+        shares=stage_shares(data),
+        system=system,
+        motion=planetary_motion(response, data, case.turn(load)),
+        response=response,
+    )
+
+
+def rehearse_planetary(case: PlanetaryCase) -> None:
+    """Raise the input errors of the tooth contacts of a stage without computing it."""
+    for pair in case.pairs.values():
+        rehearse(pair)

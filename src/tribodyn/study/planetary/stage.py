@@ -1,0 +1,143 @@
+"""The plane model of a stage with its computed teeth: data, loads and equations of motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tribodyn.errors import ModelWarning
+from tribodyn.interrupt import in_threads, processors
+from tribodyn.machine import LoadShares, Mesh, load_shares, planetary_plane_model
+from tribodyn.machine.planetary.mesh_laws import PlanetMesh, with_computed_teeth
+from tribodyn.machine.planetary.plane_model import modal_damping
+from tribodyn.study.machine.run import MeshWarning, teeth_of
+from tribodyn.study.pipeline.assembly import geometry
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import System
+    from tribodyn.machine import MeshPhases
+    from tribodyn.mesh import MeshTable
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.load_cases import LoadCase
+    from tribodyn.study.planetary.case import PlanetaryCase
+
+MESHES = ("sun", "ring")
+
+
+class StageTeeth(NamedTuple):
+    """Computed teeth of a sun mesh and a ring mesh under one load."""
+
+    pairs: dict[str, Case]
+    tables: dict[str, MeshTable]
+    laws: dict[str, dict[str, Any]]
+    warnings: list[MeshWarning]
+
+
+def stage_teeth(case: PlanetaryCase, load: LoadCase) -> StageTeeth:
+    """Compute the teeth of one sun mesh and one ring mesh; those of all planets are equal."""
+    pairs = case.pairs_under(load)
+    results = dict(
+        zip(MESHES, in_threads(teeth_of, list(pairs.values()), processors()), strict=True)
+    )
+    warnings: list[ModelWarning]
+    listed = []
+    for mesh, (_, _, warnings) in results.items():
+        listed += [MeshWarning(mesh, load.name, warning) for warning in warnings]
+    tables = {mesh: table for mesh, (table, _, _) in results.items()}
+    return StageTeeth(pairs, tables, {mesh: law for mesh, (_, law, _) in results.items()}, listed)
+
+
+def members_of(case: PlanetaryCase) -> dict[str, float]:
+    """Masses, and moments of inertia over the square of the radius of u, of all members [kg]."""
+    bodies = {mesh: geometry(pair) for mesh, pair in case.pairs.items()}
+    values = {}
+    for role, mesh in (("sun", "sun"), ("planet", "ring"), ("ring", "ring")):
+        gear = getattr(case.table, role)
+        side = ("pinion", "wheel")[case.gears_of(mesh).index(gear)]
+        body = bodies[mesh]
+        values[f"{role}_mass"] = body[f"mass_{side}"]
+        inertia = body[f"moment_of_inertia_{side}"]
+        values[f"{role}_inertia"] = inertia / body[f"base_radius_{side}"] ** 2
+    table, radius = case.table, case.center_distance
+    width = case.gears[table.planet].face_width
+    density = case.pairs["sun"].density("pinion")
+    mass = density * math.pi * radius**2 * width if table.carrier_mass is None else None
+    mass = table.carrier_mass if mass is None else mass
+    inertia = table.carrier_moment_of_inertia
+    values["carrier_mass"] = mass
+    values["carrier_inertia"] = 0.5 * mass if inertia is None else inertia / radius**2
+    return values
+
+
+def stage_data(
+    case: PlanetaryCase, load: LoadCase, tables: Mapping[str, MeshTable], phases: MeshPhases
+) -> dict[str, Any]:
+    """Arguments of :func:`planetary_plane_model`, in the direction of the torque on the sun."""
+    table, turn, torque = case.table, case.turn(load), case.kinematics(load).torques["sun"]
+    held = case.roles[2]
+    pairs = {mesh: case.pairs[mesh].gear_pair for mesh in MESHES}
+    sun_radius = geometry(case.pairs["ring"])["base_radius_pinion"]
+    sun_radius *= case.gears[table.sun].teeth / case.gears[table.planet].teeth
+    return {
+        "planets": table.count,
+        "phases": phases,
+        **members_of(case),
+        **{f"{mesh}_mesh_stiffness": _mean_stiffness(tables[mesh]) for mesh in MESHES},
+        **{f"{mesh}_pressure_angle": pairs[mesh].operating_pressure_angle for mesh in MESHES},
+        "pin_stiffness": table.pin_stiffness,
+        **{f"{role}_support": getattr(table, f"{role}_support") for role in case.members},
+        f"{held}_torsional_support": table.torsional_support,
+        "force_per_planet": abs(torque) / sun_radius / table.count,
+        "pin_errors": turn * np.array(table.pin_errors or 0.0),
+        "thickness_errors": np.array(table.thickness_errors or 0.0),
+    }
+
+
+def _mean_stiffness(table: MeshTable) -> float:
+    """Mean stiffness about the load, with which modes and load shares are computed [N/m]."""
+    functions = table.functions()
+    entry = functions.tangent_stiffness or functions.stiffness
+    return float(np.mean(entry(table.phase)))
+
+
+def stage_shares(data: Mapping[str, Any]) -> LoadShares:
+    """Static load sharing of the stage."""
+    return load_shares(**data)
+
+
+def stage_system(
+    case: PlanetaryCase, load: LoadCase, teeth: StageTeeth, data: Mapping[str, Any]
+) -> System:
+    """Equations of motion with the force laws and the friction of all meshes."""
+    plane = planetary_plane_model(**data)
+    damping = modal_damping(replace(plane, contacts=()), case.motion.modal_damping_ratio)
+    driven = {"carrier": 2, "ring": 5, "sun": 8}[case.roles[1]]
+    balance = np.zeros(plane.size)
+    balance[driven] = 1.0  # friction takes part of the torque that the output puts out
+    table = case.table
+    meshes = []
+    for mesh in MESHES:
+        names, law = case.gears_of(mesh), teeth.laws[mesh]
+        body = Mesh(
+            names,
+            table.normal_module,
+            helix_angle=table.helix_angle,
+            hand=case.hand_of(names[0]),
+            center_distance=case.center_distance,
+            pressure_angle=table.normal_pressure_angle,
+            contacts=law["contacts"],
+            frictions=law["frictions"],
+        )
+        gears = case.gears[names[0]], case.gears[names[1]]
+        meshes.append(PlanetMesh(mesh, body, gears, names[0] == table.planet))
+    return with_computed_teeth(
+        replace(plane, damping=damping, balance=balance),
+        data["phases"],
+        meshes,
+        sun_drives=case.sun_drives(load),
+        thickness_errors=data["thickness_errors"],
+    )

@@ -1,0 +1,67 @@
+"""Figures of a planetary stage: of the stage, its members, its sun meshes and its ring meshes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.study.machine.summary import table_figures
+
+if TYPE_CHECKING:
+    from tribodyn.machine import PlanetaryKinematics
+    from tribodyn.study.planetary.case import PlanetaryCase
+    from tribodyn.study.planetary.result import PlanetaryLoadResult
+
+
+def kinematic_figures(case: PlanetaryCase, stage: PlanetaryKinematics) -> dict[str, float]:
+    """Speeds, torques and power of the stage and its members, in SI by dotted key."""
+    driver, output = stage.input, stage.output
+    power = stage.power[driver]
+    values = {
+        "machine.clock_frequency": stage.mesh_frequency,
+        "machine.input_power": power,
+        "machine.output_torque": abs(stage.torques[output]),
+        f"planets.{case.name}.ratio": stage.ratio,
+        f"planets.{case.name}.rolling_power": stage.rolling_power,
+        f"planets.{case.name}.planet_speed": stage.relative_speeds["planet"],
+    }
+    for role, name in case.members.items():
+        values[f"shafts.{name}.speed"] = stage.speeds[role]
+        values[f"shafts.{name}.torque"] = stage.torques[role]
+        values[f"shafts.{name}.power"] = stage.power[role]
+    return values
+
+
+def summary_of(case: PlanetaryCase, result: PlanetaryLoadResult) -> dict[str, float]:
+    """All figures of a stage under one load, in SI, by dotted key."""
+    stage, motion = result.kinematics, result.motion
+    count, name = case.table.count, case.name
+    values: dict[str, Any] = kinematic_figures(case, stage)
+    lost = count * sum(table.mean_friction_power for table in result.tables.values())
+    pin = np.linalg.norm(motion.mean(motion.pin_force), axis=1)
+    sun = motion.displacement[:, motion.member.index("sun"), :2]
+    values |= {
+        "machine.friction_power": lost,
+        "machine.efficiency": stage.efficiency,
+        f"planets.{name}.load_factor": result.shares.load_factor,
+        f"planets.{name}.dynamic_load_factor": motion.load_factor,
+        f"planets.{name}.planets_unloaded": float(len(result.shares.unloaded)),
+        f"planets.{name}.mean_pin_force": float(pin.max()),
+        f"planets.{name}.sun_orbit": float(np.hypot(*motion.rms(sun))),
+    }
+    for mesh, force in (("sun", motion.sun_mesh_force), ("ring", motion.ring_mesh_force)):
+        mean = motion.mean(force)
+        figures = {
+            "mesh_frequency": stage.mesh_frequency,
+            "static_mesh_force": float(result.data["force_per_planet"]),
+            "mean_mesh_force": float(mean.mean()),
+            "rms_mesh_force": float(motion.rms(force).max()),
+            "peak_mesh_force": float(force.max()),
+            "minimum_mesh_force": float(force.min()),
+            "dynamic_factor_peak": float(force.max() / mean.mean()),
+            "contact_loss_share": float(motion.mean((force == 0.0).astype(float)).max()),
+            **table_figures(result.tables[mesh]),
+        }
+        values |= {f"meshes.{mesh}.{key}": value for key, value in figures.items()}
+    return {key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)}
