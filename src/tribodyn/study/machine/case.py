@@ -327,7 +327,7 @@ class MachineCase:
         for name in self.meshes_with_teeth:
             if self._mesh_tables[name].center_distance is None:
                 names = self._pinion_and_wheel(name)
-                parts = self.data, name, names, self.source
+                parts = self.data, f"meshes.{name}", names, self.source
                 pair = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
                 distances[name] = pair.gear_pair.center_distance
         return distances
@@ -361,7 +361,7 @@ class MachineCase:
         pinion, speed = names[0], flow.shafts[self.gears[names[0]].shaft].speed
         return pair_case(
             self.data,
-            mesh,
+            f"meshes.{mesh}",
             names,
             self.source,
             driver=mesh_load.driver,

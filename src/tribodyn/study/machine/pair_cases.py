@@ -81,7 +81,7 @@ def mesh_tables(body: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 
 def pair_case(
     data: Mapping[str, Any],
-    mesh: str,
+    table: str,
     names: tuple[str, str],
     source: Source | None,
     *,
@@ -89,10 +89,13 @@ def pair_case(
     operation: tuple[float, float],
     hand: str = "",
     misalignment: float = 0.0,
-    group: str = "meshes",
 ) -> Case:
-    """Case of the pair of a mesh; hand, if helical, speed and torque are those of its pinion."""
+    """Case of the pair of a mesh with its table, such as ``meshes.first``.
+
+    Hand, if helical, speed and torque are those of its pinion.
+    """
     speed, torque = operation
+    group, _, mesh = table.partition(".")
     body = data[group][mesh]
     inner = mesh_tables(body)
     tables = {
@@ -110,9 +113,9 @@ def pair_case(
     if misalignment:
         pair["misalignment"] = Plain(misalignment)
     for role, name in zip(_ROLES, names, strict=True):
-        table = data["gears"][name]
-        pair[role] = {k: v for k, v in table.items() if k in gears.Gear.fields}
-    model_keys = (f"{table}.{key}" for table, values in inner.items() for key in values)
+        body_of_gear = data["gears"][name]
+        pair[role] = {k: v for k, v in body_of_gear.items() if k in gears.Gear.fields}
+    model_keys = (f"{model}.{key}" for model, values in inner.items() for key in values)
     mesh_keys = {*mesh_dynamics, *model_keys, *inner}
     origin = source or Source()
     return Case(

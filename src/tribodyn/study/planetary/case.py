@@ -329,13 +329,12 @@ class PlanetaryCase:
         role = "sun" if pinion == self.table.sun else "planet"
         return pair_case(
             {**self.data, "planets": {self.name: body}},
-            self.name,
+            f"planets.{self.name}",
             names,
             self.source,
             driver=self.table.planet if planet_drives else member,
             operation=(abs(stage.relative_speeds[role]), share * self.gears[pinion].teeth),
             hand=self.hand_of(pinion) if self.table.helix_angle else "",
-            group="planets",
         )
 
     def phases(self, load: LoadCase) -> MeshPhases:
