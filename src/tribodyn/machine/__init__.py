@@ -32,6 +32,7 @@ from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.modes import MachineModes, machine_modes
 from tribodyn.machine.planetary.kinematics import PlanetaryKinematics, planetary_kinematics
 from tribodyn.machine.planetary.load_sharing import LoadShares, load_shares
+from tribodyn.machine.planetary.mesh_laws import sun_to_ring_lag
 from tribodyn.machine.planetary.modes import PlanetaryModes, planetary_modes
 from tribodyn.machine.planetary.phases import HarmonicExcitation, MeshPhases, mesh_phases
 from tribodyn.machine.planetary.plane_model import planetary_plane_model
@@ -104,6 +105,7 @@ __all__ = [
     "planetary_positions",
     "reduce_structure",
     "static_balance",
+    "sun_to_ring_lag",
     "system",
 ]
 

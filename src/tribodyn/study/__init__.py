@@ -10,7 +10,8 @@ from tribodyn.arguments import guarded
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
-    from tribodyn.study.machine.case import LoadCase, MachineCase
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult, MachineResult
@@ -99,7 +100,8 @@ __all__ = [
 _NAMES = {
     "case.case": "Case",
     "case.read": "read_case",
-    "machine.case": "LoadCase MachineCase",
+    "machine.case": "MachineCase",
+    "machine.load_cases": "LoadCase",
     "machine.modes": "MachineCampbell",
     "machine.motion": "MachineMotion",
     "machine.result": "LoadResult MachineResult",

@@ -7,5 +7,6 @@
 | ``phases`` | phases of all meshes, and which modes their harmonics excite |
 | ``plane_model`` | equations of motion in the plane, after Lin and Parker |
 | ``modes`` | which modes are rotational, translational or modes of the planets |
+| ``mesh_laws`` | computed teeth in the plane model, lag of the ring meshes |
 | ``load_sharing`` | static loads of the planets with errors of pins and teeth |
 """

@@ -48,6 +48,15 @@ def sun_to_ring_lag(
     Opposite flanks of a planet carry in its two meshes. From the angles of their involutes on the
     base circle, ``lag p_b = r_b (pi - alpha_s - alpha_r) + rho_s + rho_r - s_b`` with the radii of
     curvature of the planet's flanks where contact begins and its base tooth thickness.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import spur_pair
+    >>> rack = {"normal_module": 4e-3, "normal_pressure_angle": math.radians(20.0)}
+    >>> sun = spur_pair(pinion_teeth=17, wheel_teeth=22, pinion_face_width=0.05, **rack)
+    >>> ring = spur_pair(pinion_teeth=22, wheel_teeth=-61, pinion_face_width=0.05, **rack)
+    >>> round(sun_to_ring_lag(sun, ring), 4)
+    0.1286
     """
     planet = ring_pair.pinion
     limits = sun_pair.path_limits
@@ -63,25 +72,12 @@ def sun_to_ring_lag(
 
 @dataclass(frozen=True, eq=False)
 class PlanetMesh:
-    """Teeth of the sun meshes or of the ring meshes, which are equal but for their phases.
+    """Teeth of the sun meshes or of the ring meshes, which are equal but for their phases."""
 
-    Parameters
-    ----------
-    member : str
-        ``"sun"`` or ``"ring"``.
-    mesh : Mesh
-        Gears in the order pinion, wheel, with contacts and frictions of one pair; ``hand`` is that
-        of the pinion.
-    gears : (Gear, Gear)
-        Pinion and wheel.
-    planet_first : bool
-        Whether the planet is the pinion.
-    """
-
-    member: str
-    mesh: Mesh
+    member: str  #: ``sun`` or ``ring``
+    mesh: Mesh  #: of pinion and wheel, with the contact and the frictions of one pair
     gears: tuple[Gear, Gear]
-    planet_first: bool
+    planet_first: bool  #: whether the planet is the pinion
 
     def direction(self, angle: float, *, sun_drives: bool) -> MeshDirection:
         """Direction of the mesh of a planet at an angle; the torque on the sun is positive."""
@@ -116,23 +112,7 @@ def with_computed_teeth(
     sun_drives: bool = True,
     thickness_errors: Array | float = 0.0,
 ) -> System:
-    """Plane model whose contacts are force laws of computed teeth, with their friction.
-
-    Parameters
-    ----------
-    stage : System
-        Of :func:`planetary_plane_model`, in the direction in which the torque on the sun is
-        positive.
-    phases : MeshPhases
-        Phases of its meshes, with the lag of :func:`sun_to_ring_lag`.
-    meshes : (PlanetMesh, PlanetMesh)
-        Sun mesh and ring mesh, each with one contact.
-    sun_drives : bool
-        Whether the sun turns towards greater angles relative to the carrier; the phases of the
-        planets lead otherwise.
-    thickness_errors : (N,) array
-        Excess of the base tooth thickness of the planets [m].
-    """
+    """Plane model with the force laws and the friction of computed teeth, for a positive torque."""
     contacts: list[Contact] = []
     frictions: list[LoadFriction] = []
     excess = np.broadcast_to(thickness_errors, phases.angles.shape)

@@ -90,10 +90,7 @@ def pair_case(
     hand: str = "",
     misalignment: float = 0.0,
 ) -> Case:
-    """Case of the pair of a mesh with its table, such as ``meshes.first``.
-
-    Hand, if helical, speed and torque are those of its pinion.
-    """
+    """Case of the pair of a mesh, by its table; hand, speed and torque are those of its pinion."""
     speed, torque = operation
     group, _, mesh = table.partition(".")
     body = data[group][mesh]

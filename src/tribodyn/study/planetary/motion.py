@@ -90,17 +90,7 @@ class PlanetaryMotion(Record):
 
 
 def planetary_motion(response: Response, data: Mapping[str, Any], turn: int) -> PlanetaryMotion:
-    """Motion of a stage from the response of its plane model.
-
-    Parameters
-    ----------
-    response : Response
-        In the direction of the torque on the sun.
-    data : mapping
-        Arguments of the plane model.
-    turn : int
-        Sign of the torque on the sun; y and rotations of the response are along it.
-    """
+    """Motion of a stage from the response of its plane model, whose y is along the sun's torque."""
     fine, angles = response.fine, data["phases"].angles
     count = angles.size
     position = fine.position.reshape(len(fine.phase), -1, 3)
