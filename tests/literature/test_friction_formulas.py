@@ -27,6 +27,7 @@ from tribodyn.friction import (
     odonoghue_cameron,
     pitch_point,
     schlenk,
+    xu_2007,
 )
 
 #: N/mm, m/s (sum), mm, mPa s, um
@@ -103,6 +104,17 @@ def test_discs(disc):
     )
     coefficients = odonoghue_cameron(*speeds, viscosity * 1e-3, rough * 1e-6, radius * 1e-3)
     assert coefficients == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize("disc", DISCS)
+def test_xu_by_its_second_source(disc):
+    sliding, rolling, viscosity, _, pressure, rough, radius = disc
+    entrainment = 0.5 * rolling
+    state = sliding / entrainment, pressure, viscosity, rough, entrainment, radius * 1e-3
+    coefficient = xu_2007(
+        state[0], pressure * 1e9, viscosity * 1e-3, rough * 1e-6, entrainment, radius * 1e-3
+    )
+    assert coefficient == pytest.approx(printed.xu(*state), rel=1e-12)
 
 
 def test_misharin_is_limited_with_a_warning_where_sliding_stops():

@@ -109,7 +109,7 @@ def shear_flow_factor(film_ratio: ArrayLike, orientation: float = 1.0) -> Array:
     Examples
     --------
     >>> float(shear_flow_factor(3.0).round(4))
-    0.5529
+    0.5532
     """
     ratio, shares = _of_range(film_ratio, orientation)
     return _mixed(shares, [_shear(row, ratio) for row in _TABLE])
