@@ -55,7 +55,7 @@ def odonoghue_cameron(sliding, rolling, viscosity, microinches, inches):
 
 
 def xu(ratio, pressure, viscosity, rough, entrainment, radius):
-    """H. Xu (2007) as a thesis on gear losses tabulates it, with the GPa of an open program; m, m/s."""
+    """H. Xu (2007) by the table of a thesis and an open program: GPa, m/s, m."""
     b = (
         -8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0.390958, 0.620305,
     )  # fmt: skip
