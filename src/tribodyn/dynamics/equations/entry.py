@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, real_numbers
+from tribodyn.errors import InputError, floats, real_numbers
 from tribodyn.types import Array
 
 #: A constant, or a vectorized function of the mesh phase in [0, 1).
@@ -134,7 +134,9 @@ def _oriented(where: str, function: Callable[[Array], Any], phases: Array, size:
         why = "It is called with an array of phases and returns an array"
         remedy = "Use numpy.where instead of if, and functions that take arrays"
         raise InputError(what, where, why, remedy) from error
-    values = real_numbers(where, result, "real numbers, whatever the mesh phase")
+    # A table returns an array of its own; another function may go on to change what it returned.
+    read = floats if hasattr(function, "event_phases") else real_numbers
+    values = read(where, result, "real numbers, whatever the mesh phase")
     if values.ndim == 0:
         values = np.full((probe.size, 1), float(values))
     elif values.ndim == 1 and values.size == probe.size and size == 1:

@@ -127,10 +127,12 @@ def _spectral_radius(matrices: Array) -> Array:
 
 def _blocks(pattern: Mask) -> list[Index]:
     """Indices of the diagonal blocks of a block triangular matrix, which have its eigenvalues."""
-    from scipy.sparse.csgraph import connected_components
-
-    count, block = connected_components(pattern, connection="strong")
-    return [np.flatnonzero(block == number) for number in range(count)]
+    count = len(pattern)
+    reached = (np.eye(count, dtype=bool) | pattern).astype(float)
+    for _ in range(count.bit_length()):  # twice as many steps along the couplings every time
+        reached = (reached @ reached > 0.0).astype(float)
+    _, block = np.unique((reached > 0.0) & (reached.T > 0.0), axis=0, return_inverse=True)
+    return [np.flatnonzero(block == number) for number in range(block.max(initial=-1) + 1)]
 
 
 def _modulus(matrices: Array) -> Array:

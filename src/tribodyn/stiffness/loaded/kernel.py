@@ -31,6 +31,8 @@ _INNER: dict[str, Any] = {**_JIT, **INNER_OPTIONS}
 _TIGHT = 1e-13
 #: Load over the largest one below which a pair that would part is let go.
 _FAINT = 1e-12
+#: Least part of its load that a step leaves to a pair: one that parts is faint after three.
+_LEFT = 1e-4
 #: Gap that nothing closes [m].
 _APART = 1e6
 _INNER_STEPS = 200
@@ -145,7 +147,7 @@ def _slice(
         _eliminate(m, a, b)
         for r in range(m):
             i = int(place[r])
-            f[i] = max(f[i] + b[r], 0.1 * f[i])
+            f[i] = max(f[i] + b[r], _LEFT * f[i])
             if f[i] < _FAINT * largest:
                 previous = f[i]
                 f[i] = 0.0
