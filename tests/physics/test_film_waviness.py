@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from tribodyn.ehl import AmplitudeReduction, amplitude_reduction, solve_amplitude_reduction
+from tribodyn.ehl import (
+    AmplitudeReduction,
+    RoughnessProfile,
+    amplitude_reduction,
+    flattened_roughness,
+    solve_amplitude_reduction,
+    solve_line_contact,
+    solve_transient_line_contact,
+)
 from tribodyn.lubricant import Lubricant
 
 OIL, MODULUS, RADIUS = Lubricant(0.08, 880.0, 2.2e-8), 2.2e11, 8e-3
@@ -46,6 +54,41 @@ def test_waves_of_the_slower_surface_are_flattened_more() -> None:
         for ratio in (-0.5, 0.0, 0.5)
     )
     assert slow < 0.95 * rolling < 0.95 * fast
+
+
+def test_random_roughness_of_both_surfaces_is_flattened_wave_by_wave() -> None:
+    """Pure rolling: the film follows the sum of both profiles, each wave with what it keeps."""
+    load, speed, half_width = contact(50.0, 10.0)
+    smooth = solve_line_contact(load, RADIUS, speed, OIL, MODULUS)
+    random, length = np.random.default_rng(1), 6.0 * half_width
+    x = np.arange(256) * length / 256
+    waves = np.arange(1, 13)[:, None]  # of 6 to 0.5 half widths
+    heights = []
+    for _ in range(2):
+        phase, size = random.uniform(0.0, 2.0 * np.pi, (12, 1)), random.normal(size=(12, 1))
+        height = (size * np.cos(2.0 * np.pi * waves * x / length + phase)).sum(axis=0)
+        heights.append(0.1 * smooth.central_film / np.std(height) * height)
+    profiles = [RoughnessProfile(x, height, "periodic") for height in heights]
+    step = length / speed / 240
+    time = step * np.arange(240 + 200)
+    film = solve_transient_line_contact(
+        time, load, RADIUS, speed, OIL, MODULUS, nodes=513, keep_every=0,
+        roughness=(profiles[0], profiles[1]), surface_speeds=(speed, speed),
+    ).central_film[-240:]  # fmt: skip
+    both = RoughnessProfile(x, heights[0] + heights[1], "periodic")
+    kept = flattened_roughness(both, half_width, 50.0, 10.0)
+    assert np.std(film) == pytest.approx(kept.rms, rel=0.08)
+    assert np.std(film) < 0.6 * both.rms
+    # The curve says nothing of phases: waves of the film lag behind those of the surface.
+    assert np.corrcoef(film, kept(-speed * time[-240:]))[0, 1] > 0.65
+
+
+def test_profiles_with_ends_lose_their_long_waves_too() -> None:
+    x = np.linspace(0.0, 2e-3, 2001)
+    mixed = 1e-7 * np.cos(2.0 * np.pi * x / 2e-3) + 1e-7 * np.cos(2.0 * np.pi * x / 2e-5)
+    kept = flattened_roughness(RoughnessProfile(x, mixed), 1e-4, 20.0, 10.0)
+    short = float(amplitude_reduction(2e-5, 1e-4, 20.0, 10.0))
+    assert kept.rms == pytest.approx(short * 1e-7 / np.sqrt(2.0), rel=0.02)
 
 
 def test_the_curve_runs_from_short_to_long_waves() -> None:

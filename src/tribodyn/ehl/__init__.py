@@ -67,6 +67,7 @@ from tribodyn.ehl.transient.transient import TransientLineContact, solve_transie
 from tribodyn.ehl.transient.waviness import (
     AmplitudeReduction,
     amplitude_reduction,
+    flattened_roughness,
     solve_amplitude_reduction,
 )
 
@@ -100,6 +101,7 @@ __all__ = [
     "dowson_toyoda_central",
     "film_load_share",
     "film_traction",
+    "flattened_roughness",
     "hamrock_dowson_central",
     "hamrock_dowson_minimum",
     "inlet_heating_factor",

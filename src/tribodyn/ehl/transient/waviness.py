@@ -69,6 +69,57 @@ def amplitude_reduction(
     return np.asarray(1.0 / (1.0 + _LINEAR * number + _SQUARE * number**2))
 
 
+def flattened_roughness(
+    profile: RoughnessProfile, half_width: float, moes_load: float, moes_viscosity: float
+) -> RoughnessProfile:
+    """Measured profile as it passes through a line contact in pure rolling.
+
+    Every wave of its Fourier series keeps the part of its amplitude that
+    :func:`amplitude_reduction` gives.
+
+    Parameters
+    ----------
+    profile : RoughnessProfile
+        Heights of the free surface; one that is not periodic is continued as its mirror image.
+    half_width : float [m]
+        Half width b of the dry contact.
+    moes_load, moes_viscosity : float
+        Numbers M and L of Moes.
+
+    Returns
+    -------
+    RoughnessProfile
+        Heights about their mean, over the same positions.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive.
+
+    Valid as :func:`amplitude_reduction`. Source: Venner, Couhier, Lubrecht and Greenwood (1997);
+    Venner and Lubrecht, Multilevel Methods in Lubrication (2000).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> wave = RoughnessProfile.wave(1e-7, 1e-4)
+    >>> flat = flattened_roughness(wave, half_width=1e-4, moes_load=20.0, moes_viscosity=10.0)
+    >>> round(flat.rms / wave.rms, 3)
+    0.577
+    """
+    from scipy.fft import dct, idct
+
+    height, size = profile.height - np.mean(profile.height), profile.height.size
+    periodic = profile.beyond == "periodic"
+    spectrum = np.fft.rfft(height) if periodic else dct(height, type=2)
+    length = profile.spacing * size * (1.0 if periodic else 2.0)
+    lengths = length / np.arange(1, spectrum.size)
+    spectrum[1:] *= amplitude_reduction(lengths, half_width, moes_load, moes_viscosity)
+    spectrum[0] = 0.0
+    flat = np.fft.irfft(spectrum, size) if periodic else idct(spectrum, type=2)
+    return RoughnessProfile(profile.position, np.asarray(flat), profile.beyond)
+
+
 @record
 class AmplitudeReduction(Record):
     """Waves of one surface in a line contact: the amplitude that the film keeps.
