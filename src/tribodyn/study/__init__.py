@@ -10,6 +10,7 @@ from tribodyn.arguments import guarded
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
+    from tribodyn.study.faults.recording_set import RecordingSet, record_set
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
@@ -64,6 +65,7 @@ __all__ = [
     "PlanetaryLoadResult",
     "PlanetaryMotion",
     "PlanetaryResult",
+    "RecordingSet",
     "Result",
     "ResultComparison",
     "Sweep",
@@ -86,6 +88,7 @@ __all__ = [
     "operating_data",
     "optimize_tip_relief",
     "read_case",
+    "record_set",
     "rig_power_flow",
     "run",
     "run_up",
@@ -102,6 +105,7 @@ _NAMES = {
     "case.read": "read_case",
     "machine.case": "MachineCase",
     "machine.load_cases": "LoadCase",
+    "faults.recording_set": "RecordingSet record_set",
     "machine.modes": "MachineCampbell",
     "machine.motion": "MachineMotion",
     "machine.result": "LoadResult MachineResult",

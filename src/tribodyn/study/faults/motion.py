@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from tribodyn.faults import TurningMesh
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.run import PreparedRun
 
 #: Steps of the search for each mesh cycle, tried in turn, and even samples of the motion.
 _STEPS, SAMPLES = (128, 256, 512), 512
@@ -41,6 +43,11 @@ class TurningMotion(Record):
     pinion_teeth: int = fact()
     wheel_teeth: int = fact()
     response: Response  #: on the steps of the search
+
+    @cached_property
+    def splines(self) -> dict[Any, Any]:
+        """Signals as smooth functions, by sensor and sampling rate; filled where they are used."""
+        return {}
 
     @property
     def period(self) -> float:
@@ -98,7 +105,7 @@ def turning_mesh_of(case: Case) -> TurningMesh:
     return turning_mesh(case.gear_pair, abs(case.pinion_torque), faults, **settings)
 
 
-def turning_system(result: Result, mesh: TurningMesh) -> System:
+def turning_system(result: Result | PreparedRun, mesh: TurningMesh) -> System:
     """The structure of a result with the mesh over whole turns as its contact."""
     from tribodyn.dynamics import law_contact
     from tribodyn.study.pipeline.assembly import structure_of
@@ -109,7 +116,7 @@ def turning_system(result: Result, mesh: TurningMesh) -> System:
     return replace(system, contacts=(law_contact(first, mesh.force_law), *others))
 
 
-def turning_motion(result: Result, progress: Progress = SILENT) -> TurningMotion:
+def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) -> TurningMotion:
     """Compute the steady motion of a result over whole turns of its gears."""
     from tribodyn.dynamics import harmonic_balance
     from tribodyn.study.case.to_models import locate_errors

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -63,7 +63,10 @@ def recording_of(
     units: dict[str, str] = {}
     for sensor in sensors:
         values, unit = motion.signal(sensor)
-        samples = _resampled(motion, values, turned, sample_rate)
+        key = sensor, sample_rate
+        if key not in motion.splines:
+            motion.splines[key] = _band_limited(motion, values, sample_rate)
+        samples = motion.splines[key]((turned / motion.cycles) % 1.0)
         if unit == "m/s^2":
             gear = sensor.partition("_")[0]
             for number, (where, defect) in enumerate(defects):
@@ -96,8 +99,8 @@ def _mesh_cycles(
     return np.asarray(cycles)
 
 
-def _resampled(motion: TurningMotion, values: Array, turned: Array, sample_rate: float) -> Array:
-    """A periodic signal at given mesh cycles, without what lies above half the sampling rate."""
+def _band_limited(motion: TurningMotion, values: Array, sample_rate: float) -> Any:
+    """A periodic signal as a function of the phase, without what half the rate cannot hold."""
     from scipy.interpolate import CubicSpline
 
     lines = np.fft.rfft(values)
@@ -107,8 +110,7 @@ def _resampled(motion: TurningMotion, values: Array, turned: Array, sample_rate:
     highest = int(np.flatnonzero(fall < 1.0)[-1]) + 1
     points = max(_OVERSAMPLED * highest, 64)
     dense = np.fft.irfft(lines[:highest], points) * (points / values.size)
-    spline = CubicSpline(np.arange(points + 1) / points, [*dense, dense[0]], bc_type="periodic")
-    return np.asarray(spline((turned / motion.cycles) % 1.0))
+    return CubicSpline(np.arange(points + 1) / points, [*dense, dense[0]], bc_type="periodic")
 
 
 def _tacho(turns: Array, jitter: float, rng: np.random.Generator) -> Array:
