@@ -71,7 +71,7 @@ def misalignment_study(
     misalignments : sequence of Misalignment
         Displacements of both gears, one for each case.
     exact, marking_thickness
-        As :func:`tooth_contact` takes them.
+        As :func:`tooth_contact` takes them [m].
 
     Raises
     ------

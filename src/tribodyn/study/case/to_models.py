@@ -345,7 +345,7 @@ def no_gear_pair(kind: str) -> Problem:
 
 def contact_models(case: CaseData) -> tuple[str, str]:
     """Return the names of the stiffness and the film model of the tooth contact."""
-    from tribodyn.mesh.hypoid.friction import ELLIPTICAL
+    from tribodyn.mesh.hypoid.film import ELLIPTICAL
 
     if case.gears.kind == "hypoid":
         film = case.film.model
