@@ -17,6 +17,7 @@ from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, StageGear, read
 from tribodyn.exchange.tables import write_tables
 from tribodyn.exchange.to_case import case_from_rexs
 from tribodyn.exchange.to_machine import machine_from_rexs
+from tribodyn.exchange.to_planets import stage_from_rexs
 from tribodyn.exchange.write import write_rexs
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "case_from_rexs",
     "machine_from_rexs",
     "read_rexs",
+    "stage_from_rexs",
     "write_rexs",
     "write_tables",
 ]

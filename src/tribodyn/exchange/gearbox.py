@@ -421,7 +421,7 @@ class GearboxModel:
             if kind in self.components:
                 self._remark(f"{self.components[kind]} {kind}: not computed, and not read")
         for planetary in self.file.of_kind("planetary_stage"):
-            self._remark(f"{planetary} is not computed; its gears are listed{self._epicyclic()}")
+            self._remark(f"{planetary}: {self._epicyclic() or 'its gears are listed'}")
         torques = {load.source for load in self.loads}
         if torques == {None}:
             self._remark("there is not exactly one torque from which all others follow")
@@ -435,7 +435,7 @@ class GearboxModel:
         (sun,), ring, planets = inner, abs(outer[0].gear_2.teeth), len(outer)
         fits = "" if (sun + ring) % planets == 0 else "do not "
         return (
-            f": sun {sun}, {planets} planets {outer[0].gear_1.teeth}, ring {ring} teeth; ratio "
+            f"sun {sun}, {planets} planets {outer[0].gear_1.teeth}, ring {ring} teeth; ratio "
             f"{1.0 + ring / sun:.4g} with a fixed ring; equally spaced planets {fits}assemble"
         )
 

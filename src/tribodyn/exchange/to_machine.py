@@ -32,6 +32,7 @@ from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.read_parts import in_si
 from tribodyn.study.machine.user_tables import changed_tables
+from tribodyn.study.planetary.case import PlanetaryCase
 
 _SPUR = 1e-6
 #: Part of a face without a mate that is rounding of the positions [m].
@@ -84,7 +85,7 @@ def machine_from_rexs(
     shafts = _reached(model, load)
     data, assumed = _parts(model, shafts, changes)
     data |= _operation(model, load, data, shafts)
-    shared, notes = _models(model, load, changes)
+    shared, notes = shared_models(model, load, changes)
     for name, values in shared.pop("gears", {}).items():
         data["gears"][name] |= values
     data |= shared
@@ -103,11 +104,17 @@ def machine_from_rexs(
     return MachineCase(source, **tables)
 
 
-def case_from_model(model: GearboxModel, changes: dict[str, Any], by: str) -> Case | MachineCase:
-    """Case of a REXS file: the one that tribodyn stored in it, or the machine of its stages."""
+def case_from_model(
+    model: GearboxModel, changes: dict[str, Any], by: str
+) -> Case | MachineCase | PlanetaryCase:
+    """Case of a REXS file: the one that tribodyn stored in it, or that of its stages."""
+    from tribodyn.exchange.to_planets import stage_from_rexs
+
     if stored_case_text(model):
         case = case_from_rexs(model)
         return case.replace(changes, by=by) if changes else case
+    if model.file.of_kind("planetary_stage"):
+        return stage_from_rexs(model, changes=changes, by=by)
     return machine_from_rexs(model, changes=changes, by=by)
 
 
@@ -116,7 +123,7 @@ def _unsupported(model: GearboxModel) -> list[Problem]:
     for kind in ("planetary_stage", "bevel_stage", "worm_stage"):
         for stage in model.file.of_kind(kind):
             teeth = next((r for r in model.remarks if r.startswith(str(stage))), "")
-            teeth = teeth.partition("its gears are listed")[2].removeprefix(": ")
+            teeth = teeth.removeprefix(f"{stage}: ")
             what = f"{stage} is not computed" + (f" ({teeth})" if teeth else "")
             why = "The axes of a machine are parallel and fixed in the housing"
             remedy = f"List the data of its gears: tribodyn import {model.path}"
@@ -300,7 +307,7 @@ def _along_x(model: GearboxModel, shaft: int, shafts: dict[int, int]) -> int:
     return -1 if opposed else 1
 
 
-def _models(
+def shared_models(
     model: GearboxModel, load: Load, changes: dict[str, Any]
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """Tables of models that all meshes share, and what is assumed for their teeth."""

@@ -74,7 +74,7 @@ def test_xml_and_json_say_the_same() -> None:
     assert "22.8062 deg" in from_xml._repr_html_()
 
 
-def test_a_planetary_gearbox_is_listed_and_not_computed() -> None:
+def test_a_planetary_gearbox_is_listed_and_no_pair_on_fixed_axes() -> None:
     model = read_rexs(MODELS / "planetary.rexsz")
     assert sum(model.components.values()) == 97
     assert [s.gear_2.teeth for s in model.stages] == [22, 22, 22, -61, -61, -61]

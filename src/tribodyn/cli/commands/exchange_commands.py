@@ -51,7 +51,7 @@ def import_(
     json : bool
         Write one JSON object in SI to stdout.
     """
-    from tribodyn.exchange import case_from_rexs, machine_from_rexs, read_rexs
+    from tribodyn.exchange import case_from_rexs, machine_from_rexs, read_rexs, stage_from_rexs
     from tribodyn.study.pipeline.save import write_file
 
     if machine and (out is None or stage is not None):
@@ -66,13 +66,14 @@ def import_(
             say(_tables(model))
             _show_remarks(model)
             tell(f"To compute a stage: tribodyn import {file} --stage NUMBER --out case.toml")
-            if not any(stage.planetary for stage in model.stages):
-                tell(f"To compute all of them: tribodyn run {file}")
+            tell(f"To compute all of them: tribodyn run {file}")
         return
     check_file(out, force)
     changes = read_changes(set_ or [])
     if machine:
-        text = machine_from_rexs(model, load_case, changes=changes, by="--set").to_toml()
+        planetary = model.file.of_kind("planetary_stage")
+        convert = stage_from_rexs if planetary else machine_from_rexs
+        text = convert(model, load_case, changes=changes, by="--set").to_toml()
     else:
         text = case_from_rexs(model, stage, load_case, changes=changes).to_toml()
     write_file(out, text)

@@ -56,7 +56,7 @@ def sun_to_ring_lag(
     >>> sun = spur_pair(pinion_teeth=17, wheel_teeth=22, pinion_face_width=0.05, **rack)
     >>> ring = spur_pair(pinion_teeth=22, wheel_teeth=-61, pinion_face_width=0.05, **rack)
     >>> round(sun_to_ring_lag(sun, ring), 4)
-    0.1286
+    0.1235
     """
     planet = ring_pair.pinion
     limits = sun_pair.path_limits

@@ -1,4 +1,4 @@
-"""Tables of a machine in a case file: shafts, bearings, gears, meshes, housing, operation."""
+"""Tables of a machine in a case file: shafts, bearings, gears, meshes, planets, operation."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from tribodyn.machine import STEEL
-from tribodyn.model import REQUIRED, choice, file_path, integer, number, text
+from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers, text
 from tribodyn.study.case import gears
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.sections import Dynamics, MaterialData
@@ -220,12 +220,88 @@ class MotionTable(Section):
     )
 
 
+#: Keys of a mesh that both meshes of a stage share.
+_OF_STAGE = (
+    "normal_module",
+    "center_distance",
+    "addendum_coefficient",
+    "dedendum_coefficient",
+    "rack_tip_radius_coefficient",
+    "composite_roughness",
+    "normal_pressure_angle",
+    "helix_angle",
+    "hand",
+)
+#: Stiffness of a support that is not given [N/m].
+STIFF = 1e9
+
+
+def _support(meaning: str, basis: str = "") -> Any:
+    return number(
+        STIFF, 0.0, 1e14, _GUARD, unit="N/m", example='"1e8 N/m"', meaning=meaning, basis=basis
+    )
+
+
+def _errors(meaning: str) -> Any:
+    length = {"unit": "m", "display_unit": "um", "example": '["20 um", "0 um", "0 um"]'}
+    return numbers(-1e-2, 1e-2, _GUARD, meaning=meaning, **length)
+
+
+class PlanetsTable(Section):
+    """A ``[planets.NAME]`` table."""
+
+    fields = {name: MeshTable.fields[name] for name in _OF_STAGE}  # noqa: RUF012
+
+    sun: str = text(REQUIRED, meaning="gear in the middle", example='"s"')
+    ring: str = text(REQUIRED, meaning="gear with internal teeth", example='"r"')
+    planet: str = text(REQUIRED, meaning="gear between sun and ring", example='"p"')
+    carrier: str = text(REQUIRED, meaning="name of the carrier", example='"c"')
+    count: int = integer(REQUIRED, 1, 24, "more do not fit", meaning="number of planets")
+    angles: tuple[float, ...] | None = numbers(
+        -_TURN,
+        _TURN,
+        "one turn",
+        unit="rad",
+        display_unit="deg",
+        example='["0 deg", "120 deg", "240 deg"]',
+        meaning="angles of the planets about the sun; equally spaced by default",
+    )
+    pin_stiffness: float = _support("radial stiffness of each planet on the carrier")
+    sun_support: float = _support("radial stiffness of the supports of the sun; 0 lets it float")
+    ring_support: float = _support("radial stiffness of the supports of the ring; 0 lets it float")
+    carrier_support: float = _support(
+        "radial stiffness of the supports of the carrier; 0 lets it float"
+    )
+    torsional_support: float = _support(
+        "stiffness of the held member against rotation, along its base circle or that of the pins"
+    )
+    carrier_mass: float | None = number(
+        None, 1e-9, 1e6, _GUARD, of="mass", meaning="mass of the carrier", basis="a steel disc"
+    )
+    carrier_moment_of_inertia: float | None = number(
+        None,
+        1e-14,
+        1e7,
+        _GUARD,
+        of="moment_of_inertia",
+        meaning="moment of inertia of the carrier about its axis",
+        basis="a steel disc",
+    )
+    pin_errors: tuple[float, ...] | None = _errors(
+        "distance by which each pin is ahead of its place, from x towards y"
+    )
+    thickness_errors: tuple[float, ...] | None = _errors(
+        "excess of the base tooth thickness of each planet"
+    )
+
+
 #: Tables by group of parts.
 TABLES: dict[str, type[Section]] = {
     "shafts": ShaftTable,
     "bearings": BearingTable,
     "gears": GearTable,
     "meshes": MeshTable,
+    "planets": PlanetsTable,
     "housing": HousingTable,
     "operation": OperationTable,
     "load_cases": LoadCaseTable,
@@ -239,7 +315,7 @@ def unit_of(path: tuple[str, ...]) -> str:
     kind: type[Section] | None = TABLES.get(path[0])
     if path[0] == "shafts" and name == "sections":
         return "m"
-    if path[0] == "meshes" and len(tables) == 3:
+    if path[0] in ("meshes", "planets") and len(tables) == 3:
         kind, tables = None, [path[2]]
     outer = Section.case_class.fields
     kinds = [kind] if kind else []

@@ -32,9 +32,8 @@ from tribodyn.study.machine.read_parts import (
     tables_of,
     unknown_keys,
 )
-from tribodyn.study.machine.tables import MotionTable
+from tribodyn.study.machine.tables import STIFF, MotionTable, PlanetsTable
 from tribodyn.study.machine.user_tables import changed_tables, machine_toml, stated_assumptions
-from tribodyn.study.planetary.tables import STIFF, PlanetsTable
 
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalPair
