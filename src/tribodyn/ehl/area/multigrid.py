@@ -7,7 +7,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
 
 from tribodyn.ehl._kernel.area_relaxation import dense_tangent, relax, residual
 from tribodyn.types import Array, ComplexArray
@@ -42,6 +41,8 @@ _COARSEST, _NARROWEST = 300, 6
 @lru_cache(maxsize=32)
 def influence(nx: int, ny: int, hx: float, hy: float) -> tuple[Array, ComplexArray]:
     """Integral of 1/r over a cell at each distance (Love 1929), and the transform of its sum."""
+    from scipy import fft
+
     x, y = (np.arange(nx + 2) - 0.5) * hx, (np.arange(ny + 2)[:, None] - 0.5) * hy
     corner = x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
     cells = corner[1:, 1:] - corner[1:, :-1] - corner[:-1, 1:] + corner[:-1, :-1]
@@ -74,6 +75,8 @@ class Level:
 
     def deflection(self) -> Array:
         """Elastic film of the pressure; it vanishes on the edges."""
+        from scipy import fft
+
         total = fft.irfft2(
             fft.rfft2(self.P[1:-1, 1:-1], self.spectrum_shape) * self.spectrum, self.spectrum_shape
         )
