@@ -116,9 +116,28 @@ def test_a_file_without_a_rate_takes_one(
     assert facts["spectrum_peak_1_frequency"] == pytest.approx(6400.0 / (10 * np.pi), rel=1e-2)
 
 
+def test_a_file_without_a_rate_has_orders_relative_to_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "bare.csv"
+    turn = 2 * np.pi * 0.002 * np.arange(20_000)
+    waves = np.stack([np.cos(16 * turn) + 0.3 * np.cos(17 * turn), 0.0 * turn], axis=1)
+    np.savetxt(path, waves, "%.5f", ",", header="acc,other", comments="")
+    assert call(["signal", str(path), "--channel", "acc"]) == 2
+    assert "the strongest are 0.032, 0.034" in capsys.readouterr().err
+    assert call(["signal", str(path), "--channel", "acc", "--line", "725 Hz"]) == 2
+    assert "cycles per sample" in capsys.readouterr().err
+    facts = run_json(capsys, path, "--channel", "acc", "--line", "0.0322", "--teeth", "16")
+    assert facts["mesh_harmonic_1_amplitude"] == pytest.approx(1.0, rel=0.01)
+    assert facts["order_peak_2"] == pytest.approx(17.0, abs=0.03)
+    assert "no sampling rate" in facts["notes"][0]
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (("--channel", "acc", "--line", "0.7"), "between 0 and 0.5"),
+        (("--channel", "acc", "--line", "240 Hz", "--speed", "9 rpm"), "--speed: speed = "),
         (("--channel", "ac"), '--channel: there is no channel "ac"'),
         (("--channel", "ac"), 'Did you mean "acc"'),
         (("--channel", "acc", "--tacho", "pulse"), '--tacho: there is no channel "pulse"'),

@@ -9,6 +9,7 @@
 | ``vold_kalman`` | amplitude and phase of single orders over time |
 | ``comparison`` | comparison of a computed with a measured response |
 | ``shaft_speed`` | shaft angle and speed from the best available source |
+| ``sideband_cursors`` | amplitudes of an order spectrum at a carrier and its sidebands |
 | ``signal_analysis`` | spectra, envelope, orders, mean revolution and indicators of one channel |
 | ``synthetic`` | synthetic run-up with prescribed orders |
 """
@@ -19,6 +20,7 @@ from tribodyn.measurement.mesh_speed import MeshSpeed, mesh_speed
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, read
 from tribodyn.measurement.shaft_speed import ShaftSpeed
+from tribodyn.measurement.sideband_cursors import SidebandCursors, sideband_cursors
 from tribodyn.measurement.signal_analysis import SignalAnalysis, analyse_signal
 from tribodyn.measurement.synthetic import synthetic_run_up
 from tribodyn.measurement.tacho import shaft_angle
@@ -30,6 +32,7 @@ __all__ = [
     "OrderSpectrum",
     "Recording",
     "ShaftSpeed",
+    "SidebandCursors",
     "SignalAnalysis",
     "TrackedOrders",
     "analyse_signal",
@@ -39,6 +42,7 @@ __all__ = [
     "order_spectrum",
     "read",
     "shaft_angle",
+    "sideband_cursors",
     "synthetic_run_up",
     "track_orders",
 ]

@@ -39,6 +39,8 @@ _POINTS = 16
 #: Power of a harmonic over that of the noise in its band, from which its phase is used, and over
 #: that of a single line of the whole record.
 _CLEAR, _CLEAR_LINE = 10.0, 40.0
+#: Least noise power of a line over the mean square: leakage in a computed record is no mesh line.
+_FLOOR = 1e-7
 #: Samples in a period of the highest frequency that is searched.
 _OVERSAMPLED = 2.6
 #: Least uncertainty of the ratio; the clock of a recorder is no better than a hundred times that.
@@ -79,6 +81,10 @@ class MeshSpeed:
         Other ratios at which a comb of lines is about as strong [-].
     method : str
         How it was found.
+    angle_uncertainty : float
+        Standard uncertainty of ``angle`` by noise [rad], which lowers the amplitude of mesh order m
+        by half the square of m times this; NaN where no mesh lines were found. Changes of the speed
+        within a block come on top.
     """
 
     ratio: float
@@ -90,6 +96,7 @@ class MeshSpeed:
     harmonics: tuple[int, ...] = ()
     rivals: tuple[float, ...] = ()
     method: str = ""
+    angle_uncertainty: float = float("nan")
 
     @property
     def located(self) -> bool:
@@ -166,8 +173,11 @@ def mesh_speed(
     wide = tolerance + _WIDER
     count = min(count, int(0.5 * sample_rate / (frequency * (1.0 + wide)) - 0.5))
     if count < 1:
-        what = f"mesh_frequency = {frequency:g} Hz"
-        why = f"Sampled with {sample_rate:g} Hz, it and the noise above it are not in the record"
+        what, why = (
+            f"mesh_frequency = {frequency:g} Hz",
+            f"Sampled with {sample_rate:g} Hz, it and ",
+        )
+        why += "the noise above it are not in the record"
         raise InputError(what, Argument("mesh_frequency"), why, "Sample faster")
     cycles = rows.shape[1] / sample_rate * frequency
     if cycles < 20.0:
@@ -304,7 +314,7 @@ class _Search:
                 for k in self.orders:
                     band = lines[int((k - 0.5) * bins) : int((k + 0.5) * bins) : 2]
                     floors[row, block, k - 1] = np.median(band) / np.log(2.0)
-        floor = np.maximum(np.median(floors, axis=1), 1e-15)
+        floor = np.maximum(np.median(floors, axis=1), _FLOOR)
         score = np.log1p(power / floor[:, None, :, None]).sum(axis=(0, 2))
         hop_time, step = hop / self.rate, self.wide / steps
         path = _best_path(score, int(np.clip(np.ceil(_FASTEST * hop_time / step), 2, 60)))
@@ -321,8 +331,7 @@ class _Search:
         demodulated = []
         for _ in self.orders:
             wave = wave * turn
-            coarse = [resample_poly(row * wave, 1, down) for row in self.rows]
-            demodulated.append(coarse)
+            demodulated.append([resample_poly(row * wave, 1, down) for row in self.rows])
         envelope = np.array(demodulated).transpose(1, 0, 2)
         weight = np.convolve(np.ones(envelope.shape[2]), window, "same")
         smooth = np.apply_along_axis(np.convolve, 2, envelope, window, "same") / weight
@@ -352,14 +361,12 @@ class _Search:
 
     def _power(self, angle: Array) -> Array:
         """Squared amplitudes over 4 of the harmonics over the whole record."""
-        window = np.hanning(self.size)
-        window /= window.sum()
-        turn, wave = np.exp(-1j * angle), window.astype(complex)
-        power = np.empty((self.rows.shape[0], self.count))
-        for k in range(self.count):
+        window = np.hanning(self.size) / np.hanning(self.size).sum()
+        turn, wave, power = np.exp(-1j * angle), window.astype(complex), []
+        for _ in self.orders:
             wave = wave * turn
-            power[:, k] = np.abs(self.rows @ wave) ** 2
-        return power
+            power.append(np.abs(self.rows @ wave) ** 2)
+        return np.array(power).T
 
 
 def _best_path(score: Array, max_step: int) -> Array:
@@ -399,9 +406,9 @@ def _followed(search: _Search, shortest: int) -> _Path | None:
 
 def _result(search: _Search, path: _Path | None, tolerance: float) -> MeshSpeed:
     """Mesh speed of the best path, or an unknown speed with the reason."""
-    seconds = (search.size - 1) / search.rate
+    turns = (search.size - 1) / search.rate * search.frequency
     if path is None:
-        angle = np.linspace(0.0, 2.0 * np.pi * search.frequency * seconds, search.size)
+        angle = np.linspace(0.0, 2.0 * np.pi * turns, search.size)
         method = (
             f"no steady mesh line exceeds the noise within "
             f"{100.0 * search.wide:.3g} % of {search.frequency:.6g} Hz"
@@ -421,18 +428,20 @@ def _result(search: _Search, path: _Path | None, tolerance: float) -> MeshSpeed:
             f"ones lie at {rivals[0]:.4g} times"
         )
         return _unknown(search, path.angle, method)
-    steady, turns = path.length == search.size, seconds * search.frequency
+    steady = path.length == search.size
     noise = 0.5 / np.sqrt(path.level) if steady else 1.0 / (2.0 * np.pi * np.sqrt(path.level))
     step = max(path.length // _POINTS, 1)
     ratio = np.diff(path.angle[::step]) / (2.0 * np.pi * search.frequency * step / search.rate)
     used = np.flatnonzero(path.clear.any(axis=0)) + 1
-    lines = "harmonic" if used.size == 1 else "harmonics"
+    lines = "harmonic" + "s" * (used.size > 1)
     blocks = "the whole record" if steady else f"blocks of {path.length / search.rate:.3g} s"
+    change = path.change / (0.5 * np.pi * turns)
+    uncertainty = float(np.hypot(max(noise / turns, path.scatter, _LEAST), change))
+    # A steady angle errs by its slope over the record, another one by the noise in each block.
+    by_slope = 2.0 * np.pi * uncertainty * turns / np.sqrt(12.0)
     return MeshSpeed(
         mean,
-        float(
-            np.hypot(max(noise / turns, path.scatter, _LEAST), path.change / (0.5 * np.pi * turns))
-        ),
+        uncertainty,
         mean if steady else float(ratio.min()),
         mean if steady else float(ratio.max()),
         mean * search.frequency,
@@ -440,6 +449,7 @@ def _result(search: _Search, path: _Path | None, tolerance: float) -> MeshSpeed:
         tuple(used.tolist()),
         rivals,
         f"phase demodulation of mesh {lines} {', '.join(map(str, used))} in {blocks}",
+        by_slope if steady else float(1.0 / np.sqrt(2.0 * path.level)),
     )
 
 

@@ -197,7 +197,9 @@ def read(
     channels : iterable of str, optional
         Channels to read; all by default.
     sample_rate : float, optional
-        Samples per second [Hz], if the file has neither a time column nor a rate.
+        Samples per second [Hz], if the file has neither a time column nor a rate. Pass 1 if it is
+        not known: times are then in samples, frequencies in cycles per sample, and orders relative
+        to a line remain right (``line`` of :func:`analyse_signal`).
     units : mapping of str to str, optional
         Units of channels, if the file has none or a wrong one.
     sensitivity : mapping of str to str, optional
@@ -262,7 +264,8 @@ def _rate(data: RecordingData, names: list[str], user_rate: float | None, path: 
             raise InputError(what, str(path), why, remedy)
         rates[f"times of {name}"] = rate_of(time, path, user_rate)
     if not rates:
-        why, remedy = "It has neither a time column nor a rate", "Pass sample_rate in hertz"
+        why = "It has neither a time column nor a rate"
+        remedy = "Pass sample_rate in hertz, or 1 for times in samples, which is enough for orders"
         raise InputError(f"{path} has no sampling rate", Argument("sample_rate"), why, remedy)
     remedy = "Select channels of one rate with channels=[...], or omit sample_rate"
     return consistent_rate(rates, str(path), "the sampling rates differ", remedy)

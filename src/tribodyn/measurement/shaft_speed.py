@@ -14,6 +14,8 @@ from tribodyn.types import Array
 
 #: Change of the speed over its mean from which it counts as changing.
 _VARIES = 0.03
+#: Mesh frequency of a recording in samples instead of seconds [Hz].
+_USUAL = 500.0
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,8 @@ def shaft_speed(
                 "",
                 "The speed of the shaft is not known",
                 "Name a tachometer channel and its pulses per revolution (--tacho NAME --pulses "
-                'N), or give the speed (--speed "1500 rpm")',
+                'N), give the speed (--speed "1500 rpm"), or name a line, such as the mesh '
+                '(--line "725 Hz")',
             )
         )
         return None
@@ -96,8 +99,11 @@ def _from_mesh_lines(
     values: Array, rate: float, speed: float, teeth: tuple[int, ...], notes: list[Problem]
 ) -> tuple[ShaftSpeed | None, str]:
     """Speed by the mesh lines of the channel, or the reason why they do not show it."""
+    frequency = teeth[0] * speed / (2.0 * np.pi)
+    # How fast a speed may change is known in seconds: without a rate, assume a mesh frequency.
+    seconds = frequency / _USUAL if rate == 1.0 else 1.0
     try:
-        mesh = mesh_speed(values, rate, teeth[0] * speed / (2.0 * np.pi), teeth=teeth)
+        mesh = mesh_speed(values, rate / seconds, frequency / seconds, teeth=teeth)
     except InputError as error:
         return None, f"{error.problems[0].what}, too little to find mesh lines in"
     if not mesh.located:
@@ -107,7 +113,8 @@ def _from_mesh_lines(
         what = f"the shaft may turn at {others} rpm as well"
         why = "Lines as strong as those of the mesh stand there"
         notes.append(Problem(what, "", why, "Record a tachometer, or check the stated speed"))
-    shaft = _with_range(mesh.angle / teeth[0], rate, mesh.method)
+    method = mesh.method if rate != 1.0 else mesh.method.partition(" in blocks")[0]
+    shaft = _with_range(mesh.angle / teeth[0], rate, method)
     return replace(shaft, uncertainty=mesh.uncertainty * speed), ""
 
 

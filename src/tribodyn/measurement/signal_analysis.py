@@ -15,6 +15,7 @@ from tribodyn.errors import (
     InputError,
     Problem,
     require_between,
+    require_positive,
 )
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, in_si
@@ -266,6 +267,7 @@ def analyse_signal(
     mate_teeth: int | None = None,
     band: tuple[float, float] | None = None,
     max_order: float | None = None,
+    line: float | None = None,
 ) -> SignalAnalysis:
     """Analyse one channel of a recording as far as speed and teeth of the shaft are known.
 
@@ -290,6 +292,10 @@ def analyse_signal(
     max_order : float, optional
         Highest order of the shaft [-]; by default half an order of the mesh above its fifth
         harmonic, or 100, as far as the sampling resolves it.
+    line : float, optional
+        Frequency of the mesh, or of another line, instead of the speed [Hz]: it is followed by its
+        phase, and orders are relative to it; with teeth it is the order of the teeth. In cycles per
+        sample for a recording without a rate, read with ``sample_rate=1``.
 
     Returns
     -------
@@ -325,20 +331,12 @@ def analyse_signal(
         raise InputError(
             what, Argument("channel"), why, "Check the sensor, or select another channel"
         )
-    if tacho is not None and speed is not None:
-        what = f"tacho = {tacho!r} and speed = {speed:g} rad/s are both given"
-        raise InputError(
-            what,
-            Argument("speed"),
-            "The tachometer already measures the speed",
-            "Pass only one of them",
-        )
     counts = {SHAFT: teeth, MATE: mate_teeth}
     shafts = {k: require_whole(f"{k} teeth", n) for k, n in counts.items() if n is not None}
     notes: list[Problem] = []
-    shaft = shaft_speed(
-        recording, values, (tacho, pulses_per_revolution, speed), tuple(shafts.values()), notes
-    )
+    speed = _assumed_speed(tacho, speed, line, teeth)
+    gears = tuple(shafts.values()) or (() if line is None else (1,))
+    shaft = shaft_speed(recording, values, (tacho, pulses_per_revolution, speed), gears, notes)
     lines = spectrum(values, rate, unit=unit)
     parts: dict[str, Any] = {}
     if shaft is not None:
@@ -361,6 +359,26 @@ def analyse_signal(
         notes=tuple(notes),
         **parts,
     )
+
+
+def _assumed_speed(
+    tacho: str | None, speed: float | None, line: float | None, teeth: int | None
+) -> float | None:
+    """Stated speed of the shaft, or that of a line, whose order is the number of teeth [rad/s]."""
+    sources = {
+        f"tacho = {tacho!r}": tacho is not None,
+        f"speed = {speed} rad/s": speed is not None,
+        f"line = {line} Hz": line is not None,
+    }
+    used = [name for name, present in sources.items() if present]
+    if len(used) > 1:
+        what, why = f"{' and '.join(used)} are given", "Each of them is the speed"
+        where = Argument("speed" if speed is not None else "line")
+        raise InputError(what, where, why, "Pass only one of them")
+    if line is None:
+        return speed
+    require_positive("line", line, "Hz")
+    return 2.0 * np.pi * line / (teeth or 1)
 
 
 def _orders(

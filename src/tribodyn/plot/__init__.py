@@ -75,6 +75,7 @@ from tribodyn.plot.signals.diagnosis import (
     cyclic_coherence,
     kurtogram,
     narrowband_demodulation,
+    sideband_cursors,
 )
 from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.lines import (
@@ -192,6 +193,7 @@ __all__ = [
     "run_up",
     "run_up_map",
     "sensitivity",
+    "sideband_cursors",
     "sidebands",
     "signal_analysis",
     "signal_history",

@@ -53,6 +53,23 @@ def test_ratio_and_harmonics_of_a_speed_that_is_off_and_wanders(
     assert speed.mesh_frequency == pytest.approx(MESH * speed.ratio)
 
 
+def test_uncertainty_of_the_angle_is_its_scatter_in_noise() -> None:
+    """Where the speed wanders; a steady angle errs by its slope only."""
+    for wander, least in ((0.01, 0.7), (0.0, 0.0)):
+        angle, _ = phase_of(1.0, wander)
+        speed = mesh_speed(recording(angle, {1: 1.0, 2: 0.5}, 0.0), RATE, MESH, harmonics=2)
+        scatter = np.std(speed.angle - angle)
+        assert least * speed.angle_uncertainty < scatter < 1.6 * speed.angle_uncertainty
+
+
+def test_a_record_without_noise_has_no_lines_in_its_leakage() -> None:
+    """Searched harmonics that are absent leave the speed alone."""
+    angle, mean = phase_of(1.0, 0.01)
+    speed = mesh_speed(recording(angle, {1: 4.0, 2: 1.5}), RATE, MESH, teeth=(20,))
+    assert speed.harmonics == (1, 2)
+    assert speed.ratio == pytest.approx(mean, abs=2e-5)
+
+
 def test_one_harmonic_alone_and_a_gear_of_other_numbers() -> None:
     angle, mean = phase_of(0.985, 0.01, sample_rate=12800.0, mesh=1450.0)
     wave = recording(angle, {2: 1.0}, 20.0)

@@ -10,6 +10,7 @@ from tribodyn.measurement import (
     order_map,
     order_spectrum,
     shaft_angle,
+    sideband_cursors,
     synthetic_run_up,
     track_orders,
 )
@@ -214,3 +215,28 @@ def test_refusals() -> None:
         track_orders(signal, turned, [40], 1000.0)
     with pytest.raises(ComputationError, match="bandwidth"):
         track_orders(signal, turned, [1], 1000.0, bandwidth=0.001)
+
+
+def test_cursors_on_the_sidebands_of_amplitude_and_phase_modulation():
+    """Equal indices of both kinds add at +1 and cancel at -1; the third order is of one kind."""
+    turn = 2 * np.pi * 25.0 * np.arange(40_000) / 10_000.0
+    size = 1.0 + 0.1 * np.cos(turn) + 0.03 * np.cos(3 * turn)
+    noise = 0.3 * np.random.default_rng(5).standard_normal(turn.size)
+    orders = order_spectrum(3.0 * size * np.cos(29 * turn + 0.1 * np.sin(turn)) + noise, turn, 60)
+    cursors = sideband_cursors(orders, 29)
+    by_number = dict(zip(cursors.number.tolist(), cursors.amplitude, strict=True))
+    assert by_number[1] == pytest.approx(0.3, rel=0.03)
+    assert by_number[-3] == pytest.approx(0.045, abs=0.012)
+    assert cursors.number[cursors.clear].tolist() == [-3, 0, 1, 3]
+    assert cursors.level[cursors.strongest] == pytest.approx(-20.0, abs=0.3)
+    figure = cursors.plot()
+    assert figure.layout.title.text.startswith("Order 29.00: strongest sideband +1 at 30.00, ")
+    assert figure.layout.yaxis.type == "log"
+    points = next(each for each in figure.data if each.name == "clear")
+    assert list(points.x) == [26, 29, 30, 32]
+    for options, message in (
+        ({"count": 40}, "reach from order -11 to 69"),
+        ({"spacing": 0.05}, "lines are separate from 0.121 on"),
+    ):
+        with pytest.raises(InputError, match=message):
+            sideband_cursors(orders, 29, **options)

@@ -72,6 +72,24 @@ def test_mesh_lines_correct_a_wrong_stated_speed(error: float) -> None:
     assert "mesh harmonics" in analysis.speed.source
 
 
+def test_orders_are_relative_to_a_line_where_there_is_no_rate() -> None:
+    """In samples instead of seconds: the line has the order of the teeth, or without them 1."""
+    _, angle = shaft()
+    wave = gears(angle) + 0.4 * np.cos(21.0 * angle)
+    bare = Recording({"acc": wave}, 1.0, {"acc": "m/s^2"})
+    per_sample = TEETH * SPEED / (2.0 * np.pi * RATE)
+    analysis = analyse_signal(bare, "acc", line=1.02 * per_sample, teeth=TEETH)
+    numbers = analysis.figures()
+    assert numbers["mesh_frequency"] == pytest.approx(per_sample, rel=1e-4)
+    assert numbers["mesh_harmonic_1_amplitude"] == pytest.approx(4.0, rel=0.01)
+    assert numbers["sideband_index"] == pytest.approx(0.2, rel=0.03)
+    alone = analyse_signal(bare, "acc", line=0.98 * per_sample)
+    assert alone.orders.amplitude(1.0) == pytest.approx(4.0, rel=0.01)
+    assert alone.orders.amplitude(2.0) == pytest.approx(1.5, rel=0.01)
+    assert alone.orders.amplitude(21.0 / TEETH) == pytest.approx(0.4, rel=0.1)
+    assert not alone.averages
+
+
 def test_a_stated_speed_without_teeth_is_marked_as_not_measured() -> None:
     time, angle = shaft(wander=0.0)
     analysis = analyse_signal(recording(gears(angle), angle), "acc", speed=SPEED)
@@ -199,7 +217,9 @@ def test_a_mesh_above_the_sampling_is_named() -> None:
     [
         ({"channel": "ac"}, 'Did you mean "acc"'),
         ({"tacho": "puls"}, 'Did you mean "pulse"'),
-        ({"tacho": "pulse", "speed": SPEED}, "both given"),
+        ({"tacho": "pulse", "speed": SPEED}, "tacho = 'pulse' and speed = 94.2"),
+        ({"line": 300.0, "speed": SPEED}, "and line = 300.0 Hz are given"),
+        ({"line": 0.0}, "line"),
         ({"speed": -1.0}, "speed"),
         ({"teeth": 0, "tacho": "pulse"}, "teeth"),
         ({"band": (3000.0, 4000.0)}, "Nyquist"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -25,9 +25,20 @@ _OPTIONS = {
     "band": "--band",
     "max_order": "--max-order",
     "tacho": "--tacho",
+    "speed": "--speed",
+    "line": "--line",
+    "mesh_frequency": "--line",
 }
+_PER_SAMPLE = Problem(
+    "seconds and hertz are samples and cycles per sample",
+    "",
+    "The file has no sampling rate. Orders, mean revolutions and indicators do not depend on it, a "
+    "speed in rpm has no meaning",
+    'Write --sample-rate "25600 Hz" if it is known',
+)
 _EXAMPLES = {
     "--speed": ("rad/s", "1500 rpm"),
+    "--line": ("Hz", "725 Hz"),
     "--sample-rate": ("Hz", "25600 Hz"),
     "--band": ("Hz", "2000..6000 Hz"),
     "--between": ("s", "1..8 s"),
@@ -50,6 +61,13 @@ class Shaft:
         _help(
             'Speed where there is no tachometer: "1500 rpm". With teeth the exact speed is found '
             "in the recording by its mesh lines, within 5 % of this."
+        ),
+    ] = None
+    line: Annotated[
+        Text,
+        _help(
+            'Frequency of the mesh, or of another line, instead of the speed: "725 Hz", or '
+            '"0.0283" cycles per sample where the file has no rate. Orders are relative to it.'
         ),
     ] = None
     teeth: Annotated[
@@ -117,18 +135,20 @@ def signal(
     options, turning = chosen or Channel(), shaft or Shaft()
     if out is not None:
         check_place(out, force)
-    recording = _recording(file, options)
-    name = options.channel or _only_channel(recording, options, turning, out)
-    if name is None:
+    with collected() as warnings:
+        recording = _recording(file, options, turning.line)
+        name = options.channel or _only_channel(recording, options, turning, out)
+        analysis = name and _analysis(recording, name, options, turning)
+    show_warnings(warnings)
+    if analysis and turning.line is not None and recording.sample_rate == 1.0:
+        analysis = replace(analysis, notes=(_PER_SAMPLE, *analysis.notes))
+    if not analysis:
         _list(file, recording, json)
         return
-    with collected() as warnings:
-        analysis = _analysis(recording, name, options, turning)
-    show_warnings(warnings)
     _show(file, analysis, out, force, json)
 
 
-def _recording(file: Path, options: Channel) -> Recording:
+def _recording(file: Path, options: Channel, line: Text) -> Recording:
     from tribodyn.measurement import read
 
     rate = None if options.sample_rate is None else _quantity("--sample-rate", options.sample_rate)
@@ -141,7 +161,11 @@ def _recording(file: Path, options: Channel) -> Recording:
     try:
         recording = read(file, sample_rate=rate, sensitivity=sensor)
     except InputError as error:
-        raise InputError([_by_option(each) for each in error.problems]) from None
+        if not any("has no sampling rate" in each.what for each in error.problems):
+            raise InputError([_by_option(each) for each in error.problems]) from None
+        recording = read(file, sample_rate=1.0, sensitivity=sensor)
+        if line is None or _per_sample(line) is None:
+            raise _no_rate(error.problems[0], recording, options.channel) from None
     if options.between is None:
         return recording
     start, end = _ends("--between", options.between)
@@ -149,6 +173,20 @@ def _recording(file: Path, options: Channel) -> Recording:
         return recording.cut(start, end)
     except InputError as error:
         raise InputError([_moved(each, "--between") for each in error.problems]) from None
+
+
+def _no_rate(problem: Problem, recording: Recording, channel: Text) -> InputError:
+    """Error of a file without a rate, with the strongest lines of the channel to choose from."""
+    from tribodyn.analysis import spectrum
+
+    remedy = 'Write --sample-rate "25600 Hz"; for orders alone, --line with that of the mesh in '
+    remedy += "cycles per sample"
+    if channel is None:
+        remedy += f" of one of the channels {', '.join(list(recording.channels)[:20])}"
+    elif channel in recording.channels:
+        peaks = spectrum(recording[channel], 1.0, window="hann").peaks(5)
+        remedy += f" (the strongest are {', '.join(f'{each.frequency:.5g}' for each in peaks)})"
+    return InputError(problem.what, "--sample-rate", problem.why, remedy)
 
 
 def _by_option(problem: Problem) -> Problem:
@@ -178,6 +216,27 @@ def _quantity(option: str, text: str) -> float:
         why = "It must be greater than zero"
         raise InputError(f'"{text}"', option, why, f'Write {option} "{example}"')
     return value
+
+
+def _per_sample(text: str) -> float | None:
+    """A number without a unit, of cycles per sample."""
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _line(text: Text, sample_rate: float) -> float | None:
+    """Frequency of a line [Hz], also of one in cycles per sample."""
+    if text is None:
+        return None
+    number = _per_sample(text)
+    if number is None:
+        return _quantity("--line", text)
+    if not 0.0 < number < 0.5:
+        why = "A number without unit is in cycles per sample, between 0 and 0.5"
+        raise InputError(f'"{text}"', "--line", why, 'Write --line "725 Hz" or --line 0.0283')
+    return number * sample_rate
 
 
 def _ends(option: str, text: str) -> tuple[float, float]:
@@ -264,11 +323,12 @@ def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft)
             name,
             tacho=turning.tacho,
             pulses_per_revolution=turning.pulses,
-            speed=None if turning.tacho is not None else speed,
+            speed=speed if turning.speed or not (turning.tacho or turning.line) else None,
             teeth=teeth,
             mate_teeth=mate,
             band=band,
             max_order=options.max_order,
+            line=_line(turning.line, recording.sample_rate),
         )
     except TribodynError as error:
         raise type(error)([_by_option(each) for each in error.problems]) from None

@@ -7,15 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.plot.signals.lines import strongest_lines
+from tribodyn.plot.signals.maps import amplitude_label
 from tribodyn.plot.signals.recorded import outline
 from tribodyn.plot.signals.revolution import finer
-from tribodyn.plot.theme.labels import axis_label, significant
-from tribodyn.plot.theme.panels import Panel, from_zero, stack
+from tribodyn.plot.theme.labels import axis_label, readable, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Cepstrum, CyclicCoherence, Kurtogram, NarrowbandDemodulation
+    from tribodyn.measurement import SidebandCursors
 
 #: Colours from the smallest to the largest value.
 _SCALE = [[0.0, "#ffffff"], [0.3, "#c6dbef"], [0.6, "#6baed6"], [0.8, "#2171b5"], [1.0, "#08306b"]]
@@ -207,4 +210,49 @@ def cyclic_coherence(result: CyclicCoherence) -> Any:
             from_zero("Mean coherence", curves),
         ],
         {"hovermode": "closest"},
+    )
+
+
+@drawing(
+    "sideband_cursors",
+    heading="Sidebands in the orders",
+    caption="Orders around a carrier with cursors at even distances, on a logarithmic scale; the "
+    "dashed line is the median of the lines between the cursors. Full circles stand out of it: "
+    "the shaft whose order is the distance modulates the carrier.",
+    of="SidebandCursors",
+    made_by="Call tribodyn.measurement.sideband_cursors(orders, carrier, spacing) and its plot "
+    "method.",
+)
+def sideband_cursors(cursors: SidebandCursors) -> Any:
+    """Draw the orders around a carrier with the cursors of its sidebands."""
+    low, high = (cursors.order[k] + s * cursors.spacing for k, s in ((0, -0.7), (-1, 0.7)))
+    spectrum, unit = cursors.orders, readable(cursors.unit)
+    shown = (spectrum.orders >= low) & (spectrum.orders <= high)
+    order, size = strongest_lines(spectrum.orders[shown], spectrum.amplitudes[shown])
+    least = 0.1 * max(cursors.floor, 1e-6 * float(cursors.amplitude.max()))
+    size = np.maximum(size, least)
+    curves = [
+        line(order, size, "amplitude", TOTAL, unit=unit, width=1.2),
+        line(np.array([low, high]), np.full(2, max(cursors.floor, least)), "between the cursors",
+             MUTED, unit=unit, dash="dash"),
+    ]  # fmt: skip
+    for name, rows, symbol in (
+        ("clear", cursors.clear, "circle"),
+        ("in the noise", ~cursors.clear, "circle-open"),
+    ):
+        if rows.any():
+            heights = np.maximum(cursors.amplitude[rows], least)
+            curves.append(
+                marked(cursors.order[rows], heights, name, WHEEL, size=8, symbol=symbol, unit=unit)
+            )
+    names = [f"{k:+d}" if k else "carrier" for k in cursors.number]
+    marks = zip(names, cursors.order, strict=True)
+    top = cursors.strongest
+    axis = {"type": "log", "exponentformat": "power"}
+    return stack(
+        f"Order {significant(cursors.carrier, 4)}: strongest sideband {cursors.number[top]:+d} at "
+        f"{significant(float(cursors.order[top]), 4)}, {cursors.level[top]:.1f} dB",
+        "Order [cycles per revolution]",
+        [Panel(amplitude_label(cursors.unit), curves, axis, 1.5)],
+        {"hovermode": "closest", "xaxis": {"range": [low, high]}, **event_lines(marks)},
     )
