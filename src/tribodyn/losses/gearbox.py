@@ -423,9 +423,9 @@ def _hypoid_bodies(flanks: HypoidFlanks) -> dict[str, TurningBody]:
     blank, touch = flanks.blank, flanks.conjugate.touch(np.zeros(2))
     force = blank.ratio / float(touch.lever)
     bodies = {}
-    # The axis of the pinion is y, that of the wheel z.
-    for name, turn, axis in zip(GEARS, (1.0, 1.0 / blank.ratio), (1, 2), strict=True):
-        thrust = abs(float(touch.contact.wheel.normal[axis]))
+    normal, axes = touch.contact.wheel.normal, (flanks.conjugate.axes.axis, np.eye(3)[2])
+    for name, turn, axis in zip(GEARS, (1.0, 1.0 / blank.ratio), axes, strict=True):
+        thrust = abs(float(normal @ axis))
         outer = getattr(blank, f"outer_cone_distance_{name}")
         bodies[name] = TurningBody(
             turn,

@@ -153,6 +153,7 @@ def designs(count, seed):
         offset = (0.0, 1.0, 1.0, -1.0)[int(draw.integers(4))] * draw.uniform(0.02, 0.2) * diameter
         teeth = int(draw.integers(6, 20)), int(draw.integers(25, 60))
         width = draw.uniform(0.08, 0.2) * diameter
+        more["shaft_angle"] = math.radians(90.0 if number % 3 else draw.uniform(50.0, 115.0))
         yield (*teeth, offset, diameter, width, math.radians(draw.uniform(20.0, 55.0))), more
 
 

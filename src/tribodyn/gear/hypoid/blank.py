@@ -93,6 +93,8 @@ class HypoidBlank(Record):
         ``"face-milling"`` or ``"face-hobbing"``; ``"formate"`` or ``"generated"``.
     blade_groups : int
         Blade groups of a face-hobbing cutter; zero for face milling.
+    shaft_angle : float [rad]
+        Angle between the axes.
 
     Notes
     -----
@@ -155,6 +157,7 @@ class HypoidBlank(Record):
     process: str = fact(default="face-milling")
     wheel_generation: str = fact(default="formate")
     blade_groups: int = fact(default=0)
+    shaft_angle: float = quantity(unit="rad", default=0.5 * math.pi)
 
     @property
     def ratio(self) -> float:
@@ -189,6 +192,7 @@ RANGES: dict[str, tuple[float, float, str]] = {
     "face_width_wheel": (1e-4, 2.0, "m"),
     "mean_spiral_angle_pinion": (0.0, 1.2, "rad"),
     "cutter_radius": (1e-3, 10.0, "m"),
+    "shaft_angle": (math.radians(20.0), math.radians(160.0), "rad"),
     "pressure_angle_drive": (0.1, 0.6, "rad"),
     "pressure_angle_coast": (0.1, 0.6, "rad"),
     "limit_pressure_angle_factor": (0.0, 1.0, ""),
@@ -212,6 +216,7 @@ def hypoid_blank(
     mean_spiral_angle_pinion: float,
     cutter_radius: float,
     *,
+    shaft_angle: float = math.radians(90.0),
     pressure_angle_drive: float = math.radians(20.0),
     pressure_angle_coast: float = math.radians(20.0),
     limit_pressure_angle_factor: float = 1.0,
@@ -227,7 +232,7 @@ def hypoid_blank(
     wheel_generation: str = "formate",
     blade_groups: int | None = None,
 ) -> HypoidBlank:
-    """Blank of a hypoid or spiral bevel pair with a shaft angle of 90 deg.
+    """Blank of a hypoid or spiral bevel pair.
 
     Parameters
     ----------
@@ -244,6 +249,9 @@ def hypoid_blank(
         Desired spiral angle of the pinion in the calculation point [rad].
     cutter_radius : float
         Mean radius of the cutter [m].
+    shaft_angle : float
+        Angle between the axes [rad]: that between their directions from the crossing point to the
+        teeth.
     pressure_angle_drive, pressure_angle_coast : float
         Design pressure angles of drive and coast side [rad].
     limit_pressure_angle_factor : float

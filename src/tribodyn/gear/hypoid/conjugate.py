@@ -78,8 +78,9 @@ class ConjugateFlanks:
         blank = self.blank
         along, across = np.moveaxis(touch.places, -1, 0)
         up = math.tan(blank.face_angle_wheel - blank.pitch_angle_wheel)
-        x, place, z = np.moveaxis(touch.contact.pinion.position, -1, 0)
-        radius, pitch = np.hypot(x, z), blank.pitch_angle_pinion
+        pinion, axis = touch.contact.pinion.position, self.axes.axis
+        place, pitch = pinion @ axis, blank.pitch_angle_pinion
+        radius = np.linalg.norm(pinion - place[..., None] * axis, axis=-1)
         distance = radius * math.sin(pitch) + (place + blank.pitch_apex_pinion) * math.cos(pitch)
         tip = (place + blank.face_apex_pinion) * math.tan(blank.face_angle_pinion)
         mean = blank.mean_cone_distance_wheel

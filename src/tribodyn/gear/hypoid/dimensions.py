@@ -47,7 +47,7 @@ def _depths(pitch_input: PitchInput, cones: PitchCones, values: dict[str, float]
 
 
 class _Dimensions:
-    """Clause 7 of ISO 23509 for a shaft angle of 90 deg; pairs are (pinion, wheel)."""
+    """Clause 7 of ISO 23509; pairs are (pinion, wheel)."""
 
     def __init__(self, pitch_input: PitchInput, cones: PitchCones, depths: _Depths) -> None:
         self.pitch_input, self.cones, self.depths = pitch_input, cones, depths
@@ -58,10 +58,12 @@ class _Dimensions:
         )
         spread = self.diameter[0] * math.cos(pitch[1]) / math.cos(pitch[0])
         self.axial = math.asin(2.0 * pitch_input.offset / (self.diameter[1] + spread))
-        self.place = (
-            0.5 * self.diameter[1] * math.cos(self.axial),
-            0.5 * spread * math.tan(pitch[1]),
-        )
+        # The normal of the calculation point meets both axes.
+        opening = pitch_input.opening
+        level = 0.5 * spread * math.tan(pitch[1])
+        level -= 0.5 * (self.diameter[1] + spread) * math.cos(self.axial) * math.tan(opening)
+        radial = 0.5 * self.diameter[1] * math.cos(self.axial)
+        self.place = (radial * math.cos(opening) - level * math.sin(opening), level)
         self.pitch_apex = (
             distance[0] * math.cos(pitch[0]) - self.place[0],
             distance[1] * math.cos(pitch[1]) - self.place[1],
@@ -70,8 +72,8 @@ class _Dimensions:
         _require_cones(self.face[1], self.root[1])
         self.at_root = self._offset_angle(self.root[1], depths.taper[1])
         self.at_face = self._offset_angle(self.face[1], depths.taper[0])
-        self.face[0] = math.asin(math.cos(self.root[1]) * math.cos(self.at_root))
-        self.root[0] = math.asin(math.cos(self.face[1]) * math.cos(self.at_face))
+        self.face[0] = self._mating(self.root[1], self.at_root)
+        self.root[0] = self._mating(self.face[1], self.at_face)
         _require_cones(self.face[0], self.root[0])
         self.face_apex, self.root_apex = self._apices()
         self.outer, self.inner = self._ends()
@@ -79,13 +81,21 @@ class _Dimensions:
     def _offset_angle(self, cone: float, angle: float) -> float:
         """Offset angle of the pinion in the root or the tip plane of the wheel."""
         distance = self.cones.cone_distance[1] * math.cos(angle)
-        reach = distance - self.pitch_apex[1] * math.cos(cone)
-        sine = self.pitch_input.offset * math.sin(cone) / reach if reach > 0.0 else math.inf
-        if abs(sine) < 1.0:
-            return math.asin(sine)
+        reach, offset = distance - self.pitch_apex[1] * math.cos(cone), self.pitch_input.offset
+        if reach > 0.0:
+            lean = math.atan(offset * math.tan(self.pitch_input.opening) * math.cos(cone) / reach)
+            sine = offset * math.sin(cone) * math.cos(lean) / reach
+            if abs(sine) < 1.0:
+                return math.asin(sine) - lean
         what = f"offset = {self.pitch_input.offset * 1e3:.6g} mm"
         why = "The pinion passes the tip or root cone of the wheel"
         raise InputError(what, Argument("offset"), why, "Reduce the offset")
+
+    def _mating(self, cone: float, angle: float) -> float:
+        """Half angle of the pinion's cone that a cone of the wheel touches at an offset angle."""
+        opening = self.pitch_input.opening
+        across = math.cos(cone) * math.cos(angle) * math.cos(opening)
+        return math.asin(across + math.sin(cone) * math.sin(opening))
 
     def _apices(self) -> tuple[tuple[float, float], tuple[float, float]]:
         depths, offset = self.depths, self.pitch_input.offset
@@ -223,6 +233,7 @@ class _Dimensions:
         }
         return named | {
             "offset": pitch_input.offset,
+            "shaft_angle": pitch_input.shaft_angle,
             "cutter_radius": pitch_input.cutter_radius,
             "offset_angle_axial": self.axial,
             "offset_angle_pitch": cones.offset_angle,

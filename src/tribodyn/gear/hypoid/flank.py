@@ -255,7 +255,10 @@ def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
     touch = flanks.touch(places)
     curvature = touch.curvature
     parameters = flanks.wheel.parameters(places)
-    wheel, (position, normal) = flanks.wheel.at(parameters), flanks.pinion_at(parameters)
+    wheel, opening = flanks.wheel.at(parameters), np.array(flanks.blank.shaft_angle - 0.5 * np.pi)
+    position, normal = (
+        turned(each, np.array([1.0, 0.0, 0.0]), opening) for each in flanks.pinion_at(parameters)
+    )
     if not np.all(np.isfinite(parameters)):
         radius = flanks.blank.cutter_radius * 1e3
         what, where = f"cutter_radius = {radius:.6g} mm", Argument("blank.cutter_radius")

@@ -15,10 +15,12 @@ _STEPS, _CLOSE = 30, 1e-13
 
 
 def pair_axes(blank: HypoidBlank) -> Axes:
-    """Axes of the pair in the frame of :mod:`envelope`: y is the pinion's axis, z the wheel's."""
+    """Axes of the pair in the frame of :mod:`envelope`; at a right angle the pinion's is y."""
     sense = hand_sense(blank)
     origin = np.array([-sense * blank.offset, 0.0, 0.0])
-    return Axes(np.array([0.0, 1.0, 0.0]), origin, 1.0 / blank.ratio)
+    opening = blank.shaft_angle - 0.5 * math.pi
+    axis = np.array([0.0, math.cos(opening), -math.sin(opening)])
+    return Axes(axis, origin, 1.0 / blank.ratio)
 
 
 def hand_sense(blank: HypoidBlank) -> float:
@@ -36,7 +38,7 @@ class FormateFlank:
         radius = 0.5 * blank.mean_pitch_diameter_wheel
         outward = np.array([-math.sin(angle), math.cos(angle), 0.0])
         self.point = radius * outward
-        self.point[1:] = blank.calculation_point_pinion, blank.calculation_point_wheel
+        self.point[2] = blank.calculation_point_wheel
         normals = [
             math.cos(cone) * outward - math.sin(cone) * np.array([0.0, 0.0, 1.0])
             for cone in (blank.pitch_angle_wheel, blank.root_angle_wheel)

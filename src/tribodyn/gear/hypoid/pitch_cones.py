@@ -1,4 +1,4 @@
-"""Pitch cones of a hypoid pair on crossed axes at a right angle: Method 1 of ISO 23509."""
+"""Pitch cones of a hypoid pair on axes that cross at any angle: Method 1 of ISO 23509."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ class PitchInput(NamedTuple):
     face_width_wheel: float
     mean_spiral_angle_pinion: float
     cutter_radius: float
+    shaft_angle: float = 0.5 * math.pi
     blade_groups: int = 0  #: of a face-hobbing cutter; zero for face milling
 
     @property
@@ -33,9 +34,15 @@ class PitchInput(NamedTuple):
         return self.teeth_wheel / self.teeth_pinion
 
     @property
+    def opening(self) -> float:
+        """Shaft angle beyond a right angle."""
+        return self.shaft_angle - 0.5 * math.pi
+
+    @property
     def first_pitch_angle(self) -> float:
         """Approximate pitch angle of the wheel; it fixes the mean radius."""
-        return math.atan(self.ratio / 1.2)
+        slope = 1.2 * (1.0 - self.ratio * math.sin(self.opening))
+        return math.atan2(self.ratio * math.cos(self.opening), slope)
 
     @property
     def mean_radius_wheel(self) -> float:
@@ -57,6 +64,7 @@ class PitchCones(NamedTuple):
 
 def pitch_cones(pitch_input: PitchInput) -> PitchCones:
     """Cones whose limit curvature is that of the trace; the spiral bevel pair without offset."""
+    _require_outer_cones(pitch_input)
     if pitch_input.offset == 0.0:
         return _spiral_bevel(pitch_input)
     _require_reach(pitch_input)
@@ -124,21 +132,23 @@ def _cones_at(offset_angle: ArrayLike, pitch_input: PitchInput) -> Any:
     """Cones for pinion offset angles in the axial plane: clause 6.3.2; NaN where there are none."""
     eta, ratio, offset = np.asarray(offset_angle), pitch_input.ratio, pitch_input.offset
     radius, wanted = pitch_input.mean_radius_wheel, math.tan(pitch_input.mean_spiral_angle_pinion)
+    turn, lean = math.cos(pitch_input.opening), math.tan(pitch_input.opening)
     start = math.asin(offset * math.sin(pitch_input.first_pitch_angle) / radius)
     enlargement = wanted * math.sin(start) + math.cos(start)
     pinion_radius = radius * enlargement / ratio
     with np.errstate(all="ignore"):
         wheel_angle = np.arcsin((offset - pinion_radius * np.sin(eta)) / radius)
-        pitch = np.arctan(np.sin(eta) / np.tan(wheel_angle))
-        plane = np.arcsin(np.sin(wheel_angle) / np.cos(pitch))
+        pitch = np.arctan(np.sin(eta) / (np.tan(wheel_angle) * turn) + np.cos(eta) * lean)
+        plane = np.arcsin(np.sin(wheel_angle) * turn / np.cos(pitch))
         spiral = np.arctan((enlargement - np.cos(plane)) / np.sin(plane))
         growth = np.sin(plane) * (wanted - np.tan(spiral))
         more = radius * growth / ratio
         wheel_angle = np.arcsin(np.sin(wheel_angle) - more * np.sin(eta) / radius)
-        pitch = np.arctan(np.sin(eta) / np.tan(wheel_angle))
-        plane = np.arcsin(np.sin(wheel_angle) / np.cos(pitch))
+        pitch = np.arctan(np.sin(eta) / (np.tan(wheel_angle) * turn) + np.cos(eta) * lean)
+        plane = np.arcsin(np.sin(wheel_angle) * turn / np.cos(pitch))
         spiral = np.arctan((enlargement + growth - np.cos(plane)) / np.sin(plane))
-        pitches = (pitch, np.arctan(np.sin(wheel_angle) / np.tan(eta)))
+        other = np.sin(wheel_angle) / (np.tan(eta) * turn) + np.cos(wheel_angle) * lean
+        pitches = (pitch, np.arctan(other))
         spirals = (spiral, spiral - plane)
         distances = ((pinion_radius + more) / np.sin(pitch), radius / np.sin(pitches[1]))
         tangent = limit_pressure_tangent(pitches, spirals, distances) / np.cos(plane)
@@ -164,13 +174,28 @@ def _possible(cones: Any) -> Mask:
 
 def _spiral_bevel(pitch_input: PitchInput) -> PitchCones:
     """Rolling cones with a common apex: Method 0, clause 6.2."""
-    pinion = math.atan(1.0 / pitch_input.ratio)
-    wheel = 0.5 * math.pi - pinion
+    shaft = pitch_input.shaft_angle
+    pinion = math.atan2(math.sin(shaft), pitch_input.ratio + math.cos(shaft))
+    wheel = shaft - pinion
     distance = 0.5 * pitch_input.outer_pitch_diameter_wheel / math.sin(wheel)
     distance -= 0.5 * pitch_input.face_width_wheel
     spiral = pitch_input.mean_spiral_angle_pinion
     curvature = float(trace_curvature(pitch_input, wheel, spiral, distance))
     return PitchCones((pinion, wheel), (spiral,) * 2, (distance,) * 2, 0.0, 0.0, curvature)
+
+
+def _require_outer_cones(pitch_input: PitchInput) -> None:
+    """Refuse a shaft angle at which the wheel would be a crown gear or an internal one."""
+    most = 0.5 * math.pi + math.asin(1.0 / pitch_input.ratio)
+    if pitch_input.shaft_angle < most - math.radians(1.0):
+        return
+    raise InputError(
+        f"shaft_angle = {math.degrees(pitch_input.shaft_angle):.6g} deg",
+        Argument("shaft_angle"),
+        f"From {math.degrees(most) - 1.0:.4g} deg on the wheel of this ratio is a crown gear or an "
+        "internal one",
+        "Reduce the shaft angle or the ratio",
+    )
 
 
 def _require_reach(pitch_input: PitchInput) -> None:

@@ -69,18 +69,19 @@ class Misalignment:
             object.__setattr__(self, each.name, value)
 
 
-def pinion_motion(misalignment: Misalignment, sense: float) -> tuple[Array, Array]:
+def pinion_motion(misalignment: Misalignment, axis: Array, sense: float) -> tuple[Array, Array]:
     """Rotation of the pinion about the crossing point and its displacement; sense of its hand."""
     cosine, sine = math.cos(misalignment.shaft_angle), math.sin(misalignment.shaft_angle)
     turn = np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
-    return turn, np.array([-sense * misalignment.offset, misalignment.pinion_axial, 0.0])
+    away = np.array([-sense * misalignment.offset, 0.0, 0.0])
+    return turn, away + misalignment.pinion_axial * axis
 
 
 def displaced_gap(
-    misalignment: Misalignment, position: Array, normal: Array, sense: float
+    misalignment: Misalignment, position: Array, normal: Array, axis: Array, sense: float
 ) -> Array:
     """Gap that the displacements leave where conjugate flanks would touch, to first order."""
-    turn, shift = pinion_motion(misalignment, sense)
+    turn, shift = pinion_motion(misalignment, axis, sense)
     pinion = position @ (turn - np.eye(3)).T + shift
     wheel = np.array([0.0, 0.0, misalignment.wheel_axial])
     return np.asarray(np.einsum("...i,...i->...", wheel - pinion, normal))
@@ -113,8 +114,8 @@ def exact_contact(
     """
     swing = flanks.blank.cutter_radius
     unit = np.array([_LENGTH, _LENGTH / swing, _LENGTH, _LENGTH / swing, _ROTATION])
-    turn, shift = pinion_motion(misalignment, hand_sense(flanks.blank))
     axes, wheel_axis = flanks.axes, np.array([0.0, 0.0, 1.0])
+    turn, shift = pinion_motion(misalignment, axes.axis, hand_sense(flanks.blank))
 
     def bodies(unknown: Array) -> tuple[Array, Array, Array, Array]:
         position, normal = flanks.pinion_at(unknown[..., :2])
@@ -380,8 +381,8 @@ def gap_of(flanks: ConjugateFlanks, touch: Touch, misalignment: Misalignment) ->
     """Gap of ease-off and misalignment where conjugate flanks would touch, to first order."""
     gap, _ = eased_gap(flanks.ease_off, flanks.blank, touch.places)
     wheel = touch.contact.wheel
-    sense = hand_sense(flanks.blank)
-    return np.asarray(gap + displaced_gap(misalignment, wheel.position, wheel.normal, sense))
+    hand = flanks.axes.axis, hand_sense(flanks.blank)
+    return np.asarray(gap + displaced_gap(misalignment, wheel.position, wheel.normal, *hand))
 
 
 def _lag(flanks: ConjugateFlanks, touch: Touch, misalignment: Misalignment) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tribodyn.errors import ComputationError
 from tribodyn.gear import HypoidFlanks, Misalignment
-from tribodyn.gear.hypoid.conjugate import Touch
+from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
 from tribodyn.gear.hypoid.contact_lines import ContactLines
 from tribodyn.gear.hypoid.envelope import Curvature, cross
 from tribodyn.gear.hypoid.tooth_contact import gap_of
@@ -174,17 +174,18 @@ def lag_under(cells: ContactCells, springs: CellSprings, wheel_torque: Array | f
     return lag
 
 
-def in_frame(vectors: Array, sense: float, gear: str) -> Array:
+def in_frame(vectors: Array, flanks: ConjugateFlanks, gear: str) -> Array:
     """Vectors of the fixed frame in that of a gear, whose y axis lies along its rotation."""
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    turned = (x, sense * y, sense * z) if gear == "pinion" else (x, -sense * z, sense * y)
-    return np.stack(turned, axis=-1)
+    axis = flanks.axes.axis if gear == "pinion" else np.array([0.0, 0.0, -1.0])
+    # The common perpendicular x, the axis in its running sense, and what is across both.
+    across = np.array([0.0, -axis[2], axis[1]])
+    return np.asarray(vectors @ np.array([[1.0, 0.0, 0.0], flanks.sense * axis,
+                                          flanks.sense * across]).T)  # fmt: skip
 
 
 def wrench(cells: ContactCells, forces: Array, gear: str) -> Array:
     """Force and moment (lines, cells, 6) of forces at the cells on a gear, in its frame."""
     axes, position = cells.flanks.conjugate.axes, cells.touch.contact.wheel.position
     arm = position - axes.origin if gear == "pinion" else position
-    sense = cells.flanks.conjugate.sense
-    parts = [in_frame(each, sense, gear) for each in (forces, cross(arm, forces))]
+    parts = [in_frame(v, cells.flanks.conjugate, gear) for v in (forces, cross(arm, forces))]
     return np.concatenate(parts, axis=-1)

@@ -240,8 +240,7 @@ def _teeth(sides: list[HypoidFlanks], gear: str, color: str) -> Trace:
     i, j, k = np.hstack([[a, b, c], [a, c, d]])
     if _faces_inwards(skin):
         j, k = k, j
-    x, y, z = points.reshape(-1, 3).T
-    x = x + _origin(sides[0], gear)
+    x, y, z = _placed(points.reshape(-1, 3), sides[0], gear).T
     light = {"ambient": 0.6, "diffuse": 0.7, "specular": 0.1}
     light |= {"facenormalsepsilon": 0.0, "vertexnormalsepsilon": 0.0}
     lamp = {"x": -1e4, "y": 2e4, "z": -3e4}
@@ -261,27 +260,28 @@ def _faces_inwards(skin: Array) -> bool:
     return bool(facing @ out < 0.0)
 
 
-def _origin(flanks: HypoidFlanks, gear: str) -> float:
-    """Position of the gear's axis along the common perpendicular [mm]."""
-    return 1e3 * float(flanks.conjugate.axes.origin[0]) if gear == "pinion" else 0.0
+def _placed(points: Array, flanks: HypoidFlanks, gear: str) -> Array:
+    """Points of a gear [mm] in the fixed frame, where the axis of the wheel is z."""
+    if gear == "wheel":
+        return points
+    opening = flanks.blank.shaft_angle - 0.5 * math.pi
+    return _rotated(points, 0, np.array(-opening)) + 1e3 * flanks.conjugate.axes.origin
 
 
 def _body(flanks: HypoidFlanks, gear: str) -> Trace:
     """Gear body within the root cone."""
-    blank, axis = flanks.blank, _AXES[gear]
-    angle, apex = (getattr(blank, f"root_{name}_{gear}") for name in ("angle", "apex"))
+    axis, (along, radius) = _AXES[gear], _section(flanks.blank, gear, "root")
     # The pinion is solid, the wheel a ring.
-    ends = [("inner", 0.0), ("inner", 1.0), ("outer", 1.0), ("outer", 0.0)]
+    ends = [(0, 0.0), (0, 1.0), (1, 1.0), (1, 0.0)]
     rows = []
     for end, share in ends if gear == "pinion" else ends[1:3]:
-        along = getattr(blank, f"{end}_cone_distance_{gear}") * math.cos(angle)
         place = np.zeros(3)
-        place[axis], place[(axis + 1) % 3] = along - apex, share * along * math.tan(angle)
+        place[axis], place[(axis + 1) % 3] = along[end], share * radius[end]
         rows.append(_rotated(place, axis, np.linspace(0.0, 2.0 * np.pi, _ROUND)))
-    x, y, z = 1e3 * np.moveaxis(np.array(rows), -1, 0)
+    x, y, z = np.moveaxis(_placed(np.array(rows), flanks, gear), -1, 0)
     return {
         "type": "surface",
-        "x": x + _origin(flanks, gear),
+        "x": x,
         "y": y,
         "z": z,
         "showscale": False,

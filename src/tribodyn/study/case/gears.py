@@ -248,6 +248,7 @@ MEANINGS = {
     "face_width_wheel": "face width of the wheel along its pitch cone",
     "mean_spiral_angle_pinion": "spiral angle of the pinion in the calculation point",
     "cutter_radius": "mean radius of the face-mill cutter",
+    "shaft_angle": "angle between the axes",
     "pressure_angle_drive": "design pressure angle of the drive side",
     "pressure_angle_coast": "design pressure angle of the coast side",
     "limit_pressure_angle_factor": "part of the limit pressure angle that corrects both sides",
