@@ -228,6 +228,7 @@ def test_friction_of_a_slice_that_shears_its_film_is_that_of_a_spur_contact():
     expected = LAWS["ehl"](contact)
     assert mesh.friction_coefficient[chosen] == pytest.approx(expected, rel=1e-2, abs=5e-5)
     assert mesh.central_film[chosen] == pytest.approx(films.central_film, rel=1e-3)
+    assert mesh.film_pressure[chosen] == pytest.approx(films.film_pressure, rel=2.5e-2)
 
 
 def test_sheared_films_of_a_vanishing_helix_angle_are_those_of_the_spur_pair():

@@ -223,10 +223,11 @@ class FilmLookup:
         if outside.size:
             values[:, outside] = self._solved(outside, loads)
         doubtful = np.zeros((len(QUANTITIES), loads.size), dtype=bool)
-        # The pressure is certain only where it is solved. The stiffness of the approach differs by
-        # several percent from node to node: a study reports only its value at the pitch point,
-        # which is solved.
-        doubtful[PRESSURE] = True
+        # The pressure of whole pairs is certain only where it is solved; that of slices, which a
+        # map over the face needs everywhere, is within 2 or 3 %. The stiffness of the approach
+        # differs by several percent from node to node: a study reports only its value at the
+        # pitch point, which is solved.
+        doubtful[PRESSURE] = not self.of_slices
         yielding = values[STIFFNESS]
         if self.settings.film["stiffness"] == "seed":
             yielding = yielding * pairs.scales(loads)["film_pressure"]
@@ -280,7 +281,9 @@ class FilmsFromTable(LoadedFilms):
         certain = ~self.doubtful
         least = [int(np.argmin(np.where(self.scored, columns[n], np.inf))) for n in QUANTITIES[:2]]
         # One call for all of them, because starting threads takes time.
-        chosen = np.unique([*least, *self.path.pitch, *self._trials(columns["film_pressure"])])
+        of_slices, pressure = self.path.of_slices, columns["film_pressure"]
+        trials = [] if of_slices else self._trials(pressure)
+        chosen = np.unique([*least, *self.path.pitch, *trials])
         settings = self.path.settings
         # The printed sum "seed" warns of what it is, wherever it is reported.
         with nullcontext() if settings.film["stiffness"] == "seed" else quiet():
@@ -288,7 +291,9 @@ class FilmsFromTable(LoadedFilms):
                 settings.film_model, load[chosen], **settings.film, progress=SILENT
             )
         for name, column in columns.items():
-            column[chosen] = getattr(solved, name)
+            # Single solutions would stand out of the pressures of a map over the face.
+            if not (of_slices and name == "film_pressure"):
+                column[chosen] = getattr(solved, name)
         certain[:, chosen] = True
         return replace(films, **columns), certain
 
