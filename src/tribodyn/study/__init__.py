@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
     from tribodyn.study.faults.recording_set import RecordingSet, record_set
+    from tribodyn.study.faults.wear import Wear, wear
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
@@ -69,6 +70,7 @@ __all__ = [
     "Result",
     "ResultComparison",
     "Sweep",
+    "Wear",
     "basins",
     "bifurcation",
     "build_system",
@@ -97,6 +99,7 @@ __all__ = [
     "summary_figure",
     "sweep",
     "vibration_data",
+    "wear",
 ]
 
 #: Public names by the module that they are taken from.
@@ -106,6 +109,7 @@ _NAMES = {
     "machine.case": "MachineCase",
     "machine.load_cases": "LoadCase",
     "faults.recording_set": "RecordingSet record_set",
+    "faults.wear": "Wear wear",
     "machine.modes": "MachineCampbell",
     "machine.motion": "MachineMotion",
     "machine.result": "LoadResult MachineResult",
