@@ -36,6 +36,7 @@ __all__ = [
     "begins_thread",
     "deferred",
     "in_threads",
+    "interruption_recorded",
     "processors",
     "refuse_stopped",
     "stop_flag",
@@ -52,6 +53,15 @@ STOPPED = -2
 _POLL_INTERVAL, _GRACE = 0.1, 1.0
 
 _thread_state = threading.local()
+
+
+#: Threads that the main thread waits for.
+_awaited: list[Threads] = []
+
+
+def interruption_recorded() -> bool:
+    """Whether the main thread waits for threads that an interruption has already reached."""
+    return any(threads.interrupted for threads in _awaited)
 
 
 def stop_flag() -> NDArray[np.int64]:
@@ -135,6 +145,7 @@ class Threads:
                 handler = signal.getsignal(signal.SIGINT)
                 if callable(handler):
                     self._handler = handler
+                    _awaited.append(self)
                     signal.signal(signal.SIGINT, self._interrupt)
             for thread in self._threads:
                 thread.start()
@@ -166,6 +177,8 @@ class Threads:
 
     def _restore_handler(self) -> None:
         """Give Ctrl-C back the handler that it had before, unless another one replaced ours."""
+        if self in _awaited:
+            _awaited.remove(self)
         if self._handler is not None and signal.getsignal(signal.SIGINT) == self._interrupt:
             signal.signal(signal.SIGINT, self._handler)
 

@@ -16,6 +16,7 @@ import pytest
 
 from known_marches import march_newmark, march_one
 from tribodyn import interrupt
+from tribodyn.cli.entry import interruptible
 from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
@@ -171,6 +172,27 @@ def test_an_interruption_that_a_finaliser_discards_still_ends_the_threads(call, 
     with pytest.raises(KeyboardInterrupt):
         call(work)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_an_interruption_that_reached_the_threads_is_not_repeated(monkeypatch):
+    """A second one would disturb what the first one leads to, such as storing what is finished."""
+
+    class Finalised:
+        def __del__(self):
+            signal.raise_signal(signal.SIGINT)
+
+    plain = interrupt.wait
+
+    def wait_after_signal(*arguments):
+        Finalised()
+        return plain(*arguments)
+
+    monkeypatch.setattr(interrupt, "wait", wait_after_signal)
+    with interruptible():
+        with pytest.raises(KeyboardInterrupt):
+            in_threads(lambda _: time.sleep(0.05), range(2), 2)
+        time.sleep(0.3)
 
 
 def test_a_deferred_interruption_is_raised_after_the_block():

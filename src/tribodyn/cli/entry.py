@@ -52,6 +52,9 @@ def interruptible() -> Iterator[None]:
 
     def repeat_interruption(dropped: sys.UnraisableHookArgs) -> None:
         if issubclass(dropped.exc_type, KeyboardInterrupt):
+            threads = sys.modules.get("tribodyn.interrupt")
+            if threads is not None and threads.interruption_recorded():
+                return  # The main thread raises it again when its wait ends.
             _interrupt_handler.last = -_REPEAT_INTERVAL
             timers.append(threading.Timer(_RETRY_DELAY, _interrupt))
             timers[-1].daemon = True
