@@ -53,9 +53,9 @@ def pressure_flow_factor(film_ratio: ArrayLike, orientation: float = 1.0) -> Arr
 
     Parameters
     ----------
-    film_ratio : float or array
+    film_ratio : float or array [-]
         Distance h of the mean surfaces over the composite rms roughness s.
-    orientation : float
+    orientation : float [-]
         Length of the asperities along the flow over that across it, 1/9 to 9: 1 is isotropic, 9
         are ridges along the flow. Interpolated in its logarithm between printed values.
 
@@ -89,9 +89,9 @@ def shear_flow_factor(film_ratio: ArrayLike, orientation: float = 1.0) -> Array:
 
     Parameters
     ----------
-    film_ratio : float or array
+    film_ratio : float or array [-]
         Distance h of the mean surfaces over the rms roughness s.
-    orientation : float
+    orientation : float [-]
         As for :func:`pressure_flow_factor`.
 
     Returns
@@ -123,7 +123,7 @@ def mean_gap(film_ratio: ArrayLike) -> Array:
 
     Parameters
     ----------
-    film_ratio : float or array
+    film_ratio : float or array [-]
         That distance over the composite rms roughness.
 
     Returns
@@ -153,9 +153,9 @@ class FlowFactors:
     ----------
     roughness : float [m]
         Composite rms roughness of both surfaces.
-    orientation : float
+    orientation : float [-]
         Length of the asperities along the flow over that across it, 1/9 to 9; 1 is isotropic.
-    first_share : float
+    first_share : float [-]
         Part of the mean square roughness that is on surface 1; it matters where they slide.
 
     Raises
@@ -193,7 +193,7 @@ class FlowFactors:
         ----------
         film : array [m]
             Distance of the mean surfaces.
-        slide_to_roll_ratio : float
+        slide_to_roll_ratio : float [-]
             Speed of surface 1 less that of surface 2, over the entrainment speed.
 
         Returns

@@ -37,7 +37,7 @@ def amplitude_reduction(
     ----------
     wavelength, half_width : float or array [m]
         Length of the waves across the direction of rolling, and half width b of the dry contact.
-    moes_load, moes_viscosity : float or array
+    moes_load, moes_viscosity : float or array [-]
         Numbers M and L of Moes.
 
     Returns
@@ -83,7 +83,7 @@ def flattened_roughness(
         Heights of the free surface; one that is not periodic is continued as its mirror image.
     half_width : float [m]
         Half width b of the dry contact.
-    moes_load, moes_viscosity : float
+    moes_load, moes_viscosity : float [-]
         Numbers M and L of Moes.
 
     Returns
@@ -128,19 +128,19 @@ class AmplitudeReduction(Record):
     ----------
     wavelength : (waves,) array [m]
         Lengths of the waves.
-    amplitude_ratio : (waves,) array
+    amplitude_ratio : (waves,) array [-]
         Amplitude of the central film over that of the free surface, at the frequency of the waves.
-    fitted_ratio : (waves,) array
+    fitted_ratio : (waves,) array [-]
         The same by :func:`amplitude_reduction`, which holds for pure rolling.
-    wave_number : (waves,) array
+    wave_number : (waves,) array [-]
         ``N = wavelength/b M^(3/4) L^(-1/2)``.
     half_width : float [m]
         Half width b of the dry contact.
     central_film : float [m]
         Film of smooth surfaces.
-    slide_to_roll_ratio : float
+    slide_to_roll_ratio : float [-]
         Speed of the rough surface less that of the other one, over the entrainment speed.
-    moes_load, moes_viscosity : float
+    moes_load, moes_viscosity : float [-]
         Numbers M and L of Moes.
     """
 
@@ -186,7 +186,7 @@ def solve_amplitude_reduction(
         ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
     wavelength : float or array [m]
         Lengths of the waves.
-    slide_to_roll_ratio : float
+    slide_to_roll_ratio : float [-]
         Speed of the rough surface less that of the smooth one, over the entrainment speed: zero
         in pure rolling, above -1.8.
     amplitude : float, optional [m]
@@ -253,7 +253,8 @@ def solve_amplitude_reduction(
 def _nodes(wavelength: float, half_width: float) -> int:
     """Nodes of a grid that resolves a wave."""
     extent = 6.0 * half_width  # of a usual domain
-    nodes = max(_LEAST_NODES, 2 ** math.ceil(math.log2(_PER_WAVE * extent / wavelength)) + 1)
+    halvings = max(math.ceil(math.log2(_PER_WAVE * extent / wavelength)), 0)
+    nodes = max(_LEAST_NODES, (1 << halvings) + 1)
     if nodes > _MOST_NODES:
         shortest = _PER_WAVE * extent / (_MOST_NODES - 1)
         raise InputError(
@@ -275,4 +276,4 @@ def _instants(
     # What was in the contact at the start leaves it at the slower of both speeds.
     travel = (1.0 + _TRAVEL) * 2.0 * half_width / min(speed, entrainment_speed)
     count = math.ceil(travel / step) + 2 * steps
-    return step * np.arange(count + 1), steps
+    return np.asarray(step * np.arange(count + 1), dtype=float), steps
