@@ -88,6 +88,8 @@ def noise_bandwidth(weights: Array, sampling_rate: float) -> float:
 #: Most samples over the rotation before the filter, and samples per period for cubic pieces.
 _MOST = 20_000_000
 _FINE = 16.0
+#: Samples of the slower rate that the filter of a change of the rate reaches to each side.
+REACH = 40
 
 
 @dataclass(frozen=True)
@@ -260,5 +262,5 @@ def _resampled(values: Array, up: int, down: int) -> Array:
     from scipy.signal import firwin, resample_poly
 
     factor = max(up, down)
-    taps = firwin(2 * 40 * factor + 1, 1.0 / factor, window=("kaiser", 8.0))
+    taps = firwin(2 * REACH * factor + 1, 1.0 / factor, window=("kaiser", 8.0))
     return np.asarray(resample_poly(values, up, down, window=taps, padtype="line"))

@@ -9,12 +9,16 @@ import numpy as np
 from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import (
+    REACH,
     angular_resampling,
     checked_rising,
     checked_signal,
     shaft_rotation,
 )
 from tribodyn.types import Array
+
+#: Revolutions from which the ends of the record are left out, so that two remain everywhere.
+_TRIMMED = 4
 
 
 @record
@@ -176,8 +180,9 @@ def time_synchronous_average(
     -----
     The signal is resampled over the rotation (:func:`tribodyn.analysis.order_map` does the same)
     and the revolutions are averaged: what does not repeat falls with the square root of their
-    number (S. Braun, Acustica 32 (1975) 69; P. D. McFadden, Mechanical Systems and Signal
-    Processing 1 (1987) 83).
+    number. From four revolutions on, samples that the filters reach from beyond both ends of the
+    record do not count. S. Braun, Acustica 32 (1975) 69; P. D. McFadden, Mechanical Systems and
+    Signal Processing 1 (1987) 83.
 
     Examples
     --------
@@ -204,10 +209,20 @@ def time_synchronous_average(
         why = "An average needs two complete revolutions"
         raise InputError(what, "argument rotation", why, "Record longer")
     turns = resampled.signal[: count * per_turn].reshape(count, per_turn)
+    clean = np.ones(turns.shape)
+    if count >= _TRIMMED:
+        within = [angle[REACH] - angle[0], angle[-1] - angle[-1 - REACH]]
+        lead, tail = (REACH + int(np.ceil(turned * per_turn / (2.0 * np.pi))) for turned in within)
+        clean[0, : min(lead, per_turn)] = 0.0
+        last = resampled.signal.size - tail - (count - 1) * per_turn
+        clean[-1, max(min(last, per_turn), 0) :] = 0.0
+    number = clean.sum(axis=0)
+    mean = (clean * turns).sum(axis=0) / number
+    variance = (clean * (turns - mean) ** 2).sum(axis=0) / (number - 1.0)
     return SynchronousAverage(
         2.0 * np.pi * np.arange(per_turn) / per_turn,
-        turns.mean(axis=0),
-        turns.std(axis=0, ddof=1) / np.sqrt(count),
+        mean,
+        np.sqrt(variance / number),
         count,
         teeth,
         unit,

@@ -128,6 +128,18 @@ def test_average_preserves_signals_synchronous_with_the_shaft():
     assert set(mean.to_xarray()) == {"signal", "scatter", "residual", "difference"}
 
 
+def test_the_ends_of_the_record_leave_no_trace_in_the_average():
+    """Strong lines above the retained harmonics: their abrupt start and end are broadband."""
+    rate = 25_600.0
+    time = np.arange(40_000) / rate
+    turn = 2 * np.pi * 15.0 * time + 0.05 * np.sin(3.0 * time)
+    wave = np.cos(TEETH * turn) + 50.0 * np.cos(23 * TEETH * turn + 1.0)
+    mean = time_synchronous_average(wave, time, teeth=TEETH, rotation=turn)
+    assert mean.revolutions == 23
+    assert mean.mesh_amplitudes(1)[0] == pytest.approx(1.0, abs=1e-3)
+    assert np.abs(mean.residual()).max() < 2e-3
+
+
 def test_noise_falls_with_the_root_of_the_number_of_revolutions():
     """Standard deviation 1 over N revolutions leaves 1/sqrt(N), and the scatter says so."""
     rng = np.random.default_rng(7)
