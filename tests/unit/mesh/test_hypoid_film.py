@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from known_hypoids import eased
-from tribodyn.contact import effective_modulus
-from tribodyn.ehl import FILM_MODELS
+from tribodyn.contact import effective_modulus, hertz_ellipse, hertz_line
+from tribodyn.ehl import FILM_MODELS, solve_point_contact
 from tribodyn.gear.hypoid.kinematics import cell_motion
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh import hypoid_friction, hypoid_loaded_contact
@@ -44,6 +44,16 @@ def test_the_film_of_a_cell_is_that_of_its_line_contact(loaded):
     direct = FILM_MODELS["newton"].films(*inputs, OIL, modulus, nodes=257)
     assert solved.films.central_film[chosen] == pytest.approx(direct.central_film, rel=1e-3)
     assert solved.films.minimum_film[chosen] == pytest.approx(direct.minimum_film, rel=1e-3)
+
+
+def test_a_slender_ellipse_has_the_film_of_a_slice_through_its_middle(loaded):
+    modulus, radius, speed = effective_modulus(loaded.material, loaded.material), 0.0368, 6.93
+    ellipse = solve_point_contact(480.0, radius, 30.0 * radius, speed, OIL, modulus, nodes=129)
+    pressure = hertz_ellipse(480.0, radius, 30.0 * radius, modulus).maximum_pressure
+    load = 1e5 * (pressure / hertz_line(1e5, radius, modulus).maximum_pressure) ** 2
+    middle = FILM_MODELS["newton"].films(load, radius, speed, OIL, modulus)
+    assert ellipse.central_film == pytest.approx(float(middle.central_film), rel=0.01)
+    assert ellipse.minimum_film == pytest.approx(float(middle.minimum_film), rel=0.01)
 
 
 def assert_springs_meet(loaded, solved, compression, within):
