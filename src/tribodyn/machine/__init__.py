@@ -37,6 +37,7 @@ from tribodyn.machine.planetary.modes import PlanetaryModes, planetary_modes
 from tribodyn.machine.planetary.phases import HarmonicExcitation, MeshPhases, mesh_phases
 from tribodyn.machine.planetary.plane_model import planetary_plane_model
 from tribodyn.machine.planetary.positions import PlanetaryPositions, planetary_positions
+from tribodyn.machine.planetary.ring_sensor import RingSensorSignal, ring_sensor_signal
 from tribodyn.machine.reduction import machine_structure, reduce_structure
 from tribodyn.machine.rolling.ball_bearing import AngularContactBallBearing, DeepGrooveBallBearing
 from tribodyn.machine.rolling.bearing_types import ROLLING_BEARINGS
@@ -86,6 +87,7 @@ __all__ = [
     "PlanetaryModes",
     "PlanetaryPositions",
     "Reduction",
+    "RingSensorSignal",
     "RollingElementBearing",
     "Section",
     "Shaft",
@@ -104,6 +106,7 @@ __all__ = [
     "planetary_plane_model",
     "planetary_positions",
     "reduce_structure",
+    "ring_sensor_signal",
     "static_balance",
     "sun_to_ring_lag",
     "system",

@@ -35,7 +35,7 @@ from tribodyn.plot.machine.levels import (
 )
 from tribodyn.plot.machine.modes import machine_campbell, machine_modes
 from tribodyn.plot.machine.orders import machine_orders
-from tribodyn.plot.machine.planetary import planetary_forces, planetary_stage
+from tribodyn.plot.machine.planetary import planetary_forces, planetary_stage, ring_sensor
 from tribodyn.plot.machine.power import machine_power
 from tribodyn.plot.machine.side_view import machine
 from tribodyn.plot.mesh.face_maps import face_maps
@@ -190,6 +190,7 @@ __all__ = [
     "recording",
     "response",
     "result_comparison",
+    "ring_sensor",
     "run_up",
     "run_up_map",
     "sensitivity",

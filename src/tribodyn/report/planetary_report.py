@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -70,9 +71,12 @@ def _modes_text(result: PlanetaryResult) -> str:
 
 
 def _blocks(result: PlanetaryResult) -> list[Block]:
+    # As Inalpolat and Kahraman: the sensor feels the nearest planet.
+    sensor = result.operation.ring_sensor(window=2.0 * math.pi / result.case.table.count)
     parts = [
         (plot.planetary_stage, result, "stage", plot.planetary_stage.heading),
         (plot.planetary_forces, result.motion, "forces", plot.planetary_forces.heading),
+        (plot.ring_sensor, sensor, "ring-sensor", plot.ring_sensor.heading),
         (plot.planetary_modes, result.modes, "mode-shapes", plot.planetary_modes.heading),
         *(
             (plot.face_maps, table, f"face-maps-{mesh}", f"Mesh {mesh}: maps over the face")

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from tribodyn.study.planetary.case import PlanetaryCase
     from tribodyn.study.planetary.motion import PlanetaryMotion
     from tribodyn.study.planetary.result import PlanetaryLoadResult, PlanetaryResult
+    from tribodyn.study.planetary.tolerances import LoadShareStatistics, load_share_statistics
     from tribodyn.study.result_comparison import ResultComparison, compare_results
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.friction_experiment import friction_experiment
@@ -56,6 +57,7 @@ __all__ = [
     "DataSet",
     "LoadCase",
     "LoadResult",
+    "LoadShareStatistics",
     "MachineCampbell",
     "MachineCase",
     "MachineEnsemble",
@@ -83,6 +85,7 @@ __all__ = [
     "friction_experiment",
     "harris_map",
     "load_data",
+    "load_share_statistics",
     "loaded_contact",
     "loss_map",
     "lyapunov_exponents",
@@ -122,6 +125,7 @@ _NAMES = {
     "planetary.case": "PlanetaryCase",
     "planetary.motion": "PlanetaryMotion",
     "planetary.result": "PlanetaryLoadResult PlanetaryResult",
+    "planetary.tolerances": "LoadShareStatistics load_share_statistics",
     "result_comparison": "ResultComparison compare_results",
     "studies.bifurcation": "bifurcation",
     "studies.friction_experiment": "friction_experiment",

@@ -8,5 +8,6 @@
 | ``plane_model`` | equations of motion in the plane, after Lin and Parker |
 | ``modes`` | which modes are rotational, translational or modes of the planets |
 | ``mesh_laws`` | computed teeth in the plane model, lag of the ring meshes |
+| ``ring_sensor`` | signal of a sensor on the ring, with the sidebands of passing planets |
 | ``load_sharing`` | static loads of the planets with errors of pins and teeth |
 """

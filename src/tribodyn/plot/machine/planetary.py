@@ -12,17 +12,20 @@ from tribodyn.drawing import drawing
 from tribodyn.gear import gear_outline
 from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalGear
+    from tribodyn.machine import RingSensorSignal
     from tribodyn.study import PlanetaryMotion, PlanetaryResult
 
 #: Points of a tooth, those of them that are drawn, and pictures of the movement.
 _POINTS, _DRAWN, _FRAMES = 40, [0, 5, 9, 13, 17, 21, 25, 29, 33], 24
 _CARRIER = PAIR_COLORS[0]
+#: Orders of the carrier on both sides of a harmonic.
+_SIDEBANDS = 9
 
 
 def _outline(gear: CylindricalGear) -> ComplexArray:
@@ -171,3 +174,41 @@ def planetary_forces(motion: PlanetaryMotion) -> Any:
     return stack(
         title, f"Phase of the mesh cycle, 1 = {1e3 / motion.mesh_frequency:.4g} ms", panels
     )
+
+
+@drawing(
+    "ring_sensor",
+    heading="Sensor on the ring",
+    caption="Lines of a sensor on the ring about the first two harmonics of the mesh frequency, "
+    "over the order of the carrier: planets that pass modulate their mesh forces. Dotted: the "
+    "harmonics themselves.",
+    of=("RingSensorSignal",),
+    made_by="Call ring_sensor() of a result at one load, or tribodyn.machine.ring_sensor_signal.",
+)
+def ring_sensor(signal: RingSensorSignal) -> Any:
+    """Draw the sidebands of a sensor on the ring."""
+    panels, teeth = [], signal.ring_teeth
+    for harmonic in (1, 2):
+        lines = signal.sidebands(harmonic, _SIDEBANDS)
+        order = np.array(list(lines), dtype=float) + harmonic * teeth
+        height = displayed("mesh_force", np.array(list(lines.values())))
+        nothing = np.full(order.size, np.nan)
+        x = np.stack([order, order, nothing], axis=1).ravel()
+        y = np.stack([0.0 * order, height, nothing], axis=1).ravel()
+        unit = display_unit("mesh_force")
+        label = axis_label("mesh_force", f"Harmonic {harmonic}")
+        rows = line(x, y, "lines", COLORS[0], unit=unit)
+        mark = line(np.full(2, float(harmonic * teeth)), np.array([0.0, height.max()]),
+                    "harmonic", MUTED, unit=unit)  # fmt: skip
+        mark["line"] = {**mark["line"], "dash": "dot"}
+        panels.append(Row("Order of the carrier relative to the ring",
+                          Panel(label, [mark, rows], {"rangemode": "tozero"})))  # fmt: skip
+    first = signal.sidebands(1, _SIDEBANDS)
+    largest = max(first, key=lambda m: first[m])
+    hertz = (teeth + largest) * signal.carrier_frequency
+    place = "the harmonic itself" if largest == 0 else f"{largest:+d} from the harmonic"
+    title = (
+        f"The largest line about the mesh frequency is order {teeth + largest}, {place}, at "
+        f"{rounded('frequency', hertz)}"
+    )
+    return stack_rows(title, panels)

@@ -4,19 +4,29 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tribodyn.drawing import draw, write_report_of
 from tribodyn.interrupt import single_blas_thread
-from tribodyn.machine import LoadShares, PlanetaryKinematics, planetary_modes, planetary_plane_model
+from tribodyn.machine import (
+    LoadShares,
+    PlanetaryKinematics,
+    RingSensorSignal,
+    planetary_modes,
+    planetary_plane_model,
+    ring_sensor_signal,
+)
 from tribodyn.record import html_table
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary_figures import summary_rows
 from tribodyn.study.planetary.summary import summary_of
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
@@ -62,6 +72,46 @@ class PlanetaryLoadResult:
     system: System
     motion: PlanetaryMotion
     response: Response
+
+    def ring_sensor(
+        self,
+        sensor_angle: float = 0.0,
+        window: float | Callable[[Array], Array] | None = None,
+        steps: int = 256,
+    ) -> RingSensorSignal:
+        """Signal of a sensor on the ring, which the planets pass.
+
+        Parameters
+        ----------
+        sensor_angle : float
+            Angle of the sensor [rad]; the first planet begins at 0.
+        window : float or function, optional
+            As for :func:`tribodyn.machine.ring_sensor_signal`.
+        steps : int
+            Samples of a mesh cycle.
+
+        Returns
+        -------
+        RingSensorSignal
+
+        Raises
+        ------
+        InputError
+            If an argument is out of range.
+        """
+        at, motion, stage = np.arange(steps) / steps, self.motion, self.kinematics
+        columns = [np.interp(at, motion.phase, f, period=1.0) for f in motion.ring_mesh_force.T]
+        turn = 1.0 if stage.torques["sun"] > 0.0 else -1.0
+        relative = -stage.relative_speeds["ring"]
+        return ring_sensor_signal(
+            ring_mesh_force=np.stack(columns, axis=1),
+            ring_teeth=round(2.0 * np.pi * stage.mesh_frequency / abs(relative)),
+            angles=turn * self.phases.angles,
+            sensor_angle=sensor_angle,
+            window=window,
+            carrier_frequency=abs(relative) / (2.0 * np.pi),
+            backwards=relative < 0.0,
+        )
 
     @property
     def phases(self) -> MeshPhases:
