@@ -17,6 +17,7 @@ SCRIPTS = (
     "speed_sweep",
     "steady_state_cycles",
     "machine_speed",
+    "planetary_speed",
     "bifurcation_speed",
     "parameter_map",
     "film_speed",
