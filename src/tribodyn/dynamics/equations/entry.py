@@ -136,7 +136,8 @@ def _oriented(where: str, function: Callable[[Array], Any], phases: Array, size:
         raise InputError(what, where, why, remedy) from error
     # A table returns an array of its own; another function may go on to change what it returned.
     read = floats if hasattr(function, "event_phases") else real_numbers
-    values = read(where, result, "real numbers, whatever the mesh phase")
+    numbers = read(where, result, "real numbers, whatever the mesh phase")
+    values = np.asarray(numbers, order="C")
     if values.ndim == 0:
         values = np.full((probe.size, 1), float(values))
     elif values.ndim == 1 and values.size == probe.size and size == 1:
