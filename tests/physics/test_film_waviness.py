@@ -75,20 +75,20 @@ def test_random_roughness_of_both_surfaces_is_flattened_wave_by_wave() -> None:
         time, load, RADIUS, speed, OIL, MODULUS, nodes=513, keep_every=0,
         roughness=(profiles[0], profiles[1]), surface_speeds=(speed, speed),
     ).central_film[-240:]  # fmt: skip
-    both = RoughnessProfile(x, heights[0] + heights[1], "periodic")
-    kept = flattened_roughness(both, half_width, 50.0, 10.0)
-    assert np.std(film) == pytest.approx(kept.rms, rel=0.08)
-    assert np.std(film) < 0.6 * both.rms
+    combined = RoughnessProfile(x, heights[0] + heights[1], "periodic")
+    flattened = flattened_roughness(combined, half_width, 50.0, 10.0)
+    assert np.std(film) == pytest.approx(flattened.rms, rel=0.08)
+    assert np.std(film) < 0.6 * combined.rms
     # The curve says nothing of phases: waves of the film lag behind those of the surface.
-    assert np.corrcoef(film, kept(-speed * time[-240:]))[0, 1] > 0.65
+    assert np.corrcoef(film, flattened(-speed * time[-240:]))[0, 1] > 0.65
 
 
 def test_profiles_with_ends_lose_their_long_waves_too() -> None:
     x = np.linspace(0.0, 2e-3, 2001)
     mixed = 1e-7 * np.cos(2.0 * np.pi * x / 2e-3) + 1e-7 * np.cos(2.0 * np.pi * x / 2e-5)
-    kept = flattened_roughness(RoughnessProfile(x, mixed), 1e-4, 20.0, 10.0)
+    flattened = flattened_roughness(RoughnessProfile(x, mixed), 1e-4, 20.0, 10.0)
     short = float(amplitude_reduction(2e-5, 1e-4, 20.0, 10.0))
-    assert kept.rms == pytest.approx(short * 1e-7 / np.sqrt(2.0), rel=0.02)
+    assert flattened.rms == pytest.approx(short * 1e-7 / np.sqrt(2.0), rel=0.02)
 
 
 def test_the_curve_runs_from_short_to_long_waves() -> None:
