@@ -40,7 +40,16 @@ def _columns(mesh: Any) -> dict[str, Any]:
     ids=str,
 )
 def test_every_column_is_that_of_a_single_point(changes: dict[str, Any]) -> None:
-    case = td.load_case("fzg-roughness").replace(changes)
+    check_columns(td.load_case("fzg-roughness").replace(changes))
+
+
+def test_every_column_of_slices_is_that_of_a_single_point() -> None:
+    changes = {"film.stiffness": "none", "stiffness.model": "iso6336", "friction.law": "mixed"}
+    check_columns(td.load_case("helical-pair").replace(changes))
+
+
+def check_columns(case: td.Case) -> None:
+    """Compare each table of one pass with that of its point alone."""
     pending = with_tables(_pending(case))
     assert [callable(mesh_source) for _, mesh_source in pending] == [True] * len(_POINTS)
     for mesh_column, mesh_source in pending:

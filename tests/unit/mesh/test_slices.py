@@ -467,14 +467,14 @@ def test_films_over_torque_and_speed_are_those_of_each_mesh_of_slices():
 def test_stiffness_over_torque_and_speed_sums_over_the_slices_of_all_pairs():
     settings = {"material": Material(), "stiffness_model": "iso6336", "lubricant": OIL}
     operation = {"pinion_torque": 600.0, "pinion_speed": (75.0, 150.0), "steps": 32}
-    found = comprehensive_stiffness(helical(), **settings, film_model="moes", **operation)
+    stiffness = comprehensive_stiffness(helical(), **settings, film_model="moes", **operation)
     mesh = table(helical(), stiffness_model="iso6336", steps=32,
                  film_options={"stiffness": "tangent"})  # fmt: skip
-    assert found.comprehensive_mesh_stiffness[0, 1] == pytest.approx(mesh.mesh_stiffness)
-    assert found.pair_stiffness[0].sum(axis=1) == pytest.approx(
-        found.comprehensive_mesh_stiffness[0].sum(axis=1), rel=1e-9
+    assert stiffness.comprehensive_mesh_stiffness[0, 1] == pytest.approx(mesh.mesh_stiffness)
+    assert stiffness.pair_stiffness[0].sum(axis=1) == pytest.approx(
+        stiffness.comprehensive_mesh_stiffness[0].sum(axis=1), rel=1e-9
     )
-    assert np.unique(found.face_position).size == 24
+    assert np.unique(stiffness.face_position).size == 24
 
 
 def test_the_film_of_a_flank_line_follows_its_slice_through_the_mesh():
