@@ -27,6 +27,7 @@ SCRIPTS = (
     "losses_speed",
     "fe2d_speed",
     "stiffness_speed",
+    "fault_speed",
     "helical_speed",
     "learning_speed",
     "signals_speed",

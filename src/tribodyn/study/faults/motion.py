@@ -127,10 +127,11 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
         mesh = turning_mesh_of(case)
         system = turning_system(result, mesh)
         frequency = result.mesh.mesh_frequency / mesh.cycles
+        response: Response | None = None
         for steps in _STEPS:
             with collected() as model_warnings:
                 response = harmonic_balance(
-                    system, frequency, steps=steps * mesh.cycles, progress=progress
+                    system, frequency, steps=steps * mesh.cycles, start=response, progress=progress
                 )
             if not response.step_error > _ACCURATE:
                 break

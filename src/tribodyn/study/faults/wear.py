@@ -120,7 +120,7 @@ def wear(
     progress.finish()
     pinion, wheel = (np.array(depth) for depth in depths)
     worn = _worn(case, [pinion[-1], wheel[-1]])
-    return Wear(each * np.arange(steps + 1), place, pinion, wheel, worn)
+    return Wear(np.asarray(each * np.arange(steps + 1)), place, pinion, wheel, worn)
 
 
 def _stated(case: Case, name: str) -> Array:
@@ -128,7 +128,8 @@ def _stated(case: Case, name: str) -> Array:
     modification = getattr(case.gears, name).modification
     stated = modification.wear_depth if modification is not None else None
     depth = np.atleast_1d(np.asarray(stated or 0.0, dtype=float))
-    return np.interp(np.linspace(0.0, 1.0, _PLACES), np.linspace(0.0, 1.0, depth.size), depth)
+    at = np.linspace(0.0, 1.0, _PLACES)
+    return np.asarray(np.interp(at, np.linspace(0.0, 1.0, depth.size), depth))
 
 
 def _worn(case: Case, depths: list[Array]) -> Case:
@@ -159,4 +160,4 @@ def _rate(mesh: MeshTable, gear: str, coefficient: float) -> Array:
     lost = coefficient * mesh.load_per_width[touching] * sliding / (speed * radius)
     order = np.argsort(radius)
     share = (radius[order] - flank.lowest) / flank.length
-    return np.interp(np.linspace(0.0, 1.0, _PLACES), share, lost[order])
+    return np.asarray(np.interp(np.linspace(0.0, 1.0, _PLACES), share, lost[order]))
