@@ -15,19 +15,23 @@ from tribodyn.types import Array, ComplexArray
 class Smoother(NamedTuple):
     """How a level is relaxed."""
 
-    switch: float  #: mobility below which a node changes as a dipole, over the area of a cell
-    least: float  #: and at least
+    single: float  #: damping of single nodes
     dipole: float  #: damping of dipoles
-    sweeps: int = 2  #: before a correction by the coarser level
+    sweeps: int  #: before a correction by the coarser level
+    v_cycles: int  #: cycles before W-cycles
 
 
-#: Tried in this order. Venner's switch 0.3 suits points; lines need one that does not depend on
-#: the grid, because the band of a line cuts an influence that falls off slowly.
-_SMOOTHERS = (Smoother(0.3, 0.0, 0.65), Smoother(0.3, 0.0, 0.5), Smoother(0.0, 0.03, 0.5, 3))
-#: Damping of single nodes, and largest change of a pressure in a sweep.
-_SINGLE, _LARGEST = 0.8, 0.3
-#: V-cycles on the finest grid before W-cycles, all cycles, and those of the grids before.
-_V_CYCLES, _MOST_CYCLES, _PASSING_CYCLES = 4, 30, 3
+#: Tried in this order; on cells that are long across the lines the first one comes last.
+_SMOOTHERS = (Smoother(0.8, 0.65, 2, 4), Smoother(0.5, 0.5, 1, 0), Smoother(0.4, 0.3, 2, 4))
+#: Length of a cell over its width from which it is long.
+_LONG_CELL = 2.0
+#: Mobility over the area of a cell below which a node changes as a dipole: Venner.
+_SWITCH = 0.3
+#: Largest change of a pressure in a sweep.
+_LARGEST = 0.3
+#: Cycles on the finest grid and on those before it; a change after some that shows divergence.
+_MOST_CYCLES, _PASSING_CYCLES = 25, 3
+_DIVERGED = (8, 0.03)
 #: Change of the pressure at which a grid leads to the next one.
 _PASSING = 2e-4
 #: Greatest relative residual and relative load error at convergence.
@@ -179,8 +183,8 @@ class Multigrid:
     def sweep(self, level: Level, count: int) -> None:
         """Relax a level."""
         p, s = self.problem, self.smoother
-        damping = np.array([_SINGLE, s.dipole, _LARGEST])
-        switch = max(s.switch * level.hy * min(level.hx, level.hy), s.least)
+        damping = np.array([s.single, s.dipole, _LARGEST])
+        switch = _SWITCH * level.hy * min(level.hx, level.hy)
         for _ in range(count):
             self.residual(level)
             relax(level.hx, level.hy, p.ux, p.uy, switch, damping, level.K,
@@ -280,22 +284,22 @@ class Multigrid:
         for number in range(0 if last else 1, 1 if last else most + 1):
             if not last:
                 old = level.P.copy()
-                self.cycle(k, 1 if number <= _V_CYCLES else 2)
+                self.cycle(k, 1 if number <= self.smoother.v_cycles else 2)
                 change = float(np.abs(level.P - old).sum() / level.P.sum())
             size = self.residual(level)
             r = np.where(level.P > 0.0, level.r, np.minimum(level.r, 0.0))
             wrong = float(np.abs(r).mean()) / size
             load_error = abs(level.carried() / p.load - 1.0)
-            if not np.isfinite(change) or (
-                change < tolerance and wrong < _RESIDUAL and load_error < _LOAD
-            ):
+            solved = change < tolerance and wrong < _RESIDUAL and load_error < _LOAD
+            diverged = number >= _DIVERGED[0] and change > _DIVERGED[1]
+            if solved or diverged or not np.isfinite(change):
                 break
         center = tuple(index >> k for index in p.center)
         thinnest = float(level.H.min())
         message = ""
         if not np.isfinite(thinnest) or thinnest <= 0.0:
             message = f"the film of the iterate is not positive ({thinnest:.2g})"
-        elif not (change < tolerance and wrong < _RESIDUAL and load_error < _LOAD):
+        elif not solved:
             message = (
                 f"after {number} cycles the pressure changes by {change:.1e} (limit "
                 f"{tolerance:.1e}), residual {wrong:.1e} ({_RESIDUAL:.0e}), load error "
@@ -310,7 +314,9 @@ class Multigrid:
 
 def solve_area(problem: AreaProblem) -> Outcome:
     """Solve a contact by full multigrid; other smoothers where one does not converge."""
-    for smoother in _SMOOTHERS:
+    first, *others = _SMOOTHERS
+    long = problem.hy > _LONG_CELL * problem.hx
+    for smoother in (*others, first) if long else _SMOOTHERS:
         with np.errstate(all="ignore"):
             outcome = Multigrid(problem, smoother).solve()
         if outcome.converged or outcome.starved_grid:
