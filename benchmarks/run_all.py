@@ -33,6 +33,7 @@ SCRIPTS = (
     "signals_speed",
     "study_speed",
     "hypoid_speed",
+    "point_contact_speed",
     "geared_rotors",
     "cold_start",
 )

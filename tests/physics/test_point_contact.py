@@ -8,8 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tribodyn.ehl import PointContactSolution, solve_point_contact
-from tribodyn.errors import quiet
+from tribodyn.ehl import (
+    PointContactSolution,
+    hamrock_dowson_central,
+    hamrock_dowson_minimum,
+    nijenbanning_central,
+    solve_line_contact,
+    solve_point_contact,
+)
+from tribodyn.errors import ComputationError, InputError, ModelWarning, quiet
 from tribodyn.lubricant import Lubricant
 
 OIL = Lubricant(0.05, 880.0, 2e-8)
@@ -69,3 +76,86 @@ def test_thin_film_leaves_the_pressure_of_hertz() -> None:
     assert contact.approach == pytest.approx(contact.hertz_approach, rel=0.01)
     # The film is flat where the pressure is great.
     assert np.ptp(contact.film[X**2 + Y**2 < 0.3]) < 0.15 * contact.central_film
+
+
+@pytest.mark.parametrize(
+    ("force", "radius_x", "radius_y", "speed"),
+    [(5.0, 0.01, 0.01, 1.0), (20.0, 0.01, 0.03, 1.0), (100.0, 0.01, 0.02, 10.0)],
+)
+def test_regressions_meet_the_solved_film(
+    force: float, radius_x: float, radius_y: float, speed: float
+) -> None:
+    # Both were fitted to solutions: of an incompressible oil, and of coarse grids.
+    oil = force, radius_x, radius_y, speed, 0.05, 2e-8, MODULUS
+    contact = solve(*oil[:4], compressible=False)
+    film = contact.central_film_extrapolated
+    assert film == pytest.approx(nijenbanning_central(*oil), rel=0.1)
+    film = solve(*oil[:4])
+    assert film.central_film_extrapolated == pytest.approx(hamrock_dowson_central(*oil), rel=0.15)
+    assert film.minimum_film == pytest.approx(hamrock_dowson_minimum(*oil), rel=0.3)
+
+
+def test_rigid_bodies_have_the_film_of_brewe_and_hamrock() -> None:
+    # Little load on an isoviscous oil, a point: H = 128 D f^2 (0.131 atan(D/2) + 1.683)^2 (U/W)^2
+    # with D = 1 and f = 1/(1 + 2/(3 D)) of Brewe, Hamrock and Taylor (1979).
+    contact = solve(0.2, 0.01, 0.01, 2.0, viscosity_law="isoviscous", compressible=False)
+    speed = 0.05 * 2.0 / (MODULUS * 0.01)
+    load = 0.2 / (MODULUS * 0.01**2)
+    film = 128.0 * 0.6**2 * (0.131 * math.atan(0.5) + 1.683) ** 2 * (speed / load) ** 2
+    assert contact.moes_load < 0.5
+    assert contact.central_film == pytest.approx(0.01 * film, rel=0.04)
+    assert contact.outside_load < 0.2 * 0.2
+
+
+def test_wide_ellipse_has_the_film_of_a_line() -> None:
+    contact = solve(300.0, 0.01, 1.0, 5.0, 129)
+    load = contact.hertz_pressure**2 * 2.0 * math.pi * 0.01 / MODULUS
+    line = solve_line_contact(load, 0.01, 5.0, OIL, MODULUS)
+    assert contact.central_film_extrapolated == pytest.approx(line.central_film, rel=0.01)
+
+
+@pytest.mark.slow
+def test_film_converges_with_the_square_of_the_interval() -> None:
+    films = [solve(20.0, 0.01, 0.01, 5.0, nodes).central_film for nodes in (65, 129, 257)]
+    assert (films[1] - films[0]) / (films[2] - films[1]) == pytest.approx(4.0, abs=1.0)
+
+
+def test_friction_falls_as_the_film_heats_up() -> None:
+    oil = Lubricant(
+        0.05, 880.0, 2e-8, temperature=313.15, temperature_viscosity_coefficient=0.04,
+        thermal_conductivity=0.13,
+    )  # fmt: skip
+    contact = solve_point_contact(10.0, 0.01, 0.01, 2.0, oil, MODULUS, nodes=65)
+    cold, warm = (contact.friction(1.0, flash_temperature=heated) for heated in (False, True))
+    assert 0.0 < warm.coefficient < cold.coefficient < 0.1
+    assert 1.0 < warm.mean_temperature_rise < 100.0
+    # A little sliding shears the film like a Newtonian liquid.
+    slow = contact.friction(1e-9), contact.friction(2e-9)
+    assert slow[1].force == pytest.approx(2.0 * slow[0].force, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"normal_force": 0.0}, "normal_force"),
+        ({"radius_y": math.inf}, "radius_y"),
+        ({"radius_y": 50.0}, "times as long as wide"),
+        ({"normal_force": 1e5}, "narrow against the radii|Hertz pressure"),
+        ({"nodes": 100}, "nodes = 100"),
+        ({"entrainment_angle": 45.0}, "entrainment_angle"),
+        ({"lubricant": 0.05}, "argument lubricant"),
+    ],
+)
+def test_values_out_of_range_are_refused(change: dict[str, Any], message: str) -> None:
+    values = {"normal_force": 20.0, "radius_x": 0.01, "radius_y": 0.01, "lubricant": OIL}
+    with pytest.raises(InputError, match=message):
+        solve_point_contact(
+            entrainment_speed=1.0, effective_modulus=MODULUS, **{**values, **change}
+        )
+
+
+def test_grid_too_coarse_for_the_film_is_reported() -> None:
+    with pytest.warns(ModelWarning, match="estimated error"):
+        solve_point_contact(20.0, 0.01, 0.01, 1.0, OIL, MODULUS, nodes=33)
+    with pytest.raises(ComputationError, match="Use more nodes than 33"):
+        solve_point_contact(1000.0, 0.02, 0.02, 0.1, OIL, MODULUS, nodes=33)

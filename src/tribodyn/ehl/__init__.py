@@ -20,8 +20,11 @@
 from __future__ import annotations
 
 from tribodyn.arguments import guard
+from tribodyn.ehl.area.finite_line import solve_finite_line_contact
+from tribodyn.ehl.area.finite_line_solution import FiniteLineSolution
 from tribodyn.ehl.area.friction import AreaFriction
 from tribodyn.ehl.area.point_contact import solve_point_contact
+from tribodyn.ehl.area.roller_profile import RollerProfile
 from tribodyn.ehl.area.solution import PointContactSolution
 from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.ehl.flow_factors import (
@@ -80,12 +83,14 @@ __all__ = [
     "BodyHeat",
     "FilmModel",
     "FilmState",
+    "FiniteLineSolution",
     "FlowFactors",
     "Groups",
     "LineContactBatch",
     "LineContactSolution",
     "MixedLineContact",
     "PointContactSolution",
+    "RollerProfile",
     "RoughnessProfile",
     "ThermalLineContactSolution",
     "ThermalModel",
@@ -120,6 +125,7 @@ __all__ = [
     "ree_eyring_shear_stress",
     "shear_flow_factor",
     "solve_amplitude_reduction",
+    "solve_finite_line_contact",
     "solve_line_contact",
     "solve_line_contact_moes",
     "solve_line_contacts",

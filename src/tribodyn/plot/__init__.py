@@ -8,6 +8,7 @@ from __future__ import annotations
 from tribodyn.arguments import guard
 from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
+from tribodyn.plot.film.area_contact import finite_line_contact, point_contact
 from tribodyn.plot.film.dynamics import film_response, film_transient
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
 from tribodyn.plot.film.lubrication import film_over_operation, lubrication, lubrication_map
@@ -126,6 +127,7 @@ __all__ = [
     "film_response",
     "film_stiffness",
     "film_transient",
+    "finite_line_contact",
     "flank_modification",
     "force_law",
     "forced_response",
@@ -186,6 +188,7 @@ __all__ = [
     "planetary_modes",
     "planetary_stage",
     "poincare",
+    "point_contact",
     "power_flow",
     "recording",
     "response",

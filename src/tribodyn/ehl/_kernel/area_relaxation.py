@@ -20,6 +20,8 @@ from tribodyn.types import Array
 
 #: Least film in the mobility, and share of Roelands' pole below which a pressure is cut.
 _THINNEST, _LOWEST = 1e-9, -0.3
+#: Flow per overlap of an iterate, in units of the flow that is carried along a line.
+_APART = 5.0
 #: Half width of the band of a line, and nodes of the influence that it needs.
 BAND = 4
 REACH = BAND + 4
@@ -85,7 +87,8 @@ def _build_residual(digest: str) -> Any:
                         moved += by * (1.5 * m - 2.0 * below + 0.5 * rho[j - 2, i] * H[j - 2, i])
                     else:
                         moved += by * (m - below)
-                r[j, i] = f[j, i] - flow + moved
+                # Bodies that overlap in an iterate press each other apart.
+                r[j, i] = f[j, i] - flow + moved + _APART * bx * min(H[j, i], 0.0)
                 size += abs(moved)
         return size / ((rows - 2) * (nodes - 2))
 
@@ -116,6 +119,8 @@ def _tangent_row(
     cP[0] = -mean + rise * e * grow[j, i]
     if H[j, i] > _THINNEST:
         cH[0] = rise * 3.0 * e / H[j, i]
+    elif H[j, i] < 0.0:
+        cH[0] = -_APART * bx
     w0, w1, w2 = (1.5 * bx, -2.0 * bx, 0.5 * bx) if i > 1 else (bx, -bx, 0.0)
     v0, v1, v2 = (1.5 * by, -2.0 * by, 0.5 * by) if j > 1 else (by, -by, 0.0)
     cH[0] -= (w0 + v0) * rho[j, i]

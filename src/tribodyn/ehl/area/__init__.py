@@ -7,5 +7,8 @@
 | ``multigrid`` | full multigrid with elastic films by FFT |
 | ``point_contact`` | the solver of points and ellipses |
 | ``solution`` | their result |
+| ``finite_line`` | the solver of rollers of finite length |
+| ``finite_line_solution`` | their result, and whether the infinite line is enough |
+| ``roller_profile`` | shapes of rollers |
 | ``friction`` | shear of the film, line by line |
 """

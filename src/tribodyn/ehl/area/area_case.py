@@ -219,15 +219,17 @@ def point_grid(case: PointCase, intervals: int) -> Grid:
     film = case.film_estimate
     # Length over which the gap doubles, along the lines and across.
     sx = math.sqrt(2.0 * film)
+    # Nearly rigid bodies: the film depends on all of the load, and much of it lies far out.
+    far = 1.0 + min(film / 10.0, 1.0)
     sy = sx / math.sqrt(curvature)
 
     def before(half: float, s: float, u: float) -> float:
         """Distance of the inlet."""
-        return half + max((0.6 + 0.6 * u) * half, (2.5 + 1.5 * u) * s)
+        return half + max((0.6 + 0.6 * u) * half, (2.5 + 1.5 * u) * far * s)
 
     def behind(half: float, s: float, u: float) -> float:
         """Distance of the outlet."""
-        return half + max((0.6 - 0.3 * u) * half, (2.5 - 1.7 * u) * s)
+        return half + max((0.6 - 0.3 * u) * half, (2.5 - 1.7 * u) * far * s)
 
     hx = (before(1.0, sx, ux) + behind(1.0, sx, ux)) / intervals
     first = 2 * round(before(1.0, sx, ux) / (2.0 * hx))

@@ -20,6 +20,9 @@ from tribodyn.errors import require_between
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
+#: Least film that is sheared, over the central one.
+_THINNEST = 0.01
+
 
 @record
 class AreaFriction(Record):
@@ -65,6 +68,8 @@ def area_friction(
     axis, across = (solution.y, solution.x) if along_y else (solution.x, solution.y)
     turned = np.transpose if along_y else np.asarray
     pressure, film = turned(solution.pressure), turned(solution.film)
+    # Where the grid does not resolve the film at the end of a roller.
+    film = np.maximum(film, _THINNEST * solution.central_film)
     loaded = np.flatnonzero((pressure > 0.0).any(axis=1) & (solution.line_half_width > 0.0))
     state = FilmState(
         np.broadcast_to(axis, (loaded.size, axis.size)),

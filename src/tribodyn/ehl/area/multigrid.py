@@ -31,11 +31,13 @@ _SWITCH = 0.3
 _LARGEST = 0.3
 #: Cycles on the finest grid and on those before it; a change after some that shows divergence.
 _MOST_CYCLES, _PASSING_CYCLES = 25, 3
-_DIVERGED = (8, 0.03)
+_DIVERGED = (8, 0.02)
 #: Change of the pressure at which a grid leads to the next one.
 _PASSING = 2e-4
 #: Greatest relative residual and relative load error at convergence.
 _RESIDUAL, _LOAD = 1e-3, 3e-5
+#: Pressure below which a node does not count in the residual: open gaps carry next to nothing.
+_TRACE = 1e-5
 #: Newton steps of the first solution on the coarsest grid, and of every cycle.
 _FIRST_STEPS, _STEPS = 30, 4
 #: Intervals of the coarsest grid: at most about as many nodes, and least intervals of a side.
@@ -122,6 +124,7 @@ class AreaProblem:
     film: float  #: estimate of the central film
     center: tuple[int, int]  #: node of the central film
     tolerance: float = 1e-4  #: relative change of the pressure in the last cycle
+    overlap: float = 0.0  #: allowed overlap of the bodies at ends that the grid does not resolve
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +144,7 @@ class Outcome:
     @property
     def starved_grid(self) -> bool:
         """Whether the grid is too coarse for so thin a film: no smoother helps."""
-        return not float(self.film.min()) > 0.0
+        return "not positive" in self.message and self.cycles > 0 and self.residual < _RESIDUAL
 
     @property
     def converged(self) -> bool:
@@ -287,7 +290,7 @@ class Multigrid:
                 self.cycle(k, 1 if number <= self.smoother.v_cycles else 2)
                 change = float(np.abs(level.P - old).sum() / level.P.sum())
             size = self.residual(level)
-            r = np.where(level.P > 0.0, level.r, np.minimum(level.r, 0.0))
+            r = np.where(level.P > _TRACE, level.r, 0.0)
             wrong = float(np.abs(r).mean()) / size
             load_error = abs(level.carried() / p.load - 1.0)
             solved = change < tolerance and wrong < _RESIDUAL and load_error < _LOAD
@@ -297,7 +300,7 @@ class Multigrid:
         center = tuple(index >> k for index in p.center)
         thinnest = float(level.H.min())
         message = ""
-        if not np.isfinite(thinnest) or thinnest <= 0.0:
+        if not np.isfinite(thinnest) or thinnest <= -p.overlap * p.film:
             message = f"the film of the iterate is not positive ({thinnest:.2g})"
         elif not solved:
             message = (

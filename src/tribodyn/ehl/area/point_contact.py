@@ -99,7 +99,7 @@ def solve_point_contact(
     require_between("tolerance", require_number("tolerance", tolerance), 1e-8, 1e-2)
     limit = require_number("film_tolerance", film_tolerance)
     require_between("film_tolerance", limit, 1e-4, 0.1)
-    automatic, count = _nodes(nodes)
+    automatic, count = requested_nodes(nodes, _FIRST, _LAST)
     attempts: list[str] = []
     while True:
         grid = point_grid(case, count - 1)
@@ -126,16 +126,16 @@ def solve_point_contact(
     return solution
 
 
-def _nodes(nodes: Any) -> tuple[bool, int]:
+def requested_nodes(nodes: Any, first: int, last: int) -> tuple[bool, int]:
     """Whether the grid is automatic, and its nodes."""
     if nodes == "auto":
-        return True, _FIRST
+        return True, first
     count = require_whole("nodes", nodes, 33)
-    if count > _LAST or (count - 1) & (count - 2):
+    if count > last or (count - 1) & (count - 2):
         raise InputError(
             f"nodes = {count}",
             "argument nodes",
-            f"multigrid halves the grid: 2^k + 1 nodes from 33 to {_LAST}",
+            f"multigrid halves the grid: 2^k + 1 nodes from 33 to {last}",
             'Use 65, 129 or 257, or nodes = "auto"',
         )
     return False, count
