@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact import hertz_line
+from tribodyn.contact.face_contacts import SLICES, face_positions
 from tribodyn.mesh.build import teeth_under_load
 from tribodyn.mesh.cycle import pairs_in_contact
 from tribodyn.mesh.face.lines import along_flank
@@ -31,9 +32,7 @@ def films_over_flank(
         cycle, teeth = teeth_under_load(pair, settings, torque, None, None)
         number = np.zeros(cycle.in_contact.shape, dtype=np.int64)
         number[cycle.in_contact] = np.arange(np.count_nonzero(cycle.in_contact))
-        slices = cycle.slices
-        assert slices is not None
-        order = along_flank(number, cycle.in_contact, slices.slices)
+        order = along_flank(number, cycle.in_contact, SLICES)
         films.append([])
         for speed in speeds.tolist():
             motion = cycle.motion(speed)
@@ -49,10 +48,11 @@ def films_over_flank(
     motion, load = cycle.motion(speeds[:, None]), np.array(loads)
     radius = getattr(motion, f"{pair.driver}_curvature_radius")[0]
     modulus, reduced = pairs.effective_modulus, motion.equivalent_radius[0][order]
-    face = np.broadcast_to(slices.face_position, cycle.path.shape)
+    positions = np.tile(face_positions(cycle.contact, SLICES), cycle.path.shape[1] // SLICES)
+    face = np.broadcast_to(positions, cycle.path.shape)
     return {
-        "path": along_flank(cycle.path, cycle.in_contact, slices.slices),
-        "face_position": along_flank(face, cycle.in_contact, slices.slices),
+        "path": along_flank(cycle.path, cycle.in_contact, SLICES),
+        "face_position": along_flank(face, cycle.in_contact, SLICES),
         "roll_angle": radius[order] / pair.driving.base_radius,
         "load_per_width": load,
         "hertz_pressure": hertz_line(load, reduced, modulus).maximum_pressure,

@@ -185,7 +185,7 @@ def _quantities(pairs: PairsInContact, load: Array, model: str, options: dict[st
         films = pairs.films(model, load, **options)
     if options["stiffness"] == "seed":  # a length: times the pressure it is a stiffness
         pressure = pairs.scales(load)["film_pressure"]
-        films = replace(films, film_stiffness=films.film_stiffness * pressure)
+        films = replace(films, film_stiffness=np.asarray(films.film_stiffness) * pressure)
     index, every = np.zeros(load.size, dtype=np.int64), np.ones(load.size, dtype=bool)
     places = places_of(pairs, index, load, films, every)
     errors = [each.central_film_error / each.central_film for each in films.solutions]

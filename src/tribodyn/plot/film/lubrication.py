@@ -144,14 +144,21 @@ def _names(low: float, high: float) -> list[dict[str, Any]]:
 _COLORS = (PINION, WHEEL, *PAIR_COLORS, TOTAL)
 _DASHES = ("solid", "dash", "dot")
 
+
+def _where(films: FilmOverOperation) -> str:
+    return "along the path of contact" if films.face_position is None else "over the flank"
+
+
 _has_film = Need("central_film minimum_film", "The film model gives no film thickness.")
 
 
 @drawing(
     "film_over_operation",
     heading="Oil film over speed and torque",
-    caption="The minimum film along the path of contact, over the speed for each torque. "
-    "Below, its ratio to the composite roughness: asperities touch below a ratio of 1.",
+    caption=lambda films: (
+        f"The minimum film {_where(films)}, over the speed for each torque. "
+        "Below, its ratio to the composite roughness: asperities touch below a ratio of 1."
+    ),
     missing=_has_film,
     of="FilmOverOperation",
     made_by="Call tribodyn.film_over_operation(case, torque=..., speed=...) and its plot method.",
@@ -195,8 +202,10 @@ def _no_map(films: FilmOverOperation) -> str:
 @drawing(
     "lubrication_map",
     heading="Lubrication regime over speed and torque",
-    caption="The least film ratio along the path of contact, over speed and torque of the "
-    f"pinion. {REGIME_SENTENCE}",
+    caption=lambda films: (
+        f"The least film ratio {_where(films)}, over speed and torque of the "
+        f"pinion. {REGIME_SENTENCE}"
+    ),
     of="FilmOverOperation",
     made_by="Call tribodyn.film_over_operation(case, torque=..., speed=...) with several of both.",
     missing=_no_map,
