@@ -53,7 +53,8 @@ NO_CALLS = {
 _SLOW = """
 cases.PaperComparison cases.compare_with_paper dynamics.Branch dynamics.HypoidSupports
 dynamics.SpecialPoint dynamics.continuation exchange.write_tables gear.HypoidKinematics
-gear.ToothContact gear.hypoid_kinematics gear.tooth_contact mesh.hypoid_loaded_contact
+gear.MisalignmentStudy gear.ToothContact gear.hypoid_kinematics gear.misalignment_study
+gear.tooth_contact mesh.hypoid_loaded_contact
 ehl.MixedLineContact ehl.mixed_line_contact plot.tooth_force mesh.moving_film
 plot.continuation plot.flank_modification plot.friction_claims
 plot.friction_effect plot.friction_harmonics plot.hypoid_contact plot.surrogate
