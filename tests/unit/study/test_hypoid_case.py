@@ -72,10 +72,14 @@ def refused(written):
 
 
 def test_a_written_case_reads_back_and_lists_its_assumptions(tmp_path):
-    case = built_in()
+    case = built_in(**LOSSES, **{
+        "film.model": "newton", "film.nodes": 257, "gears.process": "face-hobbing",
+        "gears.blade_groups": 13, "gears.cutter_radius": 0.105, "gears.shaft_angle": 1.5,
+    })  # fmt: skip
     (tmp_path / "again.toml").write_text(case.to_toml(), encoding="utf-8")
     assert tribodyn.load_case(tmp_path / "again.toml") == case
     assert "normal_module" not in case.to_toml()
+    case = built_in()
     # The source prints no sizes of teeth and bearings: every one of them has its reason.
     assert {"gears.cutter_radius", "gears.ease_off.bias", "dynamics.backlash"} <= set(case.assumed)
     assert "gears.offset" not in case.assumed

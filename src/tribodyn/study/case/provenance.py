@@ -306,7 +306,7 @@ def effective_values(case: CaseData) -> dict[str, Any]:
     """Return all effective values by dotted key, with defaults filled in."""
     values, kind = in_force(case), case.gears.kind
     values |= {key: None for key in values if is_idle(key, kind)}
-    if kind != "spur":
+    if kind == "table":
         values["film.model"] = "none"
     if case.stiffness.reference is None:
         values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
