@@ -61,13 +61,14 @@ def sun_to_ring_lag(
     planet = ring_pair.pinion
     limits = sun_pair.path_limits
     if sun_pair.pinion.teeth != planet.teeth or sun_pair.wheel.teeth == planet.teeth:
-        limits = tuple(sun_pair.line_of_action_length - path for path in reversed(limits))
+        length = sun_pair.line_of_action_length
+        limits = length - limits[1], length - limits[0]
     begin = (limits[1], ring_pair.path_limits[0])
     if not sun_drives:
         begin = (limits[0], ring_pair.path_limits[1])
     arc = math.pi - sun_pair.operating_pressure_angle - ring_pair.operating_pressure_angle
-    length = planet.base_radius * (arc - 2.0 * planet.base_half_angle) + sum(begin)
-    return (length / planet.base_pitch) % 1.0
+    distance = planet.base_radius * (arc - 2.0 * planet.base_half_angle) + sum(begin)
+    return (distance / planet.base_pitch) % 1.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,7 +33,7 @@ def _outline(gear: CylindricalGear) -> ComplexArray:
     x, y = gear_outline(gear, _POINTS)[:, :-1]
     outline = (x + 1j * y).reshape(abs(gear.teeth), -1)[:, _DRAWN].ravel()
     outline = outline * cmath.exp(-0.5j * math.pi)
-    return np.append(outline, outline[:1]) * 1e3
+    return np.asarray(1e3 * np.append(outline, outline[:1]), dtype=complex)
 
 
 def _trace(points: ComplexArray, name: str, color: str) -> Trace:

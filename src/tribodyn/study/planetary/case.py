@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 
@@ -34,9 +34,6 @@ from tribodyn.study.machine.read_parts import (
 )
 from tribodyn.study.machine.tables import STIFF, MotionTable, PlanetsTable
 from tribodyn.study.machine.user_tables import changed_tables, machine_toml, stated_assumptions
-
-if TYPE_CHECKING:
-    from tribodyn.gear import CylindricalPair
 
 _TOP = ("title", "origin", "gears", "planets", "operation", "load_cases", "dynamics")
 _MEMBERS = ("sun", "ring", "carrier")
@@ -218,7 +215,7 @@ class PlanetaryCase:
             "angles": self.table.angles,
         }
 
-    def kinematics(self, load: LoadCase, **efficiencies: float) -> PlanetaryKinematics:
+    def kinematics(self, load: LoadCase, **efficiencies: Any) -> PlanetaryKinematics:
         """Speeds, torques and power under a load.
 
         Parameters
@@ -349,9 +346,7 @@ class PlanetaryCase:
         MeshPhases
             Angles are counted in the direction of the torque on the sun.
         """
-        sun, ring = (
-            cast("CylindricalPair", self.pairs[mesh].gear_pair) for mesh in ("sun", "ring")
-        )
+        sun, ring = (self.pairs[mesh].gear_pair for mesh in ("sun", "ring"))
         lag = sun_to_ring_lag(sun, ring, sun_drives=self.sun_drives(load))
         angles = planetary_positions(**self._teeth).angles
         if self.turn(load) < 0:
