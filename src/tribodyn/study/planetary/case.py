@@ -257,6 +257,10 @@ class PlanetaryCase:
         ----------
         load : LoadCase
             Speed and torque of the input.
+
+        Returns
+        -------
+        bool
         """
         stage = self.kinematics(load)
         return stage.torques["sun"] * stage.relative_speeds["sun"] > 0.0
@@ -295,6 +299,10 @@ class PlanetaryCase:
         ----------
         mesh : str
             ``sun`` or ``ring``.
+
+        Returns
+        -------
+        (str, str)
         """
         sun, planet, ring = self.table.sun, self.table.planet, self.table.ring
         if mesh == "ring":
@@ -309,6 +317,10 @@ class PlanetaryCase:
         ----------
         gear : str
             Name of the gear.
+
+        Returns
+        -------
+        str
         """
         right = (self.table.hand == "right") == (gear == self.table.sun)
         return "right" if right else "left"
@@ -360,6 +372,10 @@ class PlanetaryCase:
         ----------
         load : LoadCase
             Speed and torque of the input.
+
+        Returns
+        -------
+        int
         """
         return 1 if self.kinematics(load).torques["sun"] > 0.0 else -1
 

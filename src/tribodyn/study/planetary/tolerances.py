@@ -43,6 +43,10 @@ class LoadShareStatistics(Record):
         ----------
         part : float
             Between 0 and 1.
+
+        Returns
+        -------
+        float
         """
         return float(np.quantile(self.load_factor, part))
 
