@@ -17,6 +17,7 @@ from tribodyn.ehl.formulas.power_laws import (
     pan_hamrock_minimum,
 )
 from tribodyn.ehl.steady.batch import Films, solved_films
+from tribodyn.ehl.thermal.thermal_model import ThermalModel
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.model import Model, Registry, choice, integer, numbers
@@ -103,6 +104,8 @@ class FilmModel(Model):
         One line for whoever chooses a model.
     papers : tuple of str
         Keys of the bibliography of the package.
+    heated : bool
+        Whether the energy equation is solved with the film, which then depends on the sliding.
 
     Examples
     --------
@@ -121,6 +124,7 @@ class FilmModel(Model):
     options: Mapping[str, Any] = field(default_factory=dict)
     meaning: str = ""
     papers: tuple[str, ...] = ()
+    heated: bool = False
 
     def __post_init__(self) -> None:
         """Separate options from defaults."""
@@ -193,6 +197,8 @@ class FilmModel(Model):
         effective_modulus: float,
         *,
         length: ArrayLike = 1.0,
+        sliding_speed: ArrayLike | None = None,
+        thermal: ThermalModel | None = None,
         progress: Progress = SILENT,
         **options: Any,
     ) -> Films:
@@ -207,6 +213,10 @@ class FilmModel(Model):
             Oil at working temperature; ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
         length : float or array [m]
             Length of the contact line, for the film stiffness.
+        sliding_speed : float or array, optional [m/s]
+            Difference of the surface speeds; a heated film needs it, others do not depend on it.
+        thermal : ThermalModel, optional
+            Shear and bodies of a heated film; Ree-Eyring between bodies of steel by default.
         progress : Progress
             Receives the number of solved contacts.
         **options : object
@@ -243,6 +253,11 @@ class FilmModel(Model):
         if self.method:
             chosen.pop("positions")
             chosen |= {"length": length, "method": self.method, "progress": progress}
+            if self.heated:
+                chosen |= {
+                    "thermal": thermal or ThermalModel("ree-eyring"),
+                    "sliding_speed": _required(sliding_speed),
+                }
             return solved_films(*contacts, lubricant, effective_modulus, **chosen)
         oil = lubricant.dynamic_viscosity, lubricant.pressure_viscosity_coefficient
         arguments = *contacts, *oil, effective_modulus
@@ -255,6 +270,15 @@ class FilmModel(Model):
         if central is not None and slope is not None:
             stiffness = -np.asarray(length) * np.asarray(load_per_width) / (slope * central)
         return Films(central, minimum, None, stiffness)
+
+
+def _required(sliding_speed: ArrayLike | None) -> ArrayLike:
+    """Sliding speed of a heated film, which must be given."""
+    if sliding_speed is None:
+        what, why = "sliding_speed is missing", "the heat in the film depends on it"
+        remedy = 'Give it [m/s], or choose the film model "newton"'
+        raise InputError(what, 'film model "thermal"', why, remedy)
+    return sliding_speed
 
 
 #: The film models by name; ``none`` computes no film.
@@ -277,6 +301,15 @@ for _model in (
         meaning="oil film of solved line contacts: Reynolds equation with elastic "
         "flanks, full multigrid",
         papers=("dowson-higginson-book", "roelands", "venner-lubrecht"),
+    ),
+    FilmModel(
+        "thermal",
+        "solved line contact with its energy equation: Yang and Wen (1990)",
+        method="newton",
+        heated=True,
+        meaning="oil film of solved line contacts with the heat of shear and compression: "
+        "temperatures across the film and of the surfaces, viscosity that varies across it",
+        papers=("yang-wen", "dowson-generalized", "carslaw-jaeger"),
     ),
     FilmModel(
         "dowson-higginson",

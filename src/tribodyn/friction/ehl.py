@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from tribodyn.ehl.thermal.thermal_model import BodyHeat, ThermalModel
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import (
     film_temperature_rise,
@@ -15,7 +18,7 @@ from tribodyn.ehl.traction.film_temperature import (
 )
 from tribodyn.ehl.traction.shear_models import EYRING, EYRING_STRESS, LIMIT, SHEAR_MODELS, THINNING
 from tribodyn.ehl.traction.traction import FilmShear
-from tribodyn.errors import warn
+from tribodyn.errors import Argument, InputError, warn
 from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.model import choice, flag
 from tribodyn.types import Array
@@ -37,7 +40,7 @@ def ehl(
 
     With ``flash_temperature`` the viscosity is that at the mean temperature of the film: inlet
     plus mean flash temperature of Blok plus ``q h/(12 k)`` across the oil, where the heat q is
-    that of the friction itself.
+    that of the friction itself. A heated film has its own viscosity, and takes neither option.
 
     Parameters
     ----------
@@ -66,8 +69,8 @@ def ehl(
     Raises
     ------
     InputError
-        If the contacts have no film, the oil lacks the thermal data that an option needs, or a
-        number does not belong to the shear model.
+        If the contacts have no film, the oil lacks the thermal data that an option needs, a
+        number does not belong to the shear model, or a heated film would be heated again.
 
     Warns
     -----
@@ -93,6 +96,8 @@ def ehl(
     [0.044] [0.035]
     """
     film = contact.require("film")
+    if film.heated is not None and (inlet_heating or flash_temperature):
+        _refuse_heat("inlet_heating" if inlet_heating else "flash_temperature")
     speed = np.abs(np.ravel(contact.sliding_speed))
     factor = _film_factor(contact, film) if inlet_heating else None
     model = SHEAR_MODELS[shear_model]
@@ -104,6 +109,26 @@ def ehl(
     coefficient = traction / np.ravel(contact.load_per_width)
     _warn_of_solid(coefficient, shear_model)
     return coefficient.reshape(np.shape(contact.load_per_width))
+
+
+def _refuse_heat(option: str) -> None:
+    """Refuse a correction for heat that the film already contains."""
+    what, why = f"{option} = true with a heated film", "its heat would count twice"
+    raise InputError(what, Argument(option), why, f"Set {option} = false")
+
+
+#: Options of a law that a heated film takes over.
+_OF_SHEAR = ("eyring_stress", *LIMIT, *THINNING)
+
+
+def film_heat(law: str, options: Mapping[str, Any], bodies: tuple[float, float]) -> ThermalModel:
+    """Shear and bodies of a heated film: the shear of the friction law, if it shears the film."""
+    shear, numbers = "ree-eyring", {}
+    if LAWS[law].needs_film and "shear_model" in LAWS[law].options:
+        chosen = LAWS[law].complete(options)
+        shear = chosen["shear_model"]
+        numbers = {name: chosen[name] for name in _OF_SHEAR if chosen.get(name) is not None}
+    return ThermalModel(shear, numbers, (BodyHeat(bodies[0]), BodyHeat(bodies[1])))
 
 
 def _film_factor(contact: TribologicalContact, film: FilmState) -> Array:

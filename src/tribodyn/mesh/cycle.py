@@ -106,6 +106,7 @@ class PairsInContact:
     lubricant: Lubricant  #: oil at working temperature
     effective_modulus: float  #: ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2`` [Pa]
     length: Array | float  #: of the contact line, as far as the stiffness of a film goes [m]
+    sliding_speed: Array | None = None  #: difference of the surface speeds [m/s], for a heated film
 
     def some(self, index: Index) -> PairsInContact:
         """A part of these contacts."""
@@ -115,12 +116,17 @@ class PairsInContact:
             age=self.age[index],
             equivalent_radius=self.equivalent_radius[index],
             entrainment_speed=self.entrainment_speed[index],
+            sliding_speed=None if self.sliding_speed is None else self.sliding_speed[index],
         )
 
     def joined(self, others: PairsInContact) -> PairsInContact:
         """These contacts and others of the same pair."""
+        sliding = self.sliding_speed
+        if sliding is not None and others.sliding_speed is not None:
+            sliding = np.concatenate([sliding, others.sliding_speed])
         return replace(
             self,
+            sliding_speed=sliding,
             age=np.concatenate([self.age, others.age]),
             equivalent_radius=np.concatenate([self.equivalent_radius, others.equivalent_radius]),
             entrainment_speed=np.concatenate([self.entrainment_speed, others.entrainment_speed]),
@@ -135,6 +141,7 @@ class PairsInContact:
             self.lubricant,
             self.effective_modulus,
             length=self.length,
+            sliding_speed=self.sliding_speed,
             **options,
         )
 
@@ -163,6 +170,7 @@ def pairs_in_contact(
         lubricant=lubricant,
         effective_modulus=effective_modulus(material, material),
         length=cycle.stiffness_length,
+        sliding_speed=motion.sliding_speed,
     )
 
 

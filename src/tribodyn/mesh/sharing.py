@@ -16,9 +16,10 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from tribodyn.contact import FaceContacts, PathOfContact
-from tribodyn.ehl import FILM_MODELS
+from tribodyn.ehl import FILM_MODELS, ThermalModel
 from tribodyn.errors import require_between, warn
 from tribodyn.friction.base import STEEL_BODIES
+from tribodyn.friction.ehl import film_heat
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
@@ -70,7 +71,14 @@ class ToothContact:
     @cached_property
     def film(self) -> dict[str, Any]:
         """Options of the film model, its defaults filled in."""
-        return dict(FILM_MODELS[self.film_model].complete(self.film_options))
+        model = FILM_MODELS[self.film_model]
+        heat = {"thermal": self.thermal_model} if model.heated else {}
+        return {**model.complete(self.film_options), **heat}
+
+    @property
+    def thermal_model(self) -> ThermalModel:
+        """Shear and bodies of a heated film: those of the friction law, if it shears the film."""
+        return film_heat(self.friction_law, self.friction_options, self.bodies)
 
     @property
     def film_in_series(self) -> bool:

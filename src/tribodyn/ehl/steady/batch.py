@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, wait
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -16,6 +16,7 @@ from tribodyn.ehl.steady.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import STATED_LIMIT, SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.ehl.stiffness.film_stiffness import FilmSlopes, film_distance, film_slopes
+from tribodyn.ehl.thermal.thermal_model import ThermalModel
 from tribodyn.errors import (
     Argument,
     InputError,
@@ -101,6 +102,8 @@ def solve_line_contacts(
     length: float = 1.0,
     keep_solutions: bool = False,
     threads: int | None = None,
+    thermal: bool | ThermalModel = False,
+    sliding_speed: ArrayLike = 0.0,
     progress: Progress = SILENT,
 ) -> LineContactBatch:
     """Films of many line contacts with one oil; see :func:`solve_line_contact`.
@@ -124,6 +127,8 @@ def solve_line_contacts(
         Whether to keep pressure and film of every contact.
     threads : int, optional
         Contacts solved at a time; the number of processors by default.
+    thermal, sliding_speed : bool or ThermalModel, float or array [m/s]
+        Heat of the film, as for :func:`solve_line_contact`; the speeds broadcast too.
     progress : Progress
         Receives the progress over the contacts.
 
@@ -149,15 +154,16 @@ def solve_line_contacts(
     if not isinstance(stiffness, (bool, np.bool_)):
         require_one_of("stiffness", stiffness, ("approach", "tangent"))
     require_positive("length", length, "m")
-    shape, columns = _broadcast(load_per_width, equivalent_radius, entrainment_speed)
+    contacts = load_per_width, equivalent_radius, entrainment_speed
+    shape, columns = _broadcast(*contacts, sliding_speed)
 
     def solve(index: int) -> tuple[list[float], LineContactSolution | None]:
-        load, radius, speed = (float(column[index]) for column in columns)
+        load, radius, speed, sliding = (float(column[index]) for column in columns)
         try:
             case = si_case(
                 load, radius, speed, lubricant, effective_modulus, viscosity_law, compressible
             )
-            solution = solve_case(case, options)
+            solution = solve_case(case, replace(options, sliding_speed=sliding))
             row = _row(solution, stiffness)
         except TribodynError as error:
             raise type(error)(
@@ -198,15 +204,15 @@ def _gather(
 
 def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
     try:
-        names = ("load_per_width", "equivalent_radius", "entrainment_speed")
+        names = ("load_per_width", "equivalent_radius", "entrainment_speed", "sliding_speed")
         arrays = np.broadcast_arrays(*map(real_numbers, map(Argument, names), arguments))
     except InputError:
         raise
     except ValueError as error:
         shapes = ", ".join(str(np.shape(item)) for item in arguments)
         raise InputError(
-            f"the shapes {shapes} of load, radius and speed do not fit",
-            where="arguments load_per_width, equivalent_radius, entrainment_speed",
+            f"the shapes {shapes} of load, radius and speeds do not fit",
+            where="arguments load_per_width, equivalent_radius, entrainment_speed, sliding_speed",
             why="they must be numbers, or arrays that broadcast",
             remedy="Give numbers, or arrays of one shape",
         ) from error
@@ -259,7 +265,7 @@ def _warn_negative(stiffness: Array, shape: tuple[int, ...]) -> None:
 def _at(problem: Problem, index: int, shape: tuple[int, ...], columns: list[Array]) -> Problem:
     """Problem with the index of its contact."""
     place = ", ".join(str(part) for part in np.unravel_index(index, shape)) if shape else "0"
-    load, radius, speed = (column[index] for column in columns)
+    load, radius, speed = (column[index] for column in columns[:3])
     return Problem(
         what=f"contact [{place}] with {load:.6g} N/m, {radius:.6g} m, {speed:.6g} m/s: "
         f"{problem.what}",
@@ -316,6 +322,8 @@ def solved_films(
     nodes: int,
     inlet: str,
     domain: tuple[float, float] | None,
+    thermal: bool | ThermalModel = False,
+    sliding_speed: ArrayLike = 0.0,
     progress: Progress = SILENT,
 ) -> Films:
     """Solve many contacts in threads."""
@@ -334,6 +342,8 @@ def solved_films(
             domain="auto" if domain is None else domain,
             stiffness=False if sums else "tangent" if stiffness == "tangent" else "approach",
             keep_solutions=True,
+            thermal=thermal,
+            sliding_speed=sliding_speed,
             progress=progress,
         )
     solutions = tuple(np.ravel(batch.solutions))

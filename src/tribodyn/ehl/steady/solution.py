@@ -147,6 +147,11 @@ class LineContactSolution(Record):
         rise, bound = self._grid.oil[4:6]
         return np.asarray(1.0 + rise * self._grid.P / (1.0 + bound * self._grid.P))
 
+    @property
+    def log_mean_viscosity(self) -> Array | None:
+        """Logarithm of the viscosity across a heated film [Pa*s]; None if it is not heated."""
+        return None
+
     def film_stiffness(self, length: float = 1.0, kind: str = "tangent") -> float:
         """Stiffness of the oil film over the length of the contact line.
 

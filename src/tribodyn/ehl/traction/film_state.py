@@ -39,6 +39,8 @@ class FilmState:
         Film of each contact; by default every film has one contact.
     viscosity_law : str
         ``"roelands"``, ``"barus"`` or ``"isoviscous"``.
+    heated : (films, nodes) array, optional
+        Logarithm of the viscosity of heated films at low stress [Pa*s], the harmonic mean across.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class FilmState:
     effective_modulus: float
     index: Index | None = field(default=None, repr=False)
     viscosity_law: str = "roelands"
+    heated: Array | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         """Convert and check the arrays."""
@@ -124,6 +127,9 @@ class FilmState:
             first.effective_modulus,
             None if index is None else np.asarray(index),
             first.viscosity_law,
+            None
+            if first.log_mean_viscosity is None
+            else np.stack([solution.log_mean_viscosity for solution in solutions]),
         )
 
     @property
@@ -164,6 +170,8 @@ class FilmState:
     @cached_property
     def log_viscosity(self) -> Array:
         """Logarithm of the viscosity in Pa*s in each interval (films, nodes - 1)."""
+        if self.heated is not None:
+            return np.asarray(0.5 * (self.heated[:, 1:] + self.heated[:, :-1]))
         middle = self.interval_pressure
         if self.viscosity_law == "isoviscous":
             return np.full(middle.shape, np.log(self.lubricant.dynamic_viscosity))

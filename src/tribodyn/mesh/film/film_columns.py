@@ -87,6 +87,7 @@ def film_columns(
         lubricant,
         effective_modulus(material, material),
         length=common_face_width,
+        sliding_speed=contact.sliding_speed,
         **film_options,
     )
     return as_columns(films, contact.composite_roughness)

@@ -119,8 +119,9 @@ def table_for(
     settings: ToothContact, pairs: PairsInContact, *, of_slices: bool = False
 ) -> FilmTable | None:
     """Shared table of solved films; None where the settings need what no table has."""
-    shared = _shared.get()
-    if shared is None or not FILM_MODELS[settings.film_model].method:
+    shared, model = _shared.get(), FILM_MODELS[settings.film_model]
+    # A table knows load and speed, and not the sliding that heats a film.
+    if shared is None or not model.method or model.heated:
         return None
     # A law that shears the film needs its pressure at all nodes: whole pairs solve their path.
     sheared = LAWS[settings.friction_law].needs_film or settings.film["stiffness"] == "seed"

@@ -50,8 +50,8 @@ _EXTREMES = 6
 
 #: Solved films, one for each place.
 Solutions = NDArray[np.object_]
-#: Radius, speed and load per width: a contact with the same has the same film.
-ContactNumbers = tuple[float, float, float]
+#: Radius, speeds and load per width: a contact with the same has the same film.
+ContactNumbers = tuple[float, float, float, float]
 
 
 class Places(NamedTuple):
@@ -118,8 +118,9 @@ class SolvedContacts:
 
 
 def contact_numbers(pairs: PairsInContact, load: Array) -> list[ContactNumbers]:
-    """Radius, speed and load of each pair: the key of its solved film."""
-    numbers = pairs.equivalent_radius, pairs.entrainment_speed, load
+    """Radius, speeds and load of each pair: the key of its solved film."""
+    sliding = np.zeros(load.size) if pairs.sliding_speed is None else pairs.sliding_speed
+    numbers = pairs.equivalent_radius, pairs.entrainment_speed, sliding, load
     return list(zip(*(column.tolist() for column in numbers), strict=True))
 
 

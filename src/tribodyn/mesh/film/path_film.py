@@ -335,6 +335,7 @@ def film_of(
         age=places.age,
         equivalent_radius=motion.equivalent_radius,
         entrainment_speed=motion.entrainment_speed,
+        sliding_speed=motion.sliding_speed,
     )
     radius = getattr(motion, f"{contact.pair.driver}_curvature_radius")
     angle = radius / contact.pair.driving.base_radius
