@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+from tribodyn import load_case, run
 from tribodyn.ehl import (
+    FILM_MODELS,
     BodyHeat,
+    FilmState,
     ThermalModel,
     blok_flash_temperature,
     inlet_heating_factor,
@@ -18,6 +21,8 @@ from tribodyn.ehl import (
 )
 from tribodyn.ehl.thermal.surfaces import surface_response
 from tribodyn.errors import InputError
+from tribodyn.friction import TribologicalContact
+from tribodyn.friction.ehl import ehl
 from tribodyn.lubricant import Lubricant, from_library
 
 OIL = from_library("80W")
@@ -27,9 +32,9 @@ MODULUS, ALPHA = 2.2e11, 2.19e-8
 
 
 @cache
-def heated(ratio, shear="newtonian", across=17, nodes=513, **model):
+def heated(ratio, shear="newtonian", across=17, nodes=513, tolerance=1e-4, **model):
     """The gear contact at a slide-to-roll ratio."""
-    thermal = ThermalModel(shear, nodes_across=across, **model)
+    thermal = ThermalModel(shear, nodes_across=across, tolerance=tolerance, **model)
     return solve_line_contact(*CONTACT, nodes=nodes, thermal=thermal, sliding_speed=ratio * SPEED)
 
 
@@ -130,18 +135,19 @@ def test_slow_sheared_film_has_the_profile_of_plane_couette_flow():
 
 
 def test_surface_under_hertzian_heat_has_the_flash_temperature_of_blok():
-    half_width, speed, nodes = 1e-4, 4.0, 2001
-    x = np.linspace(-1.2e-4, 1.2e-4, nodes)
-    heat = np.sqrt(np.maximum(1.0 - (x / half_width) ** 2, 0.0))
-    response = surface_response(nodes, x[1] - x[0], speed, 47.0, (47.0 / 13.6e3) ** 2)
-    rise = np.convolve(heat, response)[nodes - 1 : 2 * nodes - 1]
-    total = float(heat.sum() * (x[1] - x[0]))
+    half_width, speed, nodes = 1e-4, 4.0, 801
+    at, interval = np.arange(nodes), 3e-7
+    heat = np.sqrt(np.maximum(1.0 - ((at - 400) * interval / half_width) ** 2, 0.0))
+    edges, body = np.arange(nodes + 1) - 0.5, (47.0, (47.0 / 13.6e3) ** 2)
+    response = surface_response(at, edges, interval, speed, *body)
+    rise = response @ heat
+    total = float(heat.sum() * interval)
     # Both bodies alike: each takes half of the heat.
     assert rise.max() == pytest.approx(
         blok_flash_temperature(2.0 * total, half_width, speed, speed), rel=0.01
     )
-    backwards = surface_response(nodes, x[1] - x[0], -speed, 47.0, (47.0 / 13.6e3) ** 2)
-    assert backwards == pytest.approx(response[::-1])
+    backwards = surface_response(at, edges, interval, -speed, *body)
+    np.testing.assert_allclose(backwards, response.T, rtol=1e-9, atol=1e-15)
 
 
 def test_rolling_film_is_as_much_thinner_as_inlet_factors_say():
@@ -157,7 +163,7 @@ def test_rolling_film_is_as_much_thinner_as_inlet_factors_say():
 def test_wrong_input_is_refused_with_the_remedy():
     with pytest.raises(InputError, match=r"sliding_speed = 1 m/s without thermal.*thermal=True"):
         solve_line_contact(*CONTACT, sliding_speed=1.0)
-    bare = dataclasses.replace(OIL, temperature_viscosity_coefficient=None)
+    bare = replace(OIL, temperature_viscosity_coefficient=None)
     with pytest.raises(InputError, match="temperature_viscosity_coefficient of the oil"):
         solve_line_contact(*CONTACT[:3], bare, MODULUS, nodes=129, thermal=True)
     with pytest.raises(InputError, match="shear_model"):
@@ -166,3 +172,69 @@ def test_wrong_input_is_refused_with_the_remedy():
         ThermalModel("newtonian", {"carreau_stress": 5e6})
     with pytest.raises(InputError, match="thermal is of the type str"):
         solve_line_contact(*CONTACT, thermal="yes")
+
+
+def test_friction_law_shears_the_heated_film_as_its_solution_does():
+    film = heated(0.5, "ree-eyring")
+    one = np.ones(1)
+    contact = TribologicalContact(
+        film.load_per_width * one, film.hertz_pressure * one, film.sliding_speed * one,
+        SPEED * one, 0.5 * one, 8e-3 * one, 0.082, 0.0, FilmState.from_solutions([film]),
+    )  # fmt: skip
+    assert ehl(contact) == pytest.approx(film.friction_coefficient, rel=0.02)
+    # One film at its inlet temperature has far more.
+    assert ehl(replace(contact, film=FilmState.from_solutions([cold()]))) > 1.5 * ehl(contact)
+    with pytest.raises(InputError, match="flash_temperature = true with a heated film"):
+        ehl(contact, flash_temperature=True)
+
+
+def test_films_of_a_batch_are_those_of_single_contacts():
+    films = FILM_MODELS["thermal"].films(
+        [147802.0, 147802.0], 8e-3, SPEED, OIL, MODULUS, sliding_speed=[0.0, 0.5 * SPEED]
+    )
+    single = heated(0.5, "ree-eyring", tolerance=5e-4)
+    assert films.central_film[1] == pytest.approx(single.central_film, rel=1e-6)
+    assert films.central_film[0] != films.central_film[1]
+    with pytest.raises(InputError, match="sliding_speed is missing"):
+        FILM_MODELS["thermal"].films(147802.0, 8e-3, SPEED, OIL, MODULUS)
+
+
+@pytest.mark.filterwarnings("ignore:.*mixed-lubrication")
+def test_case_with_heated_film_has_less_film_and_friction(short_case):
+    cold_mesh, hot_mesh = (run(short_case(model)).mesh for model in ("newton", "thermal"))
+    touching = hot_mesh.in_contact
+    ratio = hot_mesh.minimum_film[touching] / cold_mesh.minimum_film[touching]
+    sliding = np.abs(hot_mesh.sliding_speed[touching] / hot_mesh.entrainment_speed[touching])
+    assert 0.4 < ratio.min() < 0.8
+    assert np.all(ratio < 1.0)
+    # The pitch point has the least heat.
+    assert sliding[np.argmax(ratio)] < 0.3 < sliding[np.argmin(ratio)]
+    factor = hot_mesh.friction_coefficient[touching] / cold_mesh.friction_coefficient[touching]
+    assert np.median(factor) < 0.8
+
+
+HEAT = {
+    "lubricant.temperature_viscosity_coefficient": 0.05,
+    "lubricant.thermal_conductivity": 0.13,
+}
+
+
+@pytest.fixture(scope="module")
+def short_case():
+    """The FZG case with few positions."""
+    few = {"friction.law": "ehl", "film.positions": 8, "film.nodes": 129, "film.stiffness": "none"}
+    case = load_case("fzg-film").replace({**few, **HEAT})
+    return lambda model: case.replace({"film.model": model})
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"lubricant.thermal_conductivity": None}, "thermal_conductivity is missing"),
+        ({"friction.flash_temperature": True}, "flash_temperature = true with a heated film"),
+    ],
+)
+def test_case_says_what_a_heated_film_needs(changes, message):
+    changes = {**HEAT, "film.model": "thermal", "friction.law": "ehl", **changes}
+    with pytest.raises(InputError, match=message):
+        load_case("fzg-film").replace({k: v for k, v in changes.items() if v is not None})

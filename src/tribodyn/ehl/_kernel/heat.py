@@ -25,6 +25,8 @@ NEWTONIAN, EYRING, CARREAU, CARREAU_EYRING, BAIR_WINER = 0, 1, 2, 3, 4
 _HIGHEST, _NEARLY, _CAP = 60.0, 1.0 - 1e-6, 60.0
 #: Change of the temperature [K] from which on Newton's method goes to the end.
 _SETTLED = 5.0
+#: Steps of a column at most when the sweep comes to it, and change at which it stays [K].
+_LOCAL, _STILL = 6, 0.05
 #: ln of the viscosity in which Roelands' curves meet, sign changed, and their pole [K].
 _LOG_POLE, _POLE = 9.67, 138.0
 #: Flow by a gradient of the pressure, over what is missing of the flow, and over the flow.
@@ -403,83 +405,102 @@ def _heat_column(
 
 
 @nb.njit(**INNER)
-def _conducted(i: int, n: int, k: int, response: Array, heat: Array) -> float:
-    """Rise of a surface at a node by the heat that goes in at all other nodes."""
+def _conducted(i: int, k: int, response: Array, heat: Array) -> float:
+    """Rise of a surface at a column by the heat that goes in at all other columns."""
     rise = 0.0
     for j in range(1, k + 1):
-        rise += response[n + i - j] * heat[j]
-    return rise - (response[n] * heat[i] if 1 <= i <= k else 0.0)
+        rise += response[i, j] * heat[j]
+    return rise - (response[i, i] * heat[i] if 1 <= i <= k else 0.0)
+
+
+@nb.njit(**INNER)
+def _faces(i: int, k: int, mass: Array, west: Array, east: Array) -> None:
+    """Mass flux through both faces of a column."""
+    for j in range(west.size):
+        west[j] = 0.5 * (mass[i - 1, j] + mass[i, j])
+        east[j] = 0.5 * (mass[i, j] + mass[i + 1, j]) if i < k else mass[i, j]
+
+
+class Stations(NamedTuple):
+    """Columns of the film, the first at the inlet."""
+
+    width: Array
+    pressure: Array  #: over that of Hertz
+    slope: Array  #: of the pressure
+    film: Array
+    response: tuple[Array, Array]  #: rise of both surfaces at each by the heat at each
 
 
 def _build(digest: str) -> Any:
     @cached_njit(**JIT)
     def heat_film(
-        n: int, k: int, dx: float, oil: Array, P: Array, h: Array, o: Sheared,
-        flux: float, responses: tuple[Array, Array], a: Across, b: Along, sweeps: int,
-        balance: Array,
+        k: int, oil: Array, s: Stations, o: Sheared, flux: float, a: Across, b: Along,
+        sweeps: int, balance: Array,
     ) -> float:  # fmt: skip
-        """Temperatures from the inlet to node k, balance of heat; change in the last sweep."""
+        """Temperatures up to column k, and the balance of heat; change in the last sweep."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        last = a.temperature.shape[1] - 1
-        lneta, dlneta, rho, drho = np.empty((4, n + 1))
-        slope, fluidity = np.zeros(n + 1), np.empty(last + 1)
-        west, east, columns = np.empty(last + 1), np.empty(last + 1), np.empty((6, last + 1))
-        c = Column(columns[0], columns[1], columns[2], columns[3], columns[4], columns[5])
-        selfs = (responses[0][n], responses[1][n])
-        oil_state(n, P, oil[:PLAIN], lneta, dlneta, rho, drho)
-        for i in range(1, n):
-            slope[i] = (P[i + 1] - P[i - 1]) * o.hertz / (2.0 * dx)
-        slope[0] = (P[1] - P[0]) * o.hertz / dx
+        count, last = s.film.size, a.temperature.shape[1] - 1
+        lneta, dlneta, rho, drho = np.empty((4, count))
+        fluidity, west, east, q0, q1, q2, q3, q4, q5 = np.empty((9, last + 1))
+        c = Column(q0, q1, q2, q3, q4, q5)
+        oil_state(count - 1, s.pressure, oil[:PLAIN], lneta, dlneta, rho, drho)
         T, largest = a.temperature, 0.0
+        both_ahead = o.speed_1 > 0.0 and o.speed_2 > 0.0
         for sweep in range(sweeps + 1):
-            for i in range(k + 1):
-                pressure = P[i] * o.hertz
-                _shear_column(
-                    i, h[i], slope[i], pressure, lneta[i], rho[i], flux, o, a, b, fluidity
-                )
             balance[:] = 0.0
-            change = 0.0
-            for step in range(2 * k if sweep < sweeps else k):
+            for i in range(k + 1):
+                pressure = s.pressure[i] * o.hertz
+                _shear_column(
+                    i, s.film[i], s.slope[i], pressure, lneta[i], rho[i], flux, o, a, b, fluidity
+                )
+            if sweep == sweeps:
+                for i in range(1, k + 1):
+                    _faces(i, k, a.mass, west, east)
+                    _count(i, k, s.width[i], s.film[i], s.slope[i], west, east, o, a, b, balance)
+                break
+            largest = 0.0
+            for step in range(2 * k):
                 i = step + 1 if step < k else 2 * k - step
-                for j in range(last + 1):
-                    west[j] = 0.5 * (a.mass[i - 1, j] + a.mass[i, j])
-                    east[j] = 0.5 * (a.mass[i, j] + a.mass[i + 1, j]) if i < k else a.mass[i, j]
+                _faces(i, k, a.mass, west, east)
                 if i == 1:
                     for j in range(last + 1):
                         T[0, j] = o.temperature if west[j] > 0.0 else T[1, j]
-                if sweep == sweeps:
-                    _count(i, k, dx, h[i], slope[i], west, east, o, a, b, balance)
-                    continue
-                if step >= k and np.min(east) >= 0.0 and o.speed_1 > 0.0 and o.speed_2 > 0.0:
+                if step >= k and both_ahead and np.min(east) >= 0.0:
                     continue
                 rises = (
-                    o.surface_1 + _conducted(i, n, k, responses[0], b.heat[0]),
-                    o.surface_2 + _conducted(i, n, k, responses[1], b.heat[1]),
+                    o.surface_1 + _conducted(i, k, s.response[0], b.heat[0]),
+                    o.surface_2 + _conducted(i, k, s.response[1], b.heat[1]),
                 )
-                if step >= k:
-                    pressure = P[i] * o.hertz
-                    _shear_column(
-                        i, h[i], slope[i], pressure, lneta[i], rho[i], flux, o, a, b, fluidity
-                    )
-                exact = b.moved[i] < _SETTLED
-                b.moved[i] = _heat_column(
-                    i, k, dx, h[i], slope[i], west, east, rises, selfs, exact, o, a, b, c
-                )
-                change = max(change, b.moved[i])
-            if sweep < sweeps:
-                largest = change
-        for i in range(n + 1):
+                selfs = (s.response[0][i, i], s.response[1][i, i])
+                for local in range(_LOCAL):
+                    if local > 0 or step >= k:
+                        pressure = s.pressure[i] * o.hertz
+                        _shear_column(
+                            i, s.film[i], s.slope[i], pressure, lneta[i], rho[i], flux, o, a, b,
+                            fluidity,
+                        )  # fmt: skip
+                        _faces(i, k, a.mass, west, east)
+                    exact = b.moved[i] < _SETTLED
+                    b.moved[i] = _heat_column(
+                        i, k, s.width[i], s.film[i], s.slope[i], west, east, rises, selfs, exact,
+                        o, a, b, c,
+                    )  # fmt: skip
+                    if local == 0 and step < k:
+                        largest = max(largest, b.moved[i])
+                    if b.moved[i] < _STILL:
+                        break
+        for i in range(count):
             if i <= k and i > 0:
                 continue
-            first = o.surface_1 + _conducted(i, n, k, responses[0], b.heat[0])
-            second = o.surface_2 + _conducted(i, n, k, responses[1], b.heat[1])
+            first = o.surface_1 + _conducted(i, k, s.response[0], b.heat[0])
+            second = o.surface_2 + _conducted(i, k, s.response[1], b.heat[1])
             for j in range(last + 1):
                 if i > k or j == 0 or j == last:
                     T[i, j] = first + (second - first) * j / last
             if i > k:
                 b.stress[i] = b.heat[0, i] = b.heat[1, i] = 0.0
                 b.factors[0, i], b.factors[1, i] = b.factors[0, k], b.factors[1, k]
-                b.mean[i] = b.mean[k]
+                b.mean[i], b.share[i], b.driven[i] = b.mean[k], 1.0, 0.0
         return largest
 
     return heat_film

@@ -20,19 +20,25 @@ def slowest_speed(diffusivity: float, reach: float) -> float:
 
 
 def surface_response(
-    nodes: int, interval: float, speed: float, conductivity: float, diffusivity: float
+    at: Array, edges: Array, interval: float, speed: float, conductivity: float, diffusivity: float
 ) -> Array:
-    """Rise of the surface temperature [K m^2/W] by even heat over one interval about a node."""
+    """Rise of a surface [K m^2/W] at each node by even heat between each two edges."""
     # T = 1/(pi k) int q exp(u s/2 kappa) K_0(|u s|/2 kappa) ds, with s the distance behind the
-    # source, integrated exactly; by the distance of node and source, from -(nodes - 1) intervals
-    # on. Carslaw and Jaeger, Conduction of Heat in Solids (1959), section 10.7.
+    # source, integrated exactly. Nodes and edges in intervals, in halves of them at least. Carslaw
+    # and Jaeger, Conduction of Heat in Solids (1959), section 10.7.
     from scipy.special import k0e, k1e
 
-    ratio = abs(speed) / (2.0 * diffusivity)
-    edges = ratio * interval * np.arange(0.5, nodes)
-    behind = edges * (k0e(edges) + k1e(edges)) - 1.0
-    # Far before the source the difference of two ones would be all that is left.
-    before = 1.0 + edges * np.exp(-2.0 * edges) * (k0e(edges) - k1e(edges))
-    integral = np.concatenate([-before[::-1], behind])
-    response = np.diff(integral) / (math.pi * conductivity * ratio)
-    return np.ascontiguousarray(response if speed > 0.0 else response[::-1])
+    ratio = speed / (2.0 * diffusivity)
+    reach = round(2.0 * float(edges[-1] - edges[0])) + 1
+    distance = abs(ratio) * 0.5 * interval * np.arange(1, reach + 1)
+    zeroth, first = k0e(distance), k1e(distance)
+    behind = distance * (zeroth + first) - 1.0
+    before = 1.0 + distance * np.exp(-2.0 * distance) * (zeroth - first)
+    integral = np.concatenate([-before[::-1], [0.0], behind])
+    if speed < 0.0:
+        integral = -integral[::-1]
+    places = np.rint(2.0 * (at[:, None] - edges[None, :])).astype(np.int64) + reach
+    steps = integral[places]
+    return np.ascontiguousarray(steps[:, :-1] - steps[:, 1:]) / (
+        math.pi * conductivity * abs(ratio)
+    )

@@ -17,16 +17,21 @@ from tribodyn.ehl.steady.fallbacks import Verified, fluxes, solve_problem
 from tribodyn.ehl.thermal.surfaces import slowest_speed, surface_response
 from tribodyn.ehl.thermal.thermal_model import MODELS, ThermalModel
 from tribodyn.errors import ComputationError, require_between
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 #: Sweeps over the temperatures before the first film, and before each other one.
-_FIRST, _OTHER = 12, 3
+_FIRST, _OTHER = 2, 1
+#: Distance of the columns in half widths, where it grows, and by which factor.
+_FINE, _NEAR, _SPARSE = 0.025, -1.5, 4
 #: Passes whose differences predict the next factors.
 _MEMORY = 8
 #: Change of the factors that does not move the film, and traction over the load that is none.
 _NO_CHANGE, _IDLE = 1e-5, 1e-6
+_EVEN = 0.5
+#: Part of a change of the factors that the tolerance allows.
+_OF_FACTORS = 0.02
 #: How strongly short waves of the factors are damped.
-_SHORT = 0.03
+_SHORT = 0.06
 #: Weight of nodes that pressure drives no oil through.
 _LEAST_WEIGHT = 1e-3
 
@@ -57,7 +62,7 @@ class _Temperatures:
         self.case, self.step = case, grid.dx * case.half_width
         oil = model.oil(lubricant, case.compressible)
         speeds = case.entrainment_speed + 0.5 * sliding, case.entrainment_speed - 0.5 * sliding
-        nodes, across = grid.n + 1, model.nodes_across
+        across = model.nodes_across
         far = [oil.temperature if b.temperature is None else b.temperature for b in model.bodies]
         self.oil = Sheared(
             speeds[0], speeds[1], lubricant.dynamic_viscosity, lubricant.density, oil.expansion,
@@ -66,17 +71,19 @@ class _Temperatures:
             oil.specific_heat, case.hertz_pressure, far[0], far[1], MODELS[model.shear_model],
             *_stresses(model),
         )  # fmt: skip
+        self.at, edges = _columns(grid, case)
+        self.width, columns = np.diff(edges) * self.step, self.at.size
         responses = []
         for speed, body in zip(speeds, model.bodies, strict=True):
             least = slowest_speed(body.diffusivity, case.equivalent_radius)
             moving = math.copysign(max(abs(speed), least), speed)
             conduction = body.thermal_conductivity, body.diffusivity
-            responses.append(surface_response(nodes, self.step, moving, *conduction))
+            responses.append(surface_response(self.at, edges, self.step, moving, *conduction))
         self.responses = responses[0], responses[1]
-        fields = np.zeros((7, nodes, across))
-        self.across = Across(np.full((nodes, across), oil.temperature), *fields)
-        zeros, ones = np.zeros((5, nodes)), np.ones((4, nodes))
-        unsettled = np.full(nodes, math.inf)
+        fields = np.zeros((7, columns, across))
+        self.across = Across(np.full((columns, across), oil.temperature), *fields)
+        zeros, ones = np.zeros((5, columns)), np.ones((4, columns))
+        unsettled = np.full(columns, math.inf)
         self.along = Along(
             zeros[:2], zeros[2], zeros[3:], ones[0], ones[1], ones[2], ones[3], unsettled
         )
@@ -84,44 +91,59 @@ class _Temperatures:
 
     def solve(self, grid: DiscreteContact, sweeps: int) -> float:
         """Improve the temperatures of a film; greatest change of the last sweep [K]."""
-        from tribodyn.ehl._kernel.heat import heat_film
+        from tribodyn.ehl._kernel.heat import Stations, heat_film
 
-        film = grid.H * self.case.half_width**2 / self.case.equivalent_radius
-        flux = (
-            float(np.mean(fluxes(grid, grid.H)[: grid.free + 1]))
-            * self.case.entrainment_speed
-            * film[0]
-            / grid.H[0]
-        )
+        film = grid.H[self.at] * self.case.half_width**2 / self.case.equivalent_radius
+        flow = float(np.mean(fluxes(grid, grid.H)[: grid.free + 1])) * self.case.entrainment_speed
+        slope = np.gradient(grid.P, self.step)[self.at] * self.case.hertz_pressure
+        stations = Stations(self.width, grid.P[self.at], slope, film, self.responses)
+        last = int(np.searchsorted(self.at, grid.free, side="right")) - 1
         return float(
             heat_film(
-                grid.n, grid.free, self.step, grid.oil, grid.P, film, self.oil, flux,
-                self.responses, self.across, self.along, sweeps, self.balance,
+                last, grid.oil, stations, self.oil, flow * film[0] / grid.H[self.at[0]],
+                self.across, self.along, sweeps, self.balance,
             )
         )  # fmt: skip
 
-    @property
-    def factors(self) -> Array:
-        """Logarithms of the factors on viscosity and density (2, nodes)."""
-        return np.stack([self.along.factors[0], np.log(self.along.factors[1])])
+    def everywhere(self, values: Array, nodes: int) -> Array:
+        """Values (..., columns) of the columns at all nodes."""
+        every = np.arange(nodes)
+        rows = [np.interp(every, self.at, row) for row in values.reshape(-1, self.at.size)]
+        return np.array(rows).reshape(*values.shape[:-1], nodes)
 
-    @property
-    def weight(self) -> Array:
-        """How much the flow depends on the factors (2, nodes)."""
-        return np.stack([np.minimum(self.along.driven, 1.0) + _LEAST_WEIGHT, self.along.driven**0])
+    def factors(self, nodes: int) -> tuple[Array, Array, Array]:
+        """Logarithms of the factors on viscosity and density, steps and weights (2, nodes)."""
+        viscosity, density = self.along.factors
+        driven = np.minimum(self.along.driven, 1.0) + _LEAST_WEIGHT
+        rows = np.stack([viscosity, np.log(density), self.along.share, driven])
+        first, second, share, weight = self.everywhere(rows, nodes)
+        ones = np.ones(nodes)
+        return np.stack([first, second]), np.stack([share, share**_EVEN]), np.stack([weight, ones])
 
     @property
     def traction(self) -> float:
         """Traction of the sheared film, of the sign of the sliding [N/m]."""
-        return -float(np.sum(self.along.stress)) * self.step
+        return -float(np.sum((self.along.stress * self.width)[1:]))
 
-    def film(self, passes: int) -> HeatedFilm:
+    def film(self, nodes: int, passes: int) -> HeatedFilm:
         """The heated film as it is now."""
         along = self.along
+        rows = np.concatenate([along.heat, [along.stress, along.mean]])
+        rows = self.everywhere(rows, nodes)
+        temperature = np.ascontiguousarray(self.everywhere(self.across.temperature.T, nodes).T)
         return HeatedFilm(
-            self.across.temperature, along.heat, along.stress, along.mean, self.balance, passes,
-            self.traction,
-        )  # fmt: skip
+            temperature, rows[:2], rows[2], rows[3], self.balance, passes, self.traction
+        )
+
+
+def _columns(grid: DiscreteContact, case: ContactCase) -> tuple[Index, Array]:
+    """Nodes of the columns, sparse in the inlet, and the edges between them, in intervals."""
+    fine = max(1, round(_FINE / grid.dx))
+    near = np.arange(grid.n, int(np.searchsorted(grid.X, _NEAR)), -fine)
+    far = np.arange(near[-1], -1, -_SPARSE * fine)[1:]
+    at = np.concatenate([near, far])[::-1]
+    edges = np.concatenate([[at[0]], 0.5 * (at[1:] + at[:-1]), [at[-1]]])
+    return np.ascontiguousarray(at), edges
 
 
 def _stresses(model: ThermalModel) -> tuple[float, float, float, float, float, float]:
@@ -151,8 +173,10 @@ class _Prediction:
         if len(self.points) == 1:
             return point + change
         by_change, by_point = np.diff(self.changes, axis=0), np.diff(self.points, axis=0)
-        rows = (by_change * weight).reshape(len(by_change), -1).T
-        shares = np.linalg.lstsq(rows, (change * weight).ravel(), rcond=1e-6)[0]
+        rows, wanted = (by_change * weight).reshape(len(by_change), -1), (change * weight).ravel()
+        products = rows @ rows.T
+        products[np.diag_indices_from(products)] *= 1.0 + 1e-10
+        shares = np.linalg.solve(products, rows @ wanted)
         return np.asarray(point + change - np.tensordot(shares, by_point + by_change, axes=1))
 
 
@@ -176,22 +200,29 @@ def solve_heated(
     prediction, traction, film = _Prediction(), math.inf, math.inf
     for passes in range(1, model.passes + 1):
         moved = temperatures.solve(grid, _FIRST if passes == 1 else _OTHER)
-        change = temperatures.factors - point
+        factors, share, weight = temperatures.factors(grid.n + 1)
+        change = factors - point
         drag = abs(temperatures.traction - traction) / max(
             abs(traction), _IDLE * case.load_per_width
         )
         traction = temperatures.traction
-        flow = float(np.max(np.abs(change * temperatures.weight)))
-        if flow < _NO_CHANGE or max(film, drag) < model.tolerance:
-            return _scaled(solved, cold, grid), temperatures.film(passes)
-        change = _smooth(change * temperatures.along.share, grid)
-        point = prediction.next(point, change, temperatures.weight)
+        flow = float(np.max(np.abs(change * weight)))
+        if flow < _NO_CHANGE or max(film, drag, _OF_FACTORS * flow) < model.tolerance:
+            return _scaled(solved, cold, grid), temperatures.film(grid.n + 1, passes)
+        change = _smooth(change * share, grid)
+        point = prediction.next(point, change, weight)
         oil = np.concatenate([problem.oil[:6], point[0], np.exp(point[1])])
         solved = solve_problem(replace(problem, oil=oil, start=grid), cold.method)
         before, grid = grid, solved.outcome.grid
         assert grid is not None
-        film = float(np.max(np.abs(grid.H / before.H - 1.0)))
+        film = float(np.max(np.abs(_films(grid) / _films(before) - 1.0)))
     raise _not_settled(case, model, sliding_speed, (film, drag, moved))
+
+
+def _films(grid: DiscreteContact) -> Array:
+    """Central and least film."""
+    least = float(np.min(grid.H[: grid.free + 1]))
+    return np.array([float(np.interp(0.0, grid.X, grid.H)), least])
 
 
 def _scaled(solved: Verified, cold: Verified, grid: DiscreteContact) -> Verified:

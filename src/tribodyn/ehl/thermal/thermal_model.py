@@ -95,7 +95,7 @@ class ThermalModel:
     specific_heat: float | None = None
     thermal_conductivity: float | None = None
     nodes_across: int = 17
-    tolerance: float = 1e-4
+    tolerance: float = 5e-4
     passes: int = 60
 
     def __post_init__(self) -> None:

@@ -185,6 +185,16 @@ def _curve(knots: Array, values: Array, age: Array) -> Array:
     return monotone_cubic(at, values[first])(age)
 
 
+def curves_over_age(positions: PathPositions, values: Array, age: Array, zone: Index) -> Array:
+    """Rows (rows, m) of values at the positions, joined by monotone cubics in each zone."""
+    rows = np.zeros((len(values), age.size))
+    for number in range(len(positions.counts)):
+        at, wanted = positions.zone == number, zone == number
+        for row, of_positions in zip(rows, values, strict=True):
+            row[wanted] = _curve(positions.age[at], of_positions[at], age[wanted])
+    return rows
+
+
 def joined_over_age(
     positions: PathPositions, places: Places, values: Array, age: Array, zone: int, *, curve: bool
 ) -> Array:

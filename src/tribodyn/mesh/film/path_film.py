@@ -35,6 +35,7 @@ from tribodyn.mesh.film.film_columns import (
     film_places,
     friction_by_law,
     judged,
+    refuse_heated,
     warn_of_loaded,
 )
 from tribodyn.mesh.film.film_refinement import (
@@ -48,6 +49,7 @@ from tribodyn.mesh.film.film_refinement import (
     Refinement,
     SolvedContacts,
     contact_numbers,
+    curves_over_age,
     joined_over_age,
     places_of,
 )
@@ -67,6 +69,10 @@ _SLOW = 1e-4
 _DENSITY, _LEAST = 4.0, 8
 #: Greatest sliding over entrainment speed, below the 2 at which one surface is at rest.
 _MOST_SLIDING = 1.99
+
+
+#: The film model under whose loads a heated film is solved.
+COLD = "newton"
 
 
 class FilmAt(Protocol):
@@ -185,8 +191,14 @@ class PathFilm:
             refinement.refine(checked)
         if PRESSURE in checked:
             refinement.solve_extremes()
-        values = refinement.values(np.arange(self.zone.size))
+        values, heated = refinement.values(np.arange(self.zone.size)), None
+        if PRESSURE in checked and FILM_MODELS[self.settings.film_model].heated:
+            heated = self._heated(loads.at_positions)
+            ratio = heated.values[:STIFFNESS] - refinement.places.values[:STIFFNESS, :count]
+            ages = self.pairs.age, self.zone
+            values[:STIFFNESS] += curves_over_age(self.places, ratio, *ages)
         return SolvedPath(
+            heated=heated,
             pairs=self.pairs,
             keeps_distance=self.settings.film["stiffness"] == "approach",
             factors=np.exp(values[:STIFFNESS]),
@@ -197,6 +209,16 @@ class PathFilm:
             places=refinement.places,
         )
 
+    def _heated(self, load: Array) -> Places:
+        """Heated films at the positions, under loads that the cold ones share."""
+        angles = self.first_angle + self.angle_per_cycle * self.solved.age
+        settings, zone = self.settings, self.places.zone
+        with film_places(lambda index: f"at the roll angle {angles[index]:.4f} rad"):
+            films = self.solved.films(
+                settings.film_model, load, **settings.film, progress=self.progress
+            )
+        return places_of(self.solved, zone, load, films, np.ones(zone.size, dtype=bool))
+
     def _solve_more(self, loads: PathLoads, contacts: Index) -> Places:
         pairs, zone = self.pairs.some(contacts), self.zone[contacts]
         with quiet("seed-film-stiffness"):
@@ -204,13 +226,15 @@ class PathFilm:
             return self._solve(pairs, zone, loads.of_contacts[contacts])
 
     def _solve(self, pairs: PairsInContact, zone: Index, loads: Array) -> Places:
+        model, options = self.settings.film_model, dict(self.settings.film)
+        if options.pop("thermal", None) is not None:
+            model = COLD  # the heat comes in at the positions, under the loads of the cold films
+
         def solve(new: Index) -> Places:
             some, load = pairs.some(new), loads[new]
             angles = self.first_angle + self.angle_per_cycle * some.age
             with film_places(lambda index: f"at the roll angle {angles[index]:.4f} rad"):
-                films = some.films(
-                    self.settings.film_model, load, **self.settings.film, progress=self.progress
-                )
+                films = some.films(model, load, **options, progress=self.progress)
             return places_of(some, zone[new], load, films, np.ones(new.size, dtype=bool))
 
         return self.memory.films_of(pairs, zone, loads, solve)
@@ -272,6 +296,7 @@ class SolvedPath(LoadedFilms):
 
     path: PathFilm  #: positions and contacts
     places: Places  #: solved contacts: the positions first, then those that were added
+    heated: Places | None = None  #: heated films at the positions
 
     @cached_property
     def distance_factors(self) -> Array:
@@ -311,7 +336,8 @@ class SolvedPath(LoadedFilms):
     ) -> Friction:
         """Friction of every pair; a law that shears the film is evaluated at the solved places."""
         if LAWS[settings.friction_law].needs_film:
-            return film_friction(self, motion, settings)
+            solved = self if self.heated is None else replace(self, places=self.heated)
+            return film_friction(solved, motion, settings)
         return friction_by_law(settings.friction_law, contact, settings.friction_options)
 
 
@@ -324,8 +350,11 @@ def film_of(
     progress: Progress,
 ) -> FormulaFilm | PathFilm:
     """Return the film by the settings: a formula, or solutions along the path of contact."""
-    if not FILM_MODELS[settings.film_model].method:
+    model = FILM_MODELS[settings.film_model]
+    if not model.method:
         return FormulaFilm(settings, pairs, teeth.least_load)
+    if model.heated and cycle.slices is not None:
+        refuse_heated("helical teeth")
     contact, side = cycle.contact, cycle.side
     places = path_positions(contact, settings.film["positions"], teeth.bends)
     path = contact.A + contact.direction * places.age * contact.pair.base_pitch

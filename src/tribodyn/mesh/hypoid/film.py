@@ -21,7 +21,7 @@ from tribodyn.errors import ComputationError, InputError
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear.hypoid.kinematics import CellMotion
 from tribodyn.mesh.cycle import PairsInContact
-from tribodyn.mesh.film.film_columns import friction_by_law
+from tribodyn.mesh.film.film_columns import friction_by_law, refuse_heated
 from tribodyn.mesh.film.film_lookup import (
     FilmLookup,
     OutsideTableError,
@@ -136,6 +136,8 @@ def cell_films(
 ) -> CellFilms:
     """Films and friction of all cells, their films in series with the teeth if requested."""
     cells, in_series = loaded.cells, settings.film_in_series
+    if FILM_MODELS[settings.film_model].heated:
+        refuse_heated("hypoid teeth")
     width = loaded.line_force / cells.length
     solved = bool(FILM_MODELS[settings.film_model].method)
     active = np.ones(width.shape, dtype=bool) if in_series else width > 0.0

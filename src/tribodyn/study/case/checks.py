@@ -201,6 +201,25 @@ def _film_of_friction(
                 yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
 
 
+def _heated_film(inputs: UserInput, film: FilmModel | None) -> KeyedProblems:
+    """Check oil, gears and friction of a film that is solved with its heat."""
+    if film is None or not film.heated:
+        return
+    why = f'film.model = "{film.name}" solves the temperatures of the film'
+    if "lubricant.dynamic_viscosity" in inputs:
+        for name in (*THERMAL, "temperature"):
+            if f"lubricant.{name}" not in inputs:
+                remedy = f'Add {name}, name an oil of the library, or set film.model = "newton"'
+                yield f"lubricant.{name}", Problem(f"{name} is missing", "", why, remedy)
+    for key in _HEAT:
+        if inputs.get(f"friction.{key}"):
+            what, remedy = f"{key} = true with a heated film", f"Set {key} = false"
+            yield f"friction.{key}", Problem(what, "", f"{why}: heat would count twice", remedy)
+    if inputs.get("gears.kind") == "hypoid" or inputs.get("gears.helix_angle"):
+        what, limit = f'film.model = "{film.name}"', "Heated films are solved for spur gears"
+        yield "film.model", Problem(what, "", limit, 'Set model = "newton" in [film]')
+
+
 def _shear(inputs: UserInput, law: FrictionLaw | None) -> KeyedProblems:
     """Find parameters of a shear model other than the selected model."""
     if law is None or "shear_model" not in law.options:
@@ -469,6 +488,7 @@ def cross_problems(
     problems += [
         *_lubrication_inputs(inputs, law),
         *_film_of_friction(inputs, law, film),
+        *_heated_film(inputs, film),
         *_assumed(inputs, faulty),
     ]
     if "friction.shear_model" not in faulty:
