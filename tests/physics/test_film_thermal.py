@@ -209,8 +209,8 @@ def test_case_with_heated_film_has_less_film_and_friction(short_case):
     assert np.all(ratio < 1.0)
     # The pitch point has the least heat.
     assert sliding[np.argmax(ratio)] < 0.3 < sliding[np.argmin(ratio)]
-    factor = hot_mesh.friction_coefficient[touching] / cold_mesh.friction_coefficient[touching]
-    assert np.median(factor) < 0.8
+    hot, before = (mesh.friction_coefficient[touching] for mesh in (hot_mesh, cold_mesh))
+    assert hot.mean() < 0.7 * before.mean()
 
 
 HEAT = {

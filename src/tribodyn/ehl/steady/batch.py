@@ -317,14 +317,11 @@ def solved_films(
     effective_modulus: float,
     *,
     length: ArrayLike,
-    method: str,
     stiffness: str,
     nodes: int,
-    inlet: str,
     domain: tuple[float, float] | None,
-    thermal: bool | ThermalModel = False,
-    sliding_speed: ArrayLike = 0.0,
     progress: Progress = SILENT,
+    **solver: Any,
 ) -> Films:
     """Solve many contacts in threads."""
     sums = stiffness in ("secant", "seed")
@@ -337,14 +334,11 @@ def solved_films(
             lubricant,
             effective_modulus,
             nodes=nodes,
-            method=method,
-            inlet=inlet,
             domain="auto" if domain is None else domain,
             stiffness=False if sums else "tangent" if stiffness == "tangent" else "approach",
             keep_solutions=True,
-            thermal=thermal,
-            sliding_speed=sliding_speed,
             progress=progress,
+            **solver,
         )
     solutions = tuple(np.ravel(batch.solutions))
     pressures = np.array([solution.pressure.max() for solution in solutions])
