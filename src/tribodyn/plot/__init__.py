@@ -10,6 +10,7 @@ from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.area_contact import finite_line_contact, point_contact
 from tribodyn.plot.film.dynamics import film_response, film_transient
+from tribodyn.plot.film.film_temperature import film_temperature
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
 from tribodyn.plot.film.lubrication import film_over_operation, lubrication, lubrication_map
 from tribodyn.plot.film.mixed_contact import mixed_line_contact
@@ -126,6 +127,7 @@ __all__ = [
     "film_pressure",
     "film_response",
     "film_stiffness",
+    "film_temperature",
     "film_transient",
     "finite_line_contact",
     "flank_modification",

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 #: Euler's constant.
 _EULER = 0.5772156649015329
@@ -20,7 +20,7 @@ def slowest_speed(diffusivity: float, reach: float) -> float:
 
 
 def surface_response(
-    at: Array, edges: Array, interval: float, speed: float, conductivity: float, diffusivity: float
+    at: Index, edges: Array, interval: float, speed: float, conductivity: float, diffusivity: float
 ) -> Array:
     """Rise of a surface [K m^2/W] at each node by even heat between each two edges."""
     # T = 1/(pi k) int q exp(u s/2 kappa) K_0(|u s|/2 kappa) ds, with s the distance behind the
