@@ -12,6 +12,7 @@ import math
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 # The rival's linear algebra keeps to one core like ours; NumPy reads this when it is loaded.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -22,7 +23,9 @@ import numpy as np
 from film_contacts import MoesContact, random_contacts, twin
 from plain.film_newton import solve_plain
 from race import Goal, arguments, machine, print_goals, print_table
+from tribodyn.ehl import ThermalModel, solve_line_contact
 from tribodyn.errors import ComputationError
+from tribodyn.lubricant import from_library
 
 __all__ = ["main", "plain_times", "quickest"]
 
@@ -140,6 +143,23 @@ def _growth(count: int, rounds: int) -> dict[str, float]:
     return exponents
 
 
+def _heated(rounds: int) -> dict[str, float]:
+    """Processor time [ms] of a heated gear contact, the median over slide-to-roll ratios."""
+    oil, spent, ratios = from_library("80W"), {}, (0.0, 0.1, 0.5, 1.0)
+    for name in ("newtonian", "ree-eyring"):
+        contacts = [
+            partial(
+                solve_line_contact, 147802.0, 8e-3, 3.0722, oil, 2.2e11, nodes=513,
+                thermal=ThermalModel(name), sliding_speed=ratio * 3.0722,
+            )
+            for ratio in ratios
+        ]  # fmt: skip
+        times = quickest({name: lambda contact: contact()}, contacts, rounds)[name]
+        spent[name] = 1e3 * float(np.median(times))
+        print(f"Heated film, 513 nodes, {name}, CPU ms at SR {ratios}: {(1e3 * times).round(1)}")
+    return spent
+
+
 def _against_plain(count: int, nodes: int, rounds: int) -> float:
     """Median ratio of processor times."""
     spent, unsolved = plain_times(random_contacts(count, seed=7), nodes, rounds)
@@ -169,6 +189,7 @@ def main(words: Sequence[str] | None = None) -> None:
     if quick:
         _random_set(2, (257,), 1)
         _against_plain(2, 257, 1)
+        _heated(1)
         return
     found = _random_set(100, (1025, 4097), 3)
     exponents = _growth(15, 3)
@@ -183,6 +204,10 @@ def main(words: Sequence[str] | None = None) -> None:
         for name, exponent in exponents.items()
     ]
     goals.append(Goal("newton over plain NumPy", 100.0, ratio, "times", at_least=True))
+    goals += [
+        Goal(f"heated film, {name}", 40.0, spent, "ms CPU", at_least=False)
+        for name, spent in _heated(3).items()
+    ]
     print_goals(goals)
 
 

@@ -44,7 +44,7 @@ def _in_film(solution: Any, inside: Array, position: Array, film_scale: float) -
     caption="Temperature in the film over the position and the distance from surface 1, the inlet "
     "on the left; below it that of both surfaces and of the oil halfway between them.",
     of="ThermalLineContactSolution",
-    made_by="Call tribodyn.ehl.solve_line_contact with thermal=True, and this figure of its result.",
+    made_by="Call tribodyn.ehl.solve_line_contact with thermal=True, then this figure.",
 )
 def film_temperature(solution: Any) -> Any:
     """Draw the temperatures of a heated line contact, the inlet on the left.
