@@ -142,7 +142,7 @@ def sideband_cursors(
         float(carrier),
         float(spacing),
         number,
-        carrier + spacing * number,
+        carrier + spacing * number.astype(np.float64),
         size,
         20.0 * np.log10(np.maximum(size, 1e-300) / carrier_size),
         floor,

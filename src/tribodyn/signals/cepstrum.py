@@ -191,7 +191,7 @@ def lifter(
     sampling_rate: float,
     *,
     remove: Sequence[float] = (),
-    half_width: float | None = None,
+    notch_width: float | None = None,
     longest: float | None = None,
 ) -> Array:
     """Remove families of lines from a signal by editing its real cepstrum.
@@ -203,8 +203,8 @@ def lifter(
     remove : sequence of float
         Quefrencies of families that are removed with all their rahmonics [s]: the inverse of the
         spacing of their lines, such as the period of a shaft.
-    half_width : float, optional
-        Half the width of each notch [s]; two samples by default.
+    notch_width : float, optional
+        Width of the notch at each rahmonic [s]; four samples by default.
     longest : float, optional
         Quefrency above which everything is removed [s]: what remains is the smooth course of the
         spectrum, for gears that of the path to the sensor.
@@ -238,8 +238,8 @@ def lifter(
     """
     values = checked_signal(signal, 16)
     require_positive("sampling_rate", sampling_rate, "Hz")
-    width = 2.0 / sampling_rate if half_width is None else half_width
-    require_positive("half_width", width, "s")
+    notch = 4.0 / sampling_rate if notch_width is None else notch_width
+    require_positive("notch_width", notch, "s")
     if not len(remove) and longest is None:
         what, why = "nothing is to be removed", "Neither remove nor longest is given"
         raise InputError(what, Argument("remove"), why, "Name a quefrency in seconds")
@@ -248,14 +248,14 @@ def lifter(
     keep = np.ones(size, dtype=bool)
     half = 0.5 * size / sampling_rate
     for period in (*remove, *(() if longest is None else (longest,))):
-        if not width < period < half:
+        if not notch < period < half:
             what = f"a quefrency of {period:g} s"
-            why = f"It must be above the half width of {width:g} s and below {half:g} s"
+            why = f"It must be above the width of a notch, {notch:g} s, and below {half:g} s"
             where = Argument("longest" if period == longest else "remove")
             raise InputError(what, where, why, "Pass the inverse of the spacing of the lines")
     for period in remove:
         number = np.rint(quefrency / period)
-        keep &= (number == 0) | (np.abs(quefrency - number * period) > width)
+        keep &= (number == 0) | (np.abs(quefrency - number * period) > 0.5 * notch)
     if longest is not None:
         keep &= quefrency <= longest
     lines = _lines(values)

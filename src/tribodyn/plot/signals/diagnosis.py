@@ -140,7 +140,7 @@ def kurtogram(result: Kurtogram) -> Any:
     best = int(result.splits[result.best])
     heatmap = _heatmap(
         frequency,
-        np.arange(counts.size),
+        np.arange(float(counts.size)),
         np.array(rows),
         "kurtosis",
         "%{x:.5g} Hz",
