@@ -160,7 +160,7 @@ def _stresses(model: ThermalModel) -> tuple[float, float, float, float, float, f
 
 
 class _Prediction:
-    """Next factors from the last passes: Anderson (1965)."""
+    """Next factors from the last passes, by extrapolation of their changes."""
 
     def __init__(self) -> None:
         self.points: list[Array] = []
