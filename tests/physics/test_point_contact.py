@@ -159,3 +159,20 @@ def test_grid_too_coarse_for_the_film_is_reported() -> None:
         solve_point_contact(20.0, 0.01, 0.01, 1.0, OIL, MODULUS, nodes=33)
     with pytest.raises(ComputationError, match="Use more nodes than 33"):
         solve_point_contact(1000.0, 0.02, 0.02, 0.1, OIL, MODULUS, nodes=33)
+
+
+@pytest.mark.slow
+def test_case_of_venner_and_lubrecht_keeps_its_film() -> None:
+    # M = 20, L = 10 in SI; own films of three nested grids on the domain of that case, -4.5..1.5
+    # by -3..3, extrapolate to H = 0.4309. The flooded film of this grid lies within 1 % of it.
+    radius, viscosity, modulus = 0.01, 0.03595, 2.2e11
+    viscous = (10.0 / (2.2e-8 * modulus)) ** 4
+    speed = viscous * modulus * radius / (2.0 * viscosity)
+    oil = Lubricant(viscosity, 880.0, 2.2e-8)
+    assert oil.roelands_index == pytest.approx(0.68, abs=1e-3)
+    force = 20.0 * modulus * radius**2 * viscous**0.75
+    contact = solve_point_contact(force, radius, radius, speed, oil, modulus, nodes=129)
+    assert contact.moes_load == pytest.approx(20.0)
+    assert contact.moes_viscosity == pytest.approx(10.0)
+    film = contact.central_film_extrapolated / (contact.semi_axis_x**2 / radius)
+    assert film == pytest.approx(0.4309, rel=0.015)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from tribodyn.arguments import guard
 from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
-from tribodyn.plot.film.area_contact import finite_line_contact, point_contact
+from tribodyn.plot.film.area_contact import area_friction, finite_line_contact, point_contact
 from tribodyn.plot.film.dynamics import film_response, film_transient
 from tribodyn.plot.film.film_temperature import film_temperature
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
@@ -100,6 +100,7 @@ __all__ = [
     "acceleration",
     "adaptive_solution",
     "amplitude_reduction",
+    "area_friction",
     "band",
     "bands",
     "basins",

@@ -237,4 +237,6 @@ def point_grid(case: PointCase, intervals: int) -> Grid:
     rows = min(max(16 * math.ceil(wide / (hx * ratio**0.75) / 16.0), 32), 1024)
     hy = wide / rows
     middle = 2 * round(before(ratio, sy, uy) / (2.0 * hy))
-    return Grid(hx * (np.arange(intervals + 1) - first), hy * (np.arange(rows + 1) - middle))
+    x: Array = hx * (np.arange(intervals + 1.0) - first)
+    y: Array = hy * (np.arange(rows + 1.0) - middle)
+    return Grid(x, y)

@@ -197,13 +197,13 @@ def _problem(
     s = math.sqrt(2.0 * film)
     inlet, outlet = 1.0 + max(1.4, 4.0 * s), 1.0 + max(0.35, 0.8 * s)
     hx = (inlet + outlet) / intervals
-    x = hx * (np.arange(intervals + 1) - 2 * round(inlet / (2.0 * hx)))
+    x: Array = hx * (np.arange(intervals + 1.0) - 2 * round(inlet / (2.0 * hx)))
     profile, edge_radius = shape
     unit = b**2 / case.equivalent_radius
     reach = 0.5 * length / b + 1.0 + math.sqrt(2.0 * _ROUNDED * edge_radius * unit) / b
     cells = min(16 * math.ceil(2.0 * reach / (_CELL * _FIRST / intervals) / 16.0), _MOST_CELLS)
     hy = 2.0 * reach / cells
-    y = hy * (np.arange(cells + 1) - cells // 2)
+    y: Array = hy * (np.arange(cells + 1.0) - cells // 2)
     beyond = np.maximum(np.abs(y * b) - 0.5 * length, 0.0)
     drop = (np.asarray(profile.drop(y * b), dtype=float) + 0.5 * beyond**2 / edge_radius) / unit
     if drop.shape != y.shape or not np.all(np.isfinite(drop)):

@@ -88,7 +88,7 @@ class Level:
         )
         # Sources start at node 1: shift the result by one node each way.
         total = np.roll(total, (1, 1), (0, 1))
-        return self.elasticity * total[: self.ny + 1, : self.nx + 1]
+        return np.asarray(self.elasticity * total[: self.ny + 1, : self.nx + 1])
 
     @property
     def spectrum_shape(self) -> tuple[int, int]:

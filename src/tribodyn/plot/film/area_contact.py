@@ -69,7 +69,7 @@ def point_contact(solution: Any) -> Any:
         for half in (solution.semi_axis_x, solution.semi_axis_y)
     )
     top = float(displayed("film_thickness", _FILMS * solution.central_film))
-    near = [
+    view = [
         (max(x[0], -2.0 * a), min(x[-1], 1.6 * a)), (max(y[0], -1.6 * b), min(y[-1], 1.6 * b)),
     ]  # fmt: skip
     angle = np.linspace(0.0, 2.0 * np.pi, 121)
@@ -96,11 +96,11 @@ def point_contact(solution: Any) -> Any:
         f"{significant(float(displayed('film_thickness', each)))} {units[2]}"
         for each in (solution.central_film, solution.minimum_film)
     )
-    ahead = {"range": list(near[0])}
+    ahead = {"range": list(view[0])}
     rows = [
-        Row(labels[0], Panel(labels[1], [pressed, ellipse], {"range": list(near[1])}, 1.5), ahead),
+        Row(labels[0], Panel(labels[1], [pressed, ellipse], {"range": list(view[1])}, 1.5), ahead),
         Row(labels[0], Panel(labels[1], [films, _levels(films, top), ellipse],
-                             {"range": list(near[1])}, 1.5), ahead),
+                             {"range": list(view[1])}, 1.5), ahead),
         Row(labels[0], from_zero("Cut through the middle", cut), ahead),
     ]  # fmt: skip
     title = f"The film is {central} thick in the middle and {least} at its thinnest"
@@ -118,7 +118,7 @@ def point_contact(solution: Any) -> Any:
 def finite_line_contact(solution: Any) -> Any:
     """Draw pressure, film and load along a roller."""
     y = np.asarray(displayed("face_width", solution.y))
-    ends, nothing = y[[0, -1]], {"dash": "dash"}
+    ends = y[[0, -1]]
     pressure, film = display_unit("hertz_pressure"), display_unit("film_thickness")
     ridge = displayed("hertz_pressure", solution.ridge_pressure)
     least = np.asarray(displayed("film_thickness", solution.ridge_film))
@@ -136,16 +136,38 @@ def finite_line_contact(solution: Any) -> Any:
     panels = [
         from_zero(f"Greatest pressure [{pressure}]", [
             line(y, ridge, "roller", TOTAL, unit=pressure),
-            line(ends, line_pressure, "infinite line", MUTED, unit=pressure, **nothing),
+            line(ends, line_pressure, "infinite line", MUTED, unit=pressure, dash="dash"),
         ]),
         from_zero(f"Least film [{film}]", [
             line(y, least, "roller", TOTAL, unit=film),
-            line(ends, line_film, "infinite line", MUTED, unit=film, **nothing),
+            line(ends, line_film, "infinite line", MUTED, unit=film, dash="dash"),
         ]),
         from_zero("Load per length [N/mm]", [
             line(y, load, "roller", TOTAL, unit="N/mm"),
-            line(ends, mean, "mean", MUTED, unit="N/mm", **nothing),
+            line(ends, mean, "mean", MUTED, unit="N/mm", dash="dash"),
         ]),
     ]  # fmt: skip
     title = f"The ends carry {solution.edge_pressure_ratio:.2f} times the pressure of the middle"
     return stack(title, f"Along the roller [{display_unit('face_width')}]", panels).figure()
+
+
+@drawing(
+    "area_friction",
+    heading="Friction over the width of a contact",
+    caption="Friction force per width and rise of the mean film temperature on each line along the "
+    "entrainment, over the position across it.",
+    of="AreaFriction",
+    made_by="Call the friction method of tribodyn.ehl.solve_point_contact(...).",
+)
+def area_friction(friction: Any) -> Any:
+    """Draw friction and film temperature over the position across the entrainment."""
+    position = np.asarray(displayed("face_width", friction.position))
+    force = 1e-3 * friction.force_per_width
+    rise = friction.temperature_rise
+    panels = [
+        from_zero("Friction [N/mm]", [line(position, force, "friction", TOTAL, unit="N/mm")]),
+        from_zero("Temperature rise [K]", [line(position, rise, "film", WHEEL, unit="K")]),
+    ]
+    title = f"Friction coefficient {friction.coefficient:.4f}"
+    label = f"Across the entrainment [{display_unit('face_width')}]"
+    return stack(title, label, panels).figure()
