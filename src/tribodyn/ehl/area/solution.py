@@ -56,7 +56,7 @@ class PointContactSolution(Record):
     attempts : tuple of str
         What was tried in vain before.
     normal_force, radius_x, radius_y, entrainment_speed, entrainment_angle, effective_modulus
-        Arguments of :func:`tribodyn.ehl.solve_point_contact`.
+        Arguments of :func:`tribodyn.ehl.solve_point_contact` [N, m, m, m/s, rad, Pa].
     lubricant, viscosity_law, compressible
         As there; the law that was used.
     """

@@ -81,9 +81,10 @@ def nijenbanning_central(
     Parameters
     ----------
     normal_force, equivalent_radius, side_radius, entrainment_speed, dynamic_viscosity
-        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`; the side radius is finite.
+        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`; the side radius is finite [N, m, m,
+        m/s, Pa*s].
     pressure_viscosity_coefficient, effective_modulus
-        As there.
+        As there [1/Pa, Pa].
 
     Returns
     -------
@@ -133,9 +134,9 @@ def hamrock_dowson_central(
     Parameters
     ----------
     normal_force, equivalent_radius, side_radius, entrainment_speed, dynamic_viscosity
-        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`.
+        As for :func:`tribodyn.ehl.hamrock_dowson_minimum` [N, m, m, m/s, Pa*s].
     pressure_viscosity_coefficient, effective_modulus
-        As there.
+        As there [1/Pa, Pa].
 
     Returns
     -------

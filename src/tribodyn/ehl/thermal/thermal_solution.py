@@ -23,7 +23,7 @@ class ThermalLineContactSolution(LineContactSolution):
     ----------
     sliding_speed : float [m/s]
         Speed of surface 1 less that of surface 2.
-    height : (across,) array
+    height : (across,) array [1]
         Distance of the nodes from surface 1 over the film.
     film_temperature : (nodes, across) array [K]
         Temperature of the oil from surface 1 to surface 2; behind the outlet, where the oil has
@@ -42,7 +42,7 @@ class ThermalLineContactSolution(LineContactSolution):
         Heat made by shear, and by compression less expansion; heat that the oil takes out.
     body_heat : (2,) array [W/m]
         Heat into both bodies.
-    heat_balance_error : float
+    heat_balance_error : float [1]
         Heat made less heat led away, over the heat made by shear.
     thermal_passes : int
         Passes between film and temperatures.

@@ -42,12 +42,6 @@ class HypoidFriction(Record):
         Radius of the gap across the line.
     minimum_film : array (phase, pair, cell) [m]
         Least film; where the film model has none, the central one.
-    central_film : array (phase, pair, cell) [m] or None
-        Central film, where the film model has it.
-    film_pressure : array (phase, pair, cell) [Pa] or None
-        Greatest pressure in a solved film; NaN in most cells, see :class:`tribodyn.mesh.MeshTable`.
-    film_stiffness : array (phase, pair, cell) [N/m] or None
-        Stiffness of the film of the cell, where the film model has it.
     film_ratio : array (phase, pair, cell)
         Film over composite roughness.
     friction_coefficient : array (phase, pair, cell)
@@ -75,6 +69,12 @@ class HypoidFriction(Record):
         The contact under load, with the oil films in series if the film model has a stiffness.
     teeth : HypoidLoadedContact
         The contact of the teeth alone under the same load.
+    central_film : array (phase, pair, cell) [m] or None
+        Central film, where the film model has it.
+    film_pressure : array (phase, pair, cell) [Pa] or None
+        Greatest pressure in a solved film; NaN in most cells, see :class:`tribodyn.mesh.MeshTable`.
+    film_stiffness : array (phase, pair, cell) [N/m] or None
+        Stiffness of the film of the cell, where the film model has it.
     """
 
     phase: Array = quantity(*_PHASES, unit="1", axis=True)

@@ -164,12 +164,32 @@ class HypoidLoadedContact(Record):
         return _loaded(self.cells, self.grid, torque, self.line_stiffness, self.material)
 
     def with_film(self, springs: CellSprings | None) -> HypoidLoadedContact:
-        """Find the contact under the same torque with oil films in series with the teeth."""
+        """Find the contact under the same torque with oil films in series with the teeth.
+
+        Parameters
+        ----------
+        springs : CellSprings, optional
+            Films of the cells; none leaves the teeth alone.
+
+        Returns
+        -------
+        HypoidLoadedContact
+        """
         contact = self.cells, self.grid, self.pinion_torque, self.line_stiffness, self.material
         return _loaded(*contact, springs, self.loading)
 
     def under_loading(self, loading: Array) -> HypoidLoadedContact:
-        """Find the contact of the teeth at the nominal torque times a factor (phase,)."""
+        """Find the contact of the teeth at the nominal torque times a factor.
+
+        Parameters
+        ----------
+        loading : array (phase,)
+            Factor at each phase.
+
+        Returns
+        -------
+        HypoidLoadedContact
+        """
         contact = self.cells, self.grid, self.pinion_torque, self.line_stiffness, self.material
         return _loaded(*contact, None, loading)
 

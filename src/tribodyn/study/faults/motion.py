@@ -137,6 +137,7 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
                 break
         for warning in model_warnings:
             warn(warning.code, warning.message)
+    assert response is not None
     return _sampled(case, mesh, response, result.mesh.mesh_frequency)
 
 
