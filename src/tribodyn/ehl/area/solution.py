@@ -55,8 +55,12 @@ class PointContactSolution(Record):
         Multigrid cycles on the finest grid, and its nodes.
     attempts : tuple of str
         What was tried in vain before.
-    normal_force, radius_x, radius_y, entrainment_speed, entrainment_angle, effective_modulus
-        Arguments of :func:`tribodyn.ehl.solve_point_contact` [N, m, m, m/s, rad, Pa].
+    normal_force : float [N]
+        Argument of :func:`tribodyn.ehl.solve_point_contact`, as the following.
+    radius_x, radius_y : float [m]
+    entrainment_speed : float [m/s]
+    entrainment_angle : float [rad]
+    effective_modulus : float [Pa]
     lubricant, viscosity_law, compressible
         As there; the law that was used.
     """

@@ -80,11 +80,14 @@ def nijenbanning_central(
 
     Parameters
     ----------
-    normal_force, equivalent_radius, side_radius, entrainment_speed, dynamic_viscosity
-        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`; the side radius is finite [N, m, m,
-        m/s, Pa*s].
-    pressure_viscosity_coefficient, effective_modulus
-        As there [1/Pa, Pa].
+    normal_force : float or array [N]
+        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`, and so are the others; the side radius is
+        finite.
+    equivalent_radius, side_radius : float or array [m]
+    entrainment_speed : float or array [m/s]
+    dynamic_viscosity : float or array [Pa*s]
+    pressure_viscosity_coefficient : float or array [1/Pa]
+    effective_modulus : float or array [Pa]
 
     Returns
     -------
@@ -133,10 +136,13 @@ def hamrock_dowson_central(
 
     Parameters
     ----------
-    normal_force, equivalent_radius, side_radius, entrainment_speed, dynamic_viscosity
-        As for :func:`tribodyn.ehl.hamrock_dowson_minimum` [N, m, m, m/s, Pa*s].
-    pressure_viscosity_coefficient, effective_modulus
-        As there [1/Pa, Pa].
+    normal_force : float or array [N]
+        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`, and so are the others.
+    equivalent_radius, side_radius : float or array [m]
+    entrainment_speed : float or array [m/s]
+    dynamic_viscosity : float or array [Pa*s]
+    pressure_viscosity_coefficient : float or array [1/Pa]
+    effective_modulus : float or array [Pa]
 
     Returns
     -------
