@@ -65,7 +65,7 @@ from tribodyn.plot.motion.time_histories import (
     tooth_force,
     transmission_error,
 )
-from tribodyn.plot.motion.turns import turning_motion
+from tribodyn.plot.motion.turns import turning_mesh, turning_motion, wear_depth
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
@@ -218,8 +218,10 @@ __all__ = [
     "tooth_force",
     "tracked_orders",
     "transmission_error",
+    "turning_mesh",
     "turning_motion",
     "waterfall",
+    "wear_depth",
 ]
 
 guard(__name__)

@@ -81,7 +81,7 @@ def nijenbanning_central(
     Parameters
     ----------
     normal_force : float or array [N]
-        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`, and so are the others; the side radius is
+        As for :func:`tribodyn.ehl.hamrock_dowson_minimum`, as the others; the side radius is
         finite.
     equivalent_radius, side_radius : float or array [m]
     entrainment_speed : float or array [m/s]

@@ -1,4 +1,4 @@
-"""Motion over whole turns of the gears: the mesh force, and the sidebands of the mesh harmonics."""
+"""Whole turns of the gears: mesh, motion with its sidebands, and what the flanks lose."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.signals.lines import strongest_lines
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, Row, stack_rows
-from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, line
+from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, line, translucent
 
 if TYPE_CHECKING:
+    from tribodyn.faults import TurningMesh
     from tribodyn.study.faults.motion import TurningMotion
+    from tribodyn.study.faults.wear import Wear
 
 #: Mesh harmonics of the spectrum, and points of a curve.
 _HARMONICS, _POINTS = 4.5, 8000
@@ -82,3 +84,69 @@ def turning_motion(motion: TurningMotion) -> Any:
         f"The mesh force varies by {swing} over {motion.cycles} mesh cycles",
         rows,
     )
+
+
+@drawing(
+    "turning_mesh",
+    heading="Mesh over whole turns",
+    caption="Static transmission error and tangent stiffness under the mean load over all mesh "
+    "cycles after which the same teeth meet again. A deviation lifts the error of its tooth, a "
+    "crack lowers the stiffness where its tooth carries.",
+    of="TurningMesh",
+    made_by="Call tribodyn.faults.turning_mesh(...) and its plot method.",
+)
+def turning_mesh(mesh: TurningMesh) -> Any:
+    """Draw transmission error and stiffness over the mesh cycles."""
+    curves = (
+        ("static_transmission_error", mesh.transmission_error, "Error at rest", PINION),
+        ("mesh_stiffness_tangent", mesh.mesh_stiffness_tangent, "Stiffness", WHEEL),
+    )
+    panels = [
+        Panel(
+            axis_label(quantity, name),
+            [
+                line(
+                    mesh.phase,
+                    displayed(quantity, values),
+                    name.lower(),
+                    color,
+                    unit=display_unit(quantity),
+                )
+            ],
+        )
+        for quantity, values, name, color in curves
+    ]
+    swing = rounded("static_transmission_error", mesh.peak_to_peak_transmission_error)
+    title = f"The transmission error varies by {swing} over {mesh.cycles} mesh cycles"
+    return stack(title, "Mesh cycles", panels)
+
+
+@drawing(
+    "wear_depth",
+    heading="Wear of the flanks",
+    caption="Depth of wear over the used flank, from its lowest point to the tip, after each step. "
+    "Nothing wears at the pitch point, where the flanks do not slide.",
+    of="Wear",
+    made_by="Call tribodyn.study.wear(...) and its plot method.",
+)
+def wear_depth(wear: Wear) -> Any:
+    """Draw the depth of wear of both gears over the flank."""
+    panels = []
+    for gear, depth, color in (
+        ("Pinion", wear.depth_pinion, PINION),
+        ("Wheel", wear.depth_wheel, WHEEL),
+    ):
+        curves = [
+            line(
+                wear.place,
+                displayed("wear_depth", depth[step]),
+                f"{wear.turns[step]:.3g} turns",
+                translucent(color, 0.25 + 0.75 * step / (len(depth) - 1)),
+                unit=display_unit("wear_depth"),
+            )
+            for step in range(1, len(depth))
+        ]
+        panels.append(Panel(axis_label("wear_depth", gear), curves))
+    deepest = rounded("wear_depth", float(max(wear.depth_pinion.max(), wear.depth_wheel.max())))
+    title = f"The flanks lose up to {deepest} in {wear.turns[-1]:.3g} turns of the pinion"
+    return stack(title, "Place on the used flank", panels)
