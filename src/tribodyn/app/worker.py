@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
 from queue import SimpleQueue
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -106,7 +106,8 @@ def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
 def _case(order: Mapping[str, Any]) -> Case | MachineCase:
     from tribodyn.study.machine.read import read_any_case
 
-    return read_any_case(order["case"], "case.toml")
+    # The page refuses planetary stages before a job is ordered.
+    return cast("Case | MachineCase", read_any_case(order["case"], "case.toml"))
 
 
 def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.study.case.read import named_files, parse_toml, read_text
@@ -93,7 +93,7 @@ class Workspace:
         for named in [*files, *(machine_files(data) if is_machine(data) else ())]:
             if not (place.parent / named).resolve().is_relative_to(self.root):
                 raise self._outside(named)
-        return read_any_case(text, str(place))
+        return cast("Case | MachineCase", read_any_case(text, str(place)))
 
     def save_case(self, case: Case | MachineCase, name: str, force: bool = False) -> Path:
         """Write a case file with the files of a housing; replace one only with ``force``."""

@@ -166,10 +166,13 @@ def _friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:
 
     if "friction_coefficients" not in data:
         return None
-    facts = (float(data.attrs[f"friction_{name}"]) for name in ("load", "limit", "fit_error"))
+    names = ("load", "limit", "fit_error")
+    load, limit, error = (float(data.attrs[f"friction_{name}"]) for name in names)
     couple = data.get("friction_couple_coefficients")
     tilting = None if couple is None else couple.values
-    return MeshFriction(mesh.grid, data["friction_coefficients"].values, *facts, couple=tilting)
+    return MeshFriction(
+        mesh.grid, data["friction_coefficients"].values, load, limit, error, tilting
+    )
 
 
 def _coupling(mesh: MeshTable, data: xarray.Dataset) -> Coupling | None:

@@ -164,21 +164,15 @@ def film_over_operation(
     """
     speed, torque = one_or_more(pinion_speed=pinion_speed, pinion_torque=pinion_torque)
     require_between("composite_roughness", composite_roughness, 0.0, 1e-4, "m")
-    model = FILM_MODELS[film_model]
-    options = model.complete(film_options)
     settings = ToothContact(
-        material=material,
-        lubricant=lubricant,
-        stiffness_model=stiffness_model,
-        stiffness_options=stiffness_options,
-        composite_roughness=composite_roughness,
-        film_model=film_model,
-        film_options=film_options,
-    )
+        material, lubricant, stiffness_model, stiffness_options,
+        composite_roughness, film_model, film_options,
+    )  # fmt: skip
     if has_slices(pair, MODELS[stiffness_model]):
         fields = films_over_flank(pair, settings, torque, speed, progress)
         return FilmOverOperation(pinion_torque=torque, pinion_speed=speed, **fields)
-    contact = path_of_contact(pair)
+    model, contact = FILM_MODELS[film_model], path_of_contact(pair)
+    options = model.complete(film_options)
     places = path_positions(contact, options.get("positions", _POSITIONS))
     path = contact.A + contact.direction * places.age * pair.base_pitch
     share = _shares(pair, settings, places, torque)

@@ -37,7 +37,12 @@ from tribodyn.plot.machine.levels import (
 )
 from tribodyn.plot.machine.modes import machine_campbell, machine_modes
 from tribodyn.plot.machine.orders import machine_orders
-from tribodyn.plot.machine.planetary import planetary_forces, planetary_stage, ring_sensor
+from tribodyn.plot.machine.planetary import (
+    load_share_statistics,
+    planetary_forces,
+    planetary_stage,
+    ring_sensor,
+)
 from tribodyn.plot.machine.power import machine_power
 from tribodyn.plot.machine.side_view import machine
 from tribodyn.plot.mesh.face_maps import face_maps
@@ -155,6 +160,7 @@ __all__ = [
     "kurtogram",
     "lead_optimum",
     "line_contact",
+    "load_share_statistics",
     "load_sharing",
     "loaded_contact",
     "loaded_sharing",

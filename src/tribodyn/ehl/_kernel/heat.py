@@ -1,9 +1,4 @@
-"""The heated film: shear and flow across every column, and its energy equation.
-
-Nodes 0..n along the film, 0..N evenly across it, surface 1 at node 0 and surface 2 at node N. The
-stress is ``tau_m + (z - h/2) dp/dx``, and ``eta du/dz = g(stress)`` with ``g`` of the shear model.
-SI units.
-"""
+"""The energy equation of a heated film, on the nodes of its shear."""
 
 from __future__ import annotations
 
@@ -15,297 +10,17 @@ import numpy as np
 
 from tribodyn.compiled import announced, source_digest
 from tribodyn.compiled.cache import cached_njit
-from tribodyn.ehl._kernel.elementary import INNER, JIT, exp_, log_
+from tribodyn.ehl._kernel.elementary import INNER, JIT
+from tribodyn.ehl._kernel.heated_shear import Across, Along, Sheared, shear_column
 from tribodyn.ehl._kernel.reynolds import PLAIN, oil_state
 from tribodyn.types import Array
 
-#: Shear models by the number that the kernel has for them.
-NEWTONIAN, EYRING, CARREAU, CARREAU_EYRING, BAIR_WINER = 0, 1, 2, 3, 4
-#: Greatest stress over Eyring's, part of a limit, and change of a temperature in a step [K].
-_HIGHEST, _NEARLY, _CAP = 60.0, 1.0 - 1e-6, 60.0
+#: Largest change of a temperature in a step [K].
+_CAP = 60.0
 #: Change of the temperature [K] from which on Newton's method goes to the end.
 _SETTLED = 5.0
 #: Steps of a column at most when the sweep comes to it, and change at which it stays [K].
 _LOCAL, _STILL = 6, 0.05
-#: ln of the viscosity in which Roelands' curves meet, sign changed, and their pole [K].
-_LOG_POLE, _POLE = 9.67, 138.0
-#: Flow by a gradient of the pressure, over what is missing of the flow, and over the flow.
-_EXCESS, _SPARE = 1.0, 0.002
-#: Part of the flow that it drives above which the flow alone counts, part that does not matter, and
-#: how often the gradient is corrected.
-_DRIVEN, _NEGLIGIBLE, _BOUNDED = 0.2, 1e-6, 12
-#: Factors on density and flow beyond which the film is nonsense.
-_LEAST_FLOW, _LEAST_DENSITY = 1e-3, 0.3
-
-
-class Sheared(NamedTuple):
-    """Oil and surfaces of a heated film."""
-
-    speed_1: float
-    speed_2: float
-    viscosity: float  #: at the inlet
-    density: float  #: at the inlet
-    fall: float  #: of the density per kelvin, over the density at the inlet
-    temperature: float  #: at the inlet
-    thinning: float  #: fall of ln(viscosity) per kelvin at the inlet
-    roelands: bool  #: whether the viscosity falls as Roelands says, or at an even rate
-    conductivity: float
-    capacity: float  #: heat per mass and kelvin
-    hertz: float  #: unit of the pressure
-    surface_1: float  #: temperature far before the contact
-    surface_2: float
-    model: int
-    eyring: float  #: Eyring's stress
-    carreau: float  #: Carreau's stress
-    exponent: float
-    yasuda: float
-    limit: float  #: limiting stress without pressure, infinite for none
-    limit_slope: float
-
-
-class Across(NamedTuple):
-    """What the nodes (along, across) of the film have."""
-
-    temperature: Array
-    rate: Array  #: du/dz
-    stress: Array
-    steep: Array  #: d(du/dz)/d(stress) at one temperature
-    falling: Array  #: fall of ln(viscosity) per kelvin
-    mass: Array  #: mass flux through the height of each node
-    expansion: Array  #: -d(ln density)/dT
-    velocity: Array
-
-
-class Along(NamedTuple):
-    """What the nodes along the film have."""
-
-    heat: Array  #: into surfaces 1 and 2, per area
-    stress: Array  #: in the middle of the film
-    factors: Array  #: logarithm of the factor on viscosity, and factor on density
-    mean: Array  #: harmonic mean over the film of the viscosity at low stress
-    share: Array  #: step of the factors that a flow which grows faster than the pressure allows
-    slope: Array  #: of the pressure
-    driven: Array  #: flow by pressure, over the flow
-    moved: Array  #: greatest change of a temperature in the last sweep
-
-
-@nb.njit(**INNER)
-def _thinned(stress: float, limit: float, o: Sheared) -> tuple[float, float]:
-    """``g`` of a stress, and its slope: the stress of Newton's oil at that rate."""
-    sign, size, slope = (-1.0 if stress < 0.0 else 1.0), abs(stress), 1.0
-    if o.model == BAIR_WINER:
-        bound = min(size, _NEARLY * limit)
-        slope = 1.0 / (1.0 - bound / limit)
-        return sign * (limit * np.log(slope) + (size - bound) * slope), slope
-    if o.model == EYRING or o.model == CARREAU_EYRING:
-        ratio = min(size / o.eyring, _HIGHEST)
-        rising = exp_(ratio)
-        slope = 0.5 * (rising + 1.0 / rising)
-        if ratio > 1e-4:
-            size = o.eyring * 0.5 * (rising - 1.0 / rising)
-    if o.model >= CARREAU and size > 1e-9 * o.carreau:
-        wanted, power = np.log(size / o.carreau), (o.exponent - 1.0) / o.yasuda
-        root, steep = (wanted if wanted < 0.0 else wanted / o.exponent), 1.0
-        for _ in range(30):
-            bend = exp_(min(o.yasuda * root, 600.0))
-            steep = 1.0 + o.yasuda * power * bend / (1.0 + bend)
-            change = (wanted - root - power * np.log1p(bend)) / steep
-            root += change
-            if abs(change) < 1e-12:
-                break
-        before = size
-        size = o.carreau * exp_(root)
-        slope *= size / (before * steep)
-    return sign * size, slope
-
-
-@nb.njit(**INNER)
-def _sheared(
-    middle: float, half: float, limit: float, fluidity: Array, o: Sheared
-) -> tuple[float, float]:
-    """Speed difference over the film height at a mean stress, and its slope."""
-    last, speed, slope = fluidity.size - 1, 0.0, 0.0
-    for j in range(last + 1):
-        weight = fluidity[j] * (0.5 if j == 0 or j == last else 1.0) / last
-        g, steep = _thinned(middle + half * (2.0 * j / last - 1.0), limit, o)
-        speed += weight * g
-        slope += weight * steep
-    return speed, slope
-
-
-@nb.njit(**INNER)
-def _mean_stress(
-    guess: float, half: float, rate: float, limit: float, fluidity: Array, o: Sheared
-) -> float:
-    """Stress in the middle of the film at which it is sheared at a rate on the mean."""
-    last, fluid, moment = fluidity.size - 1, 0.0, 0.0
-    for j in range(last + 1):
-        weight = fluidity[j] * (0.5 if j == 0 or j == last else 1.0) / last
-        fluid += weight
-        moment += weight * half * (2.0 * j / last - 1.0)
-    if o.model == NEWTONIAN:
-        return (rate - moment) / fluid
-    if o.model == EYRING and half < _HIGHEST * o.eyring:
-        even = odd = 0.0
-        for j in range(last + 1):
-            weight = fluidity[j] * (0.5 if j == 0 or j == last else 1.0) / last
-            rising = exp_(half / o.eyring * (2.0 * j / last - 1.0))
-            even += 0.5 * weight * (rising + 1.0 / rising)
-            odd += 0.5 * weight * (rising - 1.0 / rising)
-        # even sinh(s) + odd cosh(s) = rate, with s the stress in the middle over Eyring's.
-        root = np.sqrt((even - odd) * (even + odd))
-        return o.eyring * (np.arcsinh(rate / (o.eyring * root)) - np.arctanh(odd / even))
-    # An oil that thins has at most the stress of Newton's oil.
-    high = abs(rate) / fluid + abs(half)
-    low, stress = -high, min(max(guess, -high), high)
-    for _ in range(100):
-        value, slope = _sheared(stress, half, limit, fluidity, o)
-        if value > rate:
-            high = stress
-        else:
-            low = stress
-        step = stress + (rate - value) / slope
-        if not low < step < high:
-            step = 0.5 * (low + high)
-        if abs(step - stress) <= 1e-10 * abs(step) + 1e-3:
-            return step
-        stress = step
-    return stress
-
-
-@nb.njit(**INNER)
-def _shear_column(
-    i: int, h: float, slope: float, pressure: float, log_viscosity: float, density: float,
-    flux: float, o: Sheared, a: Across, b: Along, fluidity: Array,
-) -> None:  # fmt: skip
-    """Stress, rate, velocity, mass flux and factors of one column at its temperatures."""
-    last, T, b.slope[i] = fluidity.size - 1, a.temperature[i], slope
-    for _ in range(_BOUNDED):
-        _fluidity(i, log_viscosity, T, o, a, b, fluidity)
-        _stresses(i, h, b.slope[i], pressure, o, a, b, fluidity)
-        moved, flow = _flow(i, h, density, log_viscosity, o, a, b, fluidity)
-        # While pressure and temperatures are not settled, the gradient that the mass flux needs
-        # counts where it drives much of it, and elsewhere no more than could be needed: else heat
-        # and flow would run away.
-        missing = moved - flux
-        b.driven[i] = abs(missing) / flux
-        part = min(max(b.driven[i] / _DRIVEN - 0.5, 0.0), 1.0)
-        most = (_EXCESS * abs(missing) + _SPARE * flux) / flow
-        better = part * missing / flow + (1.0 - part) * min(max(slope, -most), most)
-        if abs(better - b.slope[i]) * flow < _NEGLIGIBLE * flux:
-            break
-        ratio = better / b.slope[i] if b.slope[i] != 0.0 else 0.0
-        # Over the logarithms, as the flow of an oil that thins grows with the gradient.
-        if ratio > 0.0:
-            b.slope[i] *= ratio ** b.share[i]
-        else:
-            b.slope[i] += b.share[i] * (better - b.slope[i])
-    scale = flux / np.sum(a.mass[i])
-    for j in range(last + 1):
-        # The same flow everywhere, to the last digit.
-        a.mass[i, j] *= scale * o.density
-
-
-@nb.njit(**INNER)
-def _fluidity(
-    i: int, log_viscosity: float, T: Array, o: Sheared, a: Across, b: Along, fluidity: Array
-) -> None:
-    """Fluidity at low stress and its rise with the temperature across a column."""
-    last, cold, mean = fluidity.size - 1, np.log(o.viscosity), 0.0
-    above, height = o.temperature - _POLE, log_viscosity + cold + _LOG_POLE
-    exponent = o.thinning * above / (cold + _LOG_POLE)
-    for j in range(last + 1):
-        if o.roelands:
-            warm = max(T[j] - _POLE, 1.0)
-            hot = height * exp_(-exponent * log_(warm / above))
-            a.falling[i, j] = exponent * hot / warm
-            fluidity[j] = exp_(_LOG_POLE - hot)
-        else:
-            a.falling[i, j] = o.thinning
-            fluidity[j] = exp_(o.thinning * (T[j] - o.temperature) - log_viscosity - cold)
-        mean += fluidity[j] * (0.5 if j == 0 or j == last else 1.0) / last
-    b.mean[i] = 1.0 / mean
-
-
-@nb.njit(**INNER)
-def _stresses(
-    i: int, h: float, slope: float, pressure: float, o: Sheared, a: Across, b: Along,
-    fluidity: Array,
-) -> None:  # fmt: skip
-    """Stress and rate across a column; the fluidity becomes that at this stress."""
-    last = fluidity.size - 1
-    rate, half, limit = (o.speed_2 - o.speed_1) / h, 0.5 * h * slope, np.inf
-    if o.limit < np.inf:
-        limit = o.limit + o.limit_slope * max(pressure, 0.0)
-    middle = _mean_stress(b.stress[i], half, rate, limit, fluidity, o)
-    slip = 0.0
-    if limit < np.inf and o.model != BAIR_WINER:
-        # The film yields where the stress at one of its walls reaches the limit.
-        most = max(limit - abs(half), 0.0)
-        if abs(middle) > most:
-            middle = most if middle > 0.0 else -most
-            slip = rate - _sheared(middle, half, limit, fluidity, o)[0]
-    b.stress[i] = middle
-    for j in range(last + 1):
-        stress = middle + half * (2.0 * j / last - 1.0)
-        g, steep = _thinned(stress, limit, o)
-        a.stress[i, j] = stress
-        a.rate[i, j] = g * fluidity[j] + slip
-        # A film that yields makes the same heat at any temperature.
-        a.steep[i, j] = steep * fluidity[j] if slip == 0.0 else 0.0
-        if slip != 0.0:
-            a.falling[i, j] = 0.0
-        fluidity[j] *= g / stress if abs(stress) > 1e-3 else 1.0
-        if slip != 0.0 and abs(stress) > 1e-3:
-            fluidity[j] = max(a.rate[i, j] / stress, fluidity[j])
-
-
-@nb.njit(**INNER)
-def _flow(
-    i: int, h: float, density: float, log_viscosity: float, o: Sheared, a: Across, b: Along,
-    fluidity: Array,
-) -> tuple[float, float]:  # fmt: skip
-    """Flow of a column by the surfaces, and that by pressure over its gradient; its factors."""
-    last, T = fluidity.size - 1, a.temperature[i]
-    dz, difference = h / last, o.speed_2 - o.speed_1
-    fluid = tilted = mass = by_shear = by_pressure = before = 0.0
-    steep_fluid = steep_tilted = steep_shear = steep_pressure = steep_before = 0.0
-    u = o.speed_1
-    for j in range(last + 1):
-        weight = 0.5 if j == 0 or j == last else 1.0
-        now = fluidity[j] * h * (j / last - 0.5)
-        steep_now = a.steep[i, j] * h * (j / last - 0.5)
-        if j > 0:
-            steep_fluid += 0.5 * dz * (a.steep[i, j - 1] + a.steep[i, j])
-            steep_tilted += 0.5 * dz * (steep_before + steep_now)
-            fluid += 0.5 * dz * (fluidity[j - 1] + fluidity[j])
-            tilted += 0.5 * dz * (before + now)
-            u += 0.5 * dz * (a.rate[i, j - 1] + a.rate[i, j])
-        before, steep_before = now, steep_now
-        ratio = max(density - o.fall * (T[j] - o.temperature), _LEAST_DENSITY)
-        a.expansion[i, j] = o.fall / ratio
-        rho = weight * dz * ratio
-        a.velocity[i, j] = u
-        a.mass[i, j] = rho * u
-        mass += rho
-        by_shear += rho * fluid
-        by_pressure += rho * tilted
-        steep_shear += rho * steep_fluid
-        steep_pressure += rho * steep_tilted
-    moved = o.speed_1 * mass + difference * by_shear / fluid
-    b.factors[1, i] = max(moved / (density * h * 0.5 * (o.speed_1 + o.speed_2)), _LEAST_FLOW)
-    # The sum over the nodes has this part of the integral for a cold film.
-    exact = 1.0 - 1.0 / (last * last)
-    flow = by_shear * tilted / fluid - by_pressure
-    unit = 12.0 / (density * h * h * h * exact)
-    easier = max(unit * flow * o.viscosity * exp_(log_viscosity), _LEAST_FLOW)
-    b.factors[0, i] = np.log(b.factors[1, i] / easier)
-    b.share[i] = 1.0
-    if steep_fluid > 0.0:
-        b.share[i] = min(
-            flow / max(steep_shear * steep_tilted / steep_fluid - steep_pressure, flow), 1.0
-        )
-    return moved, flow
 
 
 @nb.njit(**INNER)
@@ -450,7 +165,7 @@ def _build(digest: str) -> Any:
             balance[:] = 0.0
             for i in range(k + 1):
                 pressure = s.pressure[i] * o.hertz
-                _shear_column(
+                shear_column(
                     i, s.film[i], s.slope[i], pressure, lneta[i], rho[i], flux, o, a, b, fluidity
                 )
             if sweep == sweeps:
@@ -475,7 +190,7 @@ def _build(digest: str) -> Any:
                 for local in range(_LOCAL):
                     if local > 0 or step >= k:
                         pressure = s.pressure[i] * o.hertz
-                        _shear_column(
+                        shear_column(
                             i, s.film[i], s.slope[i], pressure, lneta[i], rho[i], flux, o, a, b,
                             fluidity,
                         )  # fmt: skip
@@ -526,5 +241,5 @@ def _count(
     balance[3] += b.heat[1, i] * dx
 
 
-_DIGEST = source_digest(Path(__file__).parent, ("elementary", "reynolds", "heat"))
+_DIGEST = source_digest(Path(__file__).parent, ("elementary", "reynolds", "heated_shear", "heat"))
 heat_film = announced(_build(_DIGEST), "the heated film", "fifteen seconds")

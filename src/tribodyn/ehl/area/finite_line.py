@@ -100,7 +100,7 @@ def solve_finite_line_contact(
 
     Both bodies are half-spaces, the roller too: its free end faces, which lower the pressure at
     sharp ends, are not counted. Source: as :func:`tribodyn.ehl.solve_point_contact`; Park and Kim,
-    Wear 223 (1998), and Zhu, Wang, Ren and Zhu (2012) for rollers.
+    Wear 223 (1998), and Zhu, Wang, Ren and Wang (2012) for rollers.
 
     Examples
     --------
@@ -124,11 +124,7 @@ def solve_finite_line_contact(
     remedy = "Use solve_line_contact for a longer one, solve_point_contact for a shorter one"
     require_between("length over half width", ratio, *_LENGTHS, remedy=remedy)
     _check_profile(profile)
-    edge = require_number("edge_radius", edge_radius)
-    require_between("edge_radius", edge, 1e-4, 1.0, "m", remedy="Rollers have about 1e-3 m")
-    require_between("tolerance", require_number("tolerance", tolerance), 1e-8, 1e-2)
-    limit = require_number("film_tolerance", film_tolerance)
-    require_between("film_tolerance", limit, 1e-4, 0.1)
+    edge, limit = _checked_numbers(edge_radius, tolerance, film_tolerance)
     automatic, count = requested_nodes(nodes, _FIRST, _LAST)
     attempts: list[str] = []
     while True:
@@ -156,15 +152,32 @@ def solve_finite_line_contact(
             "extrapolated value",
             stacklevel=2,
         )
+    _warn_of_ends(outcome)
+    return _assemble(case, grid, problem, outcome, (force, extent, profile, tuple(attempts)))
+
+
+def _checked_numbers(
+    edge_radius: float, tolerance: float, film_tolerance: float
+) -> tuple[float, float]:
+    """Edge radius and tolerance of the film in their ranges."""
+    edge = require_number("edge_radius", edge_radius)
+    require_between("edge_radius", edge, 1e-4, 1.0, "m", remedy="Rollers have about 1e-3 m")
+    require_between("tolerance", require_number("tolerance", tolerance), 1e-8, 1e-2)
+    limit = require_number("film_tolerance", film_tolerance)
+    require_between("film_tolerance", limit, 1e-4, 0.1)
+    return edge, limit
+
+
+def _warn_of_ends(outcome: Any) -> None:
+    """Warn of a film at the ends that the grid does not resolve."""
     if float(outcome.film.min()) <= 0.0:
         warn(
             "film-resolution",
             "The film at the ends of the roller is thinner than the grid resolves, and counts as "
-            "zero there. Use more nodes, a "
-            "profile that drops further at its ends, or a greater edge_radius",
-            stacklevel=2,
+            "zero there. Use more nodes, a profile that drops further at its ends, or a greater "
+            "edge_radius",
+            stacklevel=3,
         )
-    return _assemble(case, grid, problem, outcome, (force, extent, profile, tuple(attempts)))
 
 
 def _check_profile(profile: Any) -> None:

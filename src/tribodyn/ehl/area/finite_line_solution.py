@@ -40,12 +40,18 @@ class FiniteLineSolution(Record):
         Those of the dry infinite line under the mean load per length.
     moes_load, moes_viscosity : float [-]
         Numbers M and L of Moes of that line.
-    outside_load, load_error, residual, cycles, nodes_x, nodes_y, attempts
-        As for :class:`tribodyn.ehl.PointContactSolution`.
+    outside_load : float [N]
+        As for :class:`tribodyn.ehl.PointContactSolution`, as the following.
+    load_error, residual : float [1]
+    cycles, nodes_x, nodes_y : int
+    attempts : tuple of str
     profile : str
         Shape of the roller.
-    normal_force, length, equivalent_radius, entrainment_speed, effective_modulus
-        Arguments of :func:`tribodyn.ehl.solve_finite_line_contact`.
+    normal_force : float [N]
+        Argument of :func:`tribodyn.ehl.solve_finite_line_contact`, as the following.
+    length, equivalent_radius : float [m]
+    entrainment_speed : float [m/s]
+    effective_modulus : float [Pa]
     lubricant, viscosity_law, compressible
         As there.
     """

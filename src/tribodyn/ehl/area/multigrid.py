@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import NamedTuple
+from functools import cache, lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.ehl._kernel.area_relaxation import dense_tangent, relax, residual
 from tribodyn.types import Array, ComplexArray
+
+
+@cache
+def _kernels() -> Any:
+    """Import the compiled part, and Numba with it, where it is needed first."""
+    from tribodyn.ehl._kernel import area_relaxation
+
+    return area_relaxation
 
 
 class Smoother(NamedTuple):
@@ -179,8 +186,10 @@ class Multigrid:
         p = self.problem
         level.film(self.offset)
         return float(
-            residual(level.hx, level.hy, p.ux, p.uy, p.lam, p.oil, level.P, level.H, level.f,
-                     level.fields, level.r)
+            _kernels().residual(
+                level.hx, level.hy, p.ux, p.uy, p.lam, p.oil, level.P, level.H, level.f,
+                level.fields, level.r,
+            )
         )  # fmt: skip
 
     def sweep(self, level: Level, count: int) -> None:
@@ -190,7 +199,7 @@ class Multigrid:
         switch = _SWITCH * level.hy * min(level.hx, level.hy)
         for _ in range(count):
             self.residual(level)
-            relax(level.hx, level.hy, p.ux, p.uy, switch, damping, level.K,
+            _kernels().relax(level.hx, level.hy, p.ux, p.uy, switch, damping, level.K,
                   level.P, level.H, level.fields, level.r, level.change)  # fmt: skip
 
     def solve_coarsest(self, level: Level, steps: int) -> None:
@@ -200,8 +209,10 @@ class Multigrid:
         J, b = np.empty((n + 1, n + 1)), np.empty(n + 1)
         for _ in range(steps):
             self.residual(level)
-            dense_tangent(level.hx, level.hy, p.ux, p.uy, level.K, level.P, level.H, level.fields,
-                          level.r, J, b)  # fmt: skip
+            _kernels().dense_tangent(
+                level.hx, level.hy, p.ux, p.uy, level.K, level.P, level.H, level.fields, level.r,
+                J, b,
+            )  # fmt: skip
             b[n] = (level.load - level.carried()) / (level.hx * level.hy)
             scale = np.abs(J.diagonal()[:n]).copy()
             J[:n] /= scale[:, None]

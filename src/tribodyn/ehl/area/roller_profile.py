@@ -40,13 +40,42 @@ class RollerProfile:
 
     @classmethod
     def crowned(cls, crown_radius: float) -> RollerProfile:
-        """Crown of a constant radius [m] over the full length."""
+        """Crown of a constant radius over the full length.
+
+        Parameters
+        ----------
+        crown_radius : float [m]
+
+        Returns
+        -------
+        RollerProfile
+
+        Raises
+        ------
+        InputError
+            If the radius is not positive.
+        """
         require_positive("crown_radius", crown_radius, "m")
         return cls(lambda y: 0.5 * y**2 / crown_radius, f"crowned, radius {crown_radius:.4g} m")
 
     @classmethod
     def dub_off(cls, straight_length: float, radius: float) -> RollerProfile:
-        """Straight in the middle, then an arc of a radius [m] that starts without an edge."""
+        """Straight in the middle, then an arc that starts without an edge.
+
+        Parameters
+        ----------
+        straight_length, radius : float [m]
+            Length of the straight part, and radius of the arcs.
+
+        Returns
+        -------
+        RollerProfile
+
+        Raises
+        ------
+        InputError
+            If one of them is not positive.
+        """
         require_positive("straight_length", straight_length, "m")
         require_positive("radius", radius, "m", remedy="A rounded edge has about 1e-3 m")
         half = 0.5 * straight_length
@@ -77,6 +106,15 @@ class RollerProfile:
             ``2/E' = (1-nu1^2)/E1 + (1-nu2^2)/E2``.
         half_width : float [m]
             Half width of the dry contact at that load.
+
+        Returns
+        -------
+        RollerProfile
+
+        Raises
+        ------
+        InputError
+            If a value is out of range.
 
         Source: Lundberg (1939); Johns and Gohar, Tribology International 14 (1981).
         """

@@ -55,7 +55,7 @@ class _Temperatures:
     def __init__(
         self, case: ContactCase, grid: DiscreteContact, model: ThermalModel, sliding: float
     ) -> None:
-        from tribodyn.ehl._kernel.heat import Across, Along, Sheared
+        from tribodyn.ehl._kernel.heated_shear import Across, Along, Sheared
 
         lubricant = case.lubricant
         assert lubricant is not None  # the dimensionless form has no heat

@@ -124,7 +124,24 @@ class ThermalModel:
         return model.complete(EYRING_STRESS if stress is None else stress, numbers)
 
     def oil(self, lubricant: Lubricant, compressible: bool = True) -> OilHeat:
-        """Thermal properties of an oil that must have them all."""
+        """Thermal properties of an oil that must have them all.
+
+        Parameters
+        ----------
+        lubricant : Lubricant
+            Oil at the temperature of the inlet.
+        compressible : bool
+            Whether its density follows pressure and temperature.
+
+        Returns
+        -------
+        OilHeat
+
+        Raises
+        ------
+        InputError
+            If a property of the oil is not known.
+        """
         usual = {
             "temperature": "for example 313.15 K",
             "temperature_viscosity_coefficient": "gear oils lie between 0.02 and 0.07 1/K",

@@ -129,7 +129,7 @@ class FilmState:
             first.viscosity_law,
             None
             if first.log_mean_viscosity is None
-            else np.stack([solution.log_mean_viscosity for solution in solutions]),
+            else np.stack([np.asarray(solution.log_mean_viscosity) for solution in solutions]),
         )
 
     @property

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tribodyn.gear import CylindricalGear
     from tribodyn.machine import RingSensorSignal
     from tribodyn.study import PlanetaryMotion, PlanetaryResult
+    from tribodyn.study.planetary.tolerances import LoadShareStatistics
 
 #: Points of a tooth, those of them that are drawn, and pictures of the movement.
 _POINTS, _DRAWN, _FRAMES = 40, [0, 5, 9, 13, 17, 21, 25, 29, 33], 24
@@ -212,3 +213,22 @@ def ring_sensor(signal: RingSensorSignal) -> Any:
         f"{rounded('frequency', hertz)}"
     )
     return stack_rows(title, panels)
+
+
+@drawing(
+    "load_share_statistics",
+    heading="Load sharing over tolerances",
+    caption="Part of the stages whose mesh load factor K_gamma does not exceed a value. The "
+    "steeper the curve, the less the tolerances matter.",
+    of="LoadShareStatistics",
+    made_by="Call tribodyn.study.load_share_statistics(...) and its plot method.",
+)
+def load_share_statistics(statistics: LoadShareStatistics) -> Any:
+    """Draw the distribution of the mesh load factor."""
+    factor = np.sort(statistics.load_factor)
+    part = 100.0 * (np.arange(factor.size) + 0.5) / factor.size
+    curve = line(factor, part, "stages", PINION, unit="%")
+    marks = [(f"{p:g} %", statistics.quantile(0.01 * p)) for p in (50.0, 95.0)]
+    row = Row("Mesh load factor K_gamma", Panel("Stages [%]", [curve]), marks=marks)
+    title = f"95 % of {factor.size} stages have a load factor of at most {marks[1][1]:.4g}"
+    return stack_rows(title, [row])

@@ -28,11 +28,11 @@ def _relief(of: str) -> Any:
     return number(0.0, 0.0, _MOST, _GUARD, of=of)
 
 
-def _length(of: str) -> Any:
-    basis = "the place where the number of tooth pairs changes"
-    return number(
-        None, 0.0, 1.0, "no longer than the used flank", of=of, positive=True, basis=basis
-    )
+def _length(of: str, most: str, basis: str, high: float = 1.0) -> Any:
+    return number(None, 0.0, high, f"no longer than {most}", of=of, positive=True, basis=basis)
+
+
+_FLANK = ("the used flank", "the place where the number of tooth pairs changes")
 
 
 def _signed(of: str) -> Any:
@@ -47,24 +47,18 @@ class Modification(Section):
     """Modification and deviations of the loaded flanks of a gear from the involute."""
 
     tip_relief: float = _relief("tip_relief")
-    tip_relief_length: float | None = _length("tip_relief_length")
+    tip_relief_length: float | None = _length("tip_relief_length", *_FLANK)
     tip_relief_shape: str = choice("linear", _SHAPES, meaning="how the tip relief falls to zero")
     root_relief: float = _relief("root_relief")
-    root_relief_length: float | None = _length("root_relief_length")
+    root_relief_length: float | None = _length("root_relief_length", *_FLANK)
     root_relief_shape: str = choice("linear", _SHAPES, meaning="how the root relief falls to zero")
     profile_crowning: float = _signed("profile_crowning")
     profile_slope: float = _signed("profile_slope")
     crowning: float = _signed("crowning")
     lead_slope: float = _signed("lead_slope")
     end_relief: float = _relief("end_relief")
-    end_relief_length: float | None = number(
-        None,
-        0.0,
-        2.0,
-        "no longer than half the face",
-        of="end_relief_length",
-        positive=True,
-        basis="a tenth of the face width",
+    end_relief_length: float | None = _length(
+        "end_relief_length", "half the face", "a tenth of the face width", 2.0
     )
     end_relief_shape: str = choice("linear", _SHAPES, meaning="how the end relief falls to zero")
     flank_twist: float = _signed("flank_twist")
@@ -490,14 +484,15 @@ def ring_problems(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
             yield key, Problem(inputs.show(key), "", why, f"Write teeth = {-teeth}")
         elif inputs.get(f"gears.{gear}.internal") is False:
             yield conflicting_keys(inputs, key, f"gears.{gear}.internal")
-    key = "gears.pinion.hand"
-    if key in inputs and "gears.hand" in inputs and inputs[key] != inputs["gears.hand"]:
+    if (
+        (key := "gears.pinion.hand") in inputs
+        and "gears.hand" in inputs
+        and inputs[key] != inputs["gears.hand"]
+    ):
         yield conflicting_keys(inputs, "gears.hand", key)
-    key = "gears.pinion.rim_diameter"
-    if key in inputs:
+    if (key := "gears.pinion.rim_diameter") in inputs:
         why = "Only a ring, which is the wheel, has its rim outside"
         yield key, Problem(inputs.show(key), "", why, "Remove it, or give the bore diameter")
-    if inputs.get("gears.pinion.internal") is True:
-        key = "gears.pinion.internal"
+    if inputs.get(key := "gears.pinion.internal") is True:
         why = "Only the wheel of a pair may be a ring"
         yield key, Problem(inputs.show(key), "", why, "Exchange the two gears")

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.provenance import Assumption
-    from tribodyn.study.machine.case import LoadCase, MachineCase
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
     from tribodyn.study.machine.motion import MachineMotion
 

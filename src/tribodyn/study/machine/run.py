@@ -24,8 +24,9 @@ from tribodyn.machine import (
 from tribodyn.machine import system as system_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.to_models import locate_errors, mesh_law_of
-from tribodyn.study.machine.case import LoadCase, MachineCase
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.first_look import warn_of_period
+from tribodyn.study.machine.load_cases import LoadCase
 from tribodyn.study.machine.motion import MachineMotion, joined
 from tribodyn.study.machine.result import LoadResult, MachineResult, steady_motion
 from tribodyn.study.pipeline.assembly import whole_system

@@ -19,7 +19,8 @@ from tribodyn.study.machine.result import LoadResult, MachineResult
 from tribodyn.validated_files import read_bytes, read_dataset, write_dataset
 
 if TYPE_CHECKING:
-    from tribodyn.study.machine.case import LoadCase, MachineCase
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.load_cases import LoadCase
 
 #: The file with the motion at the operating point, and the checksums of all others.
 MOTION = "motion.nc"
