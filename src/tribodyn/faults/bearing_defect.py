@@ -140,11 +140,11 @@ class BearingDefect:
         """
         mean = 1.0 / self.frequency(shaft)
         omega, decay = 2.0 * math.pi * self.resonance, self.damping_ratio
-        lasting = math.log(1e4) / (omega * decay)
+        duration = math.log(1e4) / (omega * decay)
         rng = np.random.default_rng(seed)
-        count = int((time[-1] - time[0] + lasting) / mean) + 2
+        count = int((time[-1] - time[0] + duration) / mean) + 2
         gaps = mean * np.maximum(1.0 + self.slip * rng.standard_normal(count), 0.1)
-        impacts = time[0] - lasting + mean * rng.random() + np.cumsum(gaps)
+        impacts = time[0] - duration + mean * rng.random() + np.cumsum(gaps)
         load = self.modulation(shaft)
         size = (
             np.ones(count) if load == 0.0 else np.maximum(np.cos(2.0 * np.pi * load * impacts), 0)
@@ -153,7 +153,7 @@ class BearingDefect:
         values = np.zeros(time.size)
         for at, strength in zip(impacts, size, strict=True):
             first = max(int(np.ceil((at - time[0]) / step)), 0)
-            last = min(int((at + lasting - time[0]) / step) + 1, time.size)
+            last = min(int((at + duration - time[0]) / step) + 1, time.size)
             if last > first:
                 since = time[first:last] - at
                 values[first:last] += (

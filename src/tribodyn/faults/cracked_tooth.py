@@ -140,8 +140,8 @@ def _self_compliance(
     columns = np.broadcast_to(freedoms[:, None, :], matrices.shape)
     entries: Any = (matrices.ravel(), (rows.ravel(), columns.ravel()))
     matrix = coo_array(entries, shape=(2 * count, 2 * count)).tocsc()
-    held = np.concatenate([mesh.fixed, mesh.right_cut, mesh.left_cut])
-    free = np.setdiff1d(np.arange(2 * count), (2 * held[:, None] + np.arange(2)).ravel())
+    fixed = np.concatenate([mesh.fixed, mesh.right_cut, mesh.left_cut])
+    free = np.setdiff1d(np.arange(2 * count), (2 * fixed[:, None] + np.arange(2)).ravel())
     symmetric: Any = {"SymmetricMode": True}
     factors = splu(
         matrix[free][:, free], permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric

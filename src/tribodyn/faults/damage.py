@@ -101,10 +101,10 @@ class BrokenTooth(ToothFault):
 
     def _gap(self, places: ContactPlaces, face: Array) -> Array:
         """Gap (p, 1, n)."""
-        gone = self._has_tooth(places)
+        missing = self._has_tooth(places)
         if self.remaining:
-            gone = gone & (self._flank_share(places) > self.remaining)
-        return np.asarray(FAR * gone[:, None, :])
+            missing = missing & (self._flank_share(places) > self.remaining)
+        return np.asarray(FAR * missing[:, None, :])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,5 +158,5 @@ class Crack(ToothFault):
             return np.zeros(places.path.shape)
         radius, added = crack_compliance(self._gear_of(places.contact.pair), material, self.depth)
         cracked = sound + np.interp(self._radius_of(places), radius, added)
-        whole = 1.0 / (self.face_share / cracked + (1.0 - self.face_share) / sound)
-        return np.asarray(np.where(self._has_tooth(places), whole - sound, 0.0))
+        combined = 1.0 / (self.face_share / cracked + (1.0 - self.face_share) / sound)
+        return np.asarray(np.where(self._has_tooth(places), combined - sound, 0.0))

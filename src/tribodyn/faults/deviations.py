@@ -191,12 +191,13 @@ class PitchDeviations(Fault):
         (z,) array [m]
         """
         single_tolerance, total_tolerance = pitch_tolerances(gear, self.accuracy_class)
-        drawn = np.random.default_rng(self.seed).standard_normal(abs(gear.teeth))
-        drawn -= drawn.mean()
+        deviations = np.random.default_rng(self.seed).standard_normal(abs(gear.teeth))
+        deviations -= deviations.mean()
         scale = min(
-            single_tolerance / np.abs(drawn).max(), total_tolerance / np.ptp(np.cumsum(drawn))
+            single_tolerance / np.abs(deviations).max(),
+            total_tolerance / np.ptp(np.cumsum(deviations)),
         )
-        return np.asarray(scale * drawn)
+        return np.asarray(scale * deviations)
 
     def _on(self, pair: SpurPair) -> SpurPair:
         """The pair with these deviations in place of its own."""

@@ -65,8 +65,9 @@ class Fault:
 
     def _radius_of(self, places: ContactPlaces) -> Array:
         """Radius of curvature of the gear at each contact (p, n) [m]."""
-        own = self.gear == "pinion"
-        return places.pinion_curvature_radius if own else places.wheel_curvature_radius
+        if self.gear == "pinion":
+            return places.pinion_curvature_radius
+        return places.wheel_curvature_radius
 
     def _check(self, pair: SpurPair) -> None:
         """Raise InputError if the pair cannot have this fault."""

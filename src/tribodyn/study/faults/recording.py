@@ -1,4 +1,4 @@
-"""Recordings of a sensor: the motion over whole turns as a measuring system would store it."""
+"""Recordings of a sensor: the motion over turn turns as a measuring system would store it."""
 
 from __future__ import annotations
 
@@ -115,9 +115,9 @@ def _band_limited(motion: TurningMotion, values: Array, sample_rate: float) -> A
 
 def _tacho(turns: Array, jitter: float, rng: np.random.Generator) -> Array:
     """A pulse of 5 V a turn, a tenth of the turn long; its edges scatter by a part of the turn."""
-    whole = np.floor(turns).astype(int)
-    first = int(whole[0])
-    edges = jitter * rng.standard_normal(int(whole[-1]) - first + 2)
-    late = edges[whole - first]
-    place = turns - whole
+    turn = np.floor(turns).astype(int)
+    first = int(turn[0])
+    edges = jitter * rng.standard_normal(int(turn[-1]) - first + 2)
+    late = edges[turn - first]
+    place = turns - turn
     return np.asarray(np.where((place >= late) & (place < 0.1 + late), 5.0, 0.0))

@@ -247,8 +247,8 @@ def _finished(
     )
     if not units:
         units = json.loads((folder / CARD).read_text(encoding="utf-8")).get("units", {})
-    whole = {**card, "units": dict(units), "recordings": len(labels)}
-    _store(folder, whole)
+    stored = {**card, "units": dict(units), "recordings": len(labels)}
+    _store(folder, stored)
     with (
         atomic_write(folder / LABELS) as part,
         part.open("w", encoding="utf-8", newline="") as file,
@@ -256,4 +256,4 @@ def _finished(
         writer = csv.DictWriter(file, list(labels[0]))
         writer.writeheader()
         writer.writerows(labels)
-    return RecordingSet(folder, whole, labels)
+    return RecordingSet(folder, stored, labels)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _TURN = 2.0 * math.pi
 _GUARD = "guards against a wrong unit"
-_PART = "a part of the whole"
+_PART = "a part of all of it"
 
 #: Kinds, and the keys of each: required, then optional.
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -171,8 +171,8 @@ def read_fault(fault: FaultTable) -> Fault | BearingDefect:
         "broken-tooth": faults.BrokenTooth,
         "crack": faults.Crack,
     }
-    made: Fault = kinds[fault.kind](**values)
-    return made
+    result: Fault = kinds[fault.kind](**values)
+    return result
 
 
 def check_fault(case: Any, fault: FaultTable) -> None:
@@ -182,9 +182,9 @@ def check_fault(case: Any, fault: FaultTable) -> None:
     if case.gears.kind != "spur":
         why = "Faults act on cylindrical pairs, whose teeth are computed one by one"
         raise InputError(f"the gears are a {case.gears.kind} pair", "kind", why, "Remove [faults]")
-    made = read_fault(fault)
-    if isinstance(made, Fault):
-        made._check(case.gear_pair)
+    stated = read_fault(fault)
+    if isinstance(stated, Fault):
+        stated._check(case.gear_pair)
 
 
 def gear_faults(case: Any) -> dict[str, Fault]:
@@ -192,8 +192,8 @@ def gear_faults(case: Any) -> dict[str, Fault]:
     from tribodyn.faults import Fault
 
     tables = vars(case.faults) if case.faults is not None else {}
-    made = {name: read_fault(fault) for name, fault in tables.items()}
-    return {name: fault for name, fault in made.items() if isinstance(fault, Fault)}
+    faults = {name: read_fault(fault) for name, fault in tables.items()}
+    return {name: fault for name, fault in faults.items() if isinstance(fault, Fault)}
 
 
 def bearing_defects(case: Any) -> dict[str, tuple[str, BearingDefect]]:
@@ -201,9 +201,9 @@ def bearing_defects(case: Any) -> dict[str, tuple[str, BearingDefect]]:
     from tribodyn.faults import BearingDefect
 
     tables = vars(case.faults) if case.faults is not None else {}
-    made = {name: (fault.gear, read_fault(fault)) for name, fault in tables.items()}
+    faults = {name: (fault.gear, read_fault(fault)) for name, fault in tables.items()}
     return {
         name: (gear, defect)
-        for name, (gear, defect) in made.items()
+        for name, (gear, defect) in faults.items()
         if isinstance(defect, BearingDefect)
     }
