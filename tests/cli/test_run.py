@@ -104,7 +104,7 @@ def test_a_failed_computation_exits_with_one(
     def fail(*_: object) -> None:
         raise ComputationError("the search failed")
 
-    monkeypatch.setattr("tribodyn.study.pipeline.run.run", fail)
+    monkeypatch.setattr("tribodyn.cases.load.run", fail)
     assert call(["run", "fzg-roughness", "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["error"]["exit_code"] == 1
     assert os.listdir(folder) == []
@@ -134,7 +134,7 @@ def test_two_runs_do_not_write_one_directory(
             assert "r: this directory is in use. Another run" in done.stderr
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tribodyn.study.pipeline.run.run", compute)
+    monkeypatch.setattr("tribodyn.cases.load.run", compute)
     assert call(["run", "fzg-roughness", "--out", "r"]) == 130
     assert codes == [2, 2]
     assert os.listdir(folder) == []

@@ -136,9 +136,10 @@ class Recording(Record):
         ----------
         path : str or path
             File to write; its ending sets the format: ``.wav`` (32 bit floats in SI), ``.mat``,
-            ``.h5``, ``.uff`` (dataset 58, needs ``pip install "tribodyn[io]"``) or ``.csv``.
+            ``.h5``, ``.uff`` (dataset 58, needs ``pip install "tribodyn[io]"``), ``.csv``, or
+            ``.nc`` with a checksum.
         truth : mapping, optional
-            Labels, written beside it as JSON with the same name.
+            Labels, written beside it as JSON with the same name; not with ``.nc``.
 
         Returns
         -------
@@ -160,6 +161,8 @@ class Recording(Record):
         """
         from tribodyn.measurement.writers import write
 
+        if Path(path).suffix.lower() == ".nc" and truth is None:
+            return Record.save(self, path)
         return write(self, path, truth)
 
     def __repr__(self) -> str:

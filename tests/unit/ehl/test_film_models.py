@@ -158,9 +158,12 @@ def test_groups_of_moes_follow_from_those_of_dowson_and_higginson():
 
 def test_models_by_name():
     formulas = ["dowson-higginson", "pan-hamrock", "moes"]
-    assert FILM_MODELS.names() == ["none", "newton", "multigrid", *formulas]
-    none, newton, multigrid, dowson, pan, moes = (FILM_MODELS[name] for name in FILM_MODELS)
+    assert FILM_MODELS.names() == ["none", "newton", "multigrid", "thermal", *formulas]
+    none, newton, multigrid, thermal, dowson, pan, moes = (
+        FILM_MODELS[name] for name in FILM_MODELS
+    )
     assert (newton.method, multigrid.method, moes.method) == ("newton", "multigrid", "")
+    assert thermal.method == newton.method
     assert (none.central, none.minimum) == (None, None)
     formulas = [
         dowson_toyoda_central,

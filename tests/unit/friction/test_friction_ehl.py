@@ -253,6 +253,7 @@ class Solution:
     lubricant: Lubricant | None = OIL
     viscosity_law: str = "roelands"
     effective_modulus: float = MODULUS
+    log_mean_viscosity: np.ndarray | None = None
 
 
 def solutions(**changes):

@@ -324,6 +324,8 @@ def test_film_and_teeth_have_a_curve_for_each_point(
             tooth_stiffness=2e8 + 1e6 * size,
             pair_stiffness=1.7e8 + 1e6 * size,
             film_mesh_stiffness=None,
+            face_position=None,
+            path=np.array([0.01, 0.015, 0.02]),
             mean_mesh_stiffness=np.full(shape[:2], 2e8),
             mean_tooth_stiffness=np.full(shape[:2], 3e8),
         )

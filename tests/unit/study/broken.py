@@ -178,7 +178,7 @@ BROKEN = (
     Broken("unknown-table", "[solver]", "[gear.pinion]\nteeth = 16\n[solver]", "[gear.pinion]",
            ("table [gear]: unknown key", 'Did you mean "gears"?')),
     Broken("misspelt-film", "[solver]", _film('model = "newtn"'), 'model = "newtn"',
-           ("film.model", '"newtn"', "multigrid, dowson-higginson", 'Did you mean "newton"?')),
+           ("film.model", '"newtn"', "thermal, dowson-higginson", 'Did you mean "newton"?')),
     Broken("unknown-film-stiffness", "[solver]", _film('stiffness = "sekant"'), "stiffness",
            ("film.stiffness", '"sekant"', "none, tangent, secant, seed", '"secant"?')),
     Broken("unknown-inlet", "[solver]", _film('inlet = "dry"'), "inlet",

@@ -237,7 +237,7 @@ def test_a_line_of_a_written_case_is_toml_when_its_comment_sign_goes(case: Any) 
         assert tomllib.loads(line.removeprefix("# "))
     assumed = {line.split()[1]: line for line in lines}
     assert assumed["inlet_heating"].endswith("belongs to law = ehl, mixed-solved")
-    assert assumed["nodes"].endswith("belongs to model = newton, multigrid")
+    assert assumed["nodes"].endswith("belongs to model = newton, multigrid, thermal")
 
 
 @pytest.mark.parametrize("distance", [92.5, 95.0, 99.0])

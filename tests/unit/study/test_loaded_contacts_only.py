@@ -112,7 +112,7 @@ def test_the_advice_of_mixed_lubrication_follows_the_law(law: str, teeth: tuple[
 
 def test_the_caption_of_film_on_the_flank_names_the_lines_that_are_drawn() -> None:
     with collected():
-        rich = hypoid_friction_of(td.load_case("hypoid-mixed-ehl"), rehearsal=True)
+        rich = hypoid_friction_of(td.load_case("hypoid-mixed-ehl"))
     figure = FIGURES["hypoid_friction"]
     assert "full film lubrication everywhere" in figure.caption_of(rich)
     assert "lines at" not in figure.caption_of(rich)
@@ -120,5 +120,5 @@ def test_the_caption_of_film_on_the_flank_names_the_lines_that_are_drawn() -> No
         {"gears.composite_roughness": 0.2e-6, "operation.speed": "1500 rpm"}
     )
     with collected():
-        rubbed = hypoid_friction_of(thin, rehearsal=True)
+        rubbed = hypoid_friction_of(thin)
     assert "lines at 2 separate" in figure.caption_of(rubbed)

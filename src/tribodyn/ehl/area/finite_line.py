@@ -110,7 +110,7 @@ def solve_finite_line_contact(
     ...     profile=RollerProfile.crowned(1.0), nodes=65,
     ... )
     >>> round(roller.edge_pressure_ratio, 1), roller.line_is_enough
-    (0.0, False)
+    (0.8, False)
     """
     force = require_number("normal_force", normal_force)
     extent = require_number("length", length)

@@ -439,7 +439,7 @@ def unknown_key(path: tuple[str, ...], value: Any, section: type[Section] | None
         return Problem(what, "", term.meaning, f"Write {term.key}" if term.key else "Remove it")
     if remedy := _gear_key_remedy(name, section):
         return Problem(what, "", why, remedy)
-    if tables := _tables_with(name):
+    if not isinstance(value, Mapping) and (tables := _tables_with(name)):
         inner_tables = [label for label in tables if label.startswith(f"{location[:-1]}.")]
         return Problem(what, "", why, f"It belongs to {' or '.join(inner_tables or tables)}")
     matches = difflib.get_close_matches(name, keys, n=1, cutoff=0.6)
