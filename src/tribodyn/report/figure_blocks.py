@@ -53,6 +53,7 @@ _OTHER_TOPICS = {
     "tooth_force": "Motion",
     "coupling": "Friction and film",
     "face_maps": "Stiffness",
+    "turning_motion": "Motion",
 }
 
 #: Margin above the panels for marks and buttons [px].
@@ -132,5 +133,7 @@ def figure_blocks(result: Any) -> list[Block]:
     names = [*sections_of(result.case), *(["coupling"] if result.coupling is not None else [])]
     if result.mesh.face_position is not None:
         names.insert(names.index("load_sharing") + 1, "face_maps")
+    if result.case.faults is not None:
+        names.insert(names.index("spectrum") + 1, "turning_motion")
     figures = (FIGURES[name] for name in names)
     return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))

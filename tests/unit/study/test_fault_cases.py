@@ -166,3 +166,10 @@ def test_the_report_shows_the_turns(result: Result) -> None:
     figure = result.plot_turning_motion()
     assert "48 mesh cycles" in figure.layout.title.text
     assert [trace.name for trace in figure.data] == ["at rest", "mesh force", "orders"]
+
+
+def test_the_report_has_the_turns_of_a_case_with_faults(result: Result) -> None:
+    from tribodyn.report.figure_blocks import figure_blocks
+
+    names = [block.name for block in figure_blocks(result)]
+    assert names.index("turning_motion") == names.index("spectrum") + 1
