@@ -117,6 +117,9 @@ def _refuse_heat(option: str) -> None:
     raise InputError(what, Argument(option), why, f"Set {option} = false")
 
 
+#: Change of film and traction from one pass to the next at which a contact of the path has
+#: settled, a tenth of what interpolation along the path may err, and most passes.
+_ALONG_PATH, _PASSES = 2e-3, 120
 #: Options of a law that a heated film takes over.
 _OF_SHEAR = ("eyring_stress", *LIMIT, *THINNING)
 
@@ -128,7 +131,8 @@ def film_heat(law: str, options: Mapping[str, Any], bodies: tuple[float, float])
         chosen = LAWS[law].complete(options)
         shear = chosen["shear_model"]
         numbers = {name: chosen[name] for name in _OF_SHEAR if chosen.get(name) is not None}
-    return ThermalModel(shear, numbers, (BodyHeat(bodies[0]), BodyHeat(bodies[1])))
+    surfaces = BodyHeat(bodies[0]), BodyHeat(bodies[1])
+    return ThermalModel(shear, numbers, surfaces, tolerance=_ALONG_PATH, passes=_PASSES)
 
 
 def _film_factor(contact: TribologicalContact, film: FilmState) -> Array:
