@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _TURN = 2.0 * math.pi
 _GUARD = "guards against a wrong unit"
-_PART = "a part of all of it"
+_PART = "a share"
 
 #: Kinds, and the keys of each: required, then optional.
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
