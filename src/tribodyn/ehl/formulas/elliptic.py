@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import positive
-from tribodyn.errors import Argument, real_numbers, require_between
+from tribodyn.ehl.formulas.power_laws import ellipse_groups
+from tribodyn.errors import require_between
 from tribodyn.types import Array
 
 
@@ -163,18 +164,10 @@ def hamrock_dowson_central(
     >>> f"{float(film):.5e}"
     '4.91422e-07'
     """
-    force, radius, speed, viscosity, coefficient, modulus = positive(
-        normal_force=normal_force,
-        equivalent_radius=equivalent_radius,
-        entrainment_speed=entrainment_speed,
-        dynamic_viscosity=dynamic_viscosity,
-        pressure_viscosity_coefficient=pressure_viscosity_coefficient,
-        effective_modulus=effective_modulus,
-    )
-    side = real_numbers(Argument("side_radius"), side_radius)
-    require_between("side_radius", np.minimum(side, 1e9), 1e-12, 1e9, "m")
-    k = 1.03 * (side / radius) ** 0.64
-    moving = (viscosity * speed / (modulus * radius)) ** 0.67
-    loaded = (force / (modulus * radius**2)) ** -0.067
-    ends = 1.0 - 0.61 * np.exp(-0.73 * k)
-    return np.asarray(2.69 * moving * (coefficient * modulus) ** 0.53 * loaded * ends * radius)[()]
+    groups = ellipse_groups(
+        normal_force, equivalent_radius, side_radius, entrainment_speed, dynamic_viscosity,
+        pressure_viscosity_coefficient, effective_modulus,
+    )  # fmt: skip
+    speed, material, load, ellipticity, radius = groups
+    ends = 1.0 - 0.61 * np.exp(-0.73 * ellipticity)
+    return np.asarray(2.69 * speed**0.67 * material**0.53 * load**-0.067 * ends * radius)[()]

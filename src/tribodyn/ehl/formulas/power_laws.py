@@ -159,6 +159,25 @@ def hamrock_dowson_minimum(
     >>> f"{float(film):.5e}"
     '3.87441e-07'
     """
+    groups = ellipse_groups(
+        normal_force, equivalent_radius, side_radius, entrainment_speed, dynamic_viscosity,
+        pressure_viscosity_coefficient, effective_modulus,
+    )  # fmt: skip
+    speed, material, load, ellipticity, radius = groups
+    ends = 1.0 - np.exp(-0.68 * ellipticity)
+    return np.asarray(3.63 * speed**0.68 * material**0.49 * load**-0.073 * ends * radius)[()]
+
+
+def ellipse_groups(
+    normal_force: ArrayLike,
+    equivalent_radius: ArrayLike,
+    side_radius: ArrayLike,
+    entrainment_speed: ArrayLike,
+    dynamic_viscosity: ArrayLike,
+    pressure_viscosity_coefficient: ArrayLike,
+    effective_modulus: ArrayLike,
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Groups U, G, W of Hamrock and Dowson, the ellipticity k, and the checked radius [m]."""
     force, radius, speed, viscosity, coefficient, modulus = positive(
         normal_force=normal_force,
         equivalent_radius=equivalent_radius,
@@ -169,8 +188,6 @@ def hamrock_dowson_minimum(
     )
     side = real_numbers(Argument("side_radius"), side_radius)
     require_between("side_radius", np.minimum(side, 1e9), 1e-12, 1e9, "m")
-    ellipticity = 1.03 * (side / radius) ** 0.64
-    moving = (viscosity * speed / (modulus * radius)) ** 0.68
-    loaded = (force / (modulus * radius**2)) ** -0.073
-    ends = 1.0 - np.exp(-0.68 * ellipticity)
-    return np.asarray(3.63 * moving * (coefficient * modulus) ** 0.49 * loaded * ends * radius)[()]
+    moving = viscosity * speed / (modulus * radius)
+    loaded = force / (modulus * radius**2)
+    return moving, coefficient * modulus, loaded, 1.03 * (side / radius) ** 0.64, radius
