@@ -13,6 +13,7 @@ positive speed turns y towards z.
 | ``structure``, ``reduction`` | matrices of all parts but the meshes, full and reduced |
 | ``assembly`` | equations of motion |
 | ``modes`` | natural frequencies, and which parts store the energy |
+| ``hypoid`` | hypoid pair between engine and load, with shafts and bearings |
 | ``planetary`` | planetary stages: kinematics, phases, plane model, load sharing |
 | ``graph`` | speeds, torques, clock, directions, places and masses that follow from it |
 """
@@ -23,10 +24,12 @@ from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.bodies import GearBody
 from tribodyn.machine.graph.clock import Clock
+from tribodyn.machine.graph.crossed import CrossedAxes
 from tribodyn.machine.graph.directions import MeshDirection
 from tribodyn.machine.graph.kinematics import Kinematics, MeshLoad, ShaftLoad
 from tribodyn.machine.graph.placement import Placement
 from tribodyn.machine.housing import Housing
+from tribodyn.machine.hypoid.pair_machine import hypoid_machine
 from tribodyn.machine.machine import Machine, Operation
 from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.modes import MachineModes, machine_modes
@@ -44,7 +47,7 @@ from tribodyn.machine.rolling.bearing_types import ROLLING_BEARINGS
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
 from tribodyn.machine.rolling.roller_bearing import CylindricalRollerBearing, TaperedRollerBearing
 from tribodyn.machine.section import STEEL, Section
-from tribodyn.machine.shaft import Shaft
+from tribodyn.machine.shaft import Coupling, Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices
 from tribodyn.machine.static.balance import (
     BearingBalance,
@@ -64,6 +67,8 @@ __all__ = [
     "BearingBalance",
     "BearingState",
     "Clock",
+    "Coupling",
+    "CrossedAxes",
     "CylindricalRollerBearing",
     "DeepGrooveBallBearing",
     "FaceLaw",
@@ -97,6 +102,7 @@ __all__ = [
     "StaticBalance",
     "TaperedRollerBearing",
     "face_laws",
+    "hypoid_machine",
     "load_shares",
     "machine_modes",
     "machine_structure",

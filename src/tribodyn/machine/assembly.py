@@ -103,7 +103,8 @@ def _in_space(
     machine, mesh = structure.machine, structure.machine.meshes[name]
     drives = machine.kinematics.meshes[name].driver == mesh.gears[0]
     size = coordinate_count(mesh.contacts[0])
-    onto = pair_coordinates(machine.directions[name], size, first_drives=drives)
+    direction, crossing = machine.directions[name], mesh.crossing
+    onto = pair_coordinates(direction, size, first_drives=drives, crossing=crossing)
     onto = onto @ np.vstack([structure.gear(gear) for gear in mesh.gears])
     clock = {"cycles": machine.clock.cycles[name], "offset": mesh.offset}
     contacts = [projected(contact, onto, **clock) for contact in mesh.contacts]
@@ -136,6 +137,10 @@ def _friction(structure: MachineStructure, name: str) -> Any:
     mesh, direction = structure.machine.meshes[name], structure.machine.directions[name]
     functions = mesh.friction
     gears = np.vstack([structure.gear(gear) for gear in mesh.gears])
+
+    if mesh.crossing is not None and hasattr(functions, "friction"):
+        onto = mesh.crossing.pair_coordinates(direction.senses) @ gears
+        return lambda phase: np.asarray(functions.friction(phase) @ onto)
 
     def friction(phase: Array) -> Array:
         forces = direction.friction(

@@ -20,12 +20,12 @@ from tribodyn.machine.graph.clock import Clock, clock_of
 from tribodyn.machine.graph.directions import MeshDirection, mesh_direction
 from tribodyn.machine.graph.kinematics import Kinematics, kinematics, ratio_problems
 from tribodyn.machine.graph.mesh_checks import mesh_problems
-from tribodyn.machine.graph.placement import Placement, on_axis, placement_problems, shaft_starts
+from tribodyn.machine.graph.placement import Placement, placement_problems, shaft_poses
 from tribodyn.machine.graph.shaft_checks import drive_problems, place_problems, support_problems
 from tribodyn.machine.graph.shaft_graph import ShaftGraph
 from tribodyn.machine.housing import Housing
 from tribodyn.machine.mesh import Mesh
-from tribodyn.machine.shaft import Shaft
+from tribodyn.machine.shaft import Coupling, Shaft
 from tribodyn.types import Array
 
 
@@ -81,6 +81,8 @@ class Machine:
         Bearings by name.
     housing : Housing, optional
         Housing; rigid by default.
+    couplings : mapping of str to Coupling
+        Couplings by name.
     operation : Operation
         Speed and torque.
 
@@ -105,10 +107,12 @@ class Machine:
     meshes: Mapping[str, Mesh]
     bearings: Mapping[str, Bearing] = field(default_factory=dict)
     housing: Housing | None = None
+    couplings: Mapping[str, Coupling] = field(default_factory=dict)
     operation: Operation = field(kw_only=True)
 
     def __post_init__(self) -> None:
-        kinds = {"shafts": Shaft, "gears": Gear, "meshes": Mesh, "bearings": Bearing}
+        kinds = {"shafts": Shaft, "gears": Gear, "meshes": Mesh, "bearings": Bearing,
+                 "couplings": Coupling}  # fmt: skip
         for group, kind in kinds.items():
             object.__setattr__(self, group, _parts(group, getattr(self, group), kind))
         if not isinstance(self.operation, Operation):
@@ -132,20 +136,20 @@ class Machine:
 
     @cached_property
     def graph(self) -> ShaftGraph:
-        """Shafts and the meshes between them."""
+        """Shafts, and the meshes and couplings between them."""
         edges = {
             name: (self.gears[mesh.gears[0]].shaft, self.gears[mesh.gears[1]].shaft)
             for name, mesh in self.meshes.items()
         }
+        edges |= {name: coupling.shafts for name, coupling in self.couplings.items()}
         return ShaftGraph(edges, self.operation.input)
 
     @cached_property
     def kinematics(self) -> Kinematics:
         """Speeds, torques and power of shafts and meshes."""
         run = self.operation
-        loads = kinematics(
-            self.graph, self.gears, self.meshes, (run.input, run.output), (run.speed, run.torque)
-        )
+        ends, operation = (run.input, run.output), (run.speed, run.torque)
+        loads = kinematics(self.graph, self.gears, self.meshes, ends, operation, self.couplings)
         return Kinematics({name: loads.shafts[name] for name in self.shafts}, loads.meshes)
 
     @cached_property
@@ -174,17 +178,26 @@ class Machine:
     @cached_property
     def placement(self) -> Placement:
         """Axes of the shafts in space, and their places along x."""
-        starts = shaft_starts(self.graph, self.gears, self.meshes)
-        gears = {n: on_axis(starts[g.shaft], g.node_position) for n, g in self.gears.items()}
-        bearings = {n: on_axis(starts[b.shaft], b.position) for n, b in self.bearings.items()}
-        return Placement(starts, gears, bearings)
+        poses = shaft_poses(self.graph, self.gears, self.meshes, self._coupled_lengths)
+        gears = {n: poses[g.shaft].on_axis(g.node_position) for n, g in self.gears.items()}
+        bearings = {n: poses[b.shaft].on_axis(b.position) for n, b in self.bearings.items()}
+        starts = {name: pose.start for name, pose in poses.items()}
+        return Placement(starts, gears, bearings, {name: p.axes for name, p in poses.items()})
+
+    @property
+    def _coupled_lengths(self) -> dict[str, float]:
+        """Length of the first shaft of each coupling [m]."""
+        return {name: self.shafts[c.shafts[0]].length for name, c in self.couplings.items()}
 
     @cached_property
     def gear_bodies(self) -> Mapping[str, GearBody]:
         """Mass and inertia of each gear without its shaft."""
         return {
-            name: gear_body(gear, self._mesh_of(name), self.shafts[gear.shaft])
+            name: gear_body(
+                gear, mesh, self.shafts[gear.shaft], mesh.gears.index(name) if mesh else 0
+            )
             for name, gear in self.gears.items()
+            for mesh in [self._mesh_of(name)]
         }
 
     @cached_property
@@ -210,7 +223,8 @@ class Machine:
     def _place_problems(self) -> Iterable[Problem]:
         """Loops that do not close, and parts that are in a wrong place or not held."""
         problems = ratio_problems(self.graph, self.gears, self.meshes, self.operation.speed)
-        problems += placement_problems(self.graph, self.gears, self.meshes)
+        lengths = self._coupled_lengths
+        problems += placement_problems(self.graph, self.gears, self.meshes, lengths)
         problems += place_problems(self.shafts, self.gears, self.bearings)
         for name, gear in self.gears.items():
             problems += body_problems(name, gear, self._mesh_of(name), self.shafts[gear.shaft])
@@ -231,6 +245,12 @@ class Machine:
         for name, mesh in self.meshes.items():
             for gear in mesh.gears:
                 yield from _missing(f"meshes.{name}.gears", gear, "gear", self.gears)
+        for name, coupling in self.couplings.items():
+            for shaft in coupling.shafts:
+                yield from _missing(f"couplings.{name}.shafts", shaft, "shaft", self.shafts)
+            if name in self.meshes:
+                what, remedy = f'a mesh is called "{name}" too', "Rename the coupling"
+                yield Problem(what, f"couplings.{name}", "A link of shafts has one name", remedy)
         for end in ("input", "output"):
             yield from _missing(
                 f"operation.{end}", getattr(self.operation, end), "shaft", self.shafts

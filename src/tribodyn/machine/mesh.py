@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +14,10 @@ import numpy as np
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.dynamics.equations.system import Contact, LoadFriction
 from tribodyn.errors import Argument, InputError, real_numbers
+from tribodyn.gear import HypoidBlank
 from tribodyn.machine.fields import check_number, quoted
+from tribodyn.machine.gear import Gear
+from tribodyn.machine.graph.crossed import CrossedAxes, CrossedGeometry
 
 Hand = Literal["right", "left"]
 #: Phases over which an entry is averaged.
@@ -21,7 +26,7 @@ PHASES = (np.arange(256) + 0.5) / 256
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A mesh of two gears on parallel shafts.
+    """A mesh of two gears, on parallel shafts or on shafts whose axes cross.
 
     Parameters
     ----------
@@ -66,6 +71,11 @@ class Mesh:
         Mesh phases at which an entry jumps.
     offset : float
         Mesh phase when the clock of the machine is at 0, in [0, 1).
+    crossed : CrossedAxes, optional
+        Axes and flanks of a hypoid or bevel pair, whose pinion is the first gear;
+        :meth:`hypoid` makes such a mesh. Stiffness, damping, error and gap are then along the
+        normal of the flanks, ``angle`` is the direction of the common perpendicular, and contacts
+        and friction are those of a mesh table in space.
 
     Raises
     ------
@@ -96,6 +106,71 @@ class Mesh:
     frictions: Sequence[LoadFriction] = ()
     events: tuple[float, ...] = (0.0,)
     offset: float = 0.0
+    crossed: CrossedAxes | None = None
+
+    @classmethod
+    def hypoid(
+        cls,
+        gears: tuple[str, str],
+        blank: HypoidBlank,
+        *,
+        apex: tuple[int, int] = (1, 1),
+        **fields: Any,
+    ) -> Mesh:
+        """Mesh of a hypoid, spiral bevel or straight bevel pair.
+
+        Parameters
+        ----------
+        gears : (str, str)
+            Names of pinion and wheel.
+        blank : HypoidBlank
+            Dimensions of the pair.
+        apex : (int, int)
+            Side of pinion and wheel on which their apex lies: 1 towards x of the shaft, -1 against
+            it. The position of a gear is that of the middle of its face.
+        **fields : object
+            Other fields of :class:`Mesh`: ``angle``, ``stiffness``, ...
+
+        Returns
+        -------
+        Mesh
+
+        Raises
+        ------
+        InputError
+            If a value is out of range.
+
+        Examples
+        --------
+        >>> from tribodyn.gear import hypoid_blank
+        >>> blank = hypoid_blank(10, 43, 31.7e-3, 0.336, 47.7e-3, math.radians(46.0), 0.1143)
+        >>> mesh = Mesh.hypoid(("pinion", "wheel"), blank, stiffness=5.7e8)
+        >>> round(1e3 * mesh.normal_module, 3)
+        5.602
+        """
+        crossed = CrossedAxes(blank, apex)
+        return cls(gears, crossed.blank.mean_normal_module, crossed=crossed, **fields)
+
+    @cached_property
+    def crossing(self) -> CrossedGeometry | None:
+        """Geometry of crossed axes; None of parallel ones."""
+        return None if self.crossed is None else CrossedGeometry(self.crossed, self.angle)
+
+    def ratio(self, gears: tuple[Gear, Gear]) -> Fraction:
+        """Speed of the second over that of the first gear, about x of their shafts.
+
+        Parameters
+        ----------
+        gears : (Gear, Gear)
+            Both gears.
+
+        Returns
+        -------
+        Fraction
+            Exact; on crossed axes its sign depends on the sides of the apexes.
+        """
+        sign = -1 if self.crossing is None else self.crossing.sense
+        return sign * Fraction(gears[0].teeth, gears[1].teeth)
 
     def __post_init__(self) -> None:
         gears = () if isinstance(self.gears, str) else tuple(self.gears)

@@ -51,7 +51,7 @@ class MachineModes(Record):
     structure: MachineStructure
 
     def share_by_kind(self) -> dict[str, Array]:
-        """Share of meshes, shafts, bearings and housing in the strain energy.
+        """Share of meshes, shafts with couplings, bearings and housing in the strain energy.
 
         Returns
         -------
@@ -59,6 +59,7 @@ class MachineModes(Record):
             ``meshes``, ``shafts``, ``bearings``, ``housing``, (m,) each; their sum is 1.
         """
         kinds = np.array([part.partition(".")[0] for part in self.parts])
+        kinds[kinds == "couplings"] = "shafts"
         return {
             kind: np.asarray(self.strain_share[:, kinds == kind].sum(axis=1))
             for kind in ("meshes", "shafts", "bearings", "housing")

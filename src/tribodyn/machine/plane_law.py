@@ -4,6 +4,7 @@ A pair has the coordinates x (across the line of action, in the direction of the
 y (along it, towards the driven gear) and theta (in the running sense) of its first gear, then those
 of its second gear. Where the force has an axial part or moves over the face, each gear has x, y, z
 (along the axes, in the sense in which the first gear turns), rotations about x and y, and theta.
+A pair on crossed axes has those of its mesh table, alone or between engine and load.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from tribodyn.dynamics import Contact, LoadFriction
+from tribodyn.machine.graph.crossed import CrossedGeometry
 from tribodyn.machine.graph.directions import MeshDirection
 from tribodyn.machine.mesh import PHASES, Mesh
 from tribodyn.types import Array
@@ -25,8 +27,17 @@ _PLANE = [0, 1, 5, 6, 7, 11]
 SPATIAL = 12
 
 
-def pair_coordinates(direction: MeshDirection, size: int, *, first_drives: bool) -> Array:
-    """The 6 or 12 coordinates of a pair from those of both gear nodes in space, (size, 12)."""
+def pair_coordinates(
+    direction: MeshDirection,
+    size: int,
+    *,
+    first_drives: bool,
+    crossing: CrossedGeometry | None = None,
+) -> Array:
+    """The coordinates of a pair from those of both gear nodes in space, (size, 12)."""
+    if crossing is not None:
+        between = (size - SPATIAL) // 2
+        return np.pad(crossing.pair_coordinates(direction.senses), ((between, between), (0, 0)))
     along = np.array([0.0, *direction.normal[1:]]) * (1.0 if first_drives else -1.0)
     axis = np.array([direction.senses[0], 0.0, 0.0])
     rows = np.zeros((SPATIAL, SPATIAL))

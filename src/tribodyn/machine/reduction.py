@@ -147,7 +147,7 @@ def _interface(structure: MachineStructure) -> Mask:
     for name, mesh in machine.meshes.items():
         acting = machine.directions[name].direction.reshape(2, 6) != 0.0
         acting[:, 1:4] = True  # friction
-        acting |= mesh.helix_angle > 0.0  # the load moves over the face
+        acting |= mesh.helix_angle > 0.0 or mesh.crossed is not None  # the load moves over the face
         for gear, rows in zip(mesh.gears, acting, strict=True):
             used |= (structure.gear(gear)[rows] != 0.0).any(axis=0)
     for name, bearing in machine.bearings.items():

@@ -1,4 +1,4 @@
-"""A shaft: the sections that it consists of, from its beginning on."""
+"""A shaft with its sections from its beginning on, and the coupling of two shafts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Material
-from tribodyn.machine.fields import quoted
+from tribodyn.machine.fields import check_number, quoted
 from tribodyn.machine.section import STEEL, Section
 
 
@@ -22,6 +22,8 @@ class Shaft:
         one node at position 0.
     material : Material
         Material of all sections.
+    moment_of_inertia : float
+        Polar moment of inertia of what turns with its beginning, such as an engine [kg*m^2].
 
     Raises
     ------
@@ -36,6 +38,7 @@ class Shaft:
 
     sections: Sequence[Section] = ()
     material: Material = STEEL
+    moment_of_inertia: float = 0.0
 
     def __post_init__(self) -> None:
         sections = tuple(self.sections)
@@ -46,6 +49,7 @@ class Shaft:
         if not isinstance(self.material, Material):
             what, remedy = f"material = {quoted(self.material)}", "Give a Material, such as STEEL"
             raise InputError(what, Argument("Shaft.material"), "Wanted: a Material", remedy)
+        check_number(self, "moment_of_inertia", "kg*m^2", 0.0)
 
     @property
     def length(self) -> float:
@@ -64,3 +68,41 @@ class Shaft:
         for section in self.sections:
             positions.append(positions[-1] + section.length)
         return tuple(positions)
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A torsional spring between the end of a shaft and the beginning of the next on its axis.
+
+    Parameters
+    ----------
+    shafts : (str, str)
+        Names of both shafts.
+    torsional_stiffness : float
+        Stiffness against twist [N*m/rad]; it resists nothing else.
+    torsional_damping : float
+        Damping of the twist [N*m*s/rad].
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> Coupling(("engine", "input"), 1e5).torsional_damping
+    0.0
+    """
+
+    shafts: tuple[str, str]
+    torsional_stiffness: float
+    torsional_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        names = () if isinstance(self.shafts, str) else tuple(self.shafts)
+        if len(names) != 2 or names[0] == names[1] or not all(isinstance(n, str) for n in names):
+            what, where = f"shafts = {quoted(self.shafts)}", Argument("Coupling.shafts")
+            raise InputError(what, where, "A coupling joins two shafts", "Give their two names")
+        object.__setattr__(self, "shafts", names)
+        check_number(self, "torsional_stiffness", "N*m/rad", 0.0, above=True)
+        check_number(self, "torsional_damping", "N*m*s/rad", 0.0)

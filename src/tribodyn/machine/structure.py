@@ -163,6 +163,10 @@ class MachineStructure:
             inertia = [*3 * [body.mass], body.moment_of_inertia, across, across]
             motion = self.gear(name)
             total += motion.T @ np.diag(inertia) @ motion
+        for name, shaft in self.machine.shafts.items():
+            if shaft.moment_of_inertia:
+                turn = self.at(name, 0.0)[3]
+                total += shaft.moment_of_inertia * np.outer(turn, turn)
         self._refuse_massless(np.diag(total))
         return total
 
@@ -192,6 +196,9 @@ class MachineStructure:
             if shaft.shaft.sections:
                 rows = self.basis[self._rows(name)]
                 elements[f"shafts.{name}"] = rows.T @ shaft.stiffness @ rows
+        for name, coupling in self.machine.couplings.items():
+            twist = self.twist(name)
+            elements[f"couplings.{name}"] = coupling.torsional_stiffness * np.outer(twist, twist)
         for name, bearing in self.machine.bearings.items():
             motion = self.bearing(name)
             elements[f"bearings.{name}"] = motion.T @ bearing.stiffness_matrix @ motion
@@ -208,6 +215,8 @@ class MachineStructure:
         for name, bearing in self.machine.bearings.items():
             motion = self.bearing(name)
             total = total + motion.T @ bearing.damping_matrix @ motion
+        for name, coupling in self.machine.couplings.items():
+            total = total + coupling.torsional_damping * np.outer(*2 * [self.twist(name)])
         if self.damping_ratio:
             from scipy.linalg import eigh
 
@@ -287,7 +296,27 @@ class MachineStructure:
         """
         bearing = self.machine.bearings[name]
         motion = self.at(bearing.shaft, bearing.position)
-        return motion if bearing.node is None else motion - self.housing_node(bearing.node)
+        if bearing.node is None:
+            return motion
+        axes = self.machine.placement.axes[bearing.shaft]
+        return motion - np.kron(np.eye(2), axes.T) @ self.housing_node(bearing.node)
+
+    def twist(self, name: str) -> Array:
+        """Twist of a coupling per coordinate.
+
+        Parameters
+        ----------
+        name : str
+            Name of the coupling.
+
+        Returns
+        -------
+        (n,) array
+        """
+        first, second = self.machine.couplings[name].shafts
+        return np.asarray(
+            self.at(second, 0.0)[3] - self.at(first, self.machine.shafts[first].length)[3]
+        )
 
     def bearing_load(
         self, name: str, position: ArrayLike, velocity: ArrayLike | None = None

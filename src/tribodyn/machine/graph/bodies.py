@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tribodyn.errors import Problem
+from tribodyn.gear.hypoid.bodies import cone_bodies
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.mesh import Mesh
@@ -36,8 +37,8 @@ class GearBody:
     Notes
     -----
     What is not prescribed is that of a steel cylinder of the reference diameter, less what the
-    shaft fills; a ring reaches from its reference diameter to ten modules beyond. A prescribed mass
-    scales the moments of inertia of the solid.
+    shaft fills; a ring reaches from its reference diameter to ten modules beyond, and bevel gears
+    are truncated pitch cones. A prescribed mass scales the moments of inertia of the solid.
     """
 
     mass: float
@@ -45,12 +46,12 @@ class GearBody:
     transverse_moment_of_inertia: float
 
 
-def gear_body(gear: Gear, mesh: Mesh | None, shaft: Shaft) -> GearBody:
-    """Body of a gear: prescribed values, else those of the solid."""
+def gear_body(gear: Gear, mesh: Mesh | None, shaft: Shaft, number: int = 0) -> GearBody:
+    """Body of the first or second gear of a mesh: prescribed values, else those of the solid."""
     values = gear.mass, gear.moment_of_inertia, gear.transverse_moment_of_inertia
     if mesh is None or None not in values:
         return GearBody(*(value or 0.0 for value in values))
-    solid = _solid(gear, mesh, shaft)
+    solid = _solid(gear, mesh, shaft, number)
     scale = 1.0 if gear.mass is None else gear.mass / solid[0]
     mass, polar, transverse = (
         factor * computed if value is None else value
@@ -59,8 +60,11 @@ def gear_body(gear: Gear, mesh: Mesh | None, shaft: Shaft) -> GearBody:
     return GearBody(mass, polar, transverse)
 
 
-def _solid(gear: Gear, mesh: Mesh, shaft: Shaft) -> tuple[float, float, float]:
+def _solid(gear: Gear, mesh: Mesh, shaft: Shaft, number: int) -> tuple[float, float, float]:
     """Mass and moments of inertia of the solid body."""
+    if mesh.crossed is not None:
+        cones = cone_bodies(mesh.crossed.blank, STEEL.density)
+        return cones["wheel" if number else "pinion"]
     radius = 0.5 * abs(gear.teeth) * mesh.transverse_module
     half = 0.5 * gear.face_width
     outer = radius + (0.5 * _RIM * mesh.normal_module if gear.is_ring else 0.0)
@@ -102,7 +106,7 @@ def body_problems(name: str, gear: Gear, mesh: Mesh | None, shaft: Shaft) -> lis
             why = "Without a module its size, and so its mass, is not known"
             return [Problem("the gear is in no mesh", f"gears.{name}", why, remedy)]
         return []
-    if gear.is_ring:
+    if gear.is_ring or mesh.crossed is not None:
         return []
     largest = 2.0 * max((max(piece[2:]) for piece in _filled(gear, shaft)), default=0.0)
     diameter = gear.teeth * mesh.transverse_module

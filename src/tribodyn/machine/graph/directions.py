@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.machine.gear import Gear
+from tribodyn.machine.graph.crossed import CrossedGeometry
 from tribodyn.machine.graph.kinematics import base_radius
 from tribodyn.machine.mesh import Mesh
 from tribodyn.types import Array
@@ -40,11 +41,16 @@ class MeshDirection:
         times its transverse force.
     senses : (int, int)
         Signs of the speeds of both gears.
+    sliding : (12,) array, optional
+        On crossed axes, like ``direction``: of the way of the first flank over the second one,
+        against which friction acts [1, rotations m].
 
     Notes
     -----
     The force acts at the pitch point, at mid face; ``direction = [n, r_1 c x n, -n, r_2 c x n]``
-    with c from the first axis to the pitch point.
+    with c from the first axis to the pitch point. On crossed axes it acts in the calculation
+    point, along the normal; base radii are levers of the normal, and each half of the entries
+    is over the coordinates of its shaft, ``normal`` and ``across`` over those of the first.
     """
 
     base_radius: tuple[float, float]
@@ -55,6 +61,7 @@ class MeshDirection:
     across: Array
     direction: Array
     senses: tuple[int, int]
+    sliding: Array | None = None
 
     def friction(
         self, friction_sum: ArrayLike, first_moment: ArrayLike, second_moment: ArrayLike
@@ -72,8 +79,11 @@ class MeshDirection:
         Returns
         -------
         (p, 12) array
-            Generalized friction over mesh force, like :attr:`direction` [1 and m].
+            Generalized friction over mesh force, like :attr:`direction` [1 and m]; on crossed
+            axes that of the sum in the calculation point.
         """
+        if self.sliding is not None:
+            return np.asarray(np.multiply.outer(friction_sum, self.sliding))
         force = np.multiply.outer(np.asarray(friction_sum, dtype=float), self.across)
         turns = [
             np.multiply.outer(np.asarray(moment, dtype=float), sign * _X)
@@ -102,6 +112,8 @@ def mesh_direction(
     mesh: Mesh, gears: tuple[Gear, Gear], sense: int, senses: tuple[int, int]
 ) -> MeshDirection:
     """Directions of a mesh whose first gear has a torque of sign ``sense`` about x."""
+    if mesh.crossing is not None:
+        return _crossed_direction(mesh.crossing, sense, senses)
     teeth = [gear.teeth for gear in gears]
     distance = center_distance(mesh, gears)
     reference = reference_center_distance(mesh, gears)
@@ -124,4 +136,20 @@ def mesh_direction(
         across=senses[0] * math.copysign(1.0, teeth[0]) * np.cross(_X, transverse),
         direction=np.concatenate([normal, moments[0], -normal, moments[1]]),
         senses=senses,
+    )
+
+
+def _crossed_direction(pair: CrossedGeometry, sense: int, senses: tuple[int, int]) -> MeshDirection:
+    """Directions of a hypoid or bevel pair."""
+    along, sliding = pair.along(sense), pair.sliding(sense, senses[0])
+    return MeshDirection(
+        base_radius=pair.levers(sense),
+        working_radius=pair.working_radii,
+        working_pressure_angle=pair.pressure_angle(sense),
+        base_helix_angle=0.0,
+        normal=along[:3],
+        across=sliding[:3],
+        direction=along,
+        senses=senses,
+        sliding=sliding,
     )

@@ -14,6 +14,7 @@ from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.shaft_graph import ShaftGraph, listed
 from tribodyn.machine.mesh import Mesh, mean_over_phase
+from tribodyn.machine.shaft import Coupling
 
 #: Mesh stiffness per face width by which loops share where none is given [Pa].
 _USUAL_STIFFNESS = 14e9
@@ -57,7 +58,7 @@ class MeshLoad:
         Torque about x that the first gear puts into the mesh, and that the second gear takes out
         of it [N*m].
     force : float
-        Force along the transverse line of action [N].
+        Force along the transverse line of action, on crossed axes along the normal [N].
     power : float
         Power from the driving to the driven gear [W].
     sense : int
@@ -96,17 +97,20 @@ class Kinematics:
 def shaft_ratios(
     graph: ShaftGraph, gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]
 ) -> dict[str, Fraction]:
-    """Speed of each shaft over that of the input, by the meshes of the tree."""
+    """Speed of each shaft over that of the input, by the meshes and couplings of the tree."""
 
-    def step(mesh: str, forward: bool, ratio: Fraction) -> Fraction:
-        return ratio * _ratio(mesh, gears, meshes) ** (1 if forward else -1)
+    def step(link: str, forward: bool, ratio: Fraction) -> Fraction:
+        return ratio * _ratio(link, gears, meshes) ** (1 if forward else -1)
 
     return graph.propagate(Fraction(1), step)
 
 
-def _ratio(mesh: str, gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> Fraction:
-    first, second = (gears[gear].teeth for gear in meshes[mesh].gears)
-    return Fraction(-first, second)
+def _ratio(link: str, gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> Fraction:
+    """Ratio of a mesh; 1 of a coupling."""
+    if link not in meshes:
+        return Fraction(1)
+    mesh = meshes[link]
+    return mesh.ratio((gears[mesh.gears[0]], gears[mesh.gears[1]]))
 
 
 def ratio_problems(
@@ -131,14 +135,15 @@ def ratio_problems(
         ]
         path = graph.path(second)
         by_path = f"by {listed(path)}" if path else "as the input"
-        teeth = ", ".join(f"{gear} has {gears[gear].teeth}" for gear in meshes[mesh].gears)
+        pair = meshes[mesh].gears if mesh in meshes else ()
+        teeth = ", ".join(f"{gear} has {gears[gear].teeth}" for gear in pair)
         problems.append(
             Problem(
                 f'shaft "{second}" turns at {stated[0]} {by_path}, and at {stated[1]} by '
                 f"{listed([*graph.path(first), mesh])}",
-                f"meshes.{mesh}.gears",
+                f"meshes.{mesh}.gears" if pair else f"couplings.{mesh}",
                 "All meshes of a loop must give one speed",
-                f"Correct teeth ({teeth}), or remove one of these meshes",
+                f"Correct teeth ({teeth}), or remove one of these" if pair else "Remove it",
             )
         )
     return problems
@@ -150,30 +155,40 @@ def kinematics(
     meshes: Mapping[str, Mesh],
     ends: tuple[str, str],
     operation: tuple[float, float],
+    couplings: Mapping[str, Coupling],
 ) -> Kinematics:
     """Speeds and torques of a machine between (input, output) at (speed, torque) of the input."""
+
+    def conductance(link: str) -> float:
+        if link in couplings:
+            return couplings[link].torsional_stiffness * float(ratios[graph.edges[link][0]]) ** 2
+        return _conductance(meshes[link], gears, ratios)
+
     (start, _), (speed, torque) = ends, operation
     ratios = shaft_ratios(graph, gears, meshes)
     sense = -1.0 if speed < 0.0 else 1.0
-    flows = _flows(graph, ends, torque, lambda m: _conductance(meshes[m], gears, ratios))
+    flows = _flows(graph, ends, torque, conductance)
     mesh_loads = {}
     inflow = dict.fromkeys(ratios, 0.0)
     inflow[start if torque >= 0.0 else ends[1]] = abs(torque)
     for name, (flow, shared) in flows.items():
         shafts = graph.edges[name]
         inflow[shafts[flow > 0.0]] += abs(flow)
+        if name in couplings:
+            continue
         first = flow > 0.0 or (flow == 0.0 and _leads(graph, name))
         mesh, ratio = meshes[name], [float(ratios[shaft]) for shaft in shafts]
         about = (sense * flow / ratio[0], sense * flow / ratio[1])
         drives, follows = mesh.gears if first else mesh.gears[::-1]
+        turn = int(math.copysign(1.0, sense * ratio[0] * (1.0 if first else -1.0)))
         mesh_loads[name] = MeshLoad(
             mesh_frequency=abs(ratio[0] * gears[mesh.gears[0]].teeth * speed) / (2.0 * math.pi),
             driver=drives,
             driven=follows,
             torque=about,
-            force=abs(about[0]) / base_radius(mesh, gears[mesh.gears[0]]),
+            force=abs(about[0]) / base_radius(mesh, gears[mesh.gears[0]], turn),
             power=abs(flow * speed),
-            sense=int(math.copysign(1.0, sense * ratio[0] * (1.0 if first else -1.0))),
+            sense=turn,
             shared=shared,
         )
     sign = -1.0 if torque < 0.0 else 1.0
@@ -189,8 +204,10 @@ def kinematics(
     return Kinematics(shaft_loads, mesh_loads)
 
 
-def base_radius(mesh: Mesh, gear: Gear) -> float:
-    """Radius of the base circle, positive for rings too [m]."""
+def base_radius(mesh: Mesh, gear: Gear, sense: int = 1) -> float:
+    """Lever of the mesh force about a gear [m]; on crossed axes about the first, by its sense."""
+    if mesh.crossing is not None:
+        return mesh.crossing.levers(sense)[0]
     radius = 0.5 * abs(gear.teeth) * mesh.transverse_module
     return radius * math.cos(mesh.transverse_pressure_angle)
 

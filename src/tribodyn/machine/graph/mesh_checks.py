@@ -32,6 +32,8 @@ def mesh_problems(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> Iter
         elif (other := pairs.setdefault(frozenset(mesh.gears), name)) != name:
             why, remedy = "Two gears have one mesh", "Remove one of the two meshes"
             yield Problem(f"mesh {other} has the same gears", where, why, remedy)
+        elif mesh.crossed is not None:
+            yield from _crossed_problems(name, mesh, gears)
         elif first.teeth + second.teeth == 0 or (first.is_ring and second.is_ring):
             yield _no_pair(name, mesh, (first, second), "Two rings, or equal gears, cannot mesh")
         elif (first.is_ring or second.is_ring) and first.teeth + second.teeth > 0:
@@ -39,8 +41,25 @@ def mesh_problems(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> Iter
         else:
             yield from _reach(name, mesh, (first, second))
         for gear in mesh.gears:
-            if (other := racks.setdefault(gear, name)) != name:
+            if (other := racks.setdefault(gear, name)) == name:
+                continue
+            if mesh.crossed or meshes[other].crossed:
+                why = "A bevel gear has one mesh"
+                remedy = "Give each mesh its gears"
+                yield Problem(f"gear {gear} is in mesh {other} too", where, why, remedy)
+            else:
                 yield from _rack_problems(gear, gears, (other, meshes[other]), (name, mesh))
+
+
+def _crossed_problems(name: str, mesh: Mesh, gears: Mapping[str, Gear]) -> Iterator[Problem]:
+    """Gears of a hypoid mesh that are not those of its blank."""
+    blank = mesh.crossed.blank if mesh.crossed else None
+    for gear, role in zip(mesh.gears, ("pinion", "wheel"), strict=True):
+        teeth = getattr(blank, f"teeth_{role}")
+        if gears[gear].teeth != teeth:
+            what = f"gear {gear} has {gears[gear].teeth} teeth"
+            why = f"The {role} of the blank has {teeth}; the first gear is the pinion"
+            yield Problem(what, f"meshes.{name}.gears", why, "Correct order or numbers of teeth")
 
 
 def _no_pair(name: str, mesh: Mesh, gears: tuple[Gear, Gear], why: str) -> Problem:

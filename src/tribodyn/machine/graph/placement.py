@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.directions import center_distance
 from tribodyn.machine.graph.shaft_graph import ShaftGraph, listed
 from tribodyn.machine.mesh import Mesh
+from tribodyn.types import Array
 
 #: Distance between axes of a loop that is rounding, in modules, and between mid faces [m].
 _AXIS, _FACE = 0.02, 1e-5
@@ -34,32 +36,69 @@ class Placement:
         Middle of each gear [m].
     bearings : mapping of str to (float, float, float)
         Middle of each bearing [m].
+    axes : mapping of str to (3, 3) array
+        Directions x, y, z of the coordinates of each shaft, as columns, in those of the input
+        shaft [1]; other than the unit matrix behind a mesh of crossed axes.
     """
 
     shafts: Mapping[str, Point]
     gears: Mapping[str, Point]
     bearings: Mapping[str, Point]
+    axes: Mapping[str, Array] = field(default_factory=dict)
 
 
-def on_axis(start: Point, position: float) -> Point:
-    """Point at a position on a shaft that begins at ``start``."""
-    return start[0] + position, start[1], start[2]
+class Pose(NamedTuple):
+    """Where a shaft begins, and its axes as columns."""
+
+    start: Point
+    axes: Array
+
+    def on_axis(self, position: float) -> Point:
+        """Point at a position on the shaft."""
+        return _point(np.add(self.start, position * self.axes[:, 0]))
 
 
-def shaft_starts(
-    graph: ShaftGraph, gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]
-) -> dict[str, Point]:
-    """Where each shaft begins in space, by the meshes of the tree."""
+def shaft_poses(
+    graph: ShaftGraph,
+    gears: Mapping[str, Gear],
+    meshes: Mapping[str, Mesh],
+    lengths: Mapping[str, float],
+) -> dict[str, Pose]:
+    """How each shaft lies in space, by meshes and couplings of the tree; lengths of couplings."""
 
-    def step(name: str, forward: bool, start: Point) -> Point:
-        sign = 1.0 if forward else -1.0
-        return tuple(s + sign * d for s, d in zip(start, _shift(meshes[name], gears), strict=True))  # type: ignore[return-value]
+    def step(name: str, forward: bool, pose: Pose) -> Pose:
+        shift, turn = _step(name, gears, meshes, lengths)
+        axes = pose.axes @ (turn if forward else turn.T)
+        sign, frame = (1.0, pose.axes) if forward else (-1.0, axes)
+        return Pose(_point(np.add(pose.start, sign * (frame @ shift))), axes)
 
-    return graph.propagate((0.0, 0.0, 0.0), step)
+    return graph.propagate(Pose((0.0, 0.0, 0.0), np.eye(3)), step)
+
+
+def _point(values: Array) -> Point:
+    x, y, z = values.tolist()
+    return x, y, z
+
+
+def _step(
+    name: str,
+    gears: Mapping[str, Gear],
+    meshes: Mapping[str, Mesh],
+    lengths: Mapping[str, float],
+) -> tuple[Array, Array]:
+    """From the beginning of the first shaft to that of the second, and its axes as columns."""
+    if name in lengths:  # a coupling behind the first shaft
+        return np.array([lengths[name], 0.0, 0.0]), np.eye(3)
+    mesh = meshes[name]
+    pair = mesh.crossing
+    if pair is None:
+        return np.array(_shift(mesh, gears)), np.eye(3)
+    first, second = (gears[gear].node_position for gear in mesh.gears)
+    return first * np.eye(3)[0] + pair.shift - second * pair.turn[:, 0], pair.turn
 
 
 def _shift(mesh: Mesh, gears: Mapping[str, Gear]) -> Point:
-    """From where the shaft of the first gear begins to where that of the second does."""
+    """The same of parallel shafts."""
     first, second = (gears[gear] for gear in mesh.gears)
     distance = abs(center_distance(mesh, (first, second)))
     across = distance * math.cos(mesh.angle), distance * math.sin(mesh.angle)
@@ -67,16 +106,28 @@ def _shift(mesh: Mesh, gears: Mapping[str, Gear]) -> Point:
 
 
 def placement_problems(
-    graph: ShaftGraph, gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]
+    graph: ShaftGraph,
+    gears: Mapping[str, Gear],
+    meshes: Mapping[str, Mesh],
+    lengths: Mapping[str, float],
 ) -> list[Problem]:
     """Loops of meshes whose axes or faces do not close."""
-    starts = shaft_starts(graph, gears, meshes)
+    poses = shaft_poses(graph, gears, meshes, lengths)
     problems = []
     for name in graph.loops:
-        mesh = meshes[name]
         first, second = graph.edges[name]
-        shift = np.array(_shift(mesh, gears))
-        wanted = np.subtract(starts[second], starts[first])
+        shift, turn = _step(name, gears, meshes, lengths)
+        frame = poses[first].axes
+        wanted = np.subtract(poses[second].start, poses[first].start) @ frame
+        if not np.allclose(frame @ turn, poses[second].axes, atol=1e-6) or (
+            (name not in meshes or meshes[name].crossing) and math.dist(wanted, shift) > _FACE
+        ):
+            kind = "meshes" if name in meshes else "couplings"
+            what = f'it puts shaft "{second}" in another place than the other meshes of its loop'
+            remedy = "Correct positions, angles and apex sides, or remove it"
+            problems.append(Problem(what, f"{kind}.{name}", "Each shaft has one axis", remedy))
+            continue
+        mesh = meshes[name]
         ring = {*graph.path(first), *graph.path(second)} - (
             {*graph.path(first)} & {*graph.path(second)}
         )

@@ -21,6 +21,7 @@ from tribodyn.errors import (
     real_numbers,
     warn,
 )
+from tribodyn.gear import Misalignment
 from tribodyn.machine.bearing import HELD
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
@@ -54,6 +55,9 @@ class MeshBalance:
         Derivative of force and moment with respect to compression and its slope [N/m, N, N*m].
     face_load_factor : float or None
         Greatest over mean load per face width; None without a :class:`FaceLaw`.
+    mounting : Misalignment or None
+        On crossed axes: the changes V, H, J and alpha of offset, mounting distances and shaft
+        angle by the deflection; ``misalignment`` is zero then.
     """
 
     force: float
@@ -62,6 +66,7 @@ class MeshBalance:
     misalignment: float
     stiffness: Array
     face_load_factor: float | None
+    mounting: Misalignment | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -363,7 +368,9 @@ def _balance(
         law = laws[name]
         factor = law.face_load_factor(compression, slope) if isinstance(law, FaceLaw) else None
         force, moment = load.tolist()
-        meshes[name] = MeshBalance(force, moment, compression, misalignment, stiffness, factor)
+        mounting = model.mounting(name, displacement)
+        values = force, moment, compression, misalignment, stiffness, factor, mounting
+        meshes[name] = MeshBalance(*values)
         if load[0] < -1e-9 * np.abs(external).max():
             warn(
                 "mesh-tension",

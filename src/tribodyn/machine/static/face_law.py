@@ -225,7 +225,7 @@ def face_laws(
     dict
         :class:`LoadCenterLaw` of meshes whose contacts know the centre of the load, with twelve
         coordinates; of others :class:`FaceLaw` of the mean stiffness, mean error and common face
-        width, without gap.
+        width, without gap; no law of meshes on crossed axes.
 
     Examples
     --------
@@ -240,6 +240,8 @@ def face_laws(
     """
     laws: dict[str, FaceLaw | LoadCenterLaw] = {}
     for name, mesh in machine.meshes.items():
+        if mesh.crossed is not None:  # the load moves with the mounting of the gears
+            continue
         gears = machine.gears[mesh.gears[0]], machine.gears[mesh.gears[1]]
         width = min(gear.face_width for gear in gears)
         stiffness, error = mean_stiffness(mesh, gears), mean_over_phase(mesh.error)

@@ -9,10 +9,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.gear import Misalignment
 from tribodyn.machine.bearing import HELD, Bearing
 from tribodyn.machine.graph.kinematics import mean_stiffness
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
+from tribodyn.machine.plane_law import coordinate_count, mean_direction, pair_coordinates
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
 
@@ -51,6 +53,9 @@ class StaticModel:
         """Compression at mid face and its slope over the face, per coordinate, (2, size)."""
         rows = {}
         for name, mesh in self.machine.meshes.items():
+            if mesh.crossing is not None:
+                rows[name] = np.array([self._crossed(name), np.zeros(self.size)])
+                continue
             direction = self.machine.directions[name]
             first, second = (self.gears[gear] for gear in mesh.gears)
             turn = np.cross([1.0, 0.0, 0.0], direction.normal)
@@ -61,6 +66,24 @@ class StaticModel:
                 ]
             )
         return rows
+
+    def _crossed(self, name: str) -> Array:
+        """Compression of a mesh on crossed axes per coordinate, in the mean centre of its load."""
+        mesh, direction = self.machine.meshes[name], self.machine.directions[name]
+        acting = direction.direction
+        if mesh.contacts and mesh.crossing is not None:
+            size = coordinate_count(mesh.contacts[0])
+            onto = pair_coordinates(direction, size, first_drives=True, crossing=mesh.crossing)
+            acting = mean_direction(mesh.contacts[0]) @ onto
+        return np.asarray(acting @ np.vstack([self.gears[gear] for gear in mesh.gears]))
+
+    def mounting(self, name: str, displacement: Array) -> Misalignment | None:
+        """Mounting errors of a mesh on crossed axes by a displacement of all coordinates."""
+        mesh = self.machine.meshes[name]
+        if mesh.crossing is None:
+            return None
+        moved = np.array([self.gears[gear] @ displacement for gear in mesh.gears])
+        return mesh.crossing.misalignment(moved)
 
     def law(self, name: str) -> MeshLaw:
         """Law of a mesh: the caller's, or a constant stiffness."""

@@ -90,17 +90,6 @@ def levers(flanks: HypoidFlanks) -> tuple[float, float]:
 
 def solid(flanks: HypoidFlanks, density: float) -> dict[str, tuple[float, float]]:
     """Return mass and polar inertia of both gears as truncated pitch cones without shafts."""
-    properties, blank = {}, flanks.blank
-    for gear in ("pinion", "wheel"):
-        cone = getattr(blank, f"pitch_angle_{gear}")
-        outer, inner = (getattr(blank, f"{end}_cone_distance_{gear}") for end in ("outer", "inner"))
-        outer_radius = outer * math.sin(cone)
-        inner_radius = inner * math.sin(cone)
-        height = (outer - inner) * math.cos(cone)
-        scale = math.pi * density * height
-        mass = scale / 3.0 * (outer_radius**2 + outer_radius * inner_radius + inner_radius**2)
-        properties[gear] = (
-            mass,
-            scale / 10.0 * sum(outer_radius**k * inner_radius ** (4 - k) for k in range(5)),
-        )
-    return properties
+    from tribodyn.gear.hypoid.bodies import cone_bodies
+
+    return {gear: body[:2] for gear, body in cone_bodies(flanks.blank, density).items()}

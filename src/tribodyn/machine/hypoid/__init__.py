@@ -1,0 +1,1 @@
+"""Machines of hypoid and bevel pairs."""
