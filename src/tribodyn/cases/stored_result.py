@@ -13,6 +13,7 @@ import numpy as np
 
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
+from tribodyn.record import labels_of
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.machine.stored import MOTION, read_machine
 from tribodyn.study.pipeline.assembly import damping_of, system_of
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
     from tribodyn.dynamics import Response, System
     from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.pipeline.computed import Coupling
 
 _REMEDY = "Give the directory that tribodyn run or Result.save wrote"
@@ -85,7 +87,7 @@ Give the directory that tribodyn run or Result.save wrote.
         raise InputError("this result cannot be read back", str(folder), why, remedy)
     _compare(folder, summary, data)
     try:
-        friction, coupling = _friction(mesh, data), _coupling(mesh, data)
+        friction, coupling, heat = _friction(mesh, data), _coupling(mesh, data), _heat(data)
         with locate_errors(case), collected():
             damping = damping_of(case, mesh)
             system = system_of(case, mesh, damping, friction)
@@ -99,7 +101,8 @@ Give the directory that tribodyn run or Result.save wrote.
     except Exception as error:
         why = f"response.nc is damaged: {error or type(error).__name__}"
         raise InputError("this result cannot be read back", str(folder), why, _REMEDY) from None
-    result = Result(case, mesh, system, response, damping, warnings, friction, coupling=coupling)
+    parts = case, mesh, system, response, damping, warnings, friction
+    result = Result(*parts, coupling=coupling, heat=heat)
     vars(result)["_summary"] = summary
     return result
 
@@ -189,6 +192,20 @@ def _coupling(mesh: MeshTable, data: xarray.Dataset) -> Coupling | None:
     order = np.arange(1.0, data.sizes["pass"] + 1.0)
     kind, tolerance = str(data.attrs["coupling_kind"]), float(data.attrs["coupling_tolerance"])
     return Coupling(iteration=order, phase=mesh.phase, kind=kind, tolerance=tolerance, **columns)
+
+
+def _heat(data: xarray.Dataset) -> HeatBalance | None:
+    """Return the passes of the heat balance; earlier versions did not store them."""
+    from tribodyn.study.heat_balance import HeatBalance
+
+    if "heat_temperature" not in data:
+        return None
+    values: dict[str, Any] = {}
+    for name, label in labels_of(HeatBalance).items():
+        source = data if label.dims else data.attrs
+        if (key := f"heat_{name}") in source:
+            values[name] = source[key].values if label.dims else float(source[key])
+    return HeatBalance(**values)
 
 
 def _response(folder: Path, system: System, data: xarray.Dataset) -> Response:

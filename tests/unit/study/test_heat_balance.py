@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -110,7 +111,9 @@ def _scaled(mesh: MeshTable, factor: float) -> MeshTable:
 
 
 @pytest.mark.parametrize(("law", "local"), [("schlenk", False), ("benedict-kelly", True)])
-def test_a_run_ends_at_the_balance_with_and_without_coupling(law: str, local: bool) -> None:
+def test_a_run_ends_at_the_balance_with_and_without_coupling(
+    law: str, local: bool, tmp_path: Path
+) -> None:
     """A mean coefficient does not know how load is shared; one of each contact does."""
     case = _case(
         "10 W/K", operation__torque_balance="load", friction__law=law,
@@ -129,6 +132,9 @@ def test_a_run_ends_at_the_balance_with_and_without_coupling(law: str, local: bo
     less = plain.mesh.mean_friction_power - coupled.mesh.mean_friction_power
     assert 10.0 * fall == pytest.approx(less, rel=1e-3, abs=1e-5)
     assert fall > 0.01 if local else abs(fall) < 1e-6
+    if local:
+        stored = td.load_result(coupled.save(tmp_path / "saved")).heat
+        assert stored.to_xarray().identical(coupled.heat.to_xarray())
 
 
 @pytest.mark.parametrize(

@@ -127,6 +127,14 @@ def test_impossible_values_are_refused_with_their_line(changes, place, reason):
         assert part.rpartition(".")[2] in message
 
 
+def test_a_negative_torque_names_the_other_side_of_the_teeth():
+    for side, other in (("drive", "coast"), ("coast", "drive")):
+        with pytest.raises(InputError, match=f'gears.side = "{other}"'):
+            built_in(**{"gears.side": side, "operation.torque": "-500 N*m"})
+    with pytest.raises(InputError, match="without its sign it is in the range"):
+        tribodyn.load_case("fzg-roughness").replace({"operation.torque": "-500 N*m"})
+
+
 def test_papers_are_those_of_the_models_used():
     sources = cite(built_in())
     assert "Xu, H." in sources

@@ -12,7 +12,7 @@ from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case import to_models
 from tribodyn.study.case.case_data import CaseData
-from tribodyn.study.case.checks import cross_problems, dropped_options
+from tribodyn.study.case.checks import cross_problems, dropped_options, torque_problem
 from tribodyn.study.case.gears import is_needed, with_gear_defaults
 from tribodyn.study.case.provenance import (
     changed_after,
@@ -99,7 +99,11 @@ class Case(CaseData, case=True):
         marks = body.pop("assumed", {})
         chosen = choices(complete)
         vars(self).update(read_fields(type(self), body, "", chosen, problems))
-        problems = [fault for fault in problems if is_needed(fault[0], inputs.get("gears.kind"))]
+        problems = [
+            (key, torque_problem(key, problem, inputs))
+            for key, problem in problems
+            if is_needed(key, inputs.get("gears.kind"))
+        ]
         problems += [*misspelt, *reason_faults(marks)]
         spread_keys = {key for key, _ in spread_faults}
         problems = [fault for fault in problems if fault[0] not in spread_keys] + spread_faults

@@ -12,7 +12,7 @@ import numpy as np
 
 from tribodyn.mesh.gears import SPATIAL_COORDINATES
 from tribodyn.nomenclature import GEARS
-from tribodyn.record import Parts
+from tribodyn.record import Parts, labels_of
 from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.types import Array
 
@@ -323,6 +323,17 @@ def _ends(result: Computed) -> dict[str, Any]:
             "1", "force of all pairs over that of the torque alone, by phase of the mesh"
         )
         variables["coupling_loading"] = ("knot", coupling.loading, attributes)
+    if (heat := result.heat) is not None:
+        labels = labels_of(type(heat))
+        variables |= {
+            f"heat_{name}": (
+                "heat_pass",
+                getattr(heat, name),
+                _attributes_of(label.unit, "heat balance, pass by pass"),
+            )
+            for name, label in labels.items()
+            if label.dims and getattr(heat, name) is not None
+        }
     return variables
 
 
@@ -348,6 +359,13 @@ def _facts(result: Computed, summary: dict[str, float]) -> dict[str, Any]:
         facts |= {
             f"coupling_{name}": getattr(result.coupling, name) for name in ("kind", "tolerance")
         }
+    if result.heat is not None:
+        values = {
+            name: getattr(result.heat, name)
+            for name, label in labels_of(type(result.heat)).items()
+            if not label.dims
+        }
+        facts |= {f"heat_{name}": value for name, value in values.items() if value is not None}
     facts["case"] = hashlib.sha256(result.case.to_toml().encode()).hexdigest()
     facts["figures"] = len(summary)
     return {**facts, **summary}
