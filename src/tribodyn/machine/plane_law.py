@@ -10,7 +10,7 @@ A pair on crossed axes has those of its mesh table, alone or between engine and 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from tribodyn.machine.graph.crossed import CrossedGeometry
 from tribodyn.machine.graph.directions import MeshDirection
 from tribodyn.machine.mesh import PHASES, Mesh
 from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.machine.machine import Machine
 
 T = TypeVar("T", Contact, LoadFriction)
 #: Coordinates of a pair in space that a plane pair has.
@@ -55,10 +58,19 @@ def coordinate_count(part: Contact | LoadFriction) -> int:
     return int(np.shape(entry(np.zeros(1)) if callable(entry) else entry)[-1])
 
 
-def mean_direction(contact: Contact) -> Array:
-    """Mean over the mesh phase of the direction of a contact."""
+def _mean(contact: Contact) -> Array:
     entry: Any = contact.direction
     return np.asarray(entry(PHASES).mean(axis=0) if callable(entry) else entry, dtype=float)
+
+
+def mean_in_space(machine: Machine, name: str) -> Array:
+    """Mean over the mesh phase of the direction of a mesh, by the nodes of both gears (12,)."""
+    mesh, direction = machine.meshes[name], machine.directions[name]
+    if not mesh.contacts:
+        return direction.direction
+    drives, mean = machine.kinematics.meshes[name].driver == mesh.gears[0], _mean(mesh.contacts[0])
+    onto = pair_coordinates(direction, mean.size, first_drives=drives, crossing=mesh.crossing)
+    return np.asarray(mean @ onto)
 
 
 def with_exchanged_gears(mesh: Mesh, *, internal: bool) -> Mesh:

@@ -12,6 +12,7 @@ import numpy as np
 from tribodyn import plot
 from tribodyn.drawing import report_of
 from tribodyn.errors import InputError
+from tribodyn.gear import Misalignment
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine import machine_modes
 from tribodyn.model import Option
@@ -83,9 +84,19 @@ def _cards(summary: dict[str, float]) -> list[Number]:
 
 def _blocks(result: MachineResult) -> list[Block]:
     figures = [(figure, result, figure.name, figure.heading) for figure in FIGURES_OF_MACHINES]
-    maps = [
+    maps: list[tuple[Any, Any, str, str]] = [
         (plot.face_maps, table, f"face-maps-{number}", f"Mesh {mesh}: maps over the face")
         for number, (mesh, table) in enumerate(result.operation.tables.items(), 1)
+    ]
+    maps += [
+        (
+            plot.hypoid_misalignment,
+            result.mounting_study(mesh),
+            f"mounting-{number}",
+            f"Mesh {mesh}: contact with deflected shafts",
+        )
+        for number, (mesh, errors) in enumerate(result.operation.misalignment.items(), 1)
+        if isinstance(errors, Misalignment)
     ]
     places = [*figures[:_BEFORE_MAPS], *maps, *figures[_BEFORE_MAPS:]]
     return [

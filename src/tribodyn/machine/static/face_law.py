@@ -13,12 +13,7 @@ from tribodyn.machine.fields import check_number
 from tribodyn.machine.graph.kinematics import mean_stiffness
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
-from tribodyn.machine.plane_law import (
-    SPATIAL,
-    coordinate_count,
-    mean_direction,
-    pair_coordinates,
-)
+from tribodyn.machine.plane_law import SPATIAL, coordinate_count, mean_in_space
 from tribodyn.types import Array
 
 #: Points over the face: an odd number, for the rule of Simpson.
@@ -199,12 +194,9 @@ class LoadCenterLaw:
 
 def load_lever(machine: Machine, name: str) -> float:
     """Mean moment of the load of a mesh with twelve coordinates about mid face, over it [m]."""
-    mesh, direction = machine.meshes[name], machine.directions[name]
-    drives = machine.kinematics.meshes[name].driver == mesh.gears[0]
-    mean = mean_direction(mesh.contacts[0])
-    in_space = mean @ pair_coordinates(direction, mean.size, first_drives=drives)
+    direction = machine.directions[name]
     turn = np.cross([1.0, 0.0, 0.0], direction.normal)
-    return float(turn @ (in_space[3:6] - direction.direction[3:6]))
+    return float(turn @ (mean_in_space(machine, name)[3:6] - direction.direction[3:6]))
 
 
 def face_laws(

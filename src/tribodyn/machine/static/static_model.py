@@ -14,7 +14,7 @@ from tribodyn.machine.bearing import HELD, Bearing
 from tribodyn.machine.graph.kinematics import mean_stiffness
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
-from tribodyn.machine.plane_law import coordinate_count, mean_direction, pair_coordinates
+from tribodyn.machine.plane_law import mean_in_space
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
 
@@ -54,7 +54,9 @@ class StaticModel:
         rows = {}
         for name, mesh in self.machine.meshes.items():
             if mesh.crossing is not None:
-                rows[name] = np.array([self._crossed(name), np.zeros(self.size)])
+                gears = np.vstack([self.gears[gear] for gear in mesh.gears])
+                mean = mean_in_space(self.machine, name) @ gears
+                rows[name] = np.array([mean, np.zeros(self.size)])
                 continue
             direction = self.machine.directions[name]
             first, second = (self.gears[gear] for gear in mesh.gears)
@@ -66,16 +68,6 @@ class StaticModel:
                 ]
             )
         return rows
-
-    def _crossed(self, name: str) -> Array:
-        """Compression of a mesh on crossed axes per coordinate, in the mean centre of its load."""
-        mesh, direction = self.machine.meshes[name], self.machine.directions[name]
-        acting = direction.direction
-        if mesh.contacts and mesh.crossing is not None:
-            size = coordinate_count(mesh.contacts[0])
-            onto = pair_coordinates(direction, size, first_drives=True, crossing=mesh.crossing)
-            acting = mean_direction(mesh.contacts[0]) @ onto
-        return np.asarray(acting @ np.vstack([self.gears[gear] for gear in mesh.gears]))
 
     def mounting(self, name: str, displacement: Array) -> Misalignment | None:
         """Mounting errors of a mesh on crossed axes by a displacement of all coordinates."""

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from tribodyn.machine import MachineModes, MachineStructure
     from tribodyn.study.machine.modes import MachineCampbell
 
-_MM = 1e3
 #: Modes that can be chosen, points along a shaft, and largest drawn displacement over the height.
 _MOST, _POINTS, _SIZE = 16, 41, 0.12
 #: Directions drawn on a shaft: label, row of the displacement, colour, dash.
@@ -29,10 +28,10 @@ _DRAWN = (("y", 1, PINION, "solid"), ("z", 2, WHEEL, "dash"), ("x", 0, PAIR_COLO
 def _outlines(view: SideView) -> list[Trace]:
     traces = []
     for name, shaft in view.machine.shafts.items():
-        left, right = view.reach[name]
-        x, radius = shaft_outline(shaft, left) if shaft.sections else ([left, right], [0.0, 0.0])
-        low, high = view.height[name] - np.array(radius), view.height[name] + np.array(radius)
-        outline = {"x": _MM * np.array([*x, *x[::-1]]), "y": _MM * np.array([*high, *low[::-1]])}
+        ends = list(view.reach[name])
+        x, radius = shaft_outline(shaft) if shaft.sections else (ends, [0.0, 0.0])
+        points = view.place(name, [*x, *x[::-1]], [*radius, *(-r for r in radius[::-1])])
+        outline = {"x": points[0], "y": points[1]}
         more: Trace = {"type": "scatter", "mode": "lines", "fill": "toself", "fillcolor": GRID}
         more |= {"line": {"color": MUTED, "width": 0.5}, "hoverinfo": "skip", "showlegend": False}
         traces.append({**outline, **more})
@@ -56,12 +55,12 @@ def _deflection(
     parts = [(name, at, motion @ shape) for name, (at, motion) in points.items()]
     largest = max(float(np.abs(moved[:, :3]).max()) for *_, moved in parts) or 1.0
     for name, at, moved in parts:
-        start = view.machine.placement.shafts[name][0]
         for label, row, *_ in _DRAWN:
             x, y = curves[label]
-            x += [*(_MM * (start + at)).tolist(), np.nan]
             shift = _SIZE * height * moved[:, row].real / largest
-            y += [*(_MM * (view.height[name] + shift)).tolist(), np.nan]
+            places = view.place(name, at, shift)
+            x += [*places[0].tolist(), np.nan]
+            y += [*places[1].tolist(), np.nan]
     return [
         {**line(*curves[label], f"along {label}", color, dash=dash), "hoverinfo": "skip"}
         for label, _, color, dash in _DRAWN
@@ -83,8 +82,7 @@ def machine_modes(modes: MachineModes) -> Any:
     view = SideView.of(structure.machine)
     reach = modes_in_reach(modes)
     count = min(max(reach, 1), _MOST, len(modes.frequency))
-    heights = list(view.height.values())
-    height = (max(heights) - min(heights)) or 0.2
+    height = view.height or 0.2
     outlines, traces, buttons = _outlines(view), [], []
     order = range(count)
     meshes = modes.share_by_kind()["meshes"][:count]

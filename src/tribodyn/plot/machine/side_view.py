@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,8 @@ from tribodyn.plot.theme.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WH
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tribodyn.machine import Machine, Shaft
+    from tribodyn.machine import Machine, Mesh, Shaft
+    from tribodyn.types import Array
 
 _MM = 1e3
 #: Bearing width, and diameter over that of its seat, where no dimensions are given.
@@ -27,7 +28,21 @@ _THIN = 0.15
 _AREA, _CHARACTER, _SHIFTS = (620.0, 420.0), 7.0, (0, 15, -15, 30, -30)
 #: Heights of the lines that show the inclination of the teeth, over the pitch radius.
 _TEETH = (-0.66, -0.22, 0.22, 0.66)
+#: Part of the direction of an axis from which on it is drawn upright.
+_UPRIGHT = 0.7
 _STEEL, _SEAT = "#c9d1d9", "#f3e3c3"
+
+
+class Axis(NamedTuple):
+    """Axis of a shaft in the drawing: where it begins [m], and its direction."""
+
+    start: Array
+    along: Array
+
+    @property
+    def across(self) -> Array:
+        """Direction across the axis."""
+        return np.array([-self.along[1], self.along[0]])
 
 
 @dataclass(frozen=True)
@@ -35,118 +50,180 @@ class SideView:
     """Where shafts, gears and bearings are in the plane of the drawing [m]."""
 
     machine: Machine
-    height: dict[str, float]  #: height of the axis of each shaft
-    reach: dict[str, tuple[float, float]]  #: ends of each shaft along x
+    axes: dict[str, Axis]
+    reach: dict[str, tuple[float, float]]  #: positions of the ends of each shaft
 
     @classmethod
     def of(cls, machine: Machine) -> SideView:
         """Unfold the axes into one plane; a second shaft from one axis goes to its other side."""
-        places, graph = machine.placement, machine.graph
         children: dict[str, int] = {}
 
-        def step(mesh: str, forward: bool, height: float) -> float:
-            start, end = graph.edges[mesh] if forward else graph.edges[mesh][::-1]
-            children[start] = children.get(start, 0) + 1
-            distance = float(np.hypot(*np.subtract(places.shafts[end], places.shafts[start])[1:]))
-            return height - distance * (1.0 if children[start] % 2 else -1.0)
+        def step(link: str, forward: bool, axis: Axis) -> Axis:
+            ends = machine.graph.edges[link]
+            start, end = ends if forward else ends[::-1]
+            mesh = machine.meshes.get(link)
+            if mesh is not None and mesh.crossing is not None:
+                return _crossed_axis(machine, mesh, forward, axis)
+            places = machine.placement
+            shift = np.subtract(places.shafts[end], places.shafts[start]) @ places.axes[start]
+            children[start] = children.get(start, 0) + (mesh is not None)
+            distance = float(np.hypot(*shift[1:])) * (1.0 if children[start] % 2 else -1.0)
+            return Axis(axis.start + shift[0] * axis.along - distance * axis.across, axis.along)
 
-        heights = graph.propagate(0.0, step)
+        axes = machine.graph.propagate(Axis(np.zeros(2), np.array([1.0, 0.0])), step)
         reach = {}
         for name, shaft in machine.shafts.items():
-            parts = [places.gears[g][0] for g, gear in machine.gears.items() if gear.shaft == name]
-            parts += [
-                places.bearings[b][0] for b, at in machine.bearings.items() if at.shaft == name
-            ]
-            start = places.shafts[name][0]
-            ends = [start, start + shaft.length] if shaft.sections else [min(parts), max(parts)]
-            reach[name] = (ends[0], ends[1])
-        return cls(machine, heights, reach)
+            parts = [gear.node_position for gear in machine.gears.values() if gear.shaft == name]
+            parts += [at.position for at in machine.bearings.values() if at.shaft == name]
+            parts = parts or [0.0]
+            reach[name] = (0.0, shaft.length) if shaft.sections else (min(parts), max(parts))
+        return cls(machine, axes, reach)
+
+    def place(self, shaft: str, position: Any, across: Any) -> tuple[Array, Array]:
+        """Where points of a shaft are in the drawing [mm]."""
+        axis = self.axes[shaft]
+        points = np.multiply.outer(axis.along, np.asarray(position, dtype=float))
+        points = points + np.multiply.outer(axis.across, np.asarray(across, dtype=float))
+        x, y = _MM * (points.T + axis.start).T
+        return x, y
+
+    @property
+    def height(self) -> float:
+        """Distance of the lowest from the highest point of an axis [m]."""
+        ends = [self.place(name, self.reach[name], 0.0)[1] for name in self.axes]
+        return float(np.ptp(ends)) / _MM
 
 
-def shaft_outline(shaft: Shaft, start: float) -> tuple[list[float], list[float]]:
-    """Positions along x and radii of the outline of a shaft with sections [m]."""
+def _crossed_axis(machine: Machine, mesh: Mesh, forward: bool, axis: Axis) -> Axis:
+    """Axis that crosses another one, seen along their common perpendicular."""
+    pair = mesh.crossing
+    assert pair is not None
+    # Positions of the crossing point on both shafts.
+    positions = [
+        machine.gears[gear].node_position + float((point - node) @ frame[0])
+        for gear, point, node, frame in zip(
+            mesh.gears, pair.crossing, pair.nodes, pair.frames, strict=True
+        )
+    ]
+    first, second = positions if forward else positions[::-1]
+    cosine = float(pair.turn[0, 0])
+    sine = math.sqrt(max(1.0 - cosine**2, 0.0)) * pair.apex[1 if forward else 0]
+    along = cosine * axis.along + sine * axis.across
+    return Axis(axis.start + first * axis.along - second * along, along)
+
+
+def shaft_outline(shaft: Shaft) -> tuple[list[float], list[float]]:
+    """Positions and radii of the outline of a shaft with sections [m]."""
     x, radius = [], []
     for begin, section in zip(shaft.ends, shaft.sections, strict=False):
-        x += [start + begin, start + begin + section.length]
+        x += [begin, begin + section.length]
         radius += [0.5 * section.diameters(fraction)[0] for fraction in (0.0, 1.0)]
     return x, radius
 
 
 def pitch_diameter(machine: Machine, gear: str) -> float:
-    """Reference diameter of a gear in its first mesh, without a sign [m]."""
+    """Reference diameter of a gear in its first mesh, without a sign [m]; the mean of a cone."""
     meshes = (mesh for mesh in machine.meshes.values() if gear in mesh.gears)
     mesh = next(meshes, None)
+    if mesh is not None and mesh.crossing is not None:
+        return 2.0 * mesh.crossing.working_radii[mesh.gears.index(gear)]
     teeth = abs(machine.gears[gear].teeth)
     return 0.0 if mesh is None else float(teeth * mesh.transverse_module)
 
 
-def _box(left: float, right: float, low: float, high: float, trace: dict[str, Any]) -> Trace:
-    x, y = [left, right, right, left, left], [low, low, high, high, low]
+def _area(points: tuple[Array, Array], color: str, fill: str, text: str) -> Trace:
+    """Filled outline with a text."""
     return {
         "type": "scatter",
         "mode": "lines",
-        "x": _MM * np.array(x),
-        "y": _MM * np.array(y),
+        "x": points[0],
+        "y": points[1],
         "fill": "toself",
         "hoveron": "fills",
         "hoverinfo": "text",
         "showlegend": False,
-        **trace,
+        "line": {"color": color, "width": 1.2},
+        "fillcolor": fill,
+        "text": text,
     }
 
 
-def _drawn(color: str, fill: str, text: str) -> dict[str, Any]:
-    return {"line": {"color": color, "width": 1.2}, "fillcolor": fill, "text": text}
+def _strokes(points: tuple[Array, Array], color: str, width: float) -> Trace:
+    """Lines without a text."""
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": points[0],
+        "y": points[1],
+        "line": {"color": color, "width": width},
+        "hoverinfo": "skip",
+        "showlegend": False,
+    }
+
+
+def _box(left: float, right: float, low: float, high: float) -> tuple[list[float], list[float]]:
+    """Positions and heights of the corners of a rectangle."""
+    return [left, right, right, left, left], [low, low, high, high, low]
 
 
 def _shafts(view: SideView) -> Iterator[Trace]:
     machine = view.machine
     thin = min((pitch_diameter(machine, gear) for gear in machine.gears), default=0.02) * _THIN
     for name, shaft in machine.shafts.items():
-        load, height = machine.kinematics.shafts[name], view.height[name]
+        load = machine.kinematics.shafts[name]
         text = f"shaft {name}: {rounded('speed', load.speed)}, {rounded('torque', load.torque)}"
-        left, right = view.reach[name]
-        if not shaft.sections:
-            middle = 0.5 * (left + right)
-            half = max(0.5 * (right - left), 0.02)
-            trace = _drawn(INK, _STEEL, f"{text}, rigid")
-            low, high = height - 0.5 * thin, height + 0.5 * thin
-            yield _box(middle - half, middle + half, low, high, trace)
-            continue
-        x, radius = shaft_outline(shaft, left)
-        upper, lower = height + np.array(radius), height - np.array(radius)
-        outline = _box(0.0, 0.0, 0.0, 0.0, _drawn(INK, _STEEL, text))
-        outline["x"] = _MM * np.array([*x, *x[::-1], x[0]])
-        outline["y"] = _MM * np.array([*upper, *lower[::-1], upper[0]])
-        yield outline
+        if shaft.sections:
+            x, radius = shaft_outline(shaft)
+            outline = [*x, *x[::-1], x[0]], [*radius, *(-r for r in radius[::-1]), radius[0]]
+        else:
+            left, right = view.reach[name]
+            middle, half = 0.5 * (left + right), max(0.5 * (right - left), 0.02)
+            outline = _box(middle - half, middle + half, -0.5 * thin, 0.5 * thin)
+            text += ", rigid"
+        yield _area(view.place(name, *outline), INK, _STEEL, text)
 
 
 def _gears(view: SideView) -> Iterator[Trace]:
     machine = view.machine
     for name, gear in machine.gears.items():
-        x, half = machine.placement.gears[name][0], 0.5 * gear.face_width
-        height, radius = view.height[gear.shaft], 0.5 * pitch_diameter(machine, name)
+        x, half = gear.node_position, 0.5 * gear.face_width
+        radius = 0.5 * pitch_diameter(machine, name)
         drives = any(load.driver == name for load in machine.kinematics.meshes.values())
         color = PINION if drives else WHEEL
         text = f"{name}: {gear.teeth} teeth, diameter {rounded('reference_diameter', 2.0 * radius)}"
         helix = _helix(machine, name)
         if helix:
             text += f", {rounded('helix_angle', abs(helix))} {'right' if helix > 0.0 else 'left'}"
-        trace = _drawn(color, FILLS[color], text)
-        yield _box(x - half, x + half, height - radius, height + radius, trace)
+        outline = _cone(machine, name) or _box(x - half, x + half, -radius, radius)
+        yield _area(view.place(gear.shaft, *outline), color, FILLS[color], text)
         # Teeth of a right-hand gear descend along x on the side of the viewer.
         rise = -half * math.tan(helix)
         for part in _TEETH if helix else ():
-            y = height + part * radius
-            yield {
-                "type": "scatter",
-                "mode": "lines",
-                "x": _MM * np.array([x - half, x + half]),
-                "y": _MM * np.array([y - rise, y + rise]),
-                "line": {"color": color, "width": 0.8},
-                "hoverinfo": "skip",
-                "showlegend": False,
-            }
+            y = part * radius
+            ends = [x - half, x + half], [y - rise, y + rise]
+            yield _strokes(view.place(gear.shaft, *ends), color, 0.8)
+
+
+def _cone(machine: Machine, name: str) -> tuple[list[float], list[float]] | None:
+    """Pitch cone of a bevel gear; None of a cylindrical gear."""
+    meshes = (mesh for mesh in machine.meshes.values() if name in mesh.gears)
+    mesh = next(meshes, None)
+    if mesh is None or mesh.crossing is None:
+        return None
+    number, pair = mesh.gears.index(name), mesh.crossing
+    role = ("pinion", "wheel")[number]
+    angle = getattr(pair.blank, f"pitch_angle_{role}")
+    mean = getattr(pair.blank, f"mean_cone_distance_{role}")
+    inner, outer = (
+        getattr(pair.blank, f"{end}_cone_distance_{role}") - mean for end in ("inner", "outer")
+    )
+    away = float((pair.crossing[number] - pair.nodes[number]) @ pair.frames[number][0])
+    distance = getattr(pair.blank, f"calculation_point_{role}")
+    middle = machine.gears[name].node_position + away - pair.apex[number] * distance
+    x = [middle - pair.apex[number] * d * math.cos(angle) for d in (inner, outer)]
+    radius = [pair.working_radii[number] + d * math.sin(angle) for d in (inner, outer)]
+    corners = [radius[0], radius[1], -radius[1], -radius[0], radius[0]]
+    return [x[0], x[1], x[1], x[0], x[0]], corners
 
 
 def _helix(machine: Machine, name: str) -> float:
@@ -160,25 +237,17 @@ def _helix(machine: Machine, name: str) -> float:
 def _bearings(view: SideView) -> Iterator[Trace]:
     machine = view.machine
     for name, bearing in machine.bearings.items():
-        shaft, height = machine.shafts[bearing.shaft], view.height[bearing.shaft]
-        rolling = bearing.rolling
+        shaft, x, rolling = machine.shafts[bearing.shaft], bearing.position, bearing.rolling
         width = getattr(rolling, "width", None) or _WIDTH
         seat = 0.5 * (getattr(rolling, "bore_diameter", None) or _seat(shaft, bearing.position))
         outer = 0.5 * (getattr(rolling, "outer_diameter", None) or 2.0 * _OUTER * seat)
-        x = machine.placement.bearings[name][0]
         kind = "linear support" if rolling is None else type(rolling).__name__
-        trace = _drawn(MUTED, _SEAT, f"bearing {name}: {kind}")
+        left, right = x - 0.5 * width, x + 0.5 * width
         for low, high in ((seat, outer), (-outer, -seat)):
-            yield _box(x - 0.5 * width, x + 0.5 * width, height + low, height + high, trace)
-            yield {
-                "type": "scatter",
-                "mode": "lines",
-                "x": _MM * (x + 0.5 * width * np.array([-1.0, 1.0, np.nan, -1.0, 1.0])),
-                "y": _MM * (height + np.array([low, high, np.nan, high, low])),
-                "line": {"color": MUTED, "width": 1.0},
-                "hoverinfo": "skip",
-                "showlegend": False,
-            }
+            ring = view.place(bearing.shaft, *_box(left, right, low, high))
+            yield _area(ring, MUTED, _SEAT, f"bearing {name}: {kind}")
+            cross = [left, right, np.nan, left, right], [low, high, np.nan, high, low]
+            yield _strokes(view.place(bearing.shaft, *cross), MUTED, 1.0)
 
 
 def _seat(shaft: Shaft, position: float) -> float:
@@ -193,36 +262,51 @@ def _names(view: SideView) -> list[dict[str, Any]]:
     """Names of shafts at their left end, of bearings and gears above them."""
     machine, notes = view.machine, []
 
-    def note(x: float, y: float, text: str, **more: Any) -> None:
-        place = {"x": _MM * x, "y": _MM * y, "text": text, "showarrow": False}
+    def note(shaft: str, position: float, across: float, text: str, **more: Any) -> None:
+        x, y = view.place(shaft, position, across)
+        place = {"x": float(x), "y": float(y), "text": text, "showarrow": False}
         notes.append({**place, "font": {"size": 12, "color": INK}, **more})
 
-    for name, (left, _) in view.reach.items():
-        note(left, view.height[name], f"<b>{name}</b>", xanchor="right", xshift=-8)
+    for name, ends in view.reach.items():
+        upright = abs(view.axes[name].along[1]) > _UPRIGHT
+        end = ends[0] if view.axes[name].along[1 if upright else 0] > 0.0 else ends[1]
+        offset: dict[str, Any] = {"yshift": -12} if upright else {"xanchor": "right", "xshift": -8}
+        note(name, end, 0.0, f"<b>{name}</b>", **offset)
     driving = {load.driver for load in machine.kinematics.meshes.values()}
     for name, gear in machine.gears.items():
         side = 1.0 if name in driving else -1.0
-        y = view.height[gear.shaft] + side * 0.5 * pitch_diameter(machine, name)
-        note(machine.placement.gears[name][0], y, name, yshift=9 * side)
+        upright = abs(view.axes[gear.shaft].along[1]) > _UPRIGHT
+        offset = {"xshift": 12 * side} if upright else {"yshift": 9 * side}
+        across = side * 0.5 * pitch_diameter(machine, name)
+        across *= -np.sign(view.axes[gear.shaft].along[1]) if upright else 1.0
+        note(gear.shaft, gear.node_position, across, name, **offset)
     levels = _levels(view)
     for name, bearing in machine.bearings.items():
-        x, height = machine.placement.bearings[name][0], view.height[bearing.shaft]
-        note(x, height, name, font={"size": 12, "color": PAIR_COLORS[0]}, yshift=levels[name])
+        color = {"size": 12, "color": PAIR_COLORS[0]}
+        note(bearing.shaft, bearing.position, 0.0, name, font=color, yshift=levels[name])
     return notes
 
 
 def _levels(view: SideView) -> dict[str, int]:
     """Shift of the name of each bearing [px], so that long names of one shaft do not overlap."""
     machine = view.machine
-    ends = np.array(list(view.reach.values()))
-    across = 2.0 * max(view.height.values()) - 2.0 * min(view.height.values()) + 0.1
+    ends = np.array([view.place(name, view.reach[name], 0.0)[0] for name in view.axes]) / _MM
+    across = 2.0 * view.height + 0.1
     scale = min(_AREA[0] / max(float(np.ptp(ends)), 0.1), _AREA[1] / across)
     # Right end of the last name of a level; the name of a shaft ends left of it.
-    right_ends = {(name, 0): scale * left for name, (left, _) in view.reach.items()}
+    right_ends = {
+        (name, 0): scale * float(x.min()) for name, x in zip(view.axes, ends, strict=True)
+    }
+    middles = {
+        name: scale / _MM * float(view.place(bearing.shaft, bearing.position, 0.0)[0])
+        for name, bearing in machine.bearings.items()
+    }
     levels = {}
-    for name in sorted(machine.bearings, key=lambda each: machine.placement.bearings[each][0]):
+    for name, middle in sorted(middles.items(), key=lambda each: each[1]):
         shaft, half = machine.bearings[name].shaft, 0.5 * _CHARACTER * (len(name) + 1)
-        middle = scale * machine.placement.bearings[name][0]
+        if abs(view.axes[shaft].along[1]) > _UPRIGHT:
+            levels[name] = 0
+            continue
         free = [s for s in _SHIFTS if middle - half >= right_ends.get((shaft, s), -np.inf)]
         levels[name] = free[0] if free else min(_SHIFTS, key=lambda s: right_ends[shaft, s])
         right_ends[shaft, levels[name]] = middle + half
@@ -232,8 +316,9 @@ def _levels(view: SideView) -> dict[str, int]:
 @drawing(
     "machine",
     heading="The machine",
-    caption="To scale, with the axes unfolded into one plane: shafts with their sections, gears "
-    "with their reference circles (blue: driving, orange: driven, an idler counts as driving), "
+    caption="To scale, with the axes unfolded into one plane; axes that cross are seen along their "
+    "common perpendicular. Shafts with their sections, gears with their reference circles (blue: "
+    "driving, orange: driven, an idler counts as driving), bevel gears with their pitch cones, "
     "bearings with crosses; lines on helical gears are inclined like their teeth. Point "
     "at a part for its speed, torque or size.",
     of=("Machine", "MachineResult.machine"),

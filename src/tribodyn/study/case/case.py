@@ -12,8 +12,9 @@ from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case import to_models
 from tribodyn.study.case.case_data import CaseData
-from tribodyn.study.case.checks import cross_problems, dropped_options, torque_problem
+from tribodyn.study.case.checks import cross_problems, dropped_options
 from tribodyn.study.case.gears import is_needed, with_gear_defaults
+from tribodyn.study.case.hypoid import torque_problem
 from tribodyn.study.case.provenance import (
     changed_after,
     effective_values,

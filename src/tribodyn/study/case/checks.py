@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from tribodyn.errors import Problem
@@ -83,18 +82,6 @@ _ALLOWED_NAMES: dict[str, tuple[tuple[str, tuple[str, ...], str], ...]] = {
         ),
     ),
 }
-
-
-def torque_problem(key: str, problem: Problem, inputs: UserInput) -> Problem:
-    """Problem of a key; of a negative torque of a hypoid pair with the side of its teeth."""
-    negative = key == "operation.torque" and str(inputs.get(key)).strip().startswith("-")
-    if not negative or inputs.get("gears.kind") != "hypoid":
-        return problem
-    why = "The size of a torque is positive; the other side of the teeth carries a negative one"
-    other = "drive" if inputs.get("gears.side") == "coast" else "coast"
-    return replace(problem, why=why, remedy=f'Leave out its sign, and set gears.side = "{other}"')
-
-
 _NO_BODIES = "A mesh table has no data of the gear bodies"
 
 

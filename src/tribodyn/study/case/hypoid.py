@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, ModelWarning, collected
+from tribodyn.errors import Argument, InputError, ModelWarning, Problem, collected
 from tribodyn.gear.hypoid.blank import hypoid_blank
 from tribodyn.study.case.gears import MEANINGS, EaseOffData, Gears, MountingData
+from tribodyn.study.case.section import Section
+from tribodyn.study.case.user_input import UserInput
 
 if TYPE_CHECKING:
-    from tribodyn.gear import HypoidFlanks, Misalignment
+    from tribodyn.gear import HypoidBlank, HypoidFlanks, Misalignment
 
 
 #: Keys of the blank that are no figures of :data:`MEANINGS`.
@@ -39,6 +41,23 @@ def _placed_in(table: str) -> Iterator[None]:
         ) from None
 
 
+def torque_problem(key: str, problem: Problem, inputs: UserInput) -> Problem:
+    """Problem of a key; of a negative torque of a hypoid pair with the side of its teeth."""
+    negative = key == "operation.torque" and str(inputs.get(key)).strip().startswith("-")
+    if not negative or inputs.get("gears.kind") != "hypoid":
+        return problem
+    why = "The size of a torque is positive; the other side of the teeth carries a negative one"
+    other = "drive" if inputs.get("gears.side") == "coast" else "coast"
+    return replace(problem, why=why, remedy=f'Leave out its sign, and set gears.side = "{other}"')
+
+
+def blank_of(data: Section, teeth: tuple[int, int]) -> HypoidBlank:
+    """Build the blanks of pinion and wheel from the keys of a table."""
+    values = {name: getattr(data, name) for name in (*MEANINGS, *_CUTTING)}
+    with _placed_in(""):
+        return hypoid_blank(*teeth, **values)
+
+
 def hypoid_flanks(gears: Gears) -> HypoidFlanks:
     """Build the flanks of the loaded side; warnings are in :func:`hypoid_warnings`."""
     return _built(gears)[0]
@@ -54,13 +73,12 @@ def _built(gears: Gears) -> tuple[HypoidFlanks, tuple[ModelWarning, ...]]:
     from tribodyn.gear import EaseOff
     from tribodyn.gear import hypoid_flanks as flanks_of
 
-    values = {name: getattr(gears, name) for name in (*MEANINGS, *_CUTTING)}
     eased = {name: getattr(gears.ease_off, name) for name, _ in EaseOffData.specs()}
     with collected() as warnings:
         with _placed_in("ease_off."):
             ease_off = EaseOff(**eased)
+        blank = blank_of(gears, (gears.pinion.teeth, gears.wheel.teeth))
         with _placed_in(""):
-            blank = hypoid_blank(gears.pinion.teeth, gears.wheel.teeth, **values)
             flanks = flanks_of(blank, gears.side, ease_off)
     return flanks, tuple(warnings)
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.machine import Bearing, Gear, Housing, Machine, Mesh, Operation, Shaft
+from tribodyn.gear import Misalignment
+from tribodyn.machine import Bearing, Coupling, Gear, Housing, Machine, Mesh, Operation, Shaft
 from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
@@ -26,10 +27,12 @@ from tribodyn.study.machine.pair_cases import (
     option_of,
     pair_case,
     pinion_and_wheel,
+    read_blanks,
 )
 from tribodyn.study.machine.read_parts import (
     in_si,
     read_bearing,
+    read_coupling,
     read_gear,
     read_shaft,
     table_of,
@@ -39,9 +42,9 @@ from tribodyn.study.machine.read_parts import (
 from tribodyn.study.machine.tables import (
     HousingTable,
     MeshDynamics,
-    MeshTable,
     MotionTable,
     ShaftTable,
+    mesh_table_kind,
 )
 from tribodyn.study.machine.user_tables import (
     changed_tables,
@@ -55,7 +58,7 @@ from tribodyn.study.machine.user_tables import (
 if TYPE_CHECKING:
     from tribodyn.model import Option
 
-_GROUPS = ("shafts", "bearings", "gears", "meshes")
+_GROUPS = ("shafts", "bearings", "gears", "meshes", "couplings")
 _TOP = (
     *("title", "origin", *_GROUPS, "housing", "operation", "load_cases", "dynamics", *SHARED),
     "assumed",
@@ -120,6 +123,7 @@ class MachineCase:
         self.origin: str | None = data.get("origin")
         problems += reason_faults(data.get("assumed", {}))
         groups = {group: tables_of(self.data, group, problems) for group in _GROUPS}
+        self._blanks = read_blanks(groups, problems)
         self.gears: dict[str, Gear] = _read(groups, "gears", read_gear, problems)
         self._add_shafts(groups["shafts"])
         self._add_material(groups["shafts"])
@@ -132,6 +136,7 @@ class MachineCase:
         if not groups["meshes"]:
             remedy = 'Add [meshes.NAME] with gears = ["z1", "z2"] and normal_module'
             problems.append(("meshes", Problem("there is no mesh", "", "", remedy)))
+        self.couplings: dict[str, Coupling] = _read(groups, "couplings", read_coupling, problems)
         self.housing: Housing | None = read_housing(self.data.get("housing"), problems)
         motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
@@ -175,11 +180,11 @@ class MachineCase:
         inner = mesh_tables(body)
         other = {k: v for k, v in body.items() if k not in (*inner, *MESH_KEYS, "gears")}
         for shared in SHARED:
-            if shared in other and shared not in MeshTable.fields:
+            if shared in other and shared != "stiffness":
                 what, remedy = f"{shared} is not a table", f"Write [{key}.{shared}]"
                 problems.append((f"{key}.{shared}", Problem(what, "", "", remedy)))
                 del other[shared]
-        table = table_of(MeshTable, other, key, problems)
+        table = table_of(mesh_table_kind(body), other, key, problems)
         if table is not None and table.stiffness is not None:
             shared = self.data.get("dynamics", {})
             values = {**(shared if isinstance(shared, Mapping) else {}), **body}
@@ -303,11 +308,18 @@ class MachineCase:
         load = load or self.operating_point
         operation = Operation(*self.ends, load.speed, load.torque)
         objects = {n: self._mesh(n, meshes.get(n, {})) for n in self._mesh_tables}
-        parts = self.shafts, self.gears, objects, self.bearings, self.housing
+        parts = self.shafts, self.gears, objects, self.bearings, self.housing, self.couplings
         return Machine(*parts, operation=operation)
 
     def _mesh(self, name: str, fields: Mapping[str, Any]) -> Mesh:
         table = self._mesh_tables[name]
+        if (blank := self._blanks.get(name)) is not None:
+            apex = [1 if side == "+x" else -1 for side in (table.apex_pinion, table.apex_wheel)]
+            values = {"angle": table.angle, "stiffness": table.stiffness}
+            if (law := self._mesh_dynamics.get(name)) is not None:
+                values |= constant_law(law)
+            values |= fields
+            return Mesh.hypoid(self._names(name), blank, apex=(apex[0], apex[1]), **values)
         values = {key: getattr(table, key) for key in _OF_MESH}
         values["pressure_angle"] = table.normal_pressure_angle
         if (law := self._mesh_dynamics.get(name)) is not None:
@@ -325,14 +337,14 @@ class MachineCase:
         """Centre distances of pairs of gears from their profile shifts [m]."""
         distances = {}
         for name in self.meshes_with_teeth:
-            if self._mesh_tables[name].center_distance is None:
+            if name not in self._blanks and self._mesh_tables[name].center_distance is None:
                 names = self._pinion_and_wheel(name)
                 parts = self.data, f"meshes.{name}", names, self.source
                 pair = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
                 distances[name] = pair.gear_pair.center_distance
         return distances
 
-    def pair(self, mesh: str, load: LoadCase, misalignment: float = 0.0) -> Case:
+    def pair(self, mesh: str, load: LoadCase, misalignment: float | Misalignment = 0.0) -> Case:
         """Pair of a mesh under a load case, as a case of its own.
 
         Its pinion is the gear with fewer teeth.
@@ -343,8 +355,9 @@ class MachineCase:
             Name of the mesh.
         load : LoadCase
             Speed and torque of the machine.
-        misalignment : float
-            Increase of the compression over the common face width along x [m].
+        misalignment : float or Misalignment
+            Increase of the compression over the common face width along x [m], of hypoid gears
+            the mounting errors beyond those in their table.
 
         Returns
         -------
@@ -359,6 +372,13 @@ class MachineCase:
         names, flow = self._pinion_and_wheel(mesh), machine.kinematics
         part, mesh_load = machine.meshes[mesh], flow.meshes[mesh]
         pinion, speed = names[0], flow.shafts[self.gears[names[0]].shaft].speed
+        if isinstance(misalignment, float):
+            # The gap grows along the axis about which the pinion turns.
+            misalignment = misalignment if speed < 0.0 else -misalignment
+        side = part.crossing.side(mesh_load.sense) if part.crossing else ""
+        if side and mesh_load.driver != pinion:
+            what, why = f"wheel {names[1]} drives", "Teeth of hypoid gears need a driving pinion"
+            raise InputError(what, f"meshes.{mesh}.gears", why, "Give the mesh a stiffness")
         return pair_case(
             self.data,
             f"meshes.{mesh}",
@@ -366,9 +386,8 @@ class MachineCase:
             self.source,
             driver=mesh_load.driver,
             operation=(abs(speed), abs(mesh_load.torque[part.gears.index(pinion)])),
-            hand=gear_hand(pinion, self.gears, part) if part.helix_angle else "",
-            # The gap grows along the axis about which the pinion turns.
-            misalignment=misalignment if speed < 0.0 else -misalignment,
+            hand=side or (gear_hand(pinion, self.gears, part) if part.helix_angle else ""),
+            misalignment=misalignment,
         )
 
     def replace(self, changes: Mapping[str, Any], *, by: str = "") -> MachineCase:

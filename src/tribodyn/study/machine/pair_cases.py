@@ -8,18 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import Problem, did_you_mean
+from tribodyn.errors import Argument, InputError, Problem, did_you_mean
+from tribodyn.gear import Misalignment
 from tribodyn.machine import ROLLING_BEARINGS
 from tribodyn.study.case import gears
 from tribodyn.study.case.case import Case
+from tribodyn.study.case.hypoid import blank_of
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.sections import Dynamics
 from tribodyn.study.case.user_input import Source
-from tribodyn.study.case.values import Plain
+from tribodyn.study.case.values import KeyedProblems, Plain, read_table, read_value
 from tribodyn.study.machine.read_parts import rolling_options
-from tribodyn.study.machine.tables import TABLES, MeshDynamics
+from tribodyn.study.machine.tables import TABLES, HypoidMeshTable, MeshDynamics, mesh_table_kind
 
 if TYPE_CHECKING:
+    from tribodyn.gear import HypoidBlank
     from tribodyn.machine import Gear
     from tribodyn.model import Option
     from tribodyn.study.machine.case import MachineCase
@@ -32,8 +35,11 @@ MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damp
 _STRUCTURES: dict[str, dict[str, Any]] = {
     "spur": {"model": "spur-6dof", "bearing_stiffness": Plain(1e9)},
     "helical": {"model": "helical-12dof"},
+    "hypoid": {"model": "hypoid-14dof"},
 }
 _ROLES = ("pinion", "wheel")
+#: Groups of parts with one table each.
+_PARTS = ("shafts", "bearings", "gears", "meshes", "couplings")
 
 
 @dataclass(frozen=True)
@@ -88,26 +94,29 @@ def pair_case(
     driver: str,
     operation: tuple[float, float],
     hand: str = "",
-    misalignment: float = 0.0,
+    misalignment: float | Misalignment = 0.0,
 ) -> Case:
-    """Case of the pair of a mesh, by its table; hand, speed and torque are those of its pinion."""
+    """Case of the pair of a mesh; hand (of hypoid teeth side), speed and torque of its pinion."""
     speed, torque = operation
     group, _, mesh = table.partition(".")
     body = data[group][mesh]
-    inner = mesh_tables(body)
+    inner, crossed = mesh_tables(body), mesh_table_kind(body) is HypoidMeshTable
     tables = {
         name: _merged(name, data.get(name, {}), inner.get(name, {}))
         for name in SHARED
-        if name in data or name in inner
+        if name in inner or (name in data and not (crossed and name == "stiffness"))
     }
     shared_dynamics = {k: v for k, v in data.get("dynamics", {}).items() if k in MESH_KEYS}
     mesh_dynamics = {k: v for k, v in body.items() if k in MESH_KEYS}
     pair = {k: v for k, v in body.items() if k in gears.Gears.fields and k not in inner}
-    pair.setdefault("normal_pressure_angle", "20 deg")
+    if not crossed:
+        pair.setdefault("normal_pressure_angle", "20 deg")
     pair["driver"] = _ROLES[names.index(driver)]
-    if hand:
+    if crossed:
+        pair |= {"side": hand or "drive", "mounting": _mounting(body, misalignment)}
+    elif hand:
         pair["hand"] = hand
-    if misalignment:
+    if misalignment and not crossed:
         pair["misalignment"] = Plain(misalignment)
     for role, name in zip(_ROLES, names, strict=True):
         body_of_gear = data["gears"][name]
@@ -124,7 +133,7 @@ def pair_case(
         gears=pair,
         operation={"speed": Plain(speed), "torque": Plain(torque), "speed_of": "pinion"},
         dynamics={
-            **_STRUCTURES["helical" if hand else "spur"],
+            **_STRUCTURES["hypoid" if crossed else "helical" if hand else "spur"],
             **shared_dynamics,
             **mesh_dynamics,
         },
@@ -136,6 +145,52 @@ def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) ->
     """Table of a mesh: a model of its own brings its options, other keys are added."""
     selector = Case.fields[name].kind.selector  # type: ignore[union-attr]
     return {**({} if selector in of_mesh else shared), **of_mesh}
+
+
+def read_blanks(
+    groups: Mapping[str, Mapping[str, Any]], problems: KeyedProblems
+) -> dict[str, HypoidBlank]:
+    """Blanks of the hypoid meshes, which give their gears the face widths."""
+    blanks = {}
+    for name, body in groups["meshes"].items():
+        names, bodies = body.get("gears"), groups["gears"]
+        if mesh_table_kind(body) is not HypoidMeshTable or not isinstance(names, list | tuple):
+            continue
+        pair = [bodies.get(gear, {}) for gear in names]
+        teeth = [count for each in pair if type(count := _plain(each.get("teeth"))) is int]
+        inner = mesh_tables(body)
+        values = {k: v for k, v in body.items() if k in HypoidMeshTable.fields and k not in inner}
+        faults: KeyedProblems = []
+        table = read_table(HypoidMeshTable, values, f"meshes.{name}", {}, faults)
+        widths = [Plain(1.0)] * len(pair)
+        try:
+            if not faults and len(teeth) == len(_ROLES):  # others are reported where they are read
+                blanks[name] = blank = blank_of(table, (teeth[0], teeth[1]))
+                widths = [Plain(getattr(blank, f"face_width_{role}")) for role in _ROLES]
+        except InputError as error:
+            for problem in error.problems:
+                place = problem.where.name if isinstance(problem.where, Argument) else "gears"
+                key = place if place in HypoidMeshTable.fields else "gears"
+                problems.append((f"meshes.{name}.{key}", problem))
+        for each, width in zip(pair, widths, strict=True):
+            each.setdefault("face_width", width)
+    return blanks
+
+
+def _plain(value: Any) -> Any:
+    return value.value if isinstance(value, Plain) else value
+
+
+def _mounting(body: Mapping[str, Any], misalignment: float | Misalignment) -> dict[str, Any]:
+    """Table of the mounting errors of a mesh with those of its deflected shafts."""
+    stated: dict[str, Any] = body.get("mounting", {})
+    if not isinstance(misalignment, Misalignment) or not isinstance(stated, Mapping):
+        return stated
+    sums = {}
+    for name, option in gears.MountingData.specs():
+        value = read_value(option, name, stated[name]) if name in stated else 0.0
+        sums[name] = Plain(value + getattr(misalignment, name))
+    return {**stated, **sums}
 
 
 def constant_law(law: Any) -> dict[str, Any]:
@@ -160,10 +215,11 @@ def option_of(case: MachineCase, key: str) -> Option | None:
     options = rolling_options(ROLLING_BEARINGS[rolling]) if rolling in ROLLING_BEARINGS else {}
     if name in options:
         return options[name]
-    part, of_parts = TABLES.get(group), group in ("shafts", "bearings", "gears", "meshes")
+    part, of_parts = TABLES.get(group), group in _PARTS
     if of_parts and table is None:
         return None
     if part is not None and len(names) == of_parts:
+        part = mesh_table_kind(table or {}) if group == "meshes" else part
         option = part.spec(name) or (MeshDynamics.spec(name) if group == "meshes" else None)
         if option is not None:
             return option
@@ -175,7 +231,7 @@ def unknown_key(case: MachineCase, key: str) -> Problem:
     """Problem of a key that a machine does not have, with the nearest one that it has."""
     keys = [
         f"{group}.{part}.{name}"
-        for group in ("shafts", "bearings", "gears", "meshes")
+        for group in _PARTS
         for part in case.data.get(group, {})
         for name in TABLES[group].fields
     ]
@@ -206,7 +262,9 @@ def _pair_key(
         if group in (*SHARED, "dynamics"):
             return pair, ".".join((group, *names, name))
         if group == "meshes" and names[:1] == [mesh]:
-            return pair, ".".join([*(names[1:] or ["dynamics"]), name])
+            inner = names[1:] or ["dynamics"]
+            inside = ["gears"] if inner[0] in HypoidMeshTable.fields else []
+            return pair, ".".join([*inside, *inner, name])
         if group == "gears" and names and names[0] in gears:
             return pair, ".".join(("gears", _ROLES[gears.index(names[0])], *names[1:], name))
     return None

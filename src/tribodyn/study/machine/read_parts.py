@@ -10,11 +10,11 @@ from typing import Any
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean
 from tribodyn.gear import Material
-from tribodyn.machine import ROLLING_BEARINGS, Bearing, Gear, Section, Shaft
+from tribodyn.machine import ROLLING_BEARINGS, Bearing, Coupling, Gear, Section, Shaft
 from tribodyn.model import REQUIRED, Option, flag, integer, number, text
 from tribodyn.study.case.section import Section as Table
 from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_table, read_value
-from tribodyn.study.machine.tables import BearingTable, GearTable, ShaftTable
+from tribodyn.study.machine.tables import BearingTable, CouplingTable, GearTable, ShaftTable
 
 _LENGTH = number(
     REQUIRED, 0.0, 100.0, "guards against a wrong unit", unit="m", display_unit="mm",
@@ -83,7 +83,9 @@ def read_shaft(name: str, body: dict[str, Any], problems: KeyedProblems) -> Shaf
         return None
     material = Material(table.youngs_modulus, table.poissons_ratio, table.density)
     valid = tuple(section for section in sections if section is not None)
-    part: Shaft | None = built(key, lambda: Shaft(valid, material), problems)
+    part: Shaft | None = built(
+        key, lambda: Shaft(valid, material, table.moment_of_inertia), problems
+    )
     return part
 
 
@@ -166,6 +168,18 @@ def rolling_options(law: type) -> dict[str, Option]:
             units = {"unit": unit, "display_unit": display_unit, "example": example}
             options[field.name] = number(default, -math.inf, math.inf, "", meaning=meaning, **units)
     return options
+
+
+def read_coupling(name: str, body: dict[str, Any], problems: KeyedProblems) -> Coupling | None:
+    """Coupling of a table."""
+    key, count = f"couplings.{name}", len(problems)
+    shafts = body.pop("shafts", ())
+    table = read_table(CouplingTable, body, key, {}, problems)
+    if len(problems) > count:
+        return None
+    values = {k: getattr(table, k) for k in CouplingTable.fields}
+    part: Coupling | None = built(key, lambda: Coupling(shafts, **values), problems)
+    return part
 
 
 def read_gear(name: str, body: dict[str, Any], problems: KeyedProblems) -> Gear | None:

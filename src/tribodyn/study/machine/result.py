@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.drawing import draw, write_report_of
+from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.record import html_table
 from tribodyn.study.machine.summary import summary_of
@@ -19,6 +20,7 @@ from tribodyn.study.pipeline.summary_figures import summary_rows
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
+    from tribodyn.gear import Misalignment, MisalignmentStudy
     from tribodyn.machine import Machine, MachineModes, StaticBalance
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.mesh import MeshTable
@@ -58,8 +60,9 @@ class LoadResult:
         Deflections, bearing loads and misalignments at rest.
     tables : mapping of str to MeshTable
         Tooth contact of the meshes that are computed.
-    misalignment : mapping of str to float
-        Misalignment of the flanks with which each table was computed [m].
+    misalignment : mapping of str to float or Misalignment
+        Misalignment of the flanks with which each table was computed [m], of hypoid gears the
+        mounting errors by deflection.
     system : System
         The structure, reduced where it is large, and its contacts.
     motion : MachineMotion
@@ -72,7 +75,7 @@ class LoadResult:
     structure: MachineStructure
     static: StaticBalance
     tables: Mapping[str, MeshTable]
-    misalignment: Mapping[str, float]
+    misalignment: Mapping[str, float | Misalignment]
     system: System
     motion: MachineMotion
     steady: Response | None = None
@@ -195,6 +198,41 @@ class MachineResult:
         separator = "\n\n" if style == "bibtex" else "\n"
         entries = [entry for text in texts for entry in text.split(separator) if entry.strip()]
         return separator.join(dict.fromkeys(entries))
+
+    def mounting_study(self, mesh: str) -> MisalignmentStudy:
+        """Contact patterns of a hypoid mesh without load: as mounted, and as deflected.
+
+        Parameters
+        ----------
+        mesh : str
+            Name of the mesh.
+
+        Returns
+        -------
+        MisalignmentStudy
+            Of the operating point and the load cases on the same flank.
+
+        Raises
+        ------
+        InputError
+            If there is no such mesh, or its tooth contact is not that of hypoid gears.
+        """
+        from tribodyn.gear import Misalignment, misalignment_study
+        from tribodyn.study.case.hypoid import mounting
+
+        loads = (self.operation, *self.load_cases)
+        if not isinstance(self.operation.misalignment.get(mesh), Misalignment):
+            names = [
+                n for n, m in self.operation.misalignment.items() if isinstance(m, Misalignment)
+            ]
+            why = f"Hypoid meshes with computed teeth: {', '.join(names) or 'none'}"
+            raise InputError(f'mesh "{mesh}" has no mounting errors', Argument("mesh"), why, "")
+        nominal = self.case.pair(mesh, self.operation.load)
+        pairs = [self.case.pair(mesh, each.load, each.misalignment[mesh]) for each in loads]
+        cases = [mounting(p.gears) for p in pairs if p.gears.side == nominal.gears.side]
+        flanks = nominal.hypoid_flanks
+        assert flanks is not None
+        return misalignment_study(flanks, list(dict.fromkeys((mounting(nominal.gears), *cases))))
 
     def to_xarray(self) -> Any:
         """Motion at the operating point with units.

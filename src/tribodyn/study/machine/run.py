@@ -13,6 +13,7 @@ import numpy as np
 
 from tribodyn.dynamics import law_contact
 from tribodyn.errors import ModelWarning, collected, frames, warn
+from tribodyn.gear import Misalignment
 from tribodyn.interrupt import in_threads, processors, single_blas_thread
 from tribodyn.machine import (
     MachineStructure,
@@ -35,7 +36,7 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
-    from tribodyn.machine import Machine, StaticBalance
+    from tribodyn.machine import Machine, MeshBalance, StaticBalance
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
@@ -59,7 +60,7 @@ class Balanced(NamedTuple):
 
     static: StaticBalance
     tables: dict[str, MeshTable]
-    misalignment: dict[str, float]  #: with which the teeth were computed [m]
+    misalignment: Mapping[str, float | Misalignment]  #: with which the teeth were computed [m]
     warnings: list[MeshWarning]
 
 
@@ -112,7 +113,7 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
     static = _static(case.machine(load))  # with a usual stiffness of the teeth
     for _ in range(_PASSES):
         before = {name: static.meshes[name] for name in case.meshes_with_teeth}
-        misalignment = {name: mesh.misalignment for name, mesh in before.items()}
+        misalignment = {name: misalignment_of(mesh) for name, mesh in before.items()}
         pairs = [case.pair(name, load, value) for name, value in misalignment.items()]
         teeth = dict(zip(before, in_threads(teeth_of, pairs, processors()), strict=True))
         tables = {name: table for name, (table, _, _) in teeth.items()}
@@ -124,13 +125,27 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
         ]
         static = _static(case.machine(load, **laws), misalignment)
         changes = [
-            abs(static.meshes[name].misalignment - mesh.misalignment) / mesh.compression
+            _change(misalignment[name], misalignment_of(static.meshes[name])) / mesh.compression
             for name, mesh in before.items()
         ]
         if max(changes, default=0.0) <= _SAME:
             break
     progress.finish()
     return Balanced(static, tables, misalignment, mesh_warnings)
+
+
+def misalignment_of(mesh: MeshBalance) -> float | Misalignment:
+    """Misalignment of a mesh by its deflected shafts [m]; mounting errors on crossed axes."""
+    return mesh.misalignment if mesh.mounting is None else mesh.mounting
+
+
+def _change(before: float | Misalignment, after: float | Misalignment) -> float:
+    """Greatest change of a length from one misalignment to another [m]."""
+    if isinstance(before, Misalignment):
+        names = ("offset", "pinion_axial", "wheel_axial")
+        return max(abs(float(getattr(after, n)) - float(getattr(before, n))) for n in names)
+    assert isinstance(after, float)
+    return abs(after - before)
 
 
 def teeth_of(pair: Case) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
@@ -144,7 +159,7 @@ def static_with_teeth(
     case: MachineCase,
     load: LoadCase,
     tables: Mapping[str, MeshTable],
-    misalignment: Mapping[str, float],
+    misalignment: Mapping[str, float | Misalignment],
 ) -> StaticBalance:
     """Static balance of a machine with the force laws of its mesh tables."""
     laws = {n: _law(case.pair(n, load, misalignment[n]), table) for n, table in tables.items()}
@@ -163,8 +178,11 @@ def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
         warn(code, f"mesh {first.mesh}, {first.load}: {first.warning.message}{others}")
 
 
-def _static(machine: Machine, misalignment: Mapping[str, float] | None = None) -> StaticBalance:
-    return static_balance(machine, laws=face_laws(machine, misalignment))
+def _static(
+    machine: Machine, misalignment: Mapping[str, float | Misalignment] | None = None
+) -> StaticBalance:
+    slopes = {n: m for n, m in (misalignment or {}).items() if not isinstance(m, Misalignment)}
+    return static_balance(machine, laws=face_laws(machine, slopes))
 
 
 def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
+from tribodyn.gear import Misalignment
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.record import Parts, labels_of
 from tribodyn.study.machine.housing_files import copy_housing
@@ -39,7 +41,11 @@ def write_machine(result: MachineResult, place: Path) -> None:
     for name, text in texts.items():
         (place / name).write_text(text, encoding="utf-8")
     for number, load in reversed(list(enumerate((result.operation, *result.load_cases)))):
-        facts = {"misalignment": json.dumps(dict(load.misalignment))}
+        values = {
+            name: asdict(value) if isinstance(value, Misalignment) else value
+            for name, value in load.misalignment.items()
+        }
+        facts = {"misalignment": json.dumps(values)}
         for mesh, table in enumerate(load.tables):
             load.tables[table].save(place / _table_file(number, mesh, table))
         if number == 0:  # written last: it has the checksums of the others
@@ -98,7 +104,10 @@ def _read_load(
     from tribodyn.study.machine.run import static_with_teeth, structure_of
 
     data = read_dataset(folder / _motion_file(number), str(folder))
-    misalignment = json.loads(data.attrs["misalignment"])
+    misalignment = {
+        name: Misalignment(**value) if isinstance(value, dict) else value
+        for name, value in json.loads(data.attrs["misalignment"]).items()
+    }
     tables = {
         name: MeshTable.load(folder / _table_file(number, mesh, name))
         for mesh, name in enumerate(misalignment)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.machine.plane_law import mean_in_space
+
 if TYPE_CHECKING:
-    from tribodyn.machine import Machine
+    from tribodyn.machine import Machine, MeshBalance
     from tribodyn.mesh import MeshTable
     from tribodyn.study.machine.result import LoadResult
 
@@ -59,16 +62,26 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
         "dynamic_factor_peak": float(force.max()) / mean if mean else None,
         "contact_loss_share": float(motion.mean(motion.open[:, column])),
         "transmission_error_peak_to_peak": float(np.ptp(error)),
-        "misalignment": balance.misalignment,
+        **_mounting(balance),
         "face_load_factor": balance.face_load_factor,
         **helix_figures(result.machine, name, mean),
         **_of_table(result, name, table),
     }
 
 
+def _mounting(balance: MeshBalance) -> dict[str, float]:
+    """Misalignment of the flanks over the face, or mounting errors of crossed axes."""
+    errors = balance.mounting
+    if errors is None:
+        return {"misalignment": balance.misalignment}
+    return {f"{each.name}_error": getattr(errors, each.name) for each in fields(errors)}
+
+
 def helix_figures(machine: Machine, name: str, force: float) -> dict[str, float]:
-    """Overlap and axial force of a mesh with helical teeth; nothing of spur gears."""
+    """Overlap and axial force of a mesh with inclined teeth; nothing of spur gears."""
     mesh = machine.meshes[name]
+    if mesh.crossed is not None:
+        return {"axial_force": -force * float(mean_in_space(machine, name)[0])}
     if not mesh.helix_angle:
         return {}
     width = min(machine.gears[gear].face_width for gear in mesh.gears)

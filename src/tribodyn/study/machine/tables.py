@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from tribodyn.machine import STEEL
@@ -30,6 +31,14 @@ class ShaftTable(MaterialData):
     """A ``[shafts.NAME]`` table; its ``sections`` are read apart."""
 
     density: float = number(STEEL.density, 500.0, 25000.0, "polymers to tungsten", of="density")
+    moment_of_inertia: float = number(
+        0.0,
+        0.0,
+        1e7,
+        _GUARD,
+        of="moment_of_inertia",
+        meaning="moment of inertia of what turns with its beginning, such as an engine",
+    )
 
 
 class BearingTable(Section):
@@ -101,10 +110,23 @@ _OF_PAIR = (
 )
 
 
+#: Kinds of meshes.
+_KINDS = {
+    "spur": "cylindrical gears, spur or helical, external or internal",
+    "hypoid": "hypoid or bevel gears, whose axes cross or intersect",
+}
+
+
+def _kind_of_mesh(default: str) -> Any:
+    return choice(default, _KINDS, meaning="kind of gear pair")
+
+
 class MeshTable(Section):
     """A ``[meshes.NAME]`` table; its tables of models are read with the pair of gears."""
 
     fields = {name: gears.Gears.fields[name] for name in _OF_PAIR}  # noqa: RUF012
+
+    kind: str = _kind_of_mesh("spur")
 
     normal_pressure_angle: float = number(
         math.radians(20.0),
@@ -146,6 +168,58 @@ class MeshTable(Section):
     offset: float = number(
         0.0, 0.0, 1.0, "a part of the mesh cycle", meaning="mesh phase when the clock begins"
     )
+
+
+def _apex(gear: str) -> Any:
+    return choice("+x", ("+x", "-x"), meaning=f"side of the {gear} on which its apex lies")
+
+
+class HypoidMeshTable(Section):
+    """A ``[meshes.NAME]`` table of hypoid or bevel gears; ``offset`` is that of the axes."""
+
+    fields = {  # noqa: RUF012
+        name: option
+        for name, option in {
+            **gears.HYPOID_KEYS,
+            "composite_roughness": gears.Gears.fields["composite_roughness"],
+        }.items()
+        if name != "side"
+    }
+
+    kind: str = _kind_of_mesh("hypoid")
+    angle: float = number(
+        0.0,
+        -_TURN,
+        _TURN,
+        "one turn",
+        unit="rad",
+        display_unit="deg",
+        example='"90 deg"',
+        meaning="direction of the common perpendicular from the first axis, from y towards z",
+    )
+    apex_pinion: str = _apex("pinion")
+    apex_wheel: str = _apex("wheel")
+    stiffness: float | None = number(
+        None,
+        1e3,
+        1e13,
+        _GUARD,
+        unit="N/m",
+        example='"5.7e8 N/m"',
+        meaning="constant along the normal of the flanks, in place of the model",
+    )
+
+
+def mesh_table_kind(body: Mapping[str, Any]) -> type[Section]:
+    """Table of a mesh by its ``kind``."""
+    return HypoidMeshTable if body.get("kind") == "hypoid" else MeshTable
+
+
+class CouplingTable(Section):
+    """A ``[couplings.NAME]`` table; its shafts are read apart."""
+
+    torsional_stiffness: float = _stiffness("stiffness against twist", "N*m/rad", default=REQUIRED)
+    torsional_damping: float = _stiffness("damping of the twist", "N*m*s/rad", default=0.0)
 
 
 class MeshDynamics(Section):
@@ -301,6 +375,7 @@ TABLES: dict[str, type[Section]] = {
     "bearings": BearingTable,
     "gears": GearTable,
     "meshes": MeshTable,
+    "couplings": CouplingTable,
     "planets": PlanetsTable,
     "housing": HousingTable,
     "operation": OperationTable,
@@ -319,6 +394,7 @@ def unit_of(path: tuple[str, ...]) -> str:
         kind, tables = None, [path[2]]
     outer = Section.case_class.fields
     kinds = [kind] if kind else []
+    kinds += [HypoidMeshTable] if path[0] == "meshes" else []
     for each in (tables[0] if tables else "", "dynamics"):
         field = outer.get(each)
         kinds += [field.kind] if isinstance(field, Table) else []

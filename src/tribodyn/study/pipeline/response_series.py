@@ -329,7 +329,7 @@ def _ends(result: Computed) -> dict[str, Any]:
             f"heat_{name}": (
                 "heat_pass",
                 getattr(heat, name),
-                _attributes_of(label.unit, "heat balance, pass by pass"),
+                _attributes_of(label.unit or "", "heat balance, pass by pass"),
             )
             for name, label in labels.items()
             if label.dims and getattr(heat, name) is not None

@@ -36,6 +36,10 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
         ),
         "mean_mesh_stiffness": ("mesh_stiffness", "mean over a mesh cycle"),
         "misalignment": ("deflection", "of the flanks over the face, by deflected shafts"),
+        "offset_error": ("deflection", "V: growth of the offset, by deflected shafts"),
+        "pinion_axial_error": ("deflection", "H: pinion away from its mounting distance, likewise"),
+        "wheel_axial_error": ("deflection", "J: wheel away from its mounting distance, likewise"),
+        "shaft_angle_error": ("angle", "alpha: growth of the shaft angle, likewise"),
         "face_load_factor": (
             "",
             "greatest over mean load along the face under this misalignment: mean over the mesh "

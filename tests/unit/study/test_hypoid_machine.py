@@ -1,0 +1,132 @@
+"""Machines with a hypoid mesh: from the case file to figures, and back from the directory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.gear import Misalignment
+from tribodyn.study import MachineCase
+from tribodyn.study.pipeline.tooth_contact import mesh_of
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+
+def axle(**changes: Any) -> MachineCase:
+    """The built-in axle without friction, at one load."""
+    plain = {"friction": None, "lubricant": None, "load_cases": None,
+             "meshes.axle.composite_roughness": None}  # fmt: skip
+    case: MachineCase = td.load_case("hypoid-axle").replace(
+        {**plain, **{key.replace("__", "."): value for key, value in changes.items()}}
+    )
+    return case
+
+
+@pytest.fixture(scope="module")
+def result() -> Any:
+    return td.run(axle())
+
+
+def test_bearings_balance_torques_and_teeth_in_space(result: Any) -> None:
+    machine, motion = result.machine, result.motion
+    mean = dict(zip(motion.bearing, motion.mean(motion.bearing_force), strict=True))
+    force, moment = np.zeros(3), np.zeros(3)
+    for name, load in mean.items():
+        axes = machine.placement.axes[machine.bearings[name].shaft]
+        force += axes @ load[:3]
+        moment += axes @ load[3:] + np.cross(machine.placement.bearings[name], axes @ load[:3])
+    ways = [machine.placement.axes[name][:, 0] for name in ("pinion", "wheel")]
+    assert force == pytest.approx(np.zeros(3), abs=0.05)
+    assert moment == pytest.approx(500.0 * ways[0] + 2150.0 * ways[1], abs=0.5)
+    figures = result.summary()
+    axial = [figures[f"bearings.{name}.mean_axial_force"] for name in ("rear", "head")]
+    assert sum(axial) == pytest.approx(figures["meshes.axle.axial_force"], rel=2e-4)
+    assert axial[1] < -1e4  # the drive side pushes the pinion away from its apex
+
+
+def test_teeth_are_those_of_the_pair_with_the_mounting_errors_of_the_deflection(
+    result: Any,
+) -> None:
+    errors, balance = result.operation.misalignment["axle"], result.operation.static.meshes["axle"]
+    assert isinstance(errors, Misalignment)
+    figures = result.summary()
+    for name in ("offset", "pinion_axial", "wheel_axial", "shaft_angle"):
+        assert figures[f"meshes.axle.{name}_error"] == getattr(balance.mounting, name)
+    assert abs(errors.wheel_axial) > 1e-5
+    pair = result.case.pair("axle", result.operation.load, errors)
+    assert pair.gears.mounting.wheel_axial == errors.wheel_axial
+    table, nominal = mesh_of(pair), mesh_of(result.case.pair("axle", result.operation.load))
+    stored = result.operation.tables["axle"]
+    np.testing.assert_array_equal(stored.mesh_stiffness, table.mesh_stiffness)
+    assert np.abs(nominal.mesh_stiffness / table.mesh_stiffness - 1.0).max() > 1e-3
+    study = result.mounting_study("axle")
+    assert study.wheel_axial.tolist() == [0.0, errors.wheel_axial]
+
+
+def test_a_stated_mounting_adds_to_the_deflection(result: Any) -> None:
+    errors = result.operation.misalignment["axle"]
+    case = axle(meshes__axle__mounting__wheel_axial="50 um")
+    pair = case.pair("axle", case.operating_point, errors)
+    assert pair.gears.mounting.wheel_axial == pytest.approx(errors.wheel_axial + 50e-6)
+    assert pair.gears.mounting.offset == errors.offset
+    assert dict(case.values())["meshes.axle.mounting.wheel_axial"] == pytest.approx(50e-6)
+
+
+def test_directory_and_case_file_give_the_same_result(result: Any, tmp_path: Path) -> None:
+    again = td.load_result(result.save(tmp_path / "axle"))
+    assert again.summary() == result.summary()
+    assert again.operation.misalignment == result.operation.misalignment
+    assert "contact with deflected shafts" in (tmp_path / "axle/report.html").read_text()
+    case = td.load_case(tmp_path / "axle" / "case.toml")
+    assert case.machine().directions["axle"].direction == pytest.approx(
+        result.machine.directions["axle"].direction
+    )
+
+
+def test_the_torque_decides_which_side_of_the_teeth_carries() -> None:
+    case = axle()
+    assert case.pair("axle", case.operating_point).gears.side == "drive"
+    back = axle(operation__speed="-1000 rpm")
+    assert back.pair("axle", back.operating_point).gears.side == "coast"
+    mirrored = axle(meshes__axle__hand_pinion="right")
+    assert mirrored.pair("axle", mirrored.operating_point).gears.side == "coast"
+    turned = axle(meshes__axle__apex_pinion="-x")
+    assert turned.pair("axle", turned.operating_point).gears.side == "coast"
+    speeds = [c.machine().kinematics.shafts["wheel"].speed for c in (case, turned)]
+    assert speeds[1] == -speeds[0]
+
+
+def test_engine_and_load_are_coupled_in_the_case_file() -> None:
+    tables = {key: value for key, value in axle().data.items() if key != "assumed"}
+    tables["shafts"] = {**tables["shafts"], "engine": {"moment_of_inertia": "6000 kg*mm^2"}}
+    tables["couplings"] = {"clutch": {"shafts": ["engine", "pinion"],
+                                      "torsional_stiffness": "1e5 N*m/rad"}}  # fmt: skip
+    tables["operation"] = {**tables["operation"], "input": "engine"}
+    tables["meshes"]["axle"]["stiffness"] = "5e8 N/m"
+    case = MachineCase(**tables)
+    machine = case.machine()
+    assert machine.kinematics.shafts["pinion"].torque == pytest.approx(500.0)
+    assert machine.couplings["clutch"].torsional_stiffness == 1e5
+    assert case.option_of("couplings.clutch.torsional_stiffness").unit == "N*m/rad"
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"meshes.axle.side": "drive"}, r"meshes\.axle\.side.*unknown key"),
+        ({"meshes.axle.cutter_radius": "20 mm"}, r"meshes\.axle\.cutter_radius.*limit curvature"),
+        ({"meshes.axle.cutter_radius": None}, r"meshes\.axle\.cutter_radius.*missing"),
+        ({"meshes.axle.apex_wheel": "x"}, r"meshes\.axle\.apex_wheel"),
+        ({"meshes.axle.gears": ["z2", "z1"]}, "meshes.axle"),
+        ({"operation.torque": "-100 N*m"}, r"meshes\.axle\.gears: wheel z2 drives.*stiffness"),
+        ({"meshes.axle.normal_module": "5 mm"}, r"normal_module.*unknown key"),
+        ({"gears.z1.profile_shift_coefficient": 0.3}, r"gears\.z1\.profile_shift_coefficient"),
+    ],
+)
+def test_impossible_values_name_the_key(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(td.InputError, match=message):
+        axle().replace(changes)
