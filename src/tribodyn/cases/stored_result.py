@@ -172,10 +172,10 @@ def _friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:
     names = ("load", "limit", "fit_error")
     load, limit, error = (float(data.attrs[f"friction_{name}"]) for name in names)
     couple = data.get("friction_couple_coefficients")
-    tilting = None if couple is None else couple.values
-    return MeshFriction(
-        mesh.grid, data["friction_coefficients"].values, load, limit, error, tilting
-    )
+    wrench = data.get("friction_wrench_coefficients")
+    further = [None if each is None else each.values for each in (couple, wrench)]
+    coefficients = data["friction_coefficients"].values
+    return MeshFriction(mesh.grid, coefficients, load, limit, error, *further)
 
 
 def _coupling(mesh: MeshTable, data: xarray.Dataset) -> Coupling | None:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, require_between
 from tribodyn.mesh.columns import MeshColumns
+from tribodyn.mesh.gears import SPATIAL_COORDINATES
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.types import Array
 
@@ -111,6 +112,8 @@ CHANNELS = ("friction_sum", "friction_moment_pinion", "friction_moment_wheel")
 ASPERITIES = "asperity_friction_sum"
 #: Moment about the line of action that tilts gears in space, where contacts are slices of lines.
 COUPLE = "friction_couple"
+#: Friction over each coordinate of gears on crossed axes.
+WRENCH = tuple(f"friction_{name}" for name in SPATIAL_COORDINATES)
 #: Loads over the nominal load at which a mesh is looked at: dense where friction laws bend.
 LOADS = (0.04, 0.12, 0.27, 0.48, 0.74, 1.0, 1.3, 1.65, 2.05, 2.45, 2.8, 3.0)
 _TERMS = 7
@@ -136,6 +139,9 @@ class MeshFriction:
     couple : array (n, terms), optional
         Coefficients of the moment of friction about the line of action over the normal force [m],
         where contacts are slices of lines of contact.
+    wrench : array (n, terms, 12), optional
+        Coefficients of friction over the coordinates of both gears on crossed axes, over the
+        normal force [1], of their moments [m].
     """
 
     grid: PhaseGrid
@@ -144,6 +150,7 @@ class MeshFriction:
     limit: float
     fit_error: float
     couple: Array | None = None
+    wrench: Array | None = None
 
     def channel(self, name: str) -> PhaseFunction:
         """Coefficients of one of the sums as a function of phase.
@@ -152,7 +159,8 @@ class MeshFriction:
         ----------
         name : str
             One of ``CHANNELS``, ``"asperity_friction_sum"`` where ``splits``, or
-            ``"friction_couple"`` where there is a ``couple``.
+            ``"friction_couple"`` where there is a ``couple``, or ``"friction_pinion_x"`` and so
+            on where there is a ``wrench``.
 
         Returns
         -------
@@ -161,6 +169,8 @@ class MeshFriction:
         """
         if name == COUPLE and self.couple is not None:
             return PhaseFunction(self.grid, self.couple)
+        if name in WRENCH and self.wrench is not None:
+            return PhaseFunction(self.grid, self.wrench[:, :, WRENCH.index(name)])
         place = (*CHANNELS, ASPERITIES).index(name)
         return PhaseFunction(self.grid, self.coefficients[:, :, place])
 
@@ -238,27 +248,42 @@ def mesh_friction(tables: Sequence[MeshColumns], nominal: MeshColumns) -> MeshFr
     _check(tables, nominal, ratio)
     split = all(getattr(table, ASPERITIES) is not None for table in tables)
     in_slices = nominal.face_position is not None
-    names = (*CHANNELS, *(COUPLE,) * in_slices, *(ASPERITIES,) * split)
-    sums = np.array([[getattr(table, name) for name in names] for table in tables])
+    in_space = nominal.direction.shape[-1] == len(WRENCH)
+    names = (*CHANNELS, *(COUPLE,) * in_slices, *WRENCH * in_space, *(ASPERITIES,) * split)
+    sums = np.array([_sums(table, names) for table in tables])
     powers = ratio[:, None] ** np.arange(_TERMS)
     by_force = np.linalg.lstsq(
         ratio[:, None] * powers, ratio[:, None] * sums.reshape(ratio.size, -1), rcond=None
     )[0]
     residual = ratio[:, None] * (powers @ by_force - sums.reshape(ratio.size, -1))
     force = ratio[:, None, None] * sums
-    largest = np.abs(force).max(axis=(0, 2))[None, :, None]
-    fit = np.abs(residual.reshape(force.shape)) / np.where(largest > 0.0, largest, 1.0)
-    fit = fit[:, : len(CHANNELS) + in_slices]
+    largest = np.abs(force).max(axis=(0, 2))
+    if in_space:  # parts of one force or moment
+        parts = slice(names.index(WRENCH[0]), names.index(WRENCH[-1]) + 1)
+        largest[parts] = largest[parts].reshape(4, 3).max(axis=1).repeat(3)
+    scale = np.where(largest > 0.0, largest, 1.0)[None, :, None]
+    fit = np.abs(residual.reshape(force.shape)) / scale
+    fit = fit[:, : len(CHANNELS) + in_slices + len(WRENCH) * in_space]
     columns = dict(zip(names, by_force.reshape(_TERMS, len(names), -1).swapaxes(0, 1), strict=True))
     couple = columns.pop(COUPLE, None)
+    wrench = [columns.pop(name).T for name in WRENCH if in_space]
     return MeshFriction(
         grid=nominal.grid,
         coefficients=np.moveaxis(np.stack(list(columns.values()), axis=1), -1, 0),
         couple=None if couple is None else couple.T,
+        wrench=np.stack(wrench, axis=-1) if in_space else None,
         load=nominal.total_normal_force,
         limit=float(ratio.max()),
         fit_error=float(fit.max()),
     )
+
+
+def _sums(table: MeshColumns, names: tuple[str, ...]) -> list[Array]:
+    """Sums of a table by name; those over the coordinates are columns of its friction."""
+    return [
+        table.friction[:, WRENCH.index(name)] if name in WRENCH else getattr(table, name)
+        for name in names
+    ]
 
 
 def _check(tables: Sequence[MeshColumns], nominal: MeshColumns, ratio: Array) -> None:

@@ -252,6 +252,12 @@ def _directions(names: tuple[str, ...], friction: MeshFriction) -> dict[str, Arr
         why = f"Friction acts on the gears, and the coordinates are {', '.join(names)}"
         remedy = "Name the coordinates accordingly, or pass LoadFriction to System"
         raise InputError(f"no coordinate is named {missing[0]}", "argument system", why, remedy)
+    if getattr(friction, "wrench", None) is not None and "pinion_theta_x" in names:
+        return {
+            f"friction_{name}": (np.array(names) == name).astype(float)
+            for name in names
+            if name.partition("_")[0] in GEARS
+        }
     rows = dict(zip(FRICTION_SUMS, plane_rows(names)[1:], strict=True))
     tilts = [names.index(name) for name in (f"{gear}_theta_y" for gear in GEARS) if name in names]
     if tilts and getattr(friction, "couple", None) is not None:

@@ -73,14 +73,7 @@ _ALLOWED_NAMES: dict[str, tuple[tuple[str, tuple[str, ...], str], ...]] = {
         ("friction.law", ("none", "constant"), _TABLE_HAS),
         ("dynamics.friction_load", ("nominal",), _TABLE_HAS),
     ),
-    "hypoid": (
-        ("gears.driver", ("pinion",), "The pinion of a hypoid pair must be the driver"),
-        (
-            "dynamics.friction_load",
-            ("nominal",),
-            "Friction of a hypoid pair is computed at its nominal torque",
-        ),
-    ),
+    "hypoid": (("gears.driver", ("pinion",), "The pinion of a hypoid pair must be the driver"),),
 }
 _NO_BODIES = "A mesh table has no data of the gear bodies"
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.mesh.functions import WRENCH
 from tribodyn.mesh.gears import SPATIAL_COORDINATES
 from tribodyn.nomenclature import GEARS
 from tribodyn.record import Parts, labels_of
@@ -98,6 +99,10 @@ def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
     if functions.direction is None or result.mesh.direction.shape[-1] != len(SPATIAL_COORDINATES):
         return None
     rows = functions.direction(phase)
+    law = result.friction
+    if law is not None and law.wrench is not None:
+        rubs = [law.value(name, phase, force) for name in WRENCH[:3]]
+        return np.asarray((rows[:, :3] + np.stack(rubs, axis=-1)) * force[:, None])
     if functions.friction is not None:
         rows = rows + functions.friction(phase)
     return np.asarray(rows[:, :3] * force[:, None])
@@ -307,6 +312,10 @@ def _ends(result: Computed) -> dict[str, Any]:
         attributes = {"long_name": "friction over powers of the load: force [1], moments [m]"}
         dims = ("knot", "power", "channel")
         variables["friction_coefficients"] = (dims, friction.coefficients, attributes)
+        if friction.wrench is not None:
+            attributes = {"long_name": "friction over coordinates, over powers of the load [1, m]"}
+            dims = ("knot", "power", "coordinate_of_gears")
+            variables["friction_wrench_coefficients"] = (dims, friction.wrench, attributes)
         if friction.couple is not None:
             attributes = {"long_name": "tilting moment of friction over powers of the load [m]"}
             variables["friction_couple_coefficients"] = (dims[:2], friction.couple, attributes)
