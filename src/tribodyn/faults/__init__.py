@@ -7,6 +7,8 @@
 | ``damage`` | spalls, broken teeth, root cracks |
 | ``cracked_tooth`` | compliance of a cracked tooth by finite elements |
 | ``turning`` | force law of a mesh over the turns of its gears |
+| ``excitation`` | torque and speed over the turns of a shaft, random loads |
+| ``driven`` | a system with them |
 | ``bearing_defect`` | frequencies of a damaged rolling bearing and its impacts |
 """
 
@@ -15,6 +17,13 @@ from tribodyn.faults.bearing_defect import BearingDefect
 from tribodyn.faults.cracked_tooth import crack_compliance
 from tribodyn.faults.damage import BrokenTooth, Crack, Spall
 from tribodyn.faults.deviations import PitchDeviations, Waviness, eccentricity, pitch_tolerances
+from tribodyn.faults.driven import DrivenSystem, clock_cycles, drive
+from tribodyn.faults.excitation import (
+    RandomLoad,
+    ShaftExcitation,
+    SpeedFluctuation,
+    TorqueRipple,
+)
 from tribodyn.faults.fault import Fault
 from tribodyn.faults.turning import TurningMesh, turning_mesh, turns_of
 
@@ -22,12 +31,19 @@ __all__ = [
     "BearingDefect",
     "BrokenTooth",
     "Crack",
+    "DrivenSystem",
     "Fault",
     "PitchDeviations",
+    "RandomLoad",
+    "ShaftExcitation",
     "Spall",
+    "SpeedFluctuation",
+    "TorqueRipple",
     "TurningMesh",
     "Waviness",
+    "clock_cycles",
     "crack_compliance",
+    "drive",
     "eccentricity",
     "pitch_tolerances",
     "turning_mesh",

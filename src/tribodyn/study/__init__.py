@@ -10,6 +10,7 @@ from tribodyn.arguments import guarded
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
+    from tribodyn.study.faults.clock import TurningClock, turning_clock
     from tribodyn.study.faults.recording_set import RecordingSet, record_set
     from tribodyn.study.faults.wear import Wear, wear
     from tribodyn.study.machine.case import MachineCase
@@ -72,6 +73,7 @@ __all__ = [
     "Result",
     "ResultComparison",
     "Sweep",
+    "TurningClock",
     "Wear",
     "basins",
     "bifurcation",
@@ -101,6 +103,7 @@ __all__ = [
     "speed_sweep",
     "summary_figure",
     "sweep",
+    "turning_clock",
     "vibration_data",
     "wear",
 ]
@@ -111,6 +114,7 @@ _NAMES = {
     "case.read": "read_case",
     "machine.case": "MachineCase",
     "machine.load_cases": "LoadCase",
+    "faults.clock": "TurningClock turning_clock",
     "faults.recording_set": "RecordingSet record_set",
     "faults.wear": "Wear wear",
     "machine.modes": "MachineCampbell",

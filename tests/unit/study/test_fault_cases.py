@@ -12,6 +12,7 @@ import tribodyn
 from tribodyn.errors import InputError
 from tribodyn.measurement import read
 from tribodyn.study import Case, Result
+from tribodyn.study.faults.clock import turning_clock
 from tribodyn.study.faults.motion import turning_mesh_of, turning_system
 
 CRACK = {
@@ -56,6 +57,7 @@ def test_a_case_with_faults_reads_back(healthy: Case, tmp_path: Path) -> None:
         ({"faults.crack.depth": None}, 'Add for example depth = "1 mm"'),
         ({"faults.crack.depht": "1 mm"}, 'Did you mean "depth"'),
         ({"faults.crack.depth": "9 mm"}, "at most 8.59 mm"),
+        ({"faults.crack.orders": [1.0]}, "has: gear, tooth, depth"),
     ],
 )
 def test_a_wrong_fault_names_its_key(
@@ -64,6 +66,31 @@ def test_a_wrong_fault_names_its_key(
     with pytest.raises(InputError, match=expected) as raised:
         healthy.replace({**CRACK, **change})
     assert f"faults.crack.{next(iter(change)).rpartition('.')[2]}" in str(raised.value)
+
+
+def test_a_ripple_is_in_the_motion_and_its_clock(healthy: Case) -> None:
+    ripple = {"kind": "torque-ripple", "gear": "wheel", "orders": [1.5], "torques": ["1 N*m"]}
+    case = healthy.replace({f"faults.motor.{key}": value for key, value in ripple.items()})
+    clock = turning_clock(case)
+    assert (clock.cycles, clock.turns_wheel) == (16, 2 / 3)  # one period of the ripple
+    with pytest.warns(tribodyn.ModelWarning):
+        result = tribodyn.run(case)
+    motion = result.turning_motion
+    assert motion.cycles == 16
+    turned = np.fft.rfft(motion.position[:, motion.names.index("wheel_theta")]) / motion.time.size
+    inertia = result.summary()["moment_of_inertia_wheel"]
+    inertia += result.summary()["moment_of_inertia_pinion"] * 1.5**2
+    omega = 2.0 * np.pi / motion.period
+    # far below the first mode the drive turns as one: J theta'' = T
+    assert abs(2.0 * turned[1] / (-1.0 / (inertia * omega**2)) - 1.0) < 0.02
+    random = {"kind": "random-load", "gear": "wheel", "frequencies": ["20 Hz", "90 Hz"]}
+    changes = {f"faults.road.{key}": value for key, value in random.items()}
+    with pytest.raises(InputError, match="torque and densities are missing"):
+        healthy.replace(changes)
+    road = healthy.replace({**changes, "faults.road.torque": "1 N*m"})
+    assert turning_clock(road).period >= 1.0
+    with pytest.raises(InputError, match="At most 6000 mesh cycles"):
+        turning_clock(road.replace({"faults.road.duration": "60 s"}))
 
 
 def test_hypoid_gears_have_no_such_faults() -> None:

@@ -59,6 +59,10 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
         say_json(values)
     else:
         say(f"{ready.title}\n{figures(summary_rows(values))}")
+        if ready.faults is not None:
+            from tribodyn.study.faults.clock import turning_clock
+
+            say(f"The motion with its faults repeats after {turning_clock(ready)}.")
     show_warnings([*case_cautions(ready), *warnings])
     kinds = [assumption.kind for assumption in assumptions(ready)]
     tell(

@@ -51,7 +51,11 @@ def turning_motion(motion: TurningMotion) -> Any:
     step = -(-turns.size // _POINTS)
     force, unit = displayed("mesh_force", motion.mesh_force), display_unit("mesh_force")
     error_unit = display_unit("static_transmission_error")
-    static = displayed("static_transmission_error", motion.mesh.transmission_error)
+    repeats = motion.cycles // motion.mesh.cycles  # a ripple may need more turns than the teeth
+    at_rest_error = np.tile(motion.mesh.transmission_error[:-1], repeats)
+    static = displayed("static_transmission_error", at_rest_error)
+    rest_turns = np.arange(static.size) * (motion.cycles / static.size / teeth)
+    rest_step = -(-static.size // _POINTS)
     frequency, lines = motion.harmonics("transmission_error")
     order = frequency / motion.rotation_frequency("pinion")
     shown = (order > 0.0) & (order <= _HARMONICS * teeth)
@@ -70,7 +74,7 @@ def turning_motion(motion: TurningMotion) -> Any:
     x_label = "Turns of the pinion since tooth 1 came into contact"
     mesh_orders = [(f"{n} x mesh", n * teeth) for n in range(1, int(_HARMONICS) + 1)]
     error_label = axis_label("static_transmission_error", "At rest")
-    at_rest = line(motion.mesh.phase / teeth, static, "at rest", PINION, unit=error_unit)
+    at_rest = line(rest_turns[::rest_step], static[::rest_step], "at rest", PINION, unit=error_unit)
     force_curve = line(turns[::step], force[::step], "mesh force", TOTAL, unit=unit, width=1.2)
     orders = line(stems, heights.ravel(), "orders", WHEEL, unit=error_unit, width=1.2)
     spectrum = Panel(axis_label("static_transmission_error", "In motion"), [orders], axis)

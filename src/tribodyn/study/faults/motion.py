@@ -11,11 +11,12 @@ import numpy as np
 from tribodyn.errors import InputError, collected, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
+from tribodyn.study.faults.clock import turning_clock
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
-    from tribodyn.faults import TurningMesh
+    from tribodyn.faults import DrivenSystem, TurningMesh
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import PreparedRun
@@ -42,7 +43,9 @@ class TurningMotion(Record):
     cycles: int = fact()  #: mesh cycles of the period
     pinion_teeth: int = fact()
     wheel_teeth: int = fact()
-    response: Response  #: on the steps of the search
+    response: Response  #: on the steps of the search, without the fluctuation of the mean rotation
+    #: Mesh cycles by which the rotation of the drive is ahead of its mean.
+    lead: Array = quantity("time", unit="1")
 
     @cached_property
     def splines(self) -> dict[Any, Any]:
@@ -116,6 +119,24 @@ def turning_system(result: Result | PreparedRun, mesh: TurningMesh) -> System:
     return replace(system, contacts=(law_contact(first, mesh.force_law), *others))
 
 
+def driven_system(result: Result | PreparedRun, mesh: TurningMesh) -> DrivenSystem:
+    """The system of :func:`turning_system` with the torques and speeds of its shafts."""
+    from tribodyn.faults import drive
+    from tribodyn.study.faults.section import excitations
+    from tribodyn.study.pipeline.assembly import rotation_of, shaft_coordinates
+
+    case, system = result.case, turning_system(result, mesh)
+    return drive(
+        system,
+        mesh.cycles,
+        tuple(excitations(case).values()),
+        mesh_frequency=result.mesh.mesh_frequency,
+        teeth={name: abs(gear.teeth) for name, gear in case.gears.by_name.items()},
+        coordinates=shaft_coordinates(case, system),
+        rotation=rotation_of(case, system.names),
+    )
+
+
 def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) -> TurningMotion:
     """Compute the steady motion of a result over whole turns of its gears."""
     from tribodyn.dynamics import harmonic_balance
@@ -123,49 +144,60 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
 
     case = result.case
     with locate_errors(case):
-        progress.start("Teeth over whole turns")
+        clock = turning_clock(case)
+        progress.start(f"Teeth over whole turns: {clock}")
         mesh = turning_mesh_of(case)
-        system = turning_system(result, mesh)
-        frequency = result.mesh.mesh_frequency / mesh.cycles
+        driven = driven_system(result, mesh)
+        frequency = result.mesh.mesh_frequency / driven.cycles
         response: Response | None = None
         for steps in _STEPS:
             with collected() as model_warnings:
                 response = harmonic_balance(
-                    system, frequency, steps=steps * mesh.cycles, start=response, progress=progress
+                    driven.system,
+                    frequency,
+                    steps=steps * driven.cycles // driven.system.cycles,
+                    start=response,
+                    progress=progress,
                 )
             if not response.step_error > _ACCURATE:
                 break
         for warning in model_warnings:
             warn(warning.code, warning.message)
     assert response is not None
-    return _sampled(case, mesh, response, result.mesh.mesh_frequency)
+    return _sampled(case, mesh, driven, response, result.mesh.mesh_frequency)
 
 
 def _sampled(
-    case: Case, mesh: TurningMesh, response: Response, mesh_frequency: float
+    case: Case, mesh: TurningMesh, driven: DrivenSystem, response: Response, mesh_frequency: float
 ) -> TurningMotion:
     """The motion on evenly spaced samples."""
-    fine, count = response.fine, SAMPLES * mesh.cycles
+    cycles = driven.cycles
+    fine, count, period = response.fine, SAMPLES * cycles, cycles / mesh_frequency
     at = np.arange(count) / count
 
-    def over(values: Array) -> Array:
-        """Values on the samples of the period."""
+    def over(values: Array, turned: int | None = None) -> Array:
+        """Values on the samples of the period, with a derivative of the fluctuating rotation."""
         columns = values.reshape(len(values), -1).T
         even = [np.interp(at, fine.phase, column, period=1.0) for column in columns]
-        return np.asarray(np.stack(even, axis=-1).reshape(count, *values.shape[1:]))
+        samples = np.stack(even, axis=-1).reshape(count, *values.shape[1:])
+        if turned is not None and driven.lead.lines.any():
+            lead = driven.lead.derivative(turned)(at) / period**turned
+            samples = samples + lead[:, None] * driven.rotation
+        return np.asarray(samples)
 
     return TurningMotion(
-        time=at * mesh.cycles / mesh_frequency,
-        position=over(fine.position),
-        velocity=over(fine.velocity),
-        acceleration=over(fine.acceleration),
+        time=at * period,
+        position=over(fine.position, 0),
+        velocity=over(fine.velocity, 1),
+        acceleration=over(fine.acceleration, 2),
         mesh_force=over(fine.contact_force.sum(axis=1)),
         transmission_error=over(fine.deflection[:, 0]) - 0.5 * case.backlash,
         names=response.names,
         mesh=mesh,
         mesh_frequency=mesh_frequency,
-        cycles=mesh.cycles,
+        cycles=cycles,
         pinion_teeth=case.gear_pair.pinion.teeth,
         wheel_teeth=abs(case.gear_pair.wheel.teeth),
         response=response,
+        lead=driven.lead(at),
     )

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.model import REQUIRED, choice, integer, number
+from tribodyn.model import REQUIRED, choice, integer, number, numbers
 from tribodyn.study.case.section import NamedTables, Section, table
 
 if TYPE_CHECKING:
-    from tribodyn.faults import BearingDefect, Fault
+    from tribodyn.faults import BearingDefect, Fault, ShaftExcitation
 
+T = TypeVar("T")
 _TURN = 2.0 * math.pi
 _GUARD = "guards against a wrong unit"
 _PART = "a share"
@@ -36,7 +37,13 @@ KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ),
         ("contact_angle", "damping_ratio", "slip"),
     ),
+    "torque-ripple": (("gear", "orders", "torques"), ("phases",)),
+    "speed-fluctuation": (("gear", "orders", "fluctuations"), ("phases",)),
+    "random-load": (("gear", "frequencies"), ("torque", "densities", "duration", "seed")),
 }
+_AMPLITUDES = dict.fromkeys(("torques", "fluctuations"), "amplitudes")
+#: Two keys of a kind of which one is stated.
+_EITHER = {"random-load": ("torque", "densities")}
 _MEANINGS = {
     "eccentricity": "axis of the toothing beside the axis of rotation",
     "waviness": "waves that run on from tooth to tooth, a ghost order",
@@ -45,6 +52,9 @@ _MEANINGS = {
     "broken-tooth": "a tooth whose upper part is gone",
     "crack": "a crack at the root of one tooth",
     "bearing-defect": "a local defect of a bearing of the gear's shaft",
+    "torque-ripple": "a torque on the gear's shaft that varies over its angle",
+    "speed-fluctuation": "a speed of the gear's shaft that varies over its angle",
+    "random-load": "a random torque on the gear's shaft",
 }
 
 
@@ -121,6 +131,38 @@ class FaultTable(Section):
     slip: float | None = number(
         None, 0.0, 0.2, "scatter over the mean", meaning="scatter of the intervals of impacts"
     )
+    orders: tuple[float, ...] | None = numbers(
+        1e-3, 1e5, "periods in a turn of the shaft", meaning="orders of a torque or a speed",
+        example="[1, 2, 4]",
+    )  # fmt: skip
+    torques: tuple[float, ...] | None = numbers(
+        0.0, 1e7, _GUARD, unit="N*m", meaning="amplitude of the torque at each order",
+        example='["5 N*m", "20 N*m", "8 N*m"]',
+    )  # fmt: skip
+    fluctuations: tuple[float, ...] | None = numbers(
+        0.0, 0.2, "a speed with a mean", meaning="amplitude of the speed over its mean at each "
+        "order", example="[0.01, 0.02, 0.005]",
+    )  # fmt: skip
+    phases: tuple[float, ...] | None = numbers(
+        -_TURN, _TURN, "one turn", unit="rad", display_unit="deg",
+        meaning="phase of each order where tooth 1 comes into contact; zero by default",
+        example='["0 deg", "90 deg", "0 deg"]',
+    )  # fmt: skip
+    torque: float | None = number(
+        None, 0.0, 1e6, _GUARD, unit="N*m", meaning="root mean square of a random torque"
+    )
+    frequencies: tuple[float, ...] | None = numbers(
+        0.0, 1e5, _GUARD, unit="Hz", example='["20 Hz", "200 Hz"]',
+        meaning="ends of the band of a random torque, or corners of its density",
+    )  # fmt: skip
+    densities: tuple[float, ...] | None = numbers(
+        0.0, 1e12, _GUARD, unit="N^2*m^2/Hz", example='["0.1 N^2*m^2/Hz", "0.1 N^2*m^2/Hz"]',
+        meaning="power spectral density of a random torque at each corner",
+    )  # fmt: skip
+    duration: float | None = number(
+        None, 1e-3, 1e3, _GUARD, unit="s", example='"1 s"',
+        meaning="time after which a random torque repeats; 1 s by default",
+    )  # fmt: skip
 
 
 class Faults(NamedTables, inner=table(FaultTable, "a fault")):
@@ -148,6 +190,11 @@ def fault_problems(faults: Faults | None) -> list[tuple[str, Problem]]:
                 problems.append(
                     (f"faults.{name}.{key}", Problem(f"{key} is missing", "", why, remedy))
                 )
+        either = _EITHER.get(fault.kind, ())
+        if either and (count := sum(key in stated for key in either)) != 1:
+            what = f"{' and '.join(either)} are {'both given' if count else 'missing'}"
+            problem = Problem(what, "", "One of them states the size", "Give one of them")
+            problems.append((f"faults.{name}.{either[0]}", problem))
         for key in sorted(stated.keys() - {*required, *optional}):
             why = f'A fault of the kind "{fault.kind}" has: {", ".join((*required, *optional))}'
             what = f"{key} is given"
@@ -155,7 +202,7 @@ def fault_problems(faults: Faults | None) -> list[tuple[str, Problem]]:
     return problems
 
 
-def read_fault(fault: FaultTable) -> Fault | BearingDefect:
+def read_fault(fault: FaultTable) -> Fault | BearingDefect | ShaftExcitation:
     """The fault that a table states."""
     from tribodyn import faults
 
@@ -164,14 +211,20 @@ def read_fault(fault: FaultTable) -> Fault | BearingDefect:
         return faults.Waviness(order=1, **values)
     if fault.kind == "bearing-defect":
         return faults.BearingDefect(**{k: v for k, v in values.items() if k != "gear"})
+    if fault.kind == "random-load" and "torque" in values:
+        return faults.RandomLoad.of_rms(values.pop("torque"), values.pop("frequencies"), **values)
     kinds: dict[str, Any] = {
         "waviness": faults.Waviness,
         "pitch-deviations": faults.PitchDeviations,
         "spall": faults.Spall,
         "broken-tooth": faults.BrokenTooth,
         "crack": faults.Crack,
+        "torque-ripple": faults.TorqueRipple,
+        "speed-fluctuation": faults.SpeedFluctuation,
+        "random-load": faults.RandomLoad,
     }
-    result: Fault = kinds[fault.kind](**values)
+    renamed = {_AMPLITUDES.get(key, key): value for key, value in values.items()}
+    result: Fault | ShaftExcitation = kinds[fault.kind](**renamed)
     return result
 
 
@@ -187,23 +240,30 @@ def check_fault(case: Any, fault: FaultTable) -> None:
         stated._check(case.gear_pair)
 
 
+def _faults_of(case: Any, kind: type[T]) -> dict[str, T]:
+    """Faults of one class, by name."""
+    tables = vars(case.faults) if case.faults is not None else {}
+    faults = {name: read_fault(fault) for name, fault in tables.items()}
+    return {name: fault for name, fault in faults.items() if isinstance(fault, kind)}
+
+
 def gear_faults(case: Any) -> dict[str, Fault]:
     """Faults of the gears of a case, by name."""
     from tribodyn.faults import Fault
 
-    tables = vars(case.faults) if case.faults is not None else {}
-    faults = {name: read_fault(fault) for name, fault in tables.items()}
-    return {name: fault for name, fault in faults.items() if isinstance(fault, Fault)}
+    return _faults_of(case, Fault)
+
+
+def excitations(case: Any) -> dict[str, ShaftExcitation]:
+    """Torques and speeds of the shafts of a case that vary, by name."""
+    from tribodyn.faults import ShaftExcitation
+
+    return _faults_of(case, ShaftExcitation)
 
 
 def bearing_defects(case: Any) -> dict[str, tuple[str, BearingDefect]]:
     """Gear of the shaft and defect of the bearings of a case, by name."""
     from tribodyn.faults import BearingDefect
 
-    tables = vars(case.faults) if case.faults is not None else {}
-    faults = {name: (fault.gear, read_fault(fault)) for name, fault in tables.items()}
-    return {
-        name: (gear, defect)
-        for name, (gear, defect) in faults.items()
-        if isinstance(defect, BearingDefect)
-    }
+    defects = _faults_of(case, BearingDefect)
+    return {name: (vars(case.faults)[name].gear, defect) for name, defect in defects.items()}

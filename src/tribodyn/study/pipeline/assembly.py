@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -282,3 +283,30 @@ def structure_of(case: Case, mesh: MeshFunctions, damping: Damping, mesh_force: 
         contact=contact,
     )
     return STRUCTURES[case.dynamics.model](gearing, **chosen_options(case, "dynamics"))
+
+
+def rotation_of(case: Case, names: Sequence[str]) -> Array | None:
+    """Change of the coordinates in a mesh cycle of the drive [rad]; None where one is unknown."""
+    from tribodyn.dynamics import STRUCTURES
+
+    gears = {name: 2.0 * np.pi / abs(gear.teeth) for name, gear in case.gears.by_name.items()}
+    turns = {f"{gear}_theta": angle for gear, angle in gears.items()}
+    turns_with = STRUCTURES[case.dynamics.model].turns_with
+    turns |= {name: gears[gear] for name, gear in turns_with.items()}
+    turning = [name for name in names if name.endswith("theta")]
+    if any(name not in turns for name in turning):
+        return None
+    return np.array([turns[name] if name in turning else 0.0 for name in names])
+
+
+def shaft_coordinates(case: Case, system: System) -> dict[str, int]:
+    """Number of the coordinate on which the torque of the shaft of each gear acts."""
+    from tribodyn.dynamics import STRUCTURES
+
+    turns_with = STRUCTURES[case.dynamics.model].turns_with
+    names, force = list(system.names), np.asarray(system.force)
+    places = {}
+    for gear in case.gears.by_name:
+        ends = [name for name, of in turns_with.items() if of == gear and force[names.index(name)]]
+        places[gear] = names.index((ends or [f"{gear}_theta"])[0])
+    return places

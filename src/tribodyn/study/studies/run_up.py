@@ -16,6 +16,7 @@ from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine_studies.over_speed import machine_run_up, machine_speed_sweep
+from tribodyn.study.pipeline.assembly import rotation_of
 from tribodyn.study.studies.case_grid import varied
 from tribodyn.study.studies.study_axes import read_axes
 
@@ -100,6 +101,7 @@ def run_up(
     with locate_errors(case), collected(), compile_in_parallel(case, "run-up"):
         systems, per_speed = speed_systems(case, speeds, progress)
         first = next(iter(systems.values()))
+        rotation = rotation_of(case, first.names)
         profile = speed_ramp(low * per_speed, high * per_speed, duration, hold=hold, down=down)
         return compute(
             systems if count > 1 else first,
@@ -108,7 +110,7 @@ def run_up(
             samples=samples,
             steps=steps or case.solver.steps_per_mesh_cycle,
             outputs=supports(first),
-            rotation=_rotation(case, first, per_speed),
+            rotation=None if rotation is None else per_speed * rotation,
             progress=progress,
         )
 
@@ -157,21 +159,6 @@ def supports(system: System) -> dict[str, Any]:
         if np.any(row_pair[0]) and name.startswith(tuple(f"{gear}_" for gear in GEARS)):
             rows[f"bearing_force_{name}"] = np.concatenate(row_pair)
     return rows
-
-
-def _rotation(case: Case, system: System, per_speed: float) -> Any:
-    """Angles of the coordinates per angle of the shaft whose speed is given."""
-    from tribodyn.dynamics import STRUCTURES
-
-    angle = per_speed * 2.0 * np.pi
-    gears = {name: angle / gear.teeth for name, gear in case.gears.by_name.items()}
-    turns = {f"{gear}_theta": angle for gear, angle in gears.items()}
-    turns_with = STRUCTURES[case.dynamics.model].turns_with
-    turns |= {name: gears[gear] for name, gear in turns_with.items()}
-    turning = [name for name in system.names if name.endswith("theta")]
-    if any(name not in turns for name in turning):
-        return None
-    return np.array([turns[name] if name in turning else 0.0 for name in system.names])
 
 
 def speed_sweep(

@@ -1,0 +1,97 @@
+"""Period after which a case with faults repeats, and what its motion costs, before the run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from tribodyn.errors import InputError
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+
+#: Mesh cycles of the longest motion: beyond it the samples need more memory than a notebook has.
+MOST_CYCLES = 6000
+#: Seconds of one core: at least, and for each mesh cycle of the teeth and of the motion.
+_LEAST, _TEETH, _MOTION = 0.2, 5e-3, 1.2e-2
+
+
+class TurningClock(NamedTuple):
+    """Period of the motion of a case with faults.
+
+    Parameters
+    ----------
+    cycles : int
+        Mesh cycles.
+    period : float [s]
+        Time.
+    turns_pinion, turns_wheel : float
+        Turns of both gears.
+    cost : float [s]
+        Rough time of one core for the motion, once all is compiled.
+    """
+
+    cycles: int
+    period: float
+    turns_pinion: float
+    turns_wheel: float
+    cost: float
+
+    def __str__(self) -> str:
+        """One line."""
+        return (
+            f"{self.cycles} mesh cycles, {self.turns_pinion:.6g} turns of the pinion and "
+            f"{self.turns_wheel:.6g} of the wheel, {self.period:.4g} s; about "
+            f"{self.cost:.1g} s of computation"
+        )
+
+
+def turning_clock(case: Case) -> TurningClock:
+    """Find the period of the motion with the faults of a case, without computing anything.
+
+    Parameters
+    ----------
+    case : Case
+        Of a cylindrical pair, with its faults.
+
+    Returns
+    -------
+    TurningClock
+
+    Raises
+    ------
+    InputError
+        If the gears are no cylindrical pair, or the period is too long to be computed.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({
+    ...     "faults.axis.kind": "eccentricity", "faults.axis.gear": "wheel",
+    ...     "faults.axis.amplitude": "10 um"})
+    >>> clock = turning_clock(case)
+    >>> clock.cycles, clock.turns_pinion
+    (24, 1.5)
+    """
+    from tribodyn.faults import clock_cycles, turns_of
+    from tribodyn.study.faults.section import excitations, gear_faults
+
+    if case.gears.kind != "spur":
+        why = "The teeth of a cylindrical pair are computed one by one, others are not"
+        what = f"the gears are a {case.gears.kind} pair"
+        raise InputError(what, "gears.kind", why, "Give a cylindrical pair")
+    pair = case.gear_pair
+    teeth = {name: abs(gear.teeth) for name, gear in pair.gears.items()}
+    frequency = case.pinion_speed * teeth["pinion"] / 6.283185307179586
+    of_teeth = turns_of(pair, tuple(gear_faults(case).values()))
+    cycles = clock_cycles(of_teeth, tuple(excitations(case).values()), teeth, frequency)
+    if cycles > MOST_CYCLES:
+        raise InputError(
+            f"all repeats after {cycles} mesh cycles, {cycles / frequency:.4g} s",
+            "faults",
+            f"At most {MOST_CYCLES} mesh cycles are computed",
+            "Give faults of one gear, orders that repeat after fewer turns, or a random load of a "
+            f"shorter duration ({of_teeth} mesh cycles are those of the teeth)",
+        )
+    cost = _LEAST + of_teeth * _TEETH + cycles * _MOTION
+    turns = (cycles / teeth[gear] for gear in ("pinion", "wheel"))
+    return TurningClock(cycles, cycles / frequency, *turns, cost)
