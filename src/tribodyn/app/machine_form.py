@@ -25,9 +25,10 @@ _GROUPS = {
     "gears": "Gears",
     "bearings": "Bearings",
     "shafts": "Shafts",
+    "faults": "Faults",
     "dynamics": "Motion",
 }
-_PARTS = ("meshes", "gears", "bearings", "shafts")
+_PARTS = ("meshes", "gears", "bearings", "shafts", "faults")
 _MEANINGS = {
     "shafts": "their sections are edited in the file",
     "meshes": "with models of their own where these are given",

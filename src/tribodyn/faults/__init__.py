@@ -13,7 +13,7 @@
 """
 
 from tribodyn.arguments import guard
-from tribodyn.faults.bearing_defect import BearingDefect
+from tribodyn.faults.bearing_defect import BearingDefect, BearingForce, BearingImpacts
 from tribodyn.faults.cracked_tooth import crack_compliance
 from tribodyn.faults.damage import BrokenTooth, Crack, Spall
 from tribodyn.faults.deviations import PitchDeviations, Waviness, eccentricity, pitch_tolerances
@@ -29,6 +29,8 @@ from tribodyn.faults.turning import TurningMesh, turning_mesh, turns_of
 
 __all__ = [
     "BearingDefect",
+    "BearingForce",
+    "BearingImpacts",
     "BrokenTooth",
     "Crack",
     "DrivenSystem",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -16,8 +17,8 @@ Place = Literal["outer", "inner", "element"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class BearingDefect:
-    """A local defect of a rolling bearing whose outer ring is at rest.
+class BearingImpacts:
+    """Impacts of a local defect of a rolling bearing whose outer ring is at rest.
 
     Parameters
     ----------
@@ -27,14 +28,8 @@ class BearingDefect:
         Number of rolling elements.
     element_diameter, pitch_diameter : float
         Diameters of an element and of the circle of their centres [m].
-    acceleration : float
-        Largest acceleration of an impact at the sensor [m/s^2].
-    resonance : float
-        Natural frequency that an impact excites [Hz].
     contact_angle : float
         Contact angle [rad].
-    damping_ratio : float
-        Damping of it over the critical one.
     slip : float
         Standard deviation of the time between two impacts, over its mean [1].
 
@@ -51,8 +46,8 @@ class BearingDefect:
 
     Examples
     --------
-    >>> defect = BearingDefect(place="outer", rolling_elements=9, element_diameter=7.94e-3,
-    ...     pitch_diameter=39.04e-3, acceleration=5.0, resonance=3000.0)
+    >>> defect = BearingImpacts(place="outer", rolling_elements=9, element_diameter=7.94e-3,
+    ...     pitch_diameter=39.04e-3)
     >>> round(defect.frequency(1797 / 60), 2)  # the 6205 of many recordings
     107.36
     """
@@ -61,21 +56,16 @@ class BearingDefect:
     rolling_elements: int
     element_diameter: float
     pitch_diameter: float
-    acceleration: float
-    resonance: float
     contact_angle: float = 0.0
-    damping_ratio: float = 0.05
     slip: float = 0.01
 
     def __post_init__(self) -> None:
         require_one_of("place", self.place, get_args(Place))
         count = require_whole("rolling_elements", self.rolling_elements, 3)
         object.__setattr__(self, "rolling_elements", count)
-        for name, unit in (("element_diameter", "m"), ("pitch_diameter", "m"), ("resonance", "Hz")):
-            require_positive(name, getattr(self, name), unit)
-        require_between("acceleration", self.acceleration, 0.0, 1e6, "m/s^2")
+        for name in ("element_diameter", "pitch_diameter"):
+            require_positive(name, getattr(self, name), "m")
         require_between("contact_angle", self.contact_angle, 0.0, 1.2, "rad")
-        require_between("damping_ratio", self.damping_ratio, 1e-4, 0.9, "")
         require_between("slip", self.slip, 0.0, 0.2, "")
         if self.element_diameter >= self.pitch_diameter:
             what = f"element_diameter = {1e3 * self.element_diameter:.4g} mm"
@@ -122,6 +112,91 @@ class BearingDefect:
         cage = 0.5 * shaft * (1.0 - self._ratio)
         return {"outer": 0.0, "inner": shaft, "element": cage}[self.place]
 
+    def superposed(
+        self,
+        response: Callable[[Array], Array],
+        duration: float,
+        shaft: float,
+        time: Array,
+        seed: int = 0,
+    ) -> Array:
+        """Sum of the responses to all impacts.
+
+        Parameters
+        ----------
+        response : function
+            Response to an impact of full size over the time since it [s].
+        duration : float
+            Time after which the response has decayed [s].
+        shaft : float
+            Speed of the shaft in turns per second [Hz].
+        time : (n,) array
+            Evenly spaced times [s].
+        seed : int
+            Number of the draw.
+
+        Returns
+        -------
+        (n,) array
+            In the unit of the response.
+        """
+        mean = 1.0 / self.frequency(shaft)
+        rng = np.random.default_rng(seed)
+        count = int((time[-1] - time[0] + duration) / mean) + 2
+        gaps = mean * np.maximum(1.0 + self.slip * rng.standard_normal(count), 0.1)
+        impacts = time[0] - duration + mean * rng.random() + np.cumsum(gaps)
+        load = self.modulation(shaft)
+        size = (
+            np.ones(count) if load == 0.0 else np.maximum(np.cos(2.0 * np.pi * load * impacts), 0)
+        )
+        step = time[1] - time[0]
+        values = np.zeros(time.size)
+        for at, strength in zip(impacts, size, strict=True):
+            first = max(int(np.ceil((at - time[0]) / step)), 0)
+            last = min(int((at + duration - time[0]) / step) + 1, time.size)
+            if last > first:
+                values[first:last] += strength * response(time[first:last] - at)
+        return values
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingDefect(BearingImpacts):
+    """A local defect of a rolling bearing, and how a sensor receives its impacts.
+
+    Parameters
+    ----------
+    place, rolling_elements, element_diameter, pitch_diameter, contact_angle, slip
+        As for :class:`BearingImpacts`.
+    acceleration : float
+        Largest acceleration of an impact at the sensor [m/s^2].
+    resonance : float
+        Natural frequency that an impact excites [Hz].
+    damping_ratio : float
+        Damping of it over the critical one.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> defect = BearingDefect(place="outer", rolling_elements=9, element_diameter=7.94e-3,
+    ...     pitch_diameter=39.04e-3, acceleration=5.0, resonance=3000.0)
+    >>> defect.resonance
+    3000.0
+    """
+
+    acceleration: float
+    resonance: float
+    damping_ratio: float = 0.05
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_positive("resonance", self.resonance, "Hz")
+        require_between("acceleration", self.acceleration, 0.0, 1e6, "m/s^2")
+        require_between("damping_ratio", self.damping_ratio, 1e-4, 0.9, "")
+
     def signal(self, shaft: float, time: Array, seed: int = 0) -> Array:
         """Acceleration of the impacts.
 
@@ -138,27 +213,45 @@ class BearingDefect:
         -------
         (n,) array [m/s^2]
         """
-        mean = 1.0 / self.frequency(shaft)
         omega, decay = 2.0 * math.pi * self.resonance, self.damping_ratio
+        damped = omega * math.sqrt(1.0 - decay**2)
+
+        def ringing(since: Array) -> Array:
+            return np.asarray(np.exp(-decay * omega * since) * np.sin(damped * since))
+
         duration = math.log(1e4) / (omega * decay)
-        rng = np.random.default_rng(seed)
-        count = int((time[-1] - time[0] + duration) / mean) + 2
-        gaps = mean * np.maximum(1.0 + self.slip * rng.standard_normal(count), 0.1)
-        impacts = time[0] - duration + mean * rng.random() + np.cumsum(gaps)
-        load = self.modulation(shaft)
-        size = (
-            np.ones(count) if load == 0.0 else np.maximum(np.cos(2.0 * np.pi * load * impacts), 0)
-        )
-        step = time[1] - time[0]
-        values = np.zeros(time.size)
-        for at, strength in zip(impacts, size, strict=True):
-            first = max(int(np.ceil((at - time[0]) / step)), 0)
-            last = min(int((at + duration - time[0]) / step) + 1, time.size)
-            if last > first:
-                since = time[first:last] - at
-                values[first:last] += (
-                    strength
-                    * np.exp(-decay * omega * since)
-                    * np.sin(omega * math.sqrt(1.0 - decay**2) * since)
-                )
-        return np.asarray(self.acceleration * values)
+        return np.asarray(self.acceleration * self.superposed(ringing, duration, shaft, time, seed))
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingForce(BearingImpacts):
+    """A local defect of a rolling bearing, whose impacts press its rings apart.
+
+    Parameters
+    ----------
+    place, rolling_elements, element_diameter, pitch_diameter, contact_angle, slip
+        As for :class:`BearingImpacts`.
+    force : float
+        Greatest force of an impact, half a sine in time [N].
+    duration : float
+        Duration of an impact [s].
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> BearingForce(place="inner", rolling_elements=9, element_diameter=7.94e-3,
+    ...     pitch_diameter=39.04e-3, force=200.0).duration
+    0.0001
+    """
+
+    force: float
+    duration: float = 1e-4
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_between("force", self.force, 0.0, 1e7, "N")
+        require_between("duration", self.duration, 1e-7, 0.1, "s")

@@ -152,6 +152,8 @@ class PitchDeviations(Fault):
         Class of ISO 1328-1, 1 to 11.
     seed : int
         Number of the draw.
+    first_tooth : int
+        Tooth of the draw that comes into contact first, from 1.
 
     Raises
     ------
@@ -172,9 +174,11 @@ class PitchDeviations(Fault):
 
     accuracy_class: int
     seed: int = 0
+    first_tooth: int = 1
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        require_whole("first_tooth", self.first_tooth)
         require_between("accuracy_class", self.accuracy_class, 1, 11, "")
         object.__setattr__(self, "seed", require_whole("seed", self.seed, 0))
 
@@ -197,7 +201,7 @@ class PitchDeviations(Fault):
             single_tolerance / np.abs(deviations).max(),
             total_tolerance / np.ptp(np.cumsum(deviations)),
         )
-        return np.asarray(scale * deviations)
+        return np.asarray(scale * np.roll(deviations, 1 - self.first_tooth))
 
     def _on(self, pair: SpurPair) -> SpurPair:
         """The pair with these deviations in place of its own."""

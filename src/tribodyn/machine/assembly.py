@@ -75,7 +75,7 @@ def system(machine: Machine | MachineStructure) -> System:
 
 
 def _contact(structure: MachineStructure, name: str) -> Contact:
-    mesh, clock = structure.machine.meshes[name], structure.machine.clock
+    mesh = structure.machine.meshes[name]
     return Contact(
         direction=structure.mesh(name),
         stiffness=structure.mesh_stiffness(name) if mesh.stiffness is None else mesh.stiffness,
@@ -84,9 +84,17 @@ def _contact(structure: MachineStructure, name: str) -> Contact:
         gap=mesh.gap,
         friction=None if mesh.friction is None else _friction(structure, name),
         events=mesh.events,
-        cycles=clock.cycles[name],
-        offset=mesh.offset,
+        **_clock(structure.machine, name),
     )
+
+
+def _clock(machine: Machine, name: str) -> dict[str, Any]:
+    """Periods of a mesh in one of the clock, and where its first begins."""
+    mesh = machine.meshes[name]
+    return {
+        "cycles": machine.clock.cycles[name] // mesh.period,
+        "offset": mesh.offset / mesh.period,
+    }
 
 
 def mesh_contacts(structure: MachineStructure, system: System) -> list[tuple[Contact, ...]]:
@@ -106,7 +114,7 @@ def _in_space(
     direction, crossing = machine.directions[name], mesh.crossing
     onto = pair_coordinates(direction, size, first_drives=drives, crossing=crossing)
     onto = onto @ np.vstack([structure.gear(gear) for gear in mesh.gears])
-    clock = {"cycles": machine.clock.cycles[name], "offset": mesh.offset}
+    clock = _clock(machine, name)
     contacts = [projected(contact, onto, **clock) for contact in mesh.contacts]
     frictions = [
         projected(friction, onto, contacts=tuple(first + j for j in friction.contacts))

@@ -154,13 +154,14 @@ class Machine:
 
     @cached_property
     def clock(self) -> Clock:
-        """Common period of all meshes."""
+        """Common period of all meshes and of all teeth that differ."""
         ratios = {name: shaft.ratio for name, shaft in self.kinematics.shafts.items()}
         cycles = {
             name: abs(ratios[self.graph.edges[name][0]] * self.gears[mesh.gears[0]].teeth)
             for name, mesh in self.meshes.items()
         }
-        return clock_of(cycles, ratios, abs(self.operation.speed) / (2.0 * math.pi))
+        clock = clock_of(cycles, ratios, abs(self.operation.speed) / (2.0 * math.pi))
+        return clock.with_whole_periods({name: mesh.period for name, mesh in self.meshes.items()})
 
     @cached_property
     def directions(self) -> Mapping[str, MeshDirection]:

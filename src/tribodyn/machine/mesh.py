@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.dynamics.equations.system import Contact, LoadFriction
 from tribodyn.errors import Argument, InputError, real_numbers
@@ -70,7 +71,10 @@ class Mesh:
     events : tuple of float
         Mesh phases at which an entry jumps.
     offset : float
-        Mesh phase when the clock of the machine is at 0, in [0, 1).
+        Mesh phase when the clock of the machine is at 0, in [0, period).
+    period : int
+        Mesh cycles after which the force law repeats, more than one where teeth differ: error,
+        contacts, frictions and events are then over the phase of all these cycles, in [0, 1).
     crossed : CrossedAxes, optional
         Axes and flanks of a hypoid or bevel pair, whose pinion is the first gear;
         :meth:`hypoid` makes such a mesh. Stiffness, damping, error and gap are then along the
@@ -106,6 +110,7 @@ class Mesh:
     frictions: Sequence[LoadFriction] = ()
     events: tuple[float, ...] = (0.0,)
     offset: float = 0.0
+    period: int = 1
     crossed: CrossedAxes | None = None
 
     @classmethod
@@ -191,8 +196,9 @@ class Mesh:
         check_number(self, "pressure_angle", "rad", math.radians(5.0), math.radians(45.0))
         if self.damping_ratio is not None:
             check_number(self, "damping_ratio", "", 0.0, 10.0)
-        check_number(self, "offset", "", 0.0, 1.0)
-        object.__setattr__(self, "offset", self.offset % 1.0)
+        object.__setattr__(self, "period", require_whole("period", self.period))
+        check_number(self, "offset", "", 0.0, float(self.period))
+        object.__setattr__(self, "offset", self.offset % self.period)
         object.__setattr__(self, "events", read_events(self.events, "Mesh.events"))
         for name, positive in (("stiffness", True), ("damping", False), ("gap", False)):
             _check_entry(self, name, positive)

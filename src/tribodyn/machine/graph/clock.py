@@ -53,7 +53,20 @@ class Clock:
                 why = f"Known: {', '.join(self.turns)}"
                 remedy = did_you_mean(shaft, self.turns, "Choose one of these")
                 raise InputError(f'there is no shaft "{shaft}"', "argument shafts", why, remedy)
-        factor = math.lcm(*(self.turns[shaft].denominator for shaft in shafts))
+        return self._longer(math.lcm(*(self.turns[shaft].denominator for shaft in shafts)))
+
+    def with_whole_periods(self, periods: Mapping[str, int]) -> Clock:
+        """Clock whose mesh cycles are multiples of those after which each mesh repeats.
+
+        Parameters
+        ----------
+        periods : mapping of str to int
+            Mesh cycles after which the teeth of each mesh repeat.
+        """
+        factors = (period // math.gcd(period, self.cycles[m]) for m, period in periods.items())
+        return self._longer(math.lcm(*factors))
+
+    def _longer(self, factor: int) -> Clock:
         return Clock(
             {mesh: factor * cycles for mesh, cycles in self.cycles.items()},
             {shaft: factor * turns for shaft, turns in self.turns.items()},

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from tribodyn.errors import InputError, collected, warn
+from tribodyn.faults import BearingDefect
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.faults.clock import turning_clock
@@ -16,7 +17,7 @@ from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
-    from tribodyn.faults import DrivenSystem, TurningMesh
+    from tribodyn.faults import BearingImpacts, DrivenSystem, TurningMesh
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import PreparedRun
@@ -52,6 +53,8 @@ class TurningMotion(Record):
         """Signals as smooth functions, by sensor and sampling rate; filled where they are used."""
         return {}
 
+    tacho: ClassVar = "pinion"  #: gear with the tacho
+
     @property
     def period(self) -> float:
         """Time after which all repeats [s]."""
@@ -77,12 +80,19 @@ class TurningMotion(Record):
             raise InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
         return getattr(self, sensor), "N" if sensor == "mesh_force" else "m"
 
+    def impacts(
+        self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
+    ) -> Array | float:
+        """Acceleration of the impacts of a bearing of a gear at the sensors of this gear."""
+        gear, impacts = defect
+        if sensor.partition("_")[0] != gear or self.signal(sensor)[1] != "m/s^2":
+            return 0.0
+        assert isinstance(impacts, BearingDefect)
+        return impacts.signal(self.rotation_frequency(gear), time, seed)
+
     def harmonics(self, sensor: str) -> tuple[Array, ComplexArray]:
         """Frequencies (k,) [Hz] and complex peak amplitudes (k,) of a signal, from its mean on."""
-        values = self.signal(sensor)[0]
-        lines = np.fft.rfft(values) / values.size
-        lines[1:] *= 2.0
-        return np.arange(lines.size) / self.period, lines
+        return signal_lines(self.signal(sensor)[0], self.period)
 
     def __repr__(self) -> str:
         """One line."""
@@ -91,6 +101,13 @@ class TurningMotion(Record):
             f"TurningMotion({self.cycles} mesh cycles at {self.mesh_frequency:.6g} Hz, mesh force "
             f"{force.min():.5g} to {force.max():.5g} N)"
         )
+
+
+def signal_lines(values: Array, period: float) -> tuple[Array, ComplexArray]:
+    """Frequencies and complex peak amplitudes of even samples of a period, from its mean on."""
+    lines = np.fft.rfft(values) / values.size
+    lines[1:] *= 2.0
+    return np.arange(lines.size) / period, lines
 
 
 def turning_mesh_of(case: Case) -> TurningMesh:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -12,9 +12,8 @@ from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.faults import BearingDefect
+    from tribodyn.faults import BearingImpacts
     from tribodyn.measurement import Recording
-    from tribodyn.study.faults.motion import TurningMotion
 
 #: Most samples of a recording.
 _MOST = 2**26
@@ -33,9 +32,44 @@ class Scatter(NamedTuple):
     seed: int
 
 
+class PeriodicMotion(Protocol):
+    """What a recording needs of a motion."""
+
+    @property
+    def cycles(self) -> int:
+        """Mesh cycles of the period."""
+
+    @property
+    def mesh_frequency(self) -> float:
+        """Mesh cycles per second [Hz]."""
+
+    @property
+    def period(self) -> float:
+        """Time after which all repeats [s]."""
+
+    @property
+    def tacho(self) -> str:
+        """Shaft with the tacho."""
+
+    @property
+    def splines(self) -> dict[Any, Any]:
+        """Signals as smooth functions; filled where they are used."""
+
+    def signal(self, sensor: str) -> tuple[Array, str]:
+        """Even samples of a period, and their unit."""
+
+    def rotation_frequency(self, shaft: str, /) -> float:
+        """Turns of a shaft per second [Hz]."""
+
+    def impacts(
+        self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
+    ) -> Array | float:
+        """What a sensor receives of a damaged bearing, the shaft or bearing of which is named."""
+
+
 def recording_of(
-    motion: TurningMotion,
-    defects: Sequence[tuple[str, BearingDefect]],
+    motion: PeriodicMotion,
+    defects: Sequence[tuple[str, BearingImpacts]],
     sensors: Sequence[str],
     duration: float,
     sample_rate: float,
@@ -67,28 +101,26 @@ def recording_of(
         if key not in motion.splines:
             motion.splines[key] = _band_limited(motion, values, sample_rate)
         samples = motion.splines[key]((turned / motion.cycles) % 1.0)
-        if unit == "m/s^2":
-            gear = sensor.partition("_")[0]
-            for number, (where, defect) in enumerate(defects):
-                if where == gear:
-                    draw = scatter.seed * 1009 + number
-                    samples = samples + defect.signal(motion.rotation_frequency(gear), time, draw)
+        for number, defect in enumerate(defects):
+            draw = scatter.seed * 1009 + number
+            samples = samples + motion.impacts(sensor, defect, time, draw)
         channels[sensor] = samples + scatter.noise * rng.standard_normal(count)
         units[sensor] = unit
-    channels["tacho"] = _tacho(turned / motion.pinion_teeth, scatter.tacho_jitter, rng)
+    cycles_of_turn = motion.mesh_frequency / motion.rotation_frequency(motion.tacho)
+    channels["tacho"] = _tacho(turned / cycles_of_turn, scatter.tacho_jitter, rng)
     units["tacho"] = "V"
     return Recording(channels, sample_rate, units)
 
 
 def _mesh_cycles(
-    motion: TurningMotion, time: Array, fluctuation: float, rng: np.random.Generator
+    motion: PeriodicMotion, time: Array, fluctuation: float, rng: np.random.Generator
 ) -> Array:
     """Mesh cycles at each time; the speed wanders slowly about its mean."""
     cycles = motion.mesh_frequency * time + motion.cycles * rng.random()
     if fluctuation == 0.0:
         return np.asarray(cycles)
     # A few slow waves with random phases, shorter than ten turns of the pinion.
-    slow = motion.rotation_frequency("pinion") * (rng.random(4) * 0.2 + 0.05)
+    slow = motion.rotation_frequency(motion.tacho) * (rng.random(4) * 0.2 + 0.05)
     phases = 2.0 * np.pi * rng.random(4)
     size = fluctuation * np.sqrt(2.0 / slow.size)  # rms of the speed over its mean
     for frequency, phase in zip(slow, phases, strict=True):
@@ -99,18 +131,24 @@ def _mesh_cycles(
     return np.asarray(cycles)
 
 
-def _band_limited(motion: TurningMotion, values: Array, sample_rate: float) -> Any:
+def _band_limited(motion: PeriodicMotion, values: Array, sample_rate: float) -> Any:
     """A periodic signal as a function of the phase, without what half the rate cannot hold."""
     from scipy.interpolate import CubicSpline
 
     lines = np.fft.rfft(values)
     frequency = np.arange(lines.size) / motion.period
-    fall = (frequency / sample_rate - _PASSED) / (_STOPPED - _PASSED)
-    lines *= 0.5 * (1.0 + np.cos(np.pi * np.clip(fall, 0.0, 1.0)))
-    highest = int(np.flatnonzero(fall < 1.0)[-1]) + 1
+    passed = anti_alias(frequency / sample_rate)
+    lines *= passed
+    highest = int(np.flatnonzero(passed > 0.0)[-1]) + 1
     points = max(_OVERSAMPLED * highest, 64)
     dense = np.fft.irfft(lines[:highest], points) * (points / values.size)
     return CubicSpline(np.arange(points + 1) / points, [*dense, dense[0]], bc_type="periodic")
+
+
+def anti_alias(frequency: Array) -> Array:
+    """Gain of the anti-alias filter over the frequency, in sampling rates."""
+    fall = (frequency - _PASSED) / (_STOPPED - _PASSED)
+    return np.asarray(0.5 * (1.0 + np.cos(np.pi * np.clip(fall, 0.0, 1.0))))
 
 
 def _tacho(turns: Array, jitter: float, rng: np.random.Generator) -> Array:

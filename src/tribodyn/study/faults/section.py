@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import REQUIRED, choice, integer, number, numbers
@@ -73,6 +74,7 @@ class FaultTable(Section):
     """A ``[faults.NAME]`` table: kind, gear, place and size."""
 
     needed = ("kind", "gear")
+    kinds: ClassVar = KINDS
     kind: str = choice(REQUIRED, _MEANINGS, meaning="what it is")
     gear: str | None = choice(None, ("pinion", "wheel"), meaning="gear, or shaft of it")
     tooth: int | None = integer(
@@ -175,15 +177,18 @@ def _stated(fault: FaultTable) -> dict[str, Any]:
     }
 
 
-def fault_problems(faults: Faults | None) -> list[tuple[str, Problem]]:
+def fault_problems(
+    faults: Faults | Mapping[str, FaultTable] | None,
+) -> list[tuple[str, Problem]]:
     """Report missing keys, and keys that this kind of fault does not have."""
     problems = []
-    for name, fault in vars(faults).items() if faults is not None else ():
-        required, optional = KINDS[fault.kind]
+    tables = vars(faults) if isinstance(faults, Faults) else faults or {}
+    for name, fault in tables.items():
+        required, optional = fault.kinds[fault.kind]
         stated = _stated(fault)
         for key in required:
             if key not in stated:
-                option = FaultTable.spec(key)
+                option = fault.spec(key)
                 example = option.example if option else ""
                 why = f'A fault of the kind "{fault.kind}" has: {", ".join((*required, *optional))}'
                 remedy = f"Add for example {key} = {example} to [faults.{name}]"
@@ -202,11 +207,13 @@ def fault_problems(faults: Faults | None) -> list[tuple[str, Problem]]:
     return problems
 
 
-def read_fault(fault: FaultTable) -> Fault | BearingDefect | ShaftExcitation:
+def read_fault(
+    fault: FaultTable, **changes: Any
+) -> Fault | BearingDefect | ShaftExcitation:
     """The fault that a table states."""
     from tribodyn import faults
 
-    values = _stated(fault)
+    values = {**_stated(fault), **changes}
     if fault.kind == "eccentricity":
         return faults.Waviness(order=1, **values)
     if fault.kind == "bearing-defect":

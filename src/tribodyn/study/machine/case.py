@@ -17,9 +17,15 @@ from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.user_input import Source, spread_problem, unsound, without_spread
 from tribodyn.study.case.values import KeyedProblems
+from tribodyn.study.faults.machine_section import (
+    MachineFaultTable,
+    impossible_faults,
+    machine_fault_problems,
+)
 from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import (
+    GROUPS,
     MESH_KEYS,
     SHARED,
     constant_law,
@@ -58,9 +64,8 @@ from tribodyn.study.machine.user_tables import (
 if TYPE_CHECKING:
     from tribodyn.model import Option
 
-_GROUPS = ("shafts", "bearings", "gears", "meshes", "couplings")
 _TOP = (
-    *("title", "origin", *_GROUPS, "housing", "operation", "load_cases", "dynamics", *SHARED),
+    *("title", "origin", *GROUPS, "housing", "operation", "load_cases", "dynamics", *SHARED),
     "assumed",
 )
 #: Keys of a mesh that its object takes as they are.
@@ -122,7 +127,7 @@ class MachineCase:
         self.title: str = str(data.get("title", "Machine"))
         self.origin: str | None = data.get("origin")
         problems += reason_faults(data.get("assumed", {}))
-        groups = {group: tables_of(self.data, group, problems) for group in _GROUPS}
+        groups = {group: tables_of(self.data, group, problems) for group in GROUPS}
         self._blanks = read_blanks(groups, problems)
         self.gears: dict[str, Gear] = _read(groups, "gears", read_gear, problems)
         self._add_shafts(groups["shafts"])
@@ -140,6 +145,12 @@ class MachineCase:
         self.housing: Housing | None = read_housing(self.data.get("housing"), problems)
         motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
+        faults = {
+            name: table_of(MachineFaultTable, body, f"faults.{name}", problems)
+            for name, body in groups["faults"].items()
+        }
+        self.faults = {name: table for name, table in faults.items() if table is not None}
+        problems += machine_fault_problems(self, self.faults)
         self.load_cases: tuple[LoadCase, ...] = ()  #: of ``[[load_cases]]``
         if (loads := read_loads(self.data, problems)) is not None:
             self.ends, self.operating_point, self.load_cases = loads
@@ -152,6 +163,8 @@ class MachineCase:
                 self.pair(name, self.operating_point)
         except InputError as error:
             raise InputError(self._placed(error)) from None
+        if problems := impossible_faults(self):
+            raise InputError(origin.place(problems))
         self._check_spreads(origin)
 
     def _add_shafts(self, shafts: dict[str, Any]) -> None:
@@ -224,7 +237,7 @@ class MachineCase:
         source = self.source or Source()
         return [
             source.place([(str(problem.where), problem)])[0]
-            if str(problem.where).partition(".")[0] in (*_GROUPS, "operation", "housing")
+            if str(problem.where).partition(".")[0] in (*GROUPS, "operation", "housing")
             else problem
             for problem in error.problems
         ]

@@ -28,14 +28,24 @@ def warn_of_period(machine: Machine) -> None:
         f"{name} {' : '.join(str(abs(machine.gears[gear].teeth)) for gear in mesh.gears)}"
         for name, mesh in machine.meshes.items()
     )
+    turning = any(mesh.period > 1 for mesh in machine.meshes.values())
+    reason, remedy = (
+        "the teeth have few common factors",
+        (
+            "Numbers of teeth on one shaft with a common factor shorten the period, such as 57 and "
+            "21 in place of 57 and 22"
+        ),
+    )
+    if turning:
+        reason = "unequal teeth repeat with whole turns of their gears"
+        remedy = "Faults of one gear only shorten the period"
     gigabytes = 1e-9 * _BYTES * _STEPS * cycles * 100
     warn(
         "long-period",
         f"the meshes repeat together only after {cycles} cycles of mesh {fastest} "
-        f"({1.0 / clock.frequency:.4g} s), because the teeth have few common factors "
-        f"({', '.join(pairs)}). Each motion takes {_STEPS * cycles} steps and about "
-        f"{gigabytes:.2g} GB for 100 coordinates. Numbers of teeth on one shaft with a common "
-        "factor shorten the period, such as 57 and 21 in place of 57 and 22",
+        f"({1.0 / clock.frequency:.4g} s), because {reason} ({', '.join(pairs)}). "
+        f"Each motion takes {_STEPS * cycles} steps and about "
+        f"{gigabytes:.2g} GB for 100 coordinates. {remedy}",
     )
 
 

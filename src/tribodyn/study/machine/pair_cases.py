@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 SHARED = ("material", "lubricant", "film", "stiffness", "friction")
 #: Keys of ``[dynamics]`` of a pair that belong to its mesh.
 MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damping_ratio"))
+#: Groups of parts, with a table for each part.
+GROUPS = ("shafts", "bearings", "gears", "meshes", "couplings", "faults")
 #: The pair vibrates in the machine, not on supports of its own.
 _STRUCTURES: dict[str, dict[str, Any]] = {
     "spur": {"model": "spur-6dof", "bearing_stiffness": Plain(1e9)},
@@ -39,7 +41,6 @@ _STRUCTURES: dict[str, dict[str, Any]] = {
 }
 _ROLES = ("pinion", "wheel")
 #: Groups of parts with one table each.
-_PARTS = ("shafts", "bearings", "gears", "meshes", "couplings")
 
 
 @dataclass(frozen=True)
@@ -215,7 +216,7 @@ def option_of(case: MachineCase, key: str) -> Option | None:
     options = rolling_options(ROLLING_BEARINGS[rolling]) if rolling in ROLLING_BEARINGS else {}
     if name in options:
         return options[name]
-    part, of_parts = TABLES.get(group), group in _PARTS
+    part, of_parts = TABLES.get(group), group in GROUPS
     if of_parts and table is None:
         return None
     if part is not None and len(names) == of_parts:
@@ -231,7 +232,7 @@ def unknown_key(case: MachineCase, key: str) -> Problem:
     """Problem of a key that a machine does not have, with the nearest one that it has."""
     keys = [
         f"{group}.{part}.{name}"
-        for group in _PARTS
+        for group in GROUPS
         for part in case.data.get(group, {})
         for name in TABLES[group].fields
     ]

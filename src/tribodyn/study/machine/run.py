@@ -219,7 +219,7 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
         force[name] = fine.contact_force[:, first : first + count].sum(axis=1)
         compression[name] = fine.deflection[:, first]
         separated[name] = (force[name] == 0.0).astype(float)
-        error[name] = fine.position @ _rotation(structure, name)
+        error[name] = fine.position @ mesh_rotation(structure, name)
         first += count
     bearings = {}
     for name, bearing in machine.bearings.items():
@@ -246,7 +246,7 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
     )
 
 
-def _rotation(structure: MachineStructure, mesh: str) -> Array:
+def mesh_rotation(structure: MachineStructure, mesh: str) -> Array:
     """Rotation of both gears on the line of action per coordinate (n,) [1 and m]."""
     gears = structure.machine.meshes[mesh].gears
     direction = structure.machine.directions[mesh].direction

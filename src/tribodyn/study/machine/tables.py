@@ -11,6 +11,7 @@ from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
 from tribodyn.study.case import gears
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.sections import Dynamics, MaterialData
+from tribodyn.study.faults.machine_section import MachineFaultTable
 
 _GUARD = "guards against a wrong unit"
 _RPM = math.pi / 30.0
@@ -292,6 +293,21 @@ class MotionTable(Section):
         meaning="highest frequency that the reduced structure meets",
         basis="six times the highest mesh frequency, at least 5 kHz",
     )
+    seat_mass: float | None = number(
+        None, 1e-6, 1e6, _GUARD, of="mass", meaning="mass of a bearing seat with its sensor"
+    )
+    seat_frequency: float | None = number(
+        None,
+        1.0,
+        1e6,
+        _GUARD,
+        unit="Hz",
+        example='"2 kHz"',
+        meaning="natural frequency of a bearing seat",
+    )
+    seat_damping_ratio: float = number(
+        0.05, 1e-4, 0.9, "over the critical damping", meaning="damping of a bearing seat"
+    )
 
 
 #: Keys of a mesh that both meshes of a stage share.
@@ -381,6 +397,7 @@ TABLES: dict[str, type[Section]] = {
     "operation": OperationTable,
     "load_cases": LoadCaseTable,
     "dynamics": MotionTable,
+    "faults": MachineFaultTable,
 }
 
 

@@ -1,0 +1,360 @@
+"""Motion of a machine with faults over whole turns of the shafts that have them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.dynamics import harmonic_balance
+from tribodyn.errors import InputError, collected, warn
+from tribodyn.faults import BearingForce, BearingImpacts, Fault, Waviness
+from tribodyn.interrupt import single_blas_thread
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.faults.impact_transfer import FreeStructure, impact_response
+from tribodyn.study.faults.machine_section import faults_of_mesh
+from tribodyn.study.faults.motion import SAMPLES, signal_lines
+from tribodyn.study.machine.first_look import warn_of_period
+from tribodyn.types import Array, ComplexArray
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response
+    from tribodyn.machine import Machine, MachineStructure
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.motion import MachineMotion
+    from tribodyn.study.machine.result import LoadResult
+
+#: Steps of a cycle of the fastest mesh, tried in turn.
+_STEPS = (128, 256)
+#: Change of the motion with half the steps, over its size, that is small enough.
+_ACCURATE = 2e-3
+#: Certified error that suffices beside it.
+_CERTIFIED = 1e-4
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+@dataclass(frozen=True, eq=False)
+class MachineTurningMotion:
+    """Motion of a machine over whole turns of its shafts, and what its sensors receive.
+
+    Parameters
+    ----------
+    sound : LoadResult
+        The machine with equal teeth under the same load.
+    structure : MachineStructure
+        With the force laws of all teeth over the turns.
+    motion : MachineMotion
+        Forces, errors and accelerations by the names of the parts.
+    seat : function, optional
+        Accelerance of a bearing seat [1/kg] over the frequency [Hz].
+    tacho : str
+        Shaft with the tacho.
+    """
+
+    sound: LoadResult
+    structure: MachineStructure
+    motion: MachineMotion
+    seat: Callable[[Array], ComplexArray] | None
+    tacho: str
+
+    @cached_property
+    def splines(self) -> dict[Any, Any]:
+        """Signals as smooth functions, by sensor and sampling rate; filled where they are used."""
+        return {}
+
+    @property
+    def machine(self) -> Machine:
+        """The machine with the force laws over the turns."""
+        return self.structure.machine
+
+    @property
+    def period(self) -> float:
+        """Time after which all repeats [s]."""
+        return 1.0 / self.motion.frequency
+
+    @property
+    def cycles(self) -> int:
+        """Cycles of the fastest mesh in the period."""
+        return int(self.motion.cycles.max())
+
+    @property
+    def mesh_frequency(self) -> float:
+        """Cycles of the fastest mesh per second [Hz]."""
+        return self.cycles * self.motion.frequency
+
+    def rotation_frequency(self, shaft: str) -> float:
+        """Turns of a shaft per second [Hz]."""
+        turns = self.machine.clock.turns
+        if shaft not in turns:
+            why = f"The shafts are {', '.join(turns)}"
+            raise InputError(f'there is no shaft "{shaft}"', "argument tacho", why, "Name one")
+        return float(turns[shaft]) * self.motion.frequency
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """Signals of :meth:`signal`; an angle from y towards z may stand for x, y or z."""
+        motion, axes = self.motion, "xyz"
+        nodes = {n for n, b in self.machine.bearings.items() if self.seat or b.node}
+        return (
+            *(f"housing.{n}.acceleration_{a}" for n in motion.node for a in axes),
+            *(f"bearings.{n}.acceleration_{a}" for n in motion.bearing if n in nodes for a in axes),
+            *(f"bearings.{n}.force_{a}" for n in motion.bearing for a in axes),
+            *(f"meshes.{n}.{s}" for n in motion.mesh for s in ("mesh_force", "transmission_error")),
+        )
+
+    def signal(self, sensor: str) -> tuple[Array, str]:
+        """Acceleration, force or transmission error on even samples, with its unit.
+
+        Parameters
+        ----------
+        sensor : str
+            One of :attr:`sensors`, such as ``"bearings.A.acceleration_y"``, or a direction between
+            y and z, such as ``"bearings.A.acceleration_30deg"``.
+
+        Returns
+        -------
+        ((n,) array, str)
+
+        Raises
+        ------
+        InputError
+            If there is no such sensor.
+        """
+        place = read_sensor(self, sensor)
+        motion = self.motion
+        if place.quantity == "force":
+            values = motion.bearing_force[:, motion.bearing.index(place.part), :3] @ place.direction
+        elif place.quantity == "acceleration":
+            values = motion.acceleration[:, motion.node.index(place.part)] @ place.direction
+        else:
+            values = getattr(motion, place.quantity)[:, motion.mesh.index(place.part)]
+        count = SAMPLES * self.cycles
+        even = np.interp(np.arange(count) / count, motion.clock, values, period=1.0)
+        if place.seat is not None:
+            lines = np.fft.rfft(even)
+            lines *= place.seat(np.arange(lines.size) * motion.frequency)
+            even = np.fft.irfft(lines, count)
+        return np.asarray(even), place.unit
+
+    @cached_property
+    def free_structure(self) -> FreeStructure:
+        """The machine with closed meshes, through which impacts of bearings reach the sensors."""
+        return FreeStructure(self.sound.system)
+
+    def impacts(
+        self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
+    ) -> Array:
+        """What a sensor receives of a damaged bearing.
+
+        Parameters
+        ----------
+        sensor : str
+            As for :meth:`signal`.
+        defect : (str, BearingForce)
+            Name of the bearing, and its defect.
+        time : (n,) array
+            Evenly spaced times [s].
+        seed : int
+            Number of the draw.
+
+        Returns
+        -------
+        (n,) array
+            In the unit of the sensor.
+        """
+        bearing, impacts = defect
+        assert isinstance(impacts, BearingForce)
+        rate, half_sine = 1.0 / (time[1] - time[0]), (impacts.force, impacts.duration)
+        key = sensor, bearing, rate, half_sine
+        if key not in self.splines:
+            place = read_sensor(self, sensor)
+            self.splines[key] = impact_response(self, bearing, place, half_sine, rate)
+        shaft = self.rotation_frequency(self.machine.bearings[bearing].shaft)
+        return impacts.superposed(*self.splines[key], shaft, time, seed)
+
+    def harmonics(self, sensor: str) -> tuple[Array, ComplexArray]:
+        """Frequencies and complex peak amplitudes of a signal, from its mean on.
+
+        Parameters
+        ----------
+        sensor : str
+            As for :meth:`signal`.
+
+        Returns
+        -------
+        ((k,) array, (k,) complex array)
+            Frequencies [Hz] and amplitudes in the unit of the sensor.
+        """
+        return signal_lines(self.signal(sensor)[0], self.period)
+
+    def __repr__(self) -> str:
+        """One line."""
+        turns = ", ".join(f"{shaft} {turns}" for shaft, turns in self.machine.clock.turns.items())
+        return f"MachineTurningMotion({self.period:.5g} s, turns of the shafts: {turns})"
+
+
+@dataclass(frozen=True)
+class SensorPlace:
+    """Where a sensor is, and what it measures."""
+
+    quantity: str  #: ``acceleration``, ``force``, ``mesh_force`` or ``transmission_error``
+    part: str  #: node of the housing, bearing or mesh
+    direction: Array  #: of an acceleration or a force
+    unit: str
+    seat: Callable[[Array], ComplexArray] | None = None  #: between the force and the acceleration
+
+
+def read_sensor(motion: MachineTurningMotion, sensor: str) -> SensorPlace:
+    """Place of a sensor by its name."""
+    group, _, rest = sensor.partition(".")
+    part, _, name = rest.rpartition(".")
+    quantity, _, axis = name.rpartition("_")
+    if sensor in motion.sensors and group == "meshes":
+        return SensorPlace(name, part, np.zeros(3), "N" if name == "mesh_force" else "m")
+    direction = _direction(axis)
+    bearing = motion.machine.bearings.get(part) if group == "bearings" else None
+    if direction is not None and bearing is not None and quantity == "force":
+        return SensorPlace("force", part, direction, "N")
+    if direction is not None and quantity == "acceleration":
+        if group == "housing" and part in motion.motion.node:
+            return SensorPlace("acceleration", part, direction, "m/s^2")
+        if bearing is not None and bearing.node is not None:
+            return SensorPlace("acceleration", bearing.node, direction, "m/s^2")
+        if bearing is not None and motion.seat is not None:
+            return SensorPlace("force", part, direction, "m/s^2", motion.seat)
+        if bearing is not None:
+            what = f"the seat of bearing {part} is rigid, so that nothing accelerates"
+            why = "There is no housing, and no seat that moves"
+            remedy = 'Give seat_mass and seat_frequency in [dynamics], such as "10 kg" and "2 kHz"'
+            raise InputError(what, "argument sensor", why, remedy)
+    why, remedy = f"The sensors are {', '.join(motion.sensors)}", "Name one of these"
+    raise InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
+
+
+def _direction(axis: str) -> Array | None:
+    """Unit vector of ``x``, ``y``, ``z`` or an angle such as ``30deg``; None of anything else."""
+    if axis in _AXES:
+        return np.array(_AXES[axis])
+    try:
+        angle = math.radians(float(axis.removesuffix("deg")))
+    except ValueError:
+        return None
+    if not axis.endswith("deg") or not math.isfinite(angle):
+        return None
+    return np.array([0.0, math.cos(angle), math.sin(angle)])
+
+
+def seat_accelerance(case: MachineCase) -> Callable[[Array], ComplexArray] | None:
+    """Accelerance of a seat of one mass on a spring; None where the case has none."""
+    data = case.motion
+    if data.seat_mass is None or data.seat_frequency is None:
+        return None
+    mass, natural, damping = data.seat_mass, data.seat_frequency, data.seat_damping_ratio
+
+    def accelerance(frequency: Array) -> ComplexArray:
+        ratio = np.asarray(frequency) / natural
+        return np.asarray(-(ratio**2) / (mass * (1.0 - ratio**2 + 2j * damping * ratio)))
+
+    return accelerance
+
+
+def turning_machine(case: MachineCase, sound: LoadResult) -> Machine:
+    """The machine whose meshes with differing teeth have a force law over whole turns."""
+    machine = sound.machine
+    changed = {}
+    for name in machine.meshes:
+        faults = faults_of_mesh(case, machine, name)
+        fields = _mesh_over_turns(case, sound, name, faults)
+        if fields:
+            kept = {"stiffness": machine.meshes[name].stiffness, **fields}
+            changed[name] = case.machine(sound.load, **{name: kept}).meshes[name]
+    return replace(machine, meshes={**machine.meshes, **changed})
+
+
+def _mesh_over_turns(
+    case: MachineCase, sound: LoadResult, name: str, faults: list[Fault]
+) -> dict[str, Any]:
+    """Fields of a mesh with faults; empty where all its teeth are equal."""
+    from tribodyn.dynamics import law_contact
+    from tribodyn.faults import turning_mesh
+    from tribodyn.study.pipeline.assembly import damping_of, structure_of
+    from tribodyn.study.pipeline.tooth_contact import loaded_settings
+
+    if name not in sound.tables:
+        return _error_over_turns(case, sound.machine, name, faults) if faults else {}
+    pair, table = case.pair(name, sound.load, sound.misalignment[name]), sound.tables[name]
+    if pair.spur_pair is None or not (faults or pair.spur_pair.teeth_differ):
+        return {}
+    settings = loaded_settings(pair)
+    turning = turning_mesh(pair.gear_pair, abs(pair.pinion_torque), faults, **settings)
+    functions = turning.functions(table.functions())
+    first, *_ = structure_of(pair, functions, damping_of(pair, table), "stiffness").contacts
+    contact = law_contact(first, turning.force_law)
+    events = functions.event_phases
+    return {"contacts": (contact,), "frictions": (), "events": events, "period": turning.cycles}
+
+
+def _error_over_turns(
+    case: MachineCase, machine: Machine, name: str, faults: list[Fault]
+) -> dict[str, Any]:
+    """Error of a mesh with a constant stiffness, whose teeth all share a wave."""
+    sound = machine.meshes[name].error
+    names = dict(zip(("pinion", "wheel"), case._pinion_and_wheel(name), strict=True))
+    teeth = {role: abs(machine.gears[gear].teeth) for role, gear in names.items()}
+    waves = [fault for fault in faults if isinstance(fault, Waviness)]
+    period = math.lcm(*(teeth[wave.gear] for wave in waves))
+
+    def error(phase: Array) -> Array:
+        cycles = np.asarray(phase, dtype=float) * period
+        total = sound(cycles % 1.0) if callable(sound) else np.full(cycles.shape, sound)
+        for wave in waves:
+            angle = wave.order * 2.0 * np.pi * cycles / teeth[wave.gear] + wave.phase
+            total = total - wave.amplitude * np.cos(angle)
+        return np.asarray(total)
+
+    return {"error": error, "period": period}
+
+
+def repeated(response: Response, frequency: float, slower: float) -> Response:
+    """A periodic motion over the longer period of a slower clock."""
+    count, last = round(frequency / slower), -1
+    start = response.time - response.time[0]
+    times = [start[:last] + turn / frequency for turn in range(count)]
+    position = np.concatenate([*count * [response.position[:last]], response.position[last:]])
+    time = np.concatenate([*times, [count / frequency]])
+    return replace(response, time=time, position=position, mesh_frequency=slower)
+
+
+def machine_turning_motion(
+    case: MachineCase, sound: LoadResult, progress: Progress = SILENT
+) -> MachineTurningMotion:
+    """Compute the steady motion of a machine over whole turns of its shafts."""
+    from tribodyn.machine import system as system_of
+    from tribodyn.study.machine.run import machine_motion
+
+    with single_blas_thread():
+        progress.start("Teeth over whole turns")
+        machine = turning_machine(case, sound)
+        warn_of_period(machine)
+        structure = replace(sound.structure, machine=machine)
+        system = system_of(structure)
+        cycles = max(machine.clock.cycles.values())
+        response = repeated(sound.response, sound.motion.frequency, machine.clock.frequency)
+        for steps in _STEPS:
+            per_period = math.ceil(steps * cycles / system.cycles)
+            with collected() as model_warnings:
+                response = harmonic_balance(
+                    system, machine.clock.frequency, steps=per_period, start=response,
+                    tolerance=_CERTIFIED, progress=progress,
+                )  # fmt: skip
+            if not response.step_error > _ACCURATE:
+                break
+        for warning in model_warnings:
+            warn(warning.code, warning.message)
+        motion = machine_motion(structure, response)
+    tacho = machine.operation.input
+    return MachineTurningMotion(sound, structure, motion, seat_accelerance(case), tacho)

@@ -1,0 +1,203 @@
+"""Faults in a machine: motion over whole turns, sensors, impacts of damaged bearings."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.unit.study.test_machine_run import GEARED
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.machine import Gear, Machine, Mesh, Operation, Shaft
+from tribodyn.measurement import read
+from tribodyn.study.faults.impact_transfer import impact_spectrum, pulse
+from tribodyn.study.faults.machine_motion import (
+    machine_turning_motion,
+    read_sensor,
+    turning_machine,
+)
+from tribodyn.study.faults.machine_section import bearing_impacts, faults_of_mesh
+from tribodyn.study.machine.first_look import warn_of_period
+from tribodyn.study.machine.read import read_any_case
+
+AXIS = {"kind": "eccentricity", "gear": "gears.z1", "amplitude": "2 um"}
+DEFECT = {
+    "kind": "bearing-defect", "bearing": "A", "place": "outer", "impact_force": "200 N",
+    "rolling_elements": 9, "element_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "slip": 0.0,
+}  # fmt: skip
+SEAT = {"dynamics.seat_mass": "10 kg", "dynamics.seat_frequency": "2 kHz"}
+
+
+@cache
+def result() -> Any:
+    return td.run(read_any_case(GEARED))
+
+
+def case_with(seat: bool = True, **faults: dict[str, Any]) -> Any:
+    changes = {f"faults.{n}.{key}": v for n, fault in faults.items() for key, v in fault.items()}
+    return result().case.replace({**changes, **(SEAT if seat else {})})
+
+
+def motion_with(**faults: dict[str, Any]) -> Any:
+    return machine_turning_motion(case_with(**faults), result().operation)
+
+
+def test_lines_are_those_of_the_shafts() -> None:
+    motion = motion_with(axis=AXIS)
+    assert motion.machine.clock.turns["input"] == 1
+    assert motion.cycles == 27
+    frequency, lines = motion.harmonics("bearings.A.force_y")
+    size = np.abs(lines)
+    tall = np.flatnonzero(size[:1000] > 1e-6 * size[1:].max())
+    # a linear machine superposes the wave of the shaft and the harmonics of the mesh
+    assert set(tall.tolist()) <= {0, 1, 27}
+    assert frequency[1] == pytest.approx(3000 / 60)
+    sound = np.abs(motion_with().harmonics("bearings.A.force_y")[1])
+    assert size[27] == pytest.approx(sound[1], rel=1e-6)
+
+
+def test_a_fault_of_no_size_changes_nothing_and_a_longer_clock_neither() -> None:
+    sound = motion_with().signal("bearings.C.acceleration_30deg")[0]
+    none = motion_with(axis={**AXIS, "amplitude": "0 um"})
+    other = motion_with(wheel={**AXIS, "gear": "z2", "amplitude": "0 um"})
+    assert (none.cycles, other.cycles) == (27, 51)
+    for motion in (none, other):
+        values = motion.signal("bearings.C.acceleration_30deg")[0]
+        expected = np.tile(sound, motion.cycles)
+        np.testing.assert_allclose(values, expected, atol=1e-5 * np.ptp(sound))
+
+
+def test_a_long_period_is_announced() -> None:
+    both = case_with(axis=AXIS, wheel={**AXIS, "gear": "z2"})
+    machine = turning_machine(both, result().operation)
+    with pytest.warns(td.ModelWarning, match=r"459 cycles of mesh first .* unequal teeth"):
+        warn_of_period(machine)
+
+
+def test_a_wave_is_that_of_the_forced_response() -> None:
+    from tribodyn.dynamics import forced_response
+
+    wave = {"kind": "waviness", "gear": "z2", "amplitude": "2 um", "order": 64, "phase": "0 deg"}
+    motion = motion_with(wave=wave)
+    frequency, lines = motion.harmonics("meshes.first.mesh_force")
+    assert frequency[64] == pytest.approx(64 * 3000 / 60 * 27 / 51)
+    forced = forced_response(result().operation.system, frequency[64:65], error=-2e-6)
+    assert lines[64] == pytest.approx(forced.mesh_force[0], rel=2e-3)
+
+
+def test_impacts_reach_the_sensor_through_the_structure() -> None:
+    motion = motion_with(outer=DEFECT)
+    system, structure = result().operation.system, result().structure
+    frequency = np.array([130.0, 640.0, 2100.0])
+    place = read_sensor(motion, "bearings.C.force_z")
+    spectrum = impact_spectrum(motion, "A", place, frequency)
+    across = motion.sound.motion.mean(motion.sound.motion.bearing_force[:, 2])[1:3]
+    load = -structure.bearing("A").T @ np.array([0.0, *across / np.hypot(*across), 0, 0, 0])
+    contact = structure.mesh("first")
+    for hertz, value in zip(frequency, spectrum, strict=True):
+        omega = 2 * np.pi * hertz
+        stiffness = system.stiffness + 5.2e8 * np.outer(contact, contact)
+        damper = system.rate_matrix + system.contacts[0].damping * np.outer(contact, contact)
+        moved = np.linalg.solve(stiffness - omega**2 * system.mass + 1j * omega * damper, load)
+        expected = 5e8 * (structure.bearing("C") @ moved)[2]
+        assert value == pytest.approx(expected, rel=1e-6)
+    seat = impact_spectrum(motion, "A", read_sensor(motion, "bearings.C.acceleration_z"), frequency)
+    ratio = frequency / 2000.0
+    np.testing.assert_allclose(
+        seat / spectrum, -(ratio**2) / (10.0 * (1 - ratio**2 + 0.1j * ratio)), rtol=1e-9
+    )
+
+
+def test_half_a_sine_has_its_spectrum() -> None:
+    time = (np.arange(4000) + 0.5) * 1e-3 / 4000
+    force = 20.0 * np.sin(np.pi * time / 1e-3)
+    for hertz in (0.0, 300.0, 500.0, 1700.0):
+        expected = np.sum(force * np.exp(-2j * np.pi * hertz * time)) * 1e-3 / 4000
+        assert pulse(np.array([hertz]), 20.0, 1e-3)[0] == pytest.approx(expected, abs=1e-8)
+
+
+def test_a_recording_has_the_frequency_of_the_bearing(tmp_path: Path) -> None:
+    damaged = td.run(case_with(outer=DEFECT))
+    names = ["bearings.A.acceleration_y", "bearings.C.force_30deg"]
+    recording = damaged.recording(names, 2.0, 12_800.0, tacho="output", seed=3)
+    quiet = td.run(case_with(outer={**DEFECT, "impact_force": "0 N"}))
+    quiet = quiet.recording(names, 2.0, 12_800.0, tacho="output", seed=3)
+    impacts = bearing_impacts(damaged.case, damaged.case.faults["outer"])
+    rate = impacts.frequency(3000 / 60)
+    assert rate == pytest.approx(4.5 * 50.0 * (1 - 7.94 / 39.04))
+    for name in names:
+        added = recording[name] - quiet[name]
+        size = np.abs(np.fft.rfft(added * np.hanning(added.size)))
+        line = np.fft.rfftfreq(added.size, 1 / 12_800.0)
+        near = np.abs(line / rate - np.round(line / rate)) * rate < 2.0
+        assert (size[near & (line > 100.0)] ** 2).sum() > 0.98 * (size[line > 100.0] ** 2).sum()
+    edges = np.flatnonzero(np.diff(recording["tacho"]) > 0.0) / 12_800.0
+    assert np.diff(edges).mean() == pytest.approx(51 / 27 / 50.0, rel=1e-3)
+    saved = read(recording.save(tmp_path / "machine.h5", truth={"fault": "outer"}))
+    np.testing.assert_allclose(saved[names[0]], recording[names[0]], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("faults", "expected"),
+    [
+        ({"f": {**AXIS, "gear": "z9"}}, r"faults\.f\.gear.*no gear \"z9\".*z1, z2"),
+        ({"f": {**AXIS, "tooth": 1}}, r"faults\.f\.tooth.*has: gear, amplitude"),
+        (
+            {"f": {"kind": "crack", "gear": "z1", "tooth": 1, "depth": "1 mm"}},
+            r"faults\.f\.kind.*constant stiffness",
+        ),
+        ({"f": {**DEFECT, "pitch_diameter": None}}, r"faults\.f\.pitch_diameter.*no type"),
+        ({"f": {**DEFECT, "element_diameter": "50 mm"}}, r"element_diameter = 50 mm"),
+    ],
+)
+def test_a_wrong_fault_names_its_key(faults: dict[str, Any], expected: str) -> None:
+    with pytest.raises(InputError, match=expected):
+        case_with(**faults)
+
+
+def test_faults_are_written_and_read_back() -> None:
+    case = case_with(axis=AXIS, outer=DEFECT)
+    again = read_any_case(case.to_toml())
+    assert dict(again.values()) == dict(case.values())
+    assert again.faults == case.faults
+
+
+def test_a_rigid_seat_does_not_accelerate() -> None:
+    with pytest.raises(InputError, match="seat_mass and seat_frequency"):
+        result().recording("bearings.A.acceleration_y", 0.1)
+    with pytest.raises(InputError, match=r"The sensors are bearings\.B"):
+        result().recording("bearings.A.accel_y", 0.1)
+    with pytest.raises(InputError, match="The shafts are input, output"):
+        result().recording("bearings.A.force_y", 0.1, tacho="middle")
+
+
+def test_an_idler_is_eccentric_in_one_direction() -> None:
+    shafts = {name: Shaft() for name in "abc"}
+    gears = {n: Gear(n, 0.0, z, 0.02) for n, z in zip("abc", (20, 30, 25), strict=True)}
+    meshes = {
+        "ab": Mesh(("a", "b"), 2e-3, stiffness=1e8),
+        "bc": Mesh(("b", "c"), 2e-3, stiffness=1e8, angle=0.7),
+    }
+    machine = Machine(shafts, gears, meshes, operation=Operation("a", "c", 100.0, 50.0))
+    tables = read_any_case(
+        GEARED.replace("z1", "a").replace("z2", "b") + '[faults.f]\nkind = "eccentricity"\n'
+        'gear = "b"\namplitude = "1 um"\nphase = "20 deg"\n'
+    ).faults
+    names = {"faults": tables, "_pinion_and_wheel": lambda _, mesh: tuple(mesh)}
+    idler: Any = type("Idler", (), names)()
+    (first,), (second,) = (faults_of_mesh(idler, machine, mesh) for mesh in ("ab", "bc"))
+    assert (first.gear, second.gear) == ("wheel", "pinion")
+    pushes = (-machine.directions["ab"].normal, machine.directions["bc"].normal)
+    sense = np.sign(machine.kinematics.shafts["b"].speed)
+    start = np.arctan2(pushes[0][2], pushes[0][1])
+    for angle in (0.0, 1.0, 2.5):
+        # the axis of the toothing circles with the shaft, towards the mate where the wave is high
+        place = start + sense * (angle + first.phase)
+        moved = np.array([0.0, np.cos(place), np.sin(place)])
+        across = [moved @ push / np.hypot(*push[1:]) for push in pushes]
+        waves = [np.cos(angle + fault.phase) for fault in (first, second)]
+        np.testing.assert_allclose(waves, across, atol=1e-12)
