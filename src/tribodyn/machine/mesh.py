@@ -110,8 +110,8 @@ class Mesh:
     frictions: Sequence[LoadFriction] = ()
     events: tuple[float, ...] = (0.0,)
     offset: float = 0.0
-    period: int = 1
     crossed: CrossedAxes | None = None
+    period: int = 1
 
     @classmethod
     def hypoid(

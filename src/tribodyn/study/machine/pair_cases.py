@@ -40,7 +40,6 @@ _STRUCTURES: dict[str, dict[str, Any]] = {
     "hypoid": {"model": "hypoid-14dof"},
 }
 _ROLES = ("pinion", "wheel")
-#: Groups of parts with one table each.
 
 
 @dataclass(frozen=True)
