@@ -126,7 +126,7 @@ def impact_response(
 ) -> ImpactResponse:
     """Response of a sensor to half a sine of force and duration in a bearing."""
     count = int(2 ** np.ceil(np.log2(motion.free_structure.duration * sample_rate + 4 * _BEFORE)))
-    frequency = np.arange(count // 2 + 1) * (sample_rate / count)
+    frequency: Array = np.arange(count // 2 + 1, dtype=float) * (sample_rate / count)
     lines = impact_spectrum(motion, bearing, place, frequency) * pulse(frequency, *half_sine)
     lines *= anti_alias(frequency / sample_rate)
     lines *= np.exp(-2j * np.pi * frequency * (_BEFORE / sample_rate))

@@ -15,7 +15,7 @@ from tribodyn.errors import InputError, collected, warn
 from tribodyn.faults import BearingForce, BearingImpacts, Fault, Waviness
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.faults.impact_transfer import FreeStructure, impact_response
+from tribodyn.study.faults.impact_transfer import FreeStructure, ImpactResponse, impact_response
 from tribodyn.study.faults.machine_section import faults_of_mesh
 from tribodyn.study.faults.motion import SAMPLES, signal_lines
 from tribodyn.study.machine.first_look import warn_of_period
@@ -39,27 +39,13 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 @dataclass(frozen=True, eq=False)
 class MachineTurningMotion:
-    """Motion of a machine over whole turns of its shafts, and what its sensors receive.
+    """Motion of a machine over whole turns of its shafts, and what its sensors receive."""
 
-    Parameters
-    ----------
-    sound : LoadResult
-        The machine with equal teeth under the same load.
-    structure : MachineStructure
-        With the force laws of all teeth over the turns.
-    motion : MachineMotion
-        Forces, errors and accelerations by the names of the parts.
-    seat : function, optional
-        Accelerance of a bearing seat [1/kg] over the frequency [Hz].
-    tacho : str
-        Shaft with the tacho.
-    """
-
-    sound: LoadResult
-    structure: MachineStructure
+    sound: LoadResult  #: with equal teeth under the same load
+    structure: MachineStructure  #: with the force laws of all teeth over the turns
     motion: MachineMotion
-    seat: Callable[[Array], ComplexArray] | None
-    tacho: str
+    seat: Callable[[Array], ComplexArray] | None  #: accelerance of a seat [1/kg] over [Hz]
+    tacho: str  #: shaft with the tacho
 
     @cached_property
     def splines(self) -> dict[Any, Any]:
@@ -107,23 +93,7 @@ class MachineTurningMotion:
         )
 
     def signal(self, sensor: str) -> tuple[Array, str]:
-        """Acceleration, force or transmission error on even samples, with its unit.
-
-        Parameters
-        ----------
-        sensor : str
-            One of :attr:`sensors`, such as ``"bearings.A.acceleration_y"``, or a direction between
-            y and z, such as ``"bearings.A.acceleration_30deg"``.
-
-        Returns
-        -------
-        ((n,) array, str)
-
-        Raises
-        ------
-        InputError
-            If there is no such sensor.
-        """
+        """Acceleration, force or transmission error on even samples of a period, with its unit."""
         place = read_sensor(self, sensor)
         motion = self.motion
         if place.quantity == "force":
@@ -136,7 +106,7 @@ class MachineTurningMotion:
         even = np.interp(np.arange(count) / count, motion.clock, values, period=1.0)
         if place.seat is not None:
             lines = np.fft.rfft(even)
-            lines *= place.seat(np.arange(lines.size) * motion.frequency)
+            lines *= place.seat(np.arange(lines.size, dtype=float) * motion.frequency)
             even = np.fft.irfft(lines, count)
         return np.asarray(even), place.unit
 
@@ -148,47 +118,20 @@ class MachineTurningMotion:
     def impacts(
         self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
     ) -> Array:
-        """What a sensor receives of a damaged bearing.
-
-        Parameters
-        ----------
-        sensor : str
-            As for :meth:`signal`.
-        defect : (str, BearingForce)
-            Name of the bearing, and its defect.
-        time : (n,) array
-            Evenly spaced times [s].
-        seed : int
-            Number of the draw.
-
-        Returns
-        -------
-        (n,) array
-            In the unit of the sensor.
-        """
+        """What a sensor receives of the defect of a bearing, which is named, in its unit."""
         bearing, impacts = defect
         assert isinstance(impacts, BearingForce)
-        rate, half_sine = 1.0 / (time[1] - time[0]), (impacts.force, impacts.duration)
+        rate, half_sine = 1.0 / float(time[1] - time[0]), (impacts.force, impacts.duration)
         key = sensor, bearing, rate, half_sine
         if key not in self.splines:
             place = read_sensor(self, sensor)
             self.splines[key] = impact_response(self, bearing, place, half_sine, rate)
         shaft = self.rotation_frequency(self.machine.bearings[bearing].shaft)
-        return impacts.superposed(*self.splines[key], shaft, time, seed)
+        response: ImpactResponse = self.splines[key]
+        return impacts.superposed(response.at, response.duration, shaft, time, seed)
 
     def harmonics(self, sensor: str) -> tuple[Array, ComplexArray]:
-        """Frequencies and complex peak amplitudes of a signal, from its mean on.
-
-        Parameters
-        ----------
-        sensor : str
-            As for :meth:`signal`.
-
-        Returns
-        -------
-        ((k,) array, (k,) complex array)
-            Frequencies [Hz] and amplitudes in the unit of the sensor.
-        """
+        """Frequencies (k,) [Hz] and complex peak amplitudes (k,) of a signal, from its mean on."""
         return signal_lines(self.signal(sensor)[0], self.period)
 
     def __repr__(self) -> str:

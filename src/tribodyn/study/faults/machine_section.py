@@ -182,7 +182,5 @@ def bearing_impacts(case: MachineCase, fault: MachineFaultTable) -> BearingForce
             why = f"Bearing {name} has no type, whose geometry states it"
             remedy = f"Give {key}, or the type and the diameters of the bearing"
             raise InputError(f"{key} is missing", Argument(key), why, remedy)
-    stated = {key: value for key, value in values.items() if value is not None}
-    if fault.impact_duration is not None:
-        stated["duration"] = fault.impact_duration
-    return BearingForce(place=fault.place, force=fault.impact_force, **stated)
+    values |= {"place": fault.place, "force": fault.impact_force, "duration": fault.impact_duration}
+    return BearingForce(**{key: value for key, value in values.items() if value is not None})
