@@ -8,14 +8,16 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean
-from tribodyn.model import number, text
-from tribodyn.study.faults.section import KINDS, FaultTable, fault_problems, read_fault
+from tribodyn.model import REQUIRED, choice, number, text
+from tribodyn.study.faults.section import KINDS, MEANINGS, FaultTable, fault_problems, read_fault
 
 if TYPE_CHECKING:
     from tribodyn.faults import BearingForce, Fault
     from tribodyn.machine import Machine
     from tribodyn.study.machine.case import MachineCase
 
+#: Kinds that act on the shafts of a pair.
+_OF_PAIRS = ("torque-ripple", "speed-fluctuation", "random-load")
 _GEOMETRY = ("rolling_elements", "element_diameter", "pitch_diameter")
 _FORCE = number(
     None, 0.0, 1e7, "guards against a wrong unit", unit="N", example='"200 N"',
@@ -31,12 +33,15 @@ class MachineFaultTable(FaultTable):
     """A ``[faults.NAME]`` table of a machine: a fault of any of its gears and bearings."""
 
     kinds: ClassVar = {
-        **KINDS,
+        **{kind: keys for kind, keys in KINDS.items() if kind not in _OF_PAIRS},
         "bearing-defect": (
             ("bearing", "place", "impact_force"),
             (*_GEOMETRY, "contact_angle", "impact_duration", "slip"),
         ),
     }
+    kind: str = choice(
+        REQUIRED, {k: v for k, v in MEANINGS.items() if k not in _OF_PAIRS}, meaning="what it is"
+    )
     gear: str | None = text(None, meaning="gear that has it", example='"z1"')  # type: ignore[assignment]
     bearing: str | None = text(None, meaning="bearing that has it", example='"A"')
     impact_force: float | None = _FORCE

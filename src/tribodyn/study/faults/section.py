@@ -45,7 +45,7 @@ KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 _AMPLITUDES = dict.fromkeys(("torques", "fluctuations"), "amplitudes")
 #: Two keys of a kind of which one is stated.
 _EITHER = {"random-load": ("torque", "densities")}
-_MEANINGS = {
+MEANINGS = {
     "eccentricity": "axis of the toothing beside the axis of rotation",
     "waviness": "waves that run on from tooth to tooth, a ghost order",
     "pitch-deviations": "pitch deviations drawn from an accuracy class",
@@ -75,7 +75,7 @@ class FaultTable(Section):
 
     needed = ("kind", "gear")
     kinds: ClassVar = KINDS
-    kind: str = choice(REQUIRED, _MEANINGS, meaning="what it is")
+    kind: str = choice(REQUIRED, MEANINGS, meaning="what it is")
     gear: str | None = choice(None, ("pinion", "wheel"), meaning="gear, or shaft of it")
     tooth: int | None = integer(
         None, 1, 1000, "from 1 in the order of contact", meaning="number of the tooth", example="1"
@@ -207,9 +207,7 @@ def fault_problems(
     return problems
 
 
-def read_fault(
-    fault: FaultTable, **changes: Any
-) -> Fault | BearingDefect | ShaftExcitation:
+def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | ShaftExcitation:
     """The fault that a table states."""
     from tribodyn import faults
 
