@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 from tribodyn.machine.machine import Machine
-from tribodyn.machine.plane_law import coordinate_count, pair_coordinates, projected
+from tribodyn.machine.plane_law import coordinate_count, pair_coordinates, projected, run_back
 from tribodyn.machine.reduction import machine_structure
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
@@ -115,10 +116,13 @@ def _in_space(
     onto = pair_coordinates(direction, size, first_drives=drives, crossing=crossing)
     onto = onto @ np.vstack([structure.gear(gear) for gear in mesh.gears])
     clock = _clock(machine, name)
-    contacts = [projected(contact, onto, **clock) for contact in mesh.contacts]
+    parts: tuple[Sequence[Contact], Sequence[LoadFriction]] = mesh.contacts, mesh.frictions
+    if crossing is not None and not drives:
+        parts = [run_back(each) for each in parts[0]], [run_back(each) for each in parts[1]]
+    contacts = [projected(contact, onto, **clock) for contact in parts[0]]
     frictions = [
         projected(friction, onto, contacts=tuple(first + j for j in friction.contacts))
-        for friction in mesh.frictions
+        for friction in parts[1]
     ]
     return contacts, frictions
 

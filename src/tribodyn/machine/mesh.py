@@ -79,7 +79,7 @@ class Mesh:
         Axes and flanks of a hypoid or bevel pair, whose pinion is the first gear;
         :meth:`hypoid` makes such a mesh. Stiffness, damping, error and gap are then along the
         normal of the flanks, ``angle`` is the direction of the common perpendicular, and contacts
-        and friction are those of a mesh table in space.
+        and friction are those of a mesh table in space, whose pinion drives.
 
     Raises
     ------

@@ -4,7 +4,8 @@ A pair has the coordinates x (across the line of action, in the direction of the
 y (along it, towards the driven gear) and theta (in the running sense) of its first gear, then those
 of its second gear. Where the force has an axial part or moves over the face, each gear has x, y, z
 (along the axes, in the sense in which the first gear turns), rotations about x and y, and theta.
-A pair on crossed axes has those of its mesh table, alone or between engine and load.
+A pair on crossed axes has those of its mesh table, alone or between engine and load, with a driving
+pinion; a driving wheel turns it back in time.
 """
 
 from __future__ import annotations
@@ -26,6 +27,11 @@ if TYPE_CHECKING:
 T = TypeVar("T", Contact, LoadFriction)
 #: Coordinates of a pair in space that a plane pair has.
 _PLANE = [0, 1, 5, 6, 7, 11]
+#: Entries of contacts and friction that may be functions of the phase.
+_ENTRIES = (
+    *("direction", "stiffness", "damping", "error", "gap", "friction", "coefficients"),
+    *("ramp_stiffness", "ramp_gap"),
+)
 #: Number of coordinates of a pair in space.
 SPATIAL = 12
 
@@ -39,8 +45,9 @@ def pair_coordinates(
 ) -> Array:
     """The coordinates of a pair from those of both gear nodes in space, (size, 12)."""
     if crossing is not None:
-        between = (size - SPATIAL) // 2
-        return np.pad(crossing.pair_coordinates(direction.senses), ((between, between), (0, 0)))
+        between, sign = (size - SPATIAL) // 2, 1 if first_drives else -1
+        senses = sign * direction.senses[0], sign * direction.senses[1]
+        return np.pad(crossing.pair_coordinates(senses), ((between, between), (0, 0)))
     along = np.array([0.0, *direction.normal[1:]]) * (1.0 if first_drives else -1.0)
     axis = np.array([direction.senses[0], 0.0, 0.0])
     rows = np.zeros((SPATIAL, SPATIAL))
@@ -85,6 +92,25 @@ def with_exchanged_gears(mesh: Mesh, *, internal: bool) -> Mesh:
 
     contacts, frictions = map(exchanged, mesh.contacts), map(exchanged, mesh.frictions)
     return replace(mesh, contacts=tuple(contacts), frictions=tuple(frictions))
+
+
+def run_back(part: T) -> T:
+    """Contact or friction of a driving pinion for a driving wheel, which turns it back in time."""
+    changes: dict[str, Any] = {n: _back(getattr(part, n)) for n in _ENTRIES if hasattr(part, n)}
+    # What slides the other way rubs the other way.
+    opposed = "friction" if isinstance(part, Contact) else "coefficients"
+    changes[opposed] = _opposed(changes[opposed])
+    return replace(part, **changes, events=tuple(sorted({-event % 1.0 for event in part.events})))
+
+
+def _back(entry: Any) -> Any:
+    return (lambda phase: entry(-np.asarray(phase) % 1.0)) if callable(entry) else entry
+
+
+def _opposed(entry: Any) -> Any:
+    if callable(entry):
+        return lambda phase: -np.asarray(entry(phase))
+    return None if entry is None else -np.asarray(entry)
 
 
 def projected(part: T, onto: Array, **changes: Any) -> T:

@@ -22,7 +22,9 @@ from tribodyn.machine import (
     Coupling,
     CrossedAxes,
     Gear,
+    Housing,
     Machine,
+    MachineStructure,
     Mesh,
     Operation,
     Section,
@@ -143,6 +145,34 @@ def test_axes_cross_at_the_offset_and_a_small_one_tends_to_spiral_bevel_gears() 
     forces = [np.abs(line - lines[0])[[0, 1, 2, 6, 7, 8]].max() for line in lines[1:]]
     assert forces[1] < 1e-4
     assert forces[1] == pytest.approx(2.0 * forces[0], rel=1e-2)
+
+
+def test_rigid_motions_in_space_load_neither_teeth_nor_bearings_on_a_housing() -> None:
+    nodes = {name: tuple(range(6 * i, 6 * i + 6)) for i, name in enumerate("ab")}
+    wheel = {
+        "out0.02": Bearing("out", 0.02, 4e8, node="a"),
+        "out0.26": Bearing("out", 0.26, 4e8, axial_stiffness=2e8, node="b"),
+    }
+    plain = machine(blank(), (1, -1))
+    housing = Housing(mass=np.eye(12), stiffness=np.eye(12), nodes=nodes)
+    built = machine(blank(), (1, -1), bearings={**plain.bearings, **wheel}, housing=housing)
+    structure, place = MachineStructure(built), built.placement
+    for shift, turn in zip(np.vstack([np.eye(3), np.zeros((3, 3))]), np.vstack([np.zeros((3, 3)),
+                           np.eye(3)]), strict=True):  # fmt: skip
+
+        def moved(point: Any, shift: Any = shift, turn: Any = turn) -> Any:
+            return np.concatenate([shift + np.cross(turn, point), turn])
+
+        motion = []
+        for name, shaft in structure.shafts.items():
+            axes, start = place.axes[name], np.array(place.shafts[name])
+            for node in shaft.nodes:
+                motion.append(np.kron(np.eye(2), axes.T) @ moved(start + node * axes[:, 0]))
+        motion += [moved(place.bearings[name]) for name in wheel]
+        values = np.concatenate(motion)
+        assert structure.mesh("m") @ values == pytest.approx(0.0, abs=1e-12)
+        for name in wheel:
+            assert structure.bearing(name) @ values == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("speed", [300.0, -300.0])

@@ -389,15 +389,13 @@ class MachineCase:
             # The gap grows along the axis about which the pinion turns.
             misalignment = misalignment if speed < 0.0 else -misalignment
         side = part.crossing.side(mesh_load.sense) if part.crossing else ""
-        if side and mesh_load.driver != pinion:
-            what, why = f"wheel {names[1]} drives", "Teeth of hypoid gears need a driving pinion"
-            raise InputError(what, f"meshes.{mesh}.gears", why, "Give the mesh a stiffness")
         return pair_case(
             self.data,
             f"meshes.{mesh}",
             names,
             self.source,
-            driver=mesh_load.driver,
+            # Hypoid teeth are those of a driving pinion; a driving wheel turns it back in time.
+            driver=pinion if side else mesh_load.driver,
             operation=(abs(speed), abs(mesh_load.torque[part.gears.index(pinion)])),
             hand=side or (gear_hand(pinion, self.gears, part) if part.helix_angle else ""),
             misalignment=misalignment,

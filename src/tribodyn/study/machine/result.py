@@ -286,6 +286,8 @@ class MachineResult:
         from tribodyn.gear import Misalignment, misalignment_study
         from tribodyn.study.case.hypoid import mounting
 
+        if mesh in self._mounting_studies:
+            return self._mounting_studies[mesh]
         loads = (self.operation, *self.load_cases)
         if not isinstance(self.operation.misalignment.get(mesh), Misalignment):
             names = [
@@ -298,7 +300,13 @@ class MachineResult:
         cases = [mounting(p.gears) for p in pairs if p.gears.side == nominal.gears.side]
         flanks = nominal.hypoid_flanks
         assert flanks is not None
-        return misalignment_study(flanks, list(dict.fromkeys((mounting(nominal.gears), *cases))))
+        errors = list(dict.fromkeys((mounting(nominal.gears), *cases)))
+        self._mounting_studies[mesh] = study = misalignment_study(flanks, errors)
+        return study
+
+    @cached_property
+    def _mounting_studies(self) -> dict[str, MisalignmentStudy]:
+        return {}
 
     def to_xarray(self) -> Any:
         """Motion at the operating point with units.
