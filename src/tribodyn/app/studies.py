@@ -12,7 +12,7 @@ from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.user_tables import PartsCase
 from tribodyn.study.studies.range_syntax import (
     UnreadError,
     read_list,
@@ -53,12 +53,12 @@ class Study:
     function: Callable[[Any, Values, Progress, Path], Shown]
     machines: bool = False  #: whether it takes machines too
 
-    def takes(self, case: Case | MachineCase) -> bool:
+    def takes(self, case: Case | PartsCase) -> bool:
         """Whether it can be computed for a case."""
-        return self.machines or not isinstance(case, MachineCase)
+        return self.machines or not isinstance(case, PartsCase)
 
     def compute(
-        self, case: Case | MachineCase, texts: Mapping[str, str], progress: Progress, target: Path
+        self, case: Case | PartsCase, texts: Mapping[str, str], progress: Progress, target: Path
     ) -> Shown:
         """Check the typed values, compute the study and write its directory."""
         values: dict[str, Any] = {}
@@ -199,13 +199,10 @@ def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Sho
 
 
 def _modes(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.machine_report import machine_modes_report_data
-    from tribodyn.report.study_report_data import modes_report_data
+    from tribodyn.report.modes_report_data import any_modes_report_data
 
     ends = _ends("speeds", values["speeds"]) if values["speeds"] else None
-    if isinstance(case, MachineCase):
-        return _of(machine_modes_report_data(case, ends, progress), "modes", case, target)
-    return _of(modes_report_data(case, ends, progress), "modes", case, target)
+    return _of(any_modes_report_data(case, ends, progress), "modes", case, target)
 
 
 def _run_up(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
@@ -391,11 +388,11 @@ def numeric_keys(options: Mapping[str, Option]) -> list[str]:
     return [key for key, option in options.items() if option.kind == "number"]
 
 
-def first_values(kind: str, case: Case | MachineCase) -> dict[str, str]:
+def first_values(kind: str, case: Case | PartsCase) -> dict[str, str]:
     """Values to begin with: speeds about that of the case."""
     from tribodyn.units import convert
 
-    point = case.operating_point if isinstance(case, MachineCase) else case.operation
+    point = case.operating_point if isinstance(case, PartsCase) else case.operation
     rpm = abs(convert(point.speed, "rad/s", "rpm"))
     about = f"{0.5 * rpm:.4g}..{2.0 * rpm:.4g} rpm"
     first = {

@@ -15,8 +15,7 @@ from tribodyn.study.studies.range_syntax import UnreadError, read_range, read_va
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.planetary.case import PlanetaryCase
+    from tribodyn.study.machine.user_tables import PartsCase
 
 
 Output = Path | None
@@ -87,36 +86,25 @@ def read_changes(settings: Sequence[str]) -> dict[str, Any]:
 
 def changed_case(name_or_path: str, settings: Sequence[str]) -> Case:
     """Load the case of a gear pair and change values."""
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.case import Case
 
     case = changed_any_case(name_or_path, settings)
-    if isinstance(case, MachineCase):
-        why = "This command computes one pair of gears"
-        remedy = "Machines: tribodyn run, check, modes, sweep, run-up and compare"
-        raise InputError("this is a machine of several shafts", name_or_path, why, remedy)
-    return case
+    if isinstance(case, Case):
+        return case
+    kind = "machine" if hasattr(case, "machine") else "planetary stage"
+    why = f"This command computes one pair of gears, and the case is a {kind}"
+    remedy = (
+        "Machines and planetary stages: tribodyn run, check, modes, sweep, run-up, ensemble, sobol "
+        "and compare"
+    )
+    raise InputError(f"this is a {kind}", name_or_path, why, remedy)
 
 
-def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | MachineCase:
-    """Load the case of a gear pair or of a machine and change values."""
-    from tribodyn.study.planetary.case import PlanetaryCase
-
-    case = changed_case_of_any_kind(name_or_path, settings)
-    if isinstance(case, PlanetaryCase):
-        why = "This command computes gear pairs and machines with fixed axes"
-        remedy = "Planetary stages: tribodyn run and check"
-        raise InputError("this is a planetary stage", name_or_path, why, remedy)
-    return case
-
-
-def changed_case_of_any_kind(
-    name_or_path: str, settings: Sequence[str]
-) -> Case | MachineCase | PlanetaryCase:
+def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | PartsCase:
     """Load the case of a gear pair, a machine or a planetary stage and change values."""
     from tribodyn.cases.load import load_changed_case
 
-    case: Case | MachineCase | PlanetaryCase
-    case = load_changed_case(name_or_path, read_changes(settings), by="--set")
+    case: Case | PartsCase = load_changed_case(name_or_path, read_changes(settings), by="--set")
     return case
 
 

@@ -175,7 +175,7 @@ def machine_modes_report_data(
     with single_blas_thread():
         structure = structure_at_rest(case, progress)
         progress.start("Natural modes")
-        modes, campbell = machine_modes(structure), campbell_of(structure, _speeds(case, ends))
+        modes, campbell = machine_modes(structure), campbell_of(structure, diagram_speeds(ends))
     figures = [
         figure_with_caption(plot.machine_modes, modes),
         figure_with_caption(plot.machine_campbell, campbell),
@@ -187,7 +187,7 @@ def machine_modes_report_data(
     return StudyReportData(campbell, figures, statements, MODES_HEAD, rows, facts)
 
 
-def _speeds(case: MachineCase, ends: Any) -> Any:
+def diagram_speeds(ends: Any) -> Any:
     """Speeds of a diagram between two ends, given as text or in rad/s."""
     if ends is None:
         return None

@@ -14,16 +14,17 @@ from tribodyn.report.html import embedded_figures, plotly_script, template, text
 from tribodyn.report.machine_report import number_of_part
 from tribodyn.report.numbers import describe
 from tribodyn.report.provenance import operating_point, provenance, version
+from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary_figures import by_topic
+from tribodyn.study.planetary.stage_modes import MODES_HEAD, StageModes, stage_modes
 
 if TYPE_CHECKING:
+    from tribodyn.progress import Progress
+    from tribodyn.study.planetary.case import PlanetaryCase
     from tribodyn.study.planetary.result import PlanetaryResult
+    from tribodyn.types import Array
 
-MODES_HEAD = ("Mode", "Frequency [Hz]", "Multiplicity", "Type", "Excited by mesh harmonics")
-#: Harmonics of the mesh frequency in the table of modes.
-_HARMONICS = 12
-_TYPES = {"rotational": "R", "translational": "T", "planet": "P", "mixed": "RT"}
 _CARDS = (
     "machine.input_power",
     "machine.efficiency",
@@ -36,57 +37,33 @@ _CARDS = (
 )
 
 
-def excitation_rows(result: PlanetaryResult) -> list[list[str]]:
-    """Natural modes with their types and the mesh harmonics that excite each of them."""
-    modes, phases = result.modes, result.operation.phases
-    harmonics = {k: phases.excitation(k).types for k in range(1, _HARMONICS + 1)}
-    mesh_frequency = result.motion.mesh_frequency
-    rows: list[list[str]] = []
-    last = (-1.0, "")
-    for frequency, kind in zip(modes.frequency.tolist(), modes.types, strict=True):
-        if kind == last[1] and abs(frequency - last[0]) <= 1e-6 * frequency:
-            rows[-1][2] = str(int(rows[-1][2]) + 1)
-            continue
-        last = frequency, kind
-        exciting = [k for k, types in harmonics.items() if set(types) & set(_TYPES[kind])]
-        text = ", ".join(map(str, exciting)) or "none"
-        if exciting and frequency > 0.0:
-            near = min(exciting, key=lambda k: abs(k * mesh_frequency - frequency))
-            distance = near * mesh_frequency / frequency - 1.0
-            text += f"; nearest {near}, {100.0 * distance:+.1f} %"
-        rows.append([str(len(rows) + 1), f"{frequency:.5g}", "1", kind, text])
-    return rows
-
-
-def _modes_text(result: PlanetaryResult) -> str:
-    harmonics = [
-        f"{k}: {result.operation.phases.excitation(k).types}" for k in range(1, _HARMONICS + 1)
-    ]
+def _modes_text(stage: StageModes) -> str:
     return (
         "About the static load, with the mean stiffness of the meshes. By the phases of the "
         "planets each harmonic of the mesh frequency excites modes of certain types: R rotational "
         "(central members turn), T translational, P of the planets alone. Harmonic "
-        f"{', '.join(harmonics)}."
+        f"{stage.excitation_text()}. {stage.frame_effect()}"
     )
 
 
 def _blocks(result: PlanetaryResult) -> list[Block]:
-    # As Inalpolat and Kahraman: the sensor feels the nearest planet.
+    # As Inalpolat and Kahraman: the sensor feels the planet that passes it.
     sensor = result.operation.ring_sensor(window=2.0 * math.pi / result.case.table.count)
     parts = [
         (plot.planetary_stage, result, "stage", plot.planetary_stage.heading),
         (plot.planetary_forces, result.motion, "forces", plot.planetary_forces.heading),
         (plot.ring_sensor, sensor, "ring-sensor", plot.ring_sensor.heading),
         (plot.planetary_modes, result.modes, "mode-shapes", plot.planetary_modes.heading),
+        (plot.machine_campbell, result.campbell, "campbell", plot.machine_campbell.heading),
         *(
             (plot.face_maps, table, f"face-maps-{mesh}", f"Mesh {mesh}: maps over the face")
             for mesh, table in result.operation.tables.items()
         ),
     ]
     return [
-        block_of_figure(name, heading, drawn.sketch(part), drawn.caption_of(part))
-        for drawn, part, name, heading in parts
-        if not drawn.missing(part)
+        block_of_figure(name, heading, figure.sketch(part), figure.caption_of(part))
+        for figure, part, name, heading in parts
+        if not figure.missing(part)
     ]
 
 
@@ -112,9 +89,9 @@ def render_planetary_report(result: PlanetaryResult) -> str:
             operating_point=operating_point(result.case),
             cards=[describe(key, summary[key], 4) for key in keys],
             rows=[number_of_part(k, summary[k]) for ks in by_topic(summary).values() for k in ks],
-            modes=excitation_rows(result),
+            modes=result.operation.stage_modes.rows(),
             modes_head=MODES_HEAD,
-            modes_text=_modes_text(result),
+            modes_text=_modes_text(result.operation.stage_modes),
             compared=[],
             blocks=blocks,
             warnings=[str(warning) for warning in result.warnings],
@@ -128,6 +105,24 @@ def render_planetary_report(result: PlanetaryResult) -> str:
             plotly_js=plotly_script(),
         )
     )
+
+
+def stage_modes_report_data(
+    case: PlanetaryCase, speeds: Array | None, progress: Progress
+) -> StudyReportData:
+    """Natural modes of a stage by type, and what excites them over the speed [rad/s]."""
+    stage = stage_modes(case, progress)
+    campbell = stage.campbell(speeds)
+    figures = [
+        figure_with_caption(plot.planetary_modes, stage.modes),
+        figure_with_caption(plot.machine_campbell, campbell),
+    ]
+    statements = [
+        f"{figures[1][1].layout.title.text}.",
+        f"Types of modes that harmonics of the mesh excite: {stage.excitation_text()}.",
+        stage.frame_effect(),
+    ]
+    return StudyReportData(campbell, figures, statements, MODES_HEAD, stage.rows(), stage.facts())
 
 
 @report_of("PlanetaryResult")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses
     from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.user_tables import PartsCase
     from tribodyn.study.machine_studies.levels import MachineLevels
     from tribodyn.study.studies.bifurcation import Findings
 
@@ -54,7 +54,7 @@ def _title(picture: Picture) -> str:
 
 def save_study(
     kind: str,
-    case: Case | MachineCase,
+    case: Case | PartsCase,
     target: Path,
     report: StudyReportData,
     force: bool = False,
@@ -178,7 +178,7 @@ def relief_report_data(case: Case, torque: Sequence[Any] | None, gears: str) -> 
 
 
 def run_up_report_data(
-    case: Case | MachineCase,
+    case: Case | PartsCase,
     ends: Any,
     duration: float,
     down: bool = False,

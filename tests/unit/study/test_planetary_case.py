@@ -10,7 +10,6 @@ import tribodyn as td
 from tribodyn import plot
 from tribodyn.cli import main
 from tribodyn.errors import InputError
-from tribodyn.report.planetary_report import excitation_rows
 from tribodyn.study.pipeline.summary_figures import is_figure
 
 QUICK = {
@@ -122,7 +121,7 @@ def test_floating_sun_shares_the_load_and_a_held_one_does_not(case):
 
 
 def test_table_of_modes_lists_the_harmonics_that_excite_each_type(result):
-    rows = excitation_rows(result)
+    rows = result.operation.stage_modes.rows()
     assert sum(int(row[2]) for row in rows) == 18
     by_type = {row[3]: row[4].partition(";")[0] for row in rows}
     # 17 teeth and 3 planets: harmonics 3, 6, ... turn the members, the others move them.
@@ -147,9 +146,9 @@ def test_commands(tmp_path, monkeypatch, capsys, result):
     figures = json.loads(printed[printed.index("{") :])
     assert figures["planets.low.ratio"] == pytest.approx(4.588235, abs=1e-6)
     with pytest.raises(SystemExit) as refused:
-        main(["modes", "stage.toml"])
+        main(["harris", "stage.toml"])
     assert refused.value.code
-    assert "planetary stage" in capsys.readouterr().err
+    assert "this is a planetary stage" in capsys.readouterr().err
 
 
 def inside(points, polygon):

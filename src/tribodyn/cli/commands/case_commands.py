@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from tribodyn.cli.console import figures, say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import CaseName, Flag, Settings, changed_case_of_any_kind, check_file
+from tribodyn.cli.settings import CaseName, Flag, Settings, changed_any_case, check_file
 
 if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
@@ -49,7 +49,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     from tribodyn.study.pipeline.summary_figures import summary_rows
     from tribodyn.study.planetary.case import PlanetaryCase
 
-    ready = changed_case_of_any_kind(case, set_ or [])
+    ready = changed_any_case(case, set_ or [])
     if isinstance(ready, MachineCase | PlanetaryCase):
         _check_machine(ready, json)
         return

@@ -14,7 +14,7 @@ from tribodyn.cli.settings import (
     Flag,
     Force,
     Settings,
-    changed_case_of_any_kind,
+    changed_any_case,
     check_place,
 )
 
@@ -53,7 +53,7 @@ def run(
     from tribodyn.errors import ModelWarning
 
     target = out if out is not None else Path(Path(case).stem)
-    ready = changed_case_of_any_kind(case, set_ or [])
+    ready = changed_any_case(case, set_ or [])
     check_place(target, force)
     with progress_bar() as progress, warnings.catch_warnings():
         # They are shown below, from the result.

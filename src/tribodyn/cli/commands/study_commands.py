@@ -23,7 +23,7 @@ from tribodyn.cli.settings import (
 if TYPE_CHECKING:
     from tribodyn.report.study_report_data import StudyReportData
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.user_tables import PartsCase
 
 
 def prepare_study(
@@ -35,8 +35,8 @@ def prepare_study(
 
 def prepare_any_study(
     kind: str, case: str, out: Output, settings: Words, force: bool
-) -> tuple[Case | MachineCase, Path]:
-    """The pair or machine of a study with its changes, and the directory to write."""
+) -> tuple[Case | PartsCase, Path]:
+    """The case of a study of any kind with its changes, and the directory to write."""
     return changed_any_case(case, settings or []), _target(kind, case, out, force)
 
 
@@ -53,7 +53,7 @@ def stripped(texts: Sequence[str]) -> list[str]:
 
 def finish(
     kind: str,
-    case: Case | MachineCase,
+    case: Case | PartsCase,
     target: Path,
     answer: StudyReportData,
     force: bool,
@@ -92,17 +92,12 @@ def modes(
         Write the modes in SI as one JSON object to stdout.
     """
     from tribodyn.cli.progress_bar import progress_bar
-    from tribodyn.report.machine_report import machine_modes_report_data
-    from tribodyn.report.study_report_data import modes_report_data
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.report.modes_report_data import any_modes_report_data
 
     ready, target = prepare_any_study("modes", case, out, set_, force)
     ends = None if between is None else read_ends(between)
     with progress_bar() as progress:
-        if isinstance(ready, MachineCase):
-            answer = machine_modes_report_data(ready, ends, progress)
-        else:
-            answer = modes_report_data(ready, ends, progress)
+        answer = any_modes_report_data(ready, ends, progress)
     finish("modes", ready, target, answer, force, json)
 
 

@@ -130,7 +130,11 @@ def planetary_plane_model(
     Notes
     -----
     Supports are equal in x and y. Source: Lin and Parker (1999), whose planets have radial and
-    tangential coordinates, which gives the same frequencies.
+    tangential coordinates, which gives the same frequencies. With a carrier speed W a body of mass
+    m has the forces ``-2 m W (-y', x') + m W^2 (x, y)`` of the frame besides. Planets pull outwards
+    on their pins: of their tangential displacement only that relative to the pins counts in
+    ``m W^2``, in which the rotation of the carrier is taken off (not in Lin and Parker), so that a
+    stage that is free to turn does so without force.
 
     Examples
     --------
@@ -164,7 +168,7 @@ def planetary_plane_model(
     contacts = _contacts("sun", axes.sun, of_sun, thick, mesh_gap, phases)
     contacts += _contacts("ring", axes.ring, of_ring, thick, mesh_gap, phases)
     speed = require_number("carrier_speed", carrier_speed)
-    system = _system(masses, stiffness, load, contacts, speed)
+    system = _system(masses, stiffness, load, contacts, (axes.angles, speed))
     require_between("damping_ratio", require_number("damping_ratio", damping_ratio), 0.0, 2.0)
     return (
         replace(system, damping=modal_damping(system, damping_ratio)) if damping_ratio else system
@@ -225,7 +229,7 @@ class _Directions:
     """Derivatives of the compressions and of the pin displacements, (N, n) each."""
 
     def __init__(self, angles: Array, sun: float, ring: float) -> None:
-        count = angles.size
+        count, self.angles = angles.size, angles
         shape = count, 9 + 3 * count
         self.radial, self.tangential, self.sun, self.ring = (np.zeros(shape) for _ in range(4))
         rows = np.arange(count)
@@ -327,15 +331,27 @@ def _load(force: float, count: int, alpha: tuple[float, float], supports: Array)
 
 
 def _system(
-    masses: Array, stiffness: Array, load: Array, contacts: list[Contact], speed: float
+    masses: Array,
+    stiffness: Array,
+    load: Array,
+    contacts: list[Contact],
+    frame: tuple[Array, float],
 ) -> System:
-    """System in a frame that turns, with Coriolis and centripetal terms."""
+    """System in a frame that turns at a speed, with Coriolis and centripetal terms."""
+    angles, speed = frame
     x = np.arange(0, masses.size, 3)
     gyroscopic = np.zeros_like(stiffness)
     gyroscopic[x, x + 1] = -2.0 * speed * masses[x]
     gyroscopic[x + 1, x] = 2.0 * speed * masses[x]
     stiffness[x, x] -= speed**2 * masses[x]
     stiffness[x + 1, x + 1] -= speed**2 * masses[x]
+    # Pulled outwards, the planets hold the carrier: what is free to turn turns without force.
+    for planet, angle in enumerate(angles):
+        turning = speed**2 * masses[9 + 3 * planet]
+        tangent = np.array([-np.sin(angle), np.cos(angle)])
+        stiffness[2, 9 + 3 * planet : 11 + 3 * planet] += turning * tangent
+        stiffness[9 + 3 * planet : 11 + 3 * planet, 2] += turning * tangent
+        stiffness[2, 2] -= turning
     members = [*CENTRAL, *(f"planet{i + 1}" for i in range(x.size - 3))]
     return System(
         mass=np.diag(masses),
@@ -346,6 +362,16 @@ def _system(
         names=[f"{member}_{axis}" for member in members for axis in "xyu"],
         gyroscopic=gyroscopic if speed else None,
     )
+
+
+def without_free_rotation(system: System) -> System:
+    """System without the Coriolis forces of a free rotation of the whole stage, whose mean is 0."""
+    modes = natural_modes(replace(system, gyroscopic=None))
+    if system.gyroscopic is None or modes.frequency[0] > 0.0:
+        return system
+    rigid = modes.shape[:1]
+    keep = np.eye(system.size) - rigid.T @ (rigid @ np.asarray(system.mass))
+    return replace(system, gyroscopic=keep.T @ np.asarray(system.gyroscopic) @ keep)
 
 
 def modal_damping(system: System, ratio: float) -> Array:

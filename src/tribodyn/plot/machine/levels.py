@@ -13,7 +13,7 @@ from tribodyn.plot.motion.sweeps import axis_text, value_text
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
 from tribodyn.plot.theme.style import MUTED, Trace, line, marked
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.user_tables import PartsCase
 from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.study.studies.sweep_result import OF_PARTS
 
@@ -30,6 +30,7 @@ _PANELS = (
     ("dynamic_transmission_error", "Transmission error,<br>peak to peak"),
     ("bearing_force", "Radial bearing<br>force, rms"),
     ("acceleration", "Housing, rms"),
+    ("mesh_load_factor", "Load factor<br>of the planets"),
 )
 #: Least distance of two named speeds over the range.
 _APART = 0.06
@@ -40,7 +41,7 @@ _DASHES = ("solid", "dash", "dot", "dashdot")
 def _panels(x: Array, levels: Iterable[tuple[Sequence[str], Array]]) -> list[Panel]:
     """One panel for each kind of level, with a curve for each part that has it."""
     panels = []
-    for (quantity, label), (names, values) in zip(_PANELS, levels, strict=True):
+    for (quantity, label), (names, values) in zip(_PANELS, levels, strict=False):
         if not len(names):
             continue
         unit, shown = display_unit(quantity), displayed(quantity, values)
@@ -64,8 +65,8 @@ def _marks(met: Iterable[Resonance], x: Array | None = None) -> dict[str, Any]:
 
 def _title(levels: Iterable[tuple[Sequence[str], Array]], x: Sequence[str]) -> str:
     """Where the housing, or what there is, vibrates most."""
-    texts = ("Mesh", "The transmission error of mesh", "Bearing", "The housing at")
-    rows = zip(texts, _PANELS, levels, strict=True)
+    texts = ("Mesh", "The transmission error of mesh", "Bearing", "The housing at", "Stage")
+    rows = zip(texts, _PANELS, levels, strict=False)
     text, (quantity, _), (names, values) = [row for row in rows if len(row[2][0])][-1]
     if not np.any(np.isfinite(values)):
         return "No value has a motion"
@@ -108,6 +109,7 @@ def machine_levels(study: MachineLevels) -> Any:
 def machine_level_lines(study: MachineLevels) -> Any:
     """Draw the amplitudes at the mesh harmonics over the speed of the input."""
     x, panels, largest = displayed("speed", study.speed), [], ""
+    sources = list(dict.fromkeys(name.rpartition(" x ")[0] for name in study.line))
     signals = (
         ("mesh_force", "Mesh forces", study.mesh_force_line),
         ("bearing_force", "Radial bearing<br>forces", study.bearing_force_line),
@@ -121,7 +123,7 @@ def machine_level_lines(study: MachineLevels) -> Any:
         for k, name in enumerate(study.line):
             mesh, _, harmonic = name.rpartition(" x ")
             dash = _DASHES[(int(harmonic) - 1) % len(_DASHES)]
-            color = COLORS[study.mesh.index(mesh) % len(COLORS)]
+            color = COLORS[sources.index(mesh) % len(COLORS)]
             traces.append(line(x, shown[:, k], name, color, unit=unit, dash=dash, width=1.6))
         panels.append(Panel(axis_label(quantity, label), traces, {"rangemode": "tozero"}))
         if np.any(np.isfinite(total)):
@@ -135,7 +137,7 @@ def machine_level_lines(study: MachineLevels) -> Any:
 
 
 def _lack(study: Sweep) -> str:
-    if not isinstance(study.case, MachineCase):
+    if not isinstance(study.case, PartsCase):
         return "It is the sweep of a pair of gears; draw one of its figures."
     if len(study.axes) > 1:
         return "It has several keys; draw one of its figures."
@@ -175,22 +177,20 @@ def machine_sweep(study: Sweep) -> Any:
 def _met(study: Sweep) -> list[Resonance]:
     """Resonances within the speeds of a sweep, with the teeth at the operating point."""
     from tribodyn.errors import TribodynError, quiet
-    from tribodyn.machine import machine_modes
-    from tribodyn.study.machine.modes import structure_at_rest
     from tribodyn.study.machine_studies.levels import resonances
+    from tribodyn.study.machine_studies.modes import modes_at_rest
 
-    assert isinstance(study.case, MachineCase)
     speeds = [abs(float(value)) for value in study.axes[0].values]
     try:
         with quiet():
-            modes = machine_modes(structure_at_rest(study.case))
+            modes, orders = modes_at_rest(study.case)
     except TribodynError:  # a sweep may start from a case that cannot be computed itself
         return []
-    return resonances(modes, min(speeds), max(speeds))
+    return resonances(modes.frequency, orders, (min(speeds), max(speeds)))
 
 
 def _not_of_machines(comparison: ResultComparison) -> str:
-    machines = all(isinstance(each.case, MachineCase) for each in comparison.results)
+    machines = all(isinstance(each.case, PartsCase) for each in comparison.results)
     return "" if machines else "It compares pairs of gears; draw it by result_comparison."
 
 

@@ -205,9 +205,12 @@ class Source:
 
 
 def without_spread(
-    data: Mapping[str, Any], prefix: str = ""
+    data: Mapping[str, Any], prefix: str = "", *, lists: bool = False
 ) -> tuple[dict[str, Any], dict[str, str], list[tuple[str, Problem]]]:
-    """Return tables with central values, the spreads by key, and problems."""
+    """Return tables with central values, the spreads by key, and problems.
+
+    With ``lists`` values in lists may have spreads; their keys end with their number.
+    """
     plain: dict[str, Any] = {}
     spreads: dict[str, str] = {}
     faults: list[tuple[str, Problem]] = []
@@ -217,15 +220,26 @@ def without_spread(
         if key in _TEXT_KEYS:
             continue
         if isinstance(value, Mapping):
-            plain[name], inner, wrong = without_spread(value, f"{key}.")
+            plain[name], inner, wrong = without_spread(value, f"{key}.", lists=lists)
             spreads |= inner
             faults += wrong
-        elif isinstance(text, str) and (_SPREAD.search(text) or _RANGE.search(text)):
+        elif lists and isinstance(value, list | tuple) and any(map(_has_spread, value)):
+            items = {str(number): item for number, item in enumerate(value, 1)}
+            middles, inner, wrong = without_spread(items, f"{key}.")
+            plain[name] = list(middles.values())
+            spreads |= inner
+            faults += wrong
+        elif _has_spread(text):
             try:
                 plain[name], spreads[key] = _middle(key, text), text
             except InputError as error:
                 faults.append((key, error.problems[0]))
     return plain, spreads, faults
+
+
+def _has_spread(text: Any) -> bool:
+    """Whether a value is a text with a spread."""
+    return isinstance(text, str) and bool(_SPREAD.search(text) or _RANGE.search(text))
 
 
 def _middle(key: str, text: str) -> str | float:

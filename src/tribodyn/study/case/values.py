@@ -246,7 +246,9 @@ def _list(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ..
     result = []
     for position, item in enumerate(value):
         label = f"{name}[{position}]"
-        result.append(_real(spec, label, item, as_text))
+        plain = isinstance(item, Plain)
+        item = item.value if plain else item
+        result.append(_real(spec, label, item, as_text and not plain))
         _in_range(spec, label, result[-1], item)
     return tuple(result)
 

@@ -87,7 +87,7 @@ def impact_spectrum(
         return np.asarray(position @ structure.mesh(place.part)) * structure.mesh_stiffness(
             place.part
         )
-    from tribodyn.study.machine.run import mesh_rotation
+    from tribodyn.study.machine.motion import mesh_rotation
 
     return np.asarray(position @ mesh_rotation(structure, place.part))
 

@@ -277,7 +277,7 @@ def machine_turning_motion(
 ) -> MachineTurningMotion:
     """Compute the steady motion of a machine over whole turns of its shafts."""
     from tribodyn.machine import system as system_of
-    from tribodyn.study.machine.run import machine_motion
+    from tribodyn.study.machine.motion import machine_motion
 
     with single_blas_thread():
         progress.start("Teeth over whole turns")

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from copy import copy, deepcopy
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.gear import Misalignment
@@ -15,7 +15,7 @@ from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
-from tribodyn.study.case.user_input import Source, spread_problem, unsound, without_spread
+from tribodyn.study.case.user_input import Source, unsound, without_spread
 from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.faults.machine_section import (
     MachineFaultTable,
@@ -30,7 +30,6 @@ from tribodyn.study.machine.pair_cases import (
     SHARED,
     constant_law,
     mesh_tables,
-    option_of,
     pair_case,
     pinion_and_wheel,
     read_blanks,
@@ -52,17 +51,7 @@ from tribodyn.study.machine.tables import (
     ShaftTable,
     mesh_table_kind,
 )
-from tribodyn.study.machine.user_tables import (
-    changed_tables,
-    default_assumptions,
-    machine_toml,
-    stated_assumptions,
-    user_values,
-    with_spreads,
-)
-
-if TYPE_CHECKING:
-    from tribodyn.model import Option
+from tribodyn.study.machine.user_tables import PartsCase, default_assumptions, stated_assumptions
 
 _TOP = (
     *("title", "origin", *GROUPS, "housing", "operation", "load_cases", "dynamics", *SHARED),
@@ -85,7 +74,7 @@ def is_machine(data: Mapping[str, Any]) -> bool:
     return any(group in data for group in ("shafts", "meshes", "bearings"))
 
 
-class MachineCase:
+class MachineCase(PartsCase):
     """A machine under its load cases: frozen, checked, in SI.
 
     Created by :func:`tribodyn.load_case` from a file with ``[meshes.NAME]`` and ``[gears.NAME]``,
@@ -121,7 +110,6 @@ class MachineCase:
             raise InputError(origin.place(unreadable))
         self.source = source
         tables = deepcopy(data) if source is not None else in_si(data)
-        self.uncertain: dict[str, str]  #: spread of values by key, such as ``"4e8 N/m +- 10 %"``
         self.data, self.uncertain, problems = without_spread(tables)
         unknown_keys("", data, _TOP, problems)
         self.title: str = str(data.get("title", "Machine"))
@@ -218,20 +206,6 @@ class MachineCase:
         if problems:
             raise InputError((self.source or Source()).place(problems))
 
-    def _check_spreads(self, origin: Source) -> None:
-        """Refuse spreads beyond the range of their key, and of keys that have no number."""
-        problems: KeyedProblems = []
-        for key, text in self.uncertain.items():
-            option = self.option_of(key)
-            problem = None if option is None else spread_problem(option, key, text)
-            if option is None or option.kind not in ("number", "integer"):
-                what, why = f"{key} = {text}", "Only numbers of the machine have a spread"
-                problem = Problem(what, "", why, "Give one value")
-            if problem is not None:
-                problems.append((key, problem))
-        if problems:
-            raise InputError(origin.place(problems))
-
     def _placed(self, error: InputError) -> list[Problem]:
         """Problems of a machine with the lines of its parts."""
         source = self.source or Source()
@@ -253,31 +227,6 @@ class MachineCase:
     def assumptions(self) -> tuple[Assumption, ...]:
         """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
         return (*stated_assumptions(self.data), *default_assumptions(self))
-
-    def values(self) -> Iterator[tuple[str, Any]]:
-        """Iterate over the values of the case file.
-
-        Yields
-        ------
-        tuple of str and object
-            Dotted key and value in SI; texts as they are, of files their names.
-        """
-        return user_values(self)
-
-    def option_of(self, key: str) -> Option | None:
-        """Unit and range of a key.
-
-        Parameters
-        ----------
-        key : str
-            Dotted, such as ``"bearings.A.radial_stiffness"``.
-
-        Returns
-        -------
-        Option or None
-            None where the machine has no such key.
-        """
-        return option_of(self, key)
 
     @property
     def meshes(self) -> tuple[str, ...]:
@@ -401,24 +350,17 @@ class MachineCase:
             misalignment=misalignment,
         )
 
-    def replace(self, changes: Mapping[str, Any], *, by: str = "") -> MachineCase:
-        """Return a new case with some values changed; it is checked as a whole.
+    def mesh_pairs(self) -> Iterator[tuple[str, Case, tuple[str, str]]]:
+        """Iterate over the meshes with computed teeth.
 
-        Parameters
-        ----------
-        changes : mapping
-            Dotted key, such as ``"meshes.first.angle"``, to value: a float in SI, or text.
-        by : str
-            Source of the change, for messages; then a bare number for a dimension is refused.
-
-        Raises
+        Yields
         ------
-        InputError
-            As for a case file.
+        tuple of str, Case and (str, str)
+            Key of the table of the mesh, its pair of gears as a case, and names of both gears.
         """
-        source = (self.source or Source()).with_replaced(changes, by or "replace:")
-        tables = with_spreads(self.data, self.uncertain)
-        return MachineCase(source, **changed_tables(tables, changes, by=by))
+        for mesh in self.meshes_with_teeth:
+            pair = self.pair(mesh, self.operating_point)
+            yield f"meshes.{mesh}", pair, self._pinion_and_wheel(mesh)
 
     @property
     def housing_files(self) -> dict[str, str]:
@@ -446,10 +388,6 @@ class MachineCase:
         housing = {**self.data["housing"], **names} if names else None
         other.data = {**self.data, "housing": housing} if housing else self.data
         return other
-
-    def to_toml(self) -> str:
-        """Write the case file; it reads back to an equal case."""
-        return machine_toml(with_spreads(self.data, self.uncertain))
 
     def __repr__(self) -> str:
         """One line."""

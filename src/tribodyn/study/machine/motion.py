@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response
+    from tribodyn.machine import MachineStructure
 
 #: Directions of forces and moments of a bearing.
 DIRECTIONS = ("x", "y", "z", "theta_x", "theta_y", "theta_z")
@@ -193,3 +197,49 @@ def joined(series: Mapping[str, Array], samples: int, width: tuple[int, ...] = (
     if not series:
         return np.zeros((samples, 0, *width))
     return np.stack(list(series.values()), axis=1)
+
+
+def machine_motion(structure: MachineStructure, response: Response) -> MachineMotion:
+    """Forces, errors and accelerations of the parts of a machine along its motion."""
+    machine, fine = structure.machine, response.fine
+    samples = fine.phase.size
+    force, compression, error, separated = {}, {}, {}, {}
+    first = 0
+    for name, mesh in machine.meshes.items():
+        count = max(len(mesh.contacts), 1)
+        force[name] = fine.contact_force[:, first : first + count].sum(axis=1)
+        compression[name] = fine.deflection[:, first]
+        separated[name] = (force[name] == 0.0).astype(float)
+        error[name] = fine.position @ mesh_rotation(structure, name)
+        first += count
+    bearings = {}
+    for name, bearing in machine.bearings.items():
+        motion = structure.bearing(name).T
+        springs = fine.position @ motion @ bearing.stiffness_matrix
+        dampers = fine.velocity @ motion @ bearing.damping_matrix
+        bearings[name] = np.asarray(springs + dampers + np.asarray(bearing.force))
+    nodes = machine.housing.nodes if machine.housing is not None else {}
+    accelerations = {n: fine.acceleration @ structure.housing_node(n)[:3].T for n in nodes or {}}
+    return MachineMotion(
+        clock=fine.phase - fine.phase[0],
+        weight=fine.weight,
+        mesh=tuple(force),
+        bearing=tuple(bearings),
+        node=tuple(accelerations),
+        mesh_force=joined(force, samples),
+        compression=joined(compression, samples),
+        transmission_error=joined(error, samples),
+        open=joined(separated, samples),
+        bearing_force=joined(bearings, samples, (6,)),
+        acceleration=joined(accelerations, samples, (3,)),
+        cycles=np.array([machine.clock.cycles[name] for name in force]),
+        frequency=machine.clock.frequency,
+    )
+
+
+def mesh_rotation(structure: MachineStructure, mesh: str) -> Array:
+    """Rotation of both gears on the line of action per coordinate (n,) [1 and m]."""
+    gears = structure.machine.meshes[mesh].gears
+    direction = structure.machine.directions[mesh].direction
+    turns = [structure.gear(name)[3] for name in gears]
+    return np.asarray(direction[3] * turns[0] + direction[9] * turns[1])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from tribodyn.gear import HypoidBlank
     from tribodyn.machine import Gear
     from tribodyn.model import Option
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.user_tables import PartsCase
 
 #: Tables of models that hold for all meshes, and that a mesh may have for itself.
 SHARED = ("material", "lubricant", "film", "stiffness", "friction")
@@ -205,17 +205,20 @@ def constant_law(law: Any) -> dict[str, Any]:
     }
 
 
-def option_of(case: MachineCase, key: str) -> Option | None:
-    """Option of a dotted key of a machine: of a part, or of the models of its teeth."""
+def option_of(case: PartsCase, key: str) -> Option | None:
+    """Option of a dotted key of a case: of a part, of a value in a list, or of a model."""
     if "." not in key:
         return None
     group, *names, name = key.split(".")
+    if name.isdigit():
+        whole = option_of(case, ".".join((group, *names)))
+        return replace(whole, kind="number") if whole and whole.kind == "numbers" else None
     table = _table(case.data, [group, *names[:1]])
     rolling = str(table.get("type")) if group == "bearings" and table is not None else ""
     options = rolling_options(ROLLING_BEARINGS[rolling]) if rolling in ROLLING_BEARINGS else {}
     if name in options:
         return options[name]
-    part, of_parts = TABLES.get(group), group in GROUPS
+    part, of_parts = TABLES.get(group), group in (*GROUPS, "planets")
     if of_parts and table is None:
         return None
     if part is not None and len(names) == of_parts:
@@ -227,18 +230,20 @@ def option_of(case: MachineCase, key: str) -> Option | None:
     return spec_of(*pair_key) if pair_key else None
 
 
-def unknown_key(case: MachineCase, key: str) -> Problem:
-    """Problem of a key that a machine does not have, with the nearest one that it has."""
+def unknown_key(case: PartsCase, key: str) -> Problem:
+    """Problem of a key that a case of parts does not have, with the nearest one that it has."""
     keys = [
         f"{group}.{part}.{name}"
-        for group in GROUPS
+        for group in (*GROUPS, "planets")
         for part in case.data.get(group, {})
         for name in TABLES[group].fields
     ]
     keys += [f"operation.{name}" for name in TABLES["operation"].fields]
     keys += [name for name, _ in case.values()]
-    what, why = f'there is no key "{key}"', "Keys of a machine name the part and its value"
-    remedy = 'Write, for example, "bearings.A.radial_stiffness" or "operation.speed"'
+    what, why = f'there is no key "{key}"', "Keys name the part and its value"
+    part = next((name for name in keys if name.startswith("planets.")), "")
+    example = f"{part.rpartition('.')[0]}.pin_stiffness" if part else "bearings.A.radial_stiffness"
+    remedy = f'Write, for example, "{example}" or "operation.speed"'
     return Problem(what, "", why, did_you_mean(key, list(dict.fromkeys(keys)), remedy))
 
 
@@ -250,21 +255,16 @@ def _table(data: Mapping[str, Any], path: list[str]) -> Mapping[str, Any] | None
     return value if isinstance(value, Mapping) else None
 
 
-def _pair_key(
-    case: MachineCase, group: str, names: list[str], name: str
-) -> tuple[Case, str] | None:
-    """Pair of gears that has a value of the machine, and its key there."""
-    for mesh in case.meshes_with_teeth:
-        pair, gears = (
-            case.pair(mesh, case.operating_point),
-            pinion_and_wheel(case.data["meshes"][mesh]["gears"], case.gears),
-        )
+def _pair_key(case: PartsCase, group: str, names: list[str], name: str) -> tuple[Case, str] | None:
+    """Pair of gears that has a value of the case, and its key there."""
+    for key, pair, names_of_gears in case.mesh_pairs():
         if group in (*SHARED, "dynamics"):
             return pair, ".".join((group, *names, name))
-        if group == "meshes" and names[:1] == [mesh]:
+        if key == ".".join([group, *names[:1]]):
             inner = names[1:] or ["dynamics"]
             inside = ["gears"] if inner[0] in HypoidMeshTable.fields else []
             return pair, ".".join([*inside, *inner, name])
-        if group == "gears" and names and names[0] in gears:
-            return pair, ".".join(("gears", _ROLES[gears.index(names[0])], *names[1:], name))
+        if group == "gears" and names and names[0] in names_of_gears:
+            role = _ROLES[names_of_gears.index(names[0])]
+            return pair, ".".join(("gears", role, *names[1:], name))
     return None

@@ -7,13 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.record import html_table
+from tribodyn.study.machine.motion import MachineMotion, machine_motion
 from tribodyn.study.machine.summary import summary_of
+from tribodyn.study.machine_studies.levels import MeshOrder, mesh_orders
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary_figures import summary_rows
 
@@ -30,7 +32,6 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
-    from tribodyn.study.machine.motion import MachineMotion
 
 
 #: Steps per cycle of the fastest mesh.
@@ -73,6 +74,7 @@ class LoadResult:
         Motion of all coordinates over one period of the clock, where it is at hand.
     """
 
+    steps: ClassVar[int] = STEPS
     load: LoadCase
     structure: MachineStructure
     static: StaticBalance
@@ -91,6 +93,37 @@ class LoadResult:
     def machine(self) -> Machine:
         """The machine at this load."""
         return self.structure.machine
+
+    @property
+    def clock_frequency(self) -> float:
+        """Periods of the motion in a second [Hz]."""
+        return self.machine.clock.frequency
+
+    @cached_property
+    def modes(self) -> MachineModes:
+        """Natural modes at this load."""
+        from tribodyn.machine import machine_modes
+
+        return machine_modes(self.structure)
+
+    @property
+    def mesh_orders(self) -> tuple[MeshOrder, ...]:
+        """Mesh harmonics with the shares of the meshes in the modes."""
+        return mesh_orders(self.modes)
+
+    def signals_along(self, response: Response) -> MachineMotion:
+        """Forces, errors and accelerations of the parts along another motion.
+
+        Parameters
+        ----------
+        response : Response
+            Motion of the same coordinates.
+
+        Returns
+        -------
+        MachineMotion
+        """
+        return machine_motion(self.structure, response)
 
     @cached_property
     def figures(self) -> dict[str, float]:
@@ -142,9 +175,7 @@ class MachineResult:
     @cached_property
     def modes(self) -> MachineModes:
         """Natural modes at the operating point."""
-        from tribodyn.machine import machine_modes
-
-        return machine_modes(self.structure)
+        return self.operation.modes
 
     @cached_property
     def campbell(self) -> MachineCampbell:

@@ -1,4 +1,4 @@
-"""Tables of a machine as the user gives them: values, changes, reasons, and the file."""
+"""Tables of a case of parts as the user writes them: values, changes, reasons, and the file."""
 
 from __future__ import annotations
 
@@ -6,16 +6,140 @@ import json
 from collections.abc import Iterable, Iterator, Mapping
 from copy import deepcopy
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
-from tribodyn.errors import InputError
+import numpy as np
+
+from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.provenance import Assumption
-from tribodyn.study.case.values import FaultError, Plain, read_value
+from tribodyn.study.case.user_input import Source, spread_problem
+from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_value
+from tribodyn.study.machine.pair_cases import option_of
 from tribodyn.study.machine.read_parts import in_si
 from tribodyn.study.machine.tables import unit_of
 
 if TYPE_CHECKING:
+    from tribodyn.machine import Gear
+    from tribodyn.model import Option
+    from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.load_cases import LoadCase
+
+
+class PartsCase:
+    """Case of parts with names: a machine, or a planetary stage."""
+
+    source: Source | None
+    data: dict[str, Any]  #: tables of the case file, without spreads
+    uncertain: dict[str, str]  #: spread of values by key, such as ``"4e8 N/m +- 10 %"``
+    title: str
+    gears: dict[str, Gear]
+    operating_point: LoadCase
+
+    def __init__(self, source: Source | None = None, /, **data: Any) -> None:
+        raise NotImplementedError
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
+        raise NotImplementedError
+
+    def mesh_pairs(self) -> Iterator[tuple[str, Case, tuple[str, str]]]:
+        """Iterate over the meshes with computed teeth.
+
+        Yields
+        ------
+        tuple of str, Case and (str, str)
+            Key of the table of the mesh, its pair of gears as a case, and names of both gears.
+        """
+        raise NotImplementedError
+
+    def values(self) -> Iterator[tuple[str, Any]]:
+        """Iterate over the values of the case file.
+
+        Yields
+        ------
+        tuple of str and object
+            Dotted key and value in SI; texts as they are, of files their names.
+        """
+        for key, value in flat_keys(self.data):
+            option, name = self.option_of(key), key.rpartition(".")[2]
+            if option is not None and option.kind == "file":
+                yield key, Path(str(value)).name
+                continue
+            try:
+                yield key, read_value(option, name, value) if option is not None else _plain(value)
+            except FaultError:  # a list of values, or a text in place of a number
+                yield key, _plain(value)
+
+    def central(self, key: str) -> Any:
+        """Value of a key in SI; its central value where it has a spread.
+
+        Parameters
+        ----------
+        key : str
+            Dotted; of a value in a list it ends with its number.
+
+        Returns
+        -------
+        object
+        """
+        values = dict(self.values())
+        name, _, number = key.rpartition(".")
+        return values[key] if key in values else values[name][int(number) - 1]
+
+    def option_of(self, key: str) -> Option | None:
+        """Unit and range of a key.
+
+        Parameters
+        ----------
+        key : str
+            Dotted, such as ``"bearings.A.radial_stiffness"``, or ``"planets.low.pin_errors.2"`` of
+            the second value of a list.
+
+        Returns
+        -------
+        Option or None
+            None where the case has no such key.
+        """
+        return option_of(self, key)
+
+    def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Self:
+        """Return a new case with some values changed; it is checked as a whole.
+
+        Parameters
+        ----------
+        changes : mapping
+            Dotted key, such as ``"meshes.first.angle"``, to value: a float in SI, or text.
+        by : str
+            Source of the change, for messages; then a bare number for a dimension is refused.
+
+        Raises
+        ------
+        InputError
+            As for a case file.
+        """
+        source = (self.source or Source()).with_replaced(changes, by or "replace:")
+        tables = with_spreads(self.data, self.uncertain)
+        return type(self)(source, **changed_tables(tables, changes, by=by))
+
+    def to_toml(self) -> str:
+        """Write the case file; it reads back to an equal case."""
+        return machine_toml(with_spreads(self.data, self.uncertain))
+
+    def _check_spreads(self, origin: Source) -> None:
+        """Refuse spreads beyond the range of their key, and of keys that have no number."""
+        problems: KeyedProblems = []
+        for key, text in self.uncertain.items():
+            option = self.option_of(key)
+            problem = None if option is None else spread_problem(option, key, text)
+            if option is None or option.kind not in ("number", "integer"):
+                what, why = f"{key} = {text}", "Only numbers of the case have a spread"
+                problem = Problem(what, "", why, "Give one value")
+            if problem is not None:
+                problems.append((key, problem))
+        if problems:
+            raise InputError(origin.place(problems))
 
 
 def changed_tables(
@@ -26,18 +150,36 @@ def changed_tables(
     for key, value in changes.items():
         *names, name = key.split(".")
         table = data
-        for each in names:
+        for depth, each in enumerate(names):
+            if name.isdigit() and depth == len(names) - 1:
+                _set_element(table, each, int(name), value if by else in_si(value), key)
+                break
             table = table.setdefault(each, {})
             if not isinstance(table, dict):
                 why, remedy = f"{each} is not a table", "Correct the key"
                 raise InputError(f"{key} = {value!r}", key, why, remedy)
-        if value is None:
-            table.pop(name, None)
         else:
-            table[name] = value if by else in_si(value)
+            if value is None:
+                table.pop(name, None)
+            else:
+                table[name] = value if by else in_si(value)
     if isinstance(reasons := data.get("assumed"), Mapping):
         data["assumed"] = {k: why for k, why in reasons.items() if k not in changes}
     return data
+
+
+def _set_element(table: dict[str, Any], name: str, number: int, value: Any, key: str) -> None:
+    """Change a value of a list; a list of the planets that is missing has zeros."""
+    values = table.get(name)
+    if values is None and "count" in table:
+        values = [Plain(0.0)] * int(_plain(table["count"]))
+    if isinstance(values, Plain):
+        values = [Plain(item) for item in np.atleast_1d(values.value).tolist()]
+    if not isinstance(values, list | tuple) or not 1 <= number <= len(values) or value is None:
+        count = len(values) if isinstance(values, list | tuple) else 0
+        why, remedy = f"{name} has {count} values, counted from 1", "Correct the number in the key"
+        raise InputError(f'there is no value "{key}"', key, why, remedy)
+    table[name] = [*values[: number - 1], value, *values[number:]]
 
 
 def stated_assumptions(data: Mapping[str, Any]) -> Iterator[Assumption]:
@@ -76,19 +218,6 @@ def _estimates(texts: Iterable[str]) -> Iterator[tuple[str, str, str]]:
         yield key, value, why
 
 
-def user_values(case: MachineCase) -> Iterator[tuple[str, Any]]:
-    """Dotted keys and values in SI of what the case gives."""
-    for key, value in flat_keys(case.data):
-        option, name = case.option_of(key), key.rpartition(".")[2]
-        if option is not None and option.kind == "file":
-            yield key, Path(str(value)).name
-            continue
-        try:
-            yield key, read_value(option, name, value) if option is not None else _plain(value)
-        except FaultError:  # a list of values, or a text in place of a number
-            yield key, _plain(value)
-
-
 def flat_keys(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Dotted keys of nested tables with their values."""
     for name, value in table.items():
@@ -115,7 +244,7 @@ def with_spreads(tables: Mapping[str, Any], spreads: Mapping[str, str]) -> dict[
         table = data
         for each in names:
             table = table[each]
-        table[name] = text
+        table[name if isinstance(table, dict) else int(name) - 1] = text  # type: ignore[index]
     return data
 
 

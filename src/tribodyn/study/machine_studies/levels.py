@@ -13,7 +13,7 @@ from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.machine import MachineModes
+    from tribodyn.machine import MachineModes, PlanetaryModes
     from tribodyn.study.machine.motion import MachineMotion
 
 #: Harmonics of each mesh that are followed over the speed, and of those that meet modes.
@@ -21,6 +21,15 @@ _HARMONICS, _MET = 4, 3
 #: Most resonances that are named, their least weight over that of the strongest, and least share
 #: of a mesh in the strain energy of a mode.
 _MOST, _LEAST, _STRAINED = 8, 0.08, 1e-3
+
+
+class MeshOrder(NamedTuple):
+    """A mesh harmonic: waves in a turn of the input, and what it strains of each mode."""
+
+    mesh: str
+    harmonic: int
+    order: float
+    share: Array  #: of the strain energy of each mode (m,)
 
 
 class Resonance(NamedTuple):
@@ -67,8 +76,15 @@ class MachineLevels(Record):
         Why a speed has no motion; empty if it has one.
     time : (n,) array, optional
         Time of a run-up [s]; None for steady motions.
-    modes : MachineModes, optional
+    modes : MachineModes or PlanetaryModes, optional
         Natural modes with the mesh stiffness of one speed in the range.
+    mesh_orders : tuple of MeshOrder
+        Mesh harmonics, each with its share in the strain energy of the modes.
+
+    Notes
+    -----
+    Of a planetary stage the meshes are ``sun`` and ``ring``, and the bearings ``pins`` and the
+    supports of the members, each with the greatest value of all planets.
     """
 
     speed: Array = quantity("speed", unit="rad/s", axis=True)
@@ -87,7 +103,8 @@ class MachineLevels(Record):
     acceleration_line: Array = quantity("speed", "line", "node", unit="m/s^2")
     failed: Any = quantity("speed", unit="")
     time: Array | None = quantity("speed", unit="s", default=None)
-    modes: MachineModes | None = field(default=None, repr=False)
+    modes: MachineModes | PlanetaryModes | None = field(default=None, repr=False)
+    mesh_orders: tuple[MeshOrder, ...] = field(default=(), repr=False)
 
     @property
     def resonances(self) -> list[Resonance]:
@@ -98,6 +115,7 @@ class MachineLevels(Record):
         """
         if self.modes is None:
             return []
+        frequency = self.modes.frequency
         lines = self.bearing_force_line if self.bearing else self.mesh_force_line
         order = np.argsort(self.speed)
         size = dict(zip(self.line, np.sqrt((lines[order] ** 2).sum(axis=2)).T, strict=True))
@@ -106,7 +124,8 @@ class MachineLevels(Record):
             row = np.nan_to_num(size[f"{mesh} x {harmonic}"])
             return float(np.interp(speed, self.speed[order], row)) * float(np.sqrt(share))
 
-        return resonances(self.modes, float(self.speed.min()), float(self.speed.max()), weight)
+        ends = float(self.speed.min()), float(self.speed.max())
+        return resonances(frequency, self.mesh_orders, ends, weight)
 
     def __repr__(self) -> str:
         """One line."""
@@ -120,28 +139,36 @@ class MachineLevels(Record):
         )
 
 
+def mesh_orders(modes: MachineModes) -> tuple[MeshOrder, ...]:
+    """Mesh harmonics of a machine with the shares of the meshes in its modes."""
+    machine = modes.structure.machine
+    turning = abs(machine.operation.speed) / (2.0 * np.pi)
+    return tuple(
+        MeshOrder(mesh, harmonic, harmonic * load.mesh_frequency / turning, share)
+        for mesh, load in machine.kinematics.meshes.items()
+        for share in [modes.strain_share[:, modes.parts.index(f"meshes.{mesh}")]]
+        for harmonic in range(1, _MET + 1)
+    )
+
+
 def resonances(
-    modes: MachineModes,
-    low: float,
-    high: float,
+    frequency: Array,
+    orders: Iterable[MeshOrder],
+    ends: tuple[float, float],
     weight: Callable[[str, int, float, float], float] = lambda mesh, harmonic, speed, share: (
         share / harmonic
     ),
 ) -> list[Resonance]:
     """Mesh harmonics that meet a mode at an input speed between two ends, the strongest few."""
     # weight: of mesh, harmonic, speed, and share of the mesh in the strain energy of the mode.
-    machine = modes.structure.machine
-    turning = abs(machine.operation.speed) / (2.0 * np.pi)
+    low, high = ends
     weights: list[tuple[float, Resonance]] = []
-    for mesh, load in machine.kinematics.meshes.items():
-        share = modes.strain_share[:, modes.parts.index(f"meshes.{mesh}")].tolist()
-        for harmonic in range(1, _MET + 1):
-            order = harmonic * load.mesh_frequency / turning
-            for number, hertz in enumerate(modes.frequency.tolist()):
-                speed = 2.0 * np.pi * hertz / order
-                if low <= speed <= high and share[number] > _STRAINED:
-                    met = Resonance(mesh, harmonic, number + 1, hertz, speed)
-                    weights.append((weight(mesh, harmonic, speed, share[number]), met))
+    for mesh, harmonic, order, share in orders:
+        for number, hertz in enumerate(frequency.tolist()):
+            speed, part = 2.0 * np.pi * hertz / order, float(share[number])
+            if low <= speed <= high and part > _STRAINED:
+                met = Resonance(mesh, harmonic, number + 1, hertz, speed)
+                weights.append((weight(mesh, harmonic, speed, part), met))
     weights.sort(key=lambda pair: -pair[0])
     return [met for value, met in weights[:_MOST] if value >= _LEAST * weights[0][0] > 0.0]
 

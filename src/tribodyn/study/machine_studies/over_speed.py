@@ -1,10 +1,10 @@
-"""Machines over the speed: steady motions one after the other, and run-ups in time."""
+"""Machines and stages over the speed: steady motions one after the other, and run-ups in time."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,15 +12,15 @@ from tribodyn.dynamics import harmonic_balance
 from tribodyn.errors import ComputationError, InputError, collected, warn
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.result import STEPS
-from tribodyn.study.machine.run import machine_motion, run_load
 from tribodyn.study.machine_studies.levels import MachineLevels, levels_of
-from tribodyn.study.machine_studies.points import results_under
+from tribodyn.study.machine_studies.points import result_under, results_under
+from tribodyn.study.planetary.result import PlanetaryLoadResult
+from tribodyn.study.planetary.stage_signals import common_lines
 
 if TYPE_CHECKING:
-    from tribodyn.machine import MachineStructure
-    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.motion import MachineMotion
+    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine_studies.points import AnyLoadResult
     from tribodyn.types import Array
 
 #: Most periods of a run-up whose levels are computed.
@@ -29,15 +29,11 @@ _RECORDED = 400
 _COARSE = 0.02
 
 
-def machine_speed_sweep(
-    case: MachineCase, speeds: Array, progress: Progress = SILENT
-) -> MachineLevels:
-    """Levels of the steady motions of a machine over the speed of its input [rad/s]."""
-    from tribodyn.machine import machine_modes
-
+def parts_speed_sweep(case: PartsCase, speeds: Array, progress: Progress = SILENT) -> MachineLevels:
+    """Levels of the steady motions of a machine or stage over the speed of its input [rad/s]."""
     progress.start("Speeds", speeds.size)
     failed: list[str] = []
-    structures: list[MachineStructure] = []
+    middle: list[AnyLoadResult] = []
 
     def motions() -> Iterator[MachineMotion | None]:
         for result, _ in results_under(case, [{"operation.speed": float(n)} for n in speeds]):
@@ -46,9 +42,9 @@ def machine_speed_sweep(
                 yield None
             else:
                 failed.append("")
-                if not structures or len(failed) <= speeds.size // 2:
-                    structures[:] = [result.structure]
-                yield result.motion
+                if not middle or len(failed) <= speeds.size // 2:
+                    middle[:] = [result]
+                yield result.signals_along(result.response)
             progress.advance()
 
     try:
@@ -56,12 +52,11 @@ def machine_speed_sweep(
     except ComputationError as error:
         raise ComputationError(replace(error.problems[0], why=failed[0])) from None
     progress.finish()
-    modes = machine_modes(structures[0])
-    return replace(levels, failed=np.array(failed, dtype=object), modes=modes)
+    return replace(_levels_of_result(levels, middle[0]), failed=np.array(failed, dtype=object))
 
 
-def machine_run_up(
-    case: MachineCase,
+def parts_run_up(
+    case: PartsCase,
     ends: tuple[float, float],
     duration: float,
     *,
@@ -69,31 +64,39 @@ def machine_run_up(
     hold: float = 0.0,
     progress: Progress = SILENT,
 ) -> MachineLevels:
-    """Levels of a machine along a run-up from one speed of its input to another [rad/s]."""
+    """Levels of a machine or stage along a run-up between speeds of its input [rad/s]."""
     # The speed rises from period to period; teeth and gyroscopic moments are of the mean speed.
     from tribodyn.dynamics.harmonic.varying_speed import periods_at
-    from tribodyn.machine import machine_modes
 
     middle = case.replace({"operation.speed": float(np.sqrt(ends[0] * ends[1]))})
-    per_speed = middle.machine().clock.frequency / middle.operating_point.speed
+    with collected(), single_blas_thread():
+        result = result_under(middle, progress, [])
+    per_speed = result.clock_frequency / middle.operating_point.speed
     speed, time = _periods(per_speed, ends, duration, hold, down)
     with collected(), single_blas_thread():
-        result = run_load(middle, middle.operating_point, progress, [])
-        start = harmonic_balance(result.system, float(per_speed * speed[0]), steps=STEPS)
+        steps = result.steps
+        start = harmonic_balance(result.system, float(per_speed * speed[0]), steps=steps)
         every = -(-speed.size // _RECORDED)
         progress.start("Periods of the run-up", speed.size)
 
         def motions() -> Iterator[MachineMotion]:
             frequency = (per_speed * speed).tolist()
-            for response in periods_at(result.system, frequency, start, STEPS, every):
+            for response in periods_at(result.system, frequency, start, steps, every):
                 if response is not None:
-                    yield machine_motion(result.structure, response)
+                    yield result.signals_along(response)
                 progress.advance()
 
-        times = {"time": time[::every], "modes": machine_modes(result.structure)}
-        levels = levels_of(motions(), speed[::every], **times)
+        levels = levels_of(motions(), speed[::every], time=time[::every])
         progress.finish()
-    return levels
+    return _levels_of_result(levels, result)
+
+
+def _levels_of_result(levels: MachineLevels, result: AnyLoadResult) -> MachineLevels:
+    """Levels with the modes of a result, and what its meshes excite."""
+    changes: dict[str, Any] = {}
+    if isinstance(result, PlanetaryLoadResult):
+        changes = common_lines(levels, result.motion.planet.size)
+    return replace(levels, modes=result.modes, mesh_orders=result.mesh_orders, **changes)
 
 
 def _periods(

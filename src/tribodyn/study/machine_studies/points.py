@@ -1,4 +1,4 @@
-"""Points of a study of a machine: its summary at the operating point for values of its keys."""
+"""Points of a study of a machine or a stage: its summary for values of its keys."""
 
 from __future__ import annotations
 
@@ -7,19 +7,41 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ComputationError, InputError, collected
 from tribodyn.interrupt import STOPPED, refuse_stopped, single_blas_thread, stop_flag
-from tribodyn.progress import SILENT
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.result import LoadResult
 from tribodyn.study.machine.run import MeshWarning, run_load
+from tribodyn.study.planetary.case import PlanetaryCase
+from tribodyn.study.planetary.result import PlanetaryLoadResult
+from tribodyn.study.planetary.run import run_load as run_stage
 from tribodyn.study.studies.sweep_result import SweepPoint
 
 if TYPE_CHECKING:
-    from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.machine.result import LoadResult
+    from tribodyn.dynamics import Response
+    from tribodyn.study.machine.user_tables import PartsCase
+
+#: Result of a machine or of a planetary stage under one load.
+AnyLoadResult = LoadResult | PlanetaryLoadResult
+
+
+def result_under(
+    case: PartsCase,
+    progress: Progress,
+    of_meshes: list[MeshWarning],
+    start: Response | None = None,
+) -> AnyLoadResult:
+    """Compute a machine or a stage at its operating point, from a similar motion if any."""
+    load = case.operating_point
+    if isinstance(case, PlanetaryCase):
+        return run_stage(case, load, progress, of_meshes, start)
+    assert isinstance(case, MachineCase)
+    return run_load(case, load, progress, of_meshes, start)
 
 
 def results_under(
-    case: MachineCase, changes: Sequence[Mapping[str, Any]]
-) -> Iterator[tuple[LoadResult | InputError | ComputationError, tuple[str, ...]]]:
-    """Results of a machine at its operating point for changes of its keys, and warning codes."""
+    case: PartsCase, changes: Sequence[Mapping[str, Any]]
+) -> Iterator[tuple[AnyLoadResult | InputError | ComputationError, tuple[str, ...]]]:
+    """Results of a case at its operating point for changes of its keys, and warning codes."""
     start = None
     for change in changes:
         refuse_stopped(STOPPED * int(stop_flag()[0]))
@@ -27,17 +49,16 @@ def results_under(
         with collected() as caught, single_blas_thread():
             try:
                 changed = case.replace(change)
-                load = changed.operating_point
-                result = run_load(changed, load, SILENT, of_meshes, start)
+                result = result_under(changed, SILENT, of_meshes, start)
             except (InputError, ComputationError) as error:
                 yield error, ()
                 continue
-        start = result.response  # the next motion is near this one
+        start = result.response  # the next motion is similar
         yield result, tuple(w.code for w in (*caught, *(each.warning for each in of_meshes)))
 
 
-def machine_points(
-    case: MachineCase, keys: Sequence[str], places: Sequence[tuple[Any, ...]]
+def points_of_parts(
+    case: PartsCase, keys: Sequence[str], places: Sequence[tuple[Any, ...]]
 ) -> list[SweepPoint]:
     """Points of a sweep; a failed one holds its reason."""
     changes = [dict(zip(keys, values, strict=True)) for values in places]

@@ -33,7 +33,7 @@ from tribodyn.study.machine.read_parts import (
     unknown_keys,
 )
 from tribodyn.study.machine.tables import STIFF, MotionTable, PlanetsTable
-from tribodyn.study.machine.user_tables import changed_tables, machine_toml, stated_assumptions
+from tribodyn.study.machine.user_tables import PartsCase, stated_assumptions
 
 _TOP = ("title", "origin", "gears", "planets", "operation", "load_cases", "dynamics")
 _MEMBERS = ("sun", "ring", "carrier")
@@ -55,11 +55,10 @@ _MODEL = (
     ("motion", "in the plane", "axial motion and tilting of the members are left out"),
     ("members", "rigid", "the flexibility of ring and carrier is left out"),
     ("planet bearings", "linear", "their clearance is left out"),
-    ("frame of the carrier", "at rest", "its Coriolis and centrifugal forces are left out"),
 )
 
 
-class PlanetaryCase:
+class PlanetaryCase(PartsCase):
     """A planetary stage under its load cases: frozen, checked, in SI.
 
     Created by :func:`tribodyn.load_case` from a file with ``[planets.NAME]``, or from nested
@@ -97,11 +96,7 @@ class PlanetaryCase:
             raise InputError(origin.place(unreadable))
         self.source = source
         tables = deepcopy(data) if source is not None else in_si(data)
-        self.data, spreads, problems = without_spread(tables)
-        for key, text in spreads.items():
-            why = "A planetary stage is computed with one value of each key"
-            problem = Problem(f"{key} = {text}", "", why, "Give one value")
-            problems.append((key, problem))
+        self.data, self.uncertain, problems = without_spread(_for_each_planet(tables), lists=True)
         unknown_keys("", data, (*_TOP, *SHARED, "assumed"), problems)
         self.title: str = str(data.get("title", "Planetary stage"))
         self.origin: str | None = data.get("origin")
@@ -123,6 +118,7 @@ class PlanetaryCase:
             self._check_stage()
         except InputError as error:
             raise InputError([self._placed(each) for each in error.problems]) from None
+        self._check_spreads(origin)
 
     def _read_planets(self, problems: KeyedProblems) -> tuple[str, Any]:
         """Name and values of the only stage."""
@@ -292,6 +288,17 @@ class PlanetaryCase:
         distance = self.table.center_distance or sun.gear_pair.center_distance
         return {"sun": sun, "ring": self._pair("ring", load, distance)}
 
+    def mesh_pairs(self) -> Iterator[tuple[str, Case, tuple[str, str]]]:
+        """Iterate over the sun mesh and the ring mesh.
+
+        Yields
+        ------
+        tuple of str, Case and (str, str)
+            Key of the table of the stage, pair of gears as a case, and names of both gears.
+        """
+        for mesh, pair in self.pairs.items():
+            yield f"planets.{self.name}", pair, self.gears_of(mesh)
+
     def gears_of(self, mesh: str) -> tuple[str, str]:
         """Pinion and wheel of the sun mesh or the ring mesh.
 
@@ -402,28 +409,6 @@ class PlanetaryCase:
         for name, value, reason in _MODEL:
             yield Assumption(f"{key}: {name}", value, "default", reason)
 
-    def replace(self, changes: Mapping[str, Any], *, by: str = "") -> PlanetaryCase:
-        """Return a new case with some values changed; it is checked as a whole.
-
-        Parameters
-        ----------
-        changes : mapping
-            Dotted key, such as ``"planets.low.count"``, to value: a float in SI, or text.
-        by : str
-            Source of the change, for messages; then a bare number for a dimension is refused.
-
-        Raises
-        ------
-        InputError
-            As for a case file.
-        """
-        source = (self.source or Source()).with_replaced(changes, by or "replace:")
-        return PlanetaryCase(source, **changed_tables(self.data, changes, by=by))
-
-    def to_toml(self) -> str:
-        """Write the case file; it reads back to an equal case."""
-        return machine_toml(self.data)
-
     def __repr__(self) -> str:
         """One line."""
         teeth = ", ".join(
@@ -432,3 +417,15 @@ class PlanetaryCase:
         )
         count = self.table.count
         return f'PlanetaryCase("{self.title}": {count} planet{"s" * (count != 1)}, {teeth} teeth)'
+
+
+def _for_each_planet(tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables in which one text for the errors of all planets is a list with one for each."""
+    stages = tables.get("planets")
+    for body in stages.values() if isinstance(stages, dict) else ():
+        for name in ("pin_errors", "thickness_errors"):
+            count = body.get("count") if isinstance(body, dict) else None
+            count = count.value if isinstance(count, Plain) else count
+            if isinstance(count, int) and isinstance(body.get(name), str):
+                body[name] = [body[name]] * min(max(count, 1), 99)
+    return tables

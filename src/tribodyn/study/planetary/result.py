@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -25,6 +25,8 @@ from tribodyn.machine import (
 from tribodyn.record import html_table
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary_figures import summary_rows
+from tribodyn.study.planetary.stage_modes import StageModes
+from tribodyn.study.planetary.stage_signals import signals_along
 from tribodyn.study.planetary.summary import summary_of
 from tribodyn.types import Array
 
@@ -35,8 +37,15 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.machine.load_cases import LoadCase
+    from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.study.machine.motion import MachineMotion
+    from tribodyn.study.machine_studies.levels import MeshOrder
     from tribodyn.study.planetary.case import PlanetaryCase
     from tribodyn.study.planetary.motion import PlanetaryMotion
+
+
+#: Steps of a mesh cycle, which is the period of the motion.
+STEPS = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +71,11 @@ class PlanetaryLoadResult:
         Forces and displacements over a mesh cycle.
     response : Response
         Motion of all coordinates, in the direction of the torque on the sun.
+    case : PlanetaryCase
+        What was computed.
     """
 
+    steps: ClassVar[int] = STEPS
     load: LoadCase
     kinematics: PlanetaryKinematics
     tables: Mapping[str, MeshTable]
@@ -72,6 +84,52 @@ class PlanetaryLoadResult:
     system: System
     motion: PlanetaryMotion
     response: Response
+    case: PlanetaryCase
+
+    @cached_property
+    def figures(self) -> dict[str, float]:
+        """All figures in SI by dotted key."""
+        return summary_of(self.case, self)
+
+    @property
+    def clock_frequency(self) -> float:
+        """Mesh cycles in a second [Hz]."""
+        return self.kinematics.mesh_frequency
+
+    @property
+    def turn(self) -> int:
+        """Sign of the torque on the sun."""
+        return self.case.turn(self.load)
+
+    @cached_property
+    def stage_modes(self) -> StageModes:
+        """Natural modes with the mean stiffness of the meshes, and what excites them."""
+        modes = planetary_modes(planetary_plane_model(**self.data))
+        return StageModes(self.load, self.kinematics, self.data, modes)
+
+    @property
+    def modes(self) -> PlanetaryModes:
+        """Natural modes with the mean stiffness of the meshes."""
+        return self.stage_modes.modes
+
+    @property
+    def mesh_orders(self) -> tuple[MeshOrder, ...]:
+        """Mesh harmonics with what they excite of the modes by the phases of the meshes."""
+        return self.stage_modes.orders
+
+    def signals_along(self, response: Response) -> MachineMotion:
+        """Forces and errors of all meshes, and forces of pins and supports, along another motion.
+
+        Parameters
+        ----------
+        response : Response
+            Motion of the same coordinates.
+
+        Returns
+        -------
+        MachineMotion
+        """
+        return signals_along(self, response)
 
     def ring_sensor(
         self,
@@ -149,14 +207,19 @@ class PlanetaryResult:
     @cached_property
     def modes(self) -> PlanetaryModes:
         """Natural modes with the mean stiffness of the meshes at the operating point."""
-        return planetary_modes(planetary_plane_model(**self.operation.data))
+        return self.operation.modes
+
+    @cached_property
+    def campbell(self) -> MachineCampbell:
+        """Natural frequencies and excitations over the speed of the input."""
+        return self.operation.stage_modes.campbell()
 
     @cached_property
     def _summary(self) -> dict[str, float]:
-        figures = summary_of(self.case, self.operation)
+        figures = dict(self.operation.figures)
         for each in self.load_cases:
-            values = summary_of(self.case, each)
-            figures |= {f"load_cases.{each.load.name}.{key}": v for key, v in values.items()}
+            prefix = f"load_cases.{each.load.name}"
+            figures |= {f"{prefix}.{key}": value for key, value in each.figures.items()}
         return figures
 
     def summary(self) -> dict[str, float]:

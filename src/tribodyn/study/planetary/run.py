@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import warnings
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from tribodyn.dynamics import harmonic_balance
 from tribodyn.errors import collected, frames
@@ -15,7 +16,7 @@ from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
 from tribodyn.study.pipeline.run import rehearse
 from tribodyn.study.planetary.case import PlanetaryCase
 from tribodyn.study.planetary.motion import planetary_motion
-from tribodyn.study.planetary.result import PlanetaryLoadResult, PlanetaryResult
+from tribodyn.study.planetary.result import STEPS, PlanetaryLoadResult, PlanetaryResult
 from tribodyn.study.planetary.stage import (
     MESHES,
     stage_data,
@@ -24,8 +25,8 @@ from tribodyn.study.planetary.stage import (
     stage_teeth,
 )
 
-#: Steps of a mesh cycle, which is the period of the motion.
-_STEPS = 200
+if TYPE_CHECKING:
+    from tribodyn.dynamics import Response
 
 
 def run_planetary(
@@ -49,9 +50,13 @@ def run_planetary(
 
 
 def run_load(
-    case: PlanetaryCase, load: LoadCase, progress: Progress, of_meshes: list[MeshWarning]
+    case: PlanetaryCase,
+    load: LoadCase,
+    progress: Progress,
+    of_meshes: list[MeshWarning],
+    start: Response | None = None,
 ) -> PlanetaryLoadResult:
-    """Compute a planetary stage under one load."""
+    """Compute a planetary stage under one load, its motion from that of a similar one if any."""
     progress.start(f"Tooth contact: {load.name}")
     teeth = stage_teeth(case, load)
     of_meshes += teeth.warnings
@@ -65,7 +70,9 @@ def run_load(
     }
     data = stage_data(case, load, teeth.tables, case.phases(load))
     system = stage_system(case, load, teeth, data)
-    response = harmonic_balance(system, lossless.mesh_frequency, steps=_STEPS)
+    if start is not None and start.names != tuple(system.names):
+        start = None
+    response = harmonic_balance(system, lossless.mesh_frequency, steps=STEPS, start=start)
     progress.finish()
     return PlanetaryLoadResult(
         load=load,
@@ -76,6 +83,7 @@ def run_load(
         system=system,
         motion=planetary_motion(response, data, case.turn(load)),
         response=response,
+        case=case,
     )
 
 

@@ -13,7 +13,7 @@ from tribodyn.errors import ModelWarning
 from tribodyn.interrupt import in_threads, processors
 from tribodyn.machine import LoadShares, Mesh, load_shares, planetary_plane_model
 from tribodyn.machine.planetary.mesh_laws import PlanetMesh, with_computed_teeth
-from tribodyn.machine.planetary.plane_model import modal_damping
+from tribodyn.machine.planetary.plane_model import modal_damping, without_free_rotation
 from tribodyn.study.machine.run import MeshWarning, teeth_of
 from tribodyn.study.pipeline.assembly import geometry
 
@@ -77,7 +77,7 @@ def stage_data(
     case: PlanetaryCase, load: LoadCase, tables: Mapping[str, MeshTable], phases: MeshPhases
 ) -> dict[str, Any]:
     """Arguments of :func:`planetary_plane_model`, in the direction of the torque on the sun."""
-    table, turn, torque = case.table, case.turn(load), case.kinematics(load).torques["sun"]
+    table, turn, stage = case.table, case.turn(load), case.kinematics(load)
     held = case.roles[2]
     pairs = {mesh: case.pairs[mesh].gear_pair for mesh in MESHES}
     sun_radius = geometry(case.pairs["ring"])["base_radius_pinion"]
@@ -91,7 +91,8 @@ def stage_data(
         "pin_stiffness": table.pin_stiffness,
         **{f"{role}_support": getattr(table, f"{role}_support") for role in case.members},
         f"{held}_torsional_support": table.torsional_support,
-        "force_per_planet": abs(torque) / sun_radius / table.count,
+        "force_per_planet": abs(stage.torques["sun"]) / sun_radius / table.count,
+        "carrier_speed": turn * stage.speeds["carrier"],
         "pin_errors": turn * np.array(table.pin_errors or 0.0),
         "thickness_errors": np.array(table.thickness_errors or 0.0),
     }
@@ -105,8 +106,8 @@ def _mean_stiffness(table: MeshTable) -> float:
 
 
 def stage_shares(data: Mapping[str, Any]) -> LoadShares:
-    """Static load sharing of the stage."""
-    return load_shares(**data)
+    """Static load sharing of the stage, with the carrier at rest."""
+    return load_shares(**{**data, "carrier_speed": 0.0})
 
 
 def stage_system(
@@ -114,7 +115,8 @@ def stage_system(
 ) -> System:
     """Equations of motion with the force laws and the friction of all meshes."""
     plane = planetary_plane_model(**data)
-    damping = modal_damping(replace(plane, contacts=()), case.motion.modal_damping_ratio)
+    at_rest = planetary_plane_model(**{**data, "carrier_speed": 0.0})
+    damping = modal_damping(replace(at_rest, contacts=()), case.motion.modal_damping_ratio)
     driven = {"carrier": 2, "ring": 5, "sun": 8}[case.roles[1]]
     balance = np.zeros(plane.size)
     balance[driven] = 1.0  # friction takes part of the torque that the output puts out
@@ -135,7 +137,7 @@ def stage_system(
         gears = case.gears[names[0]], case.gears[names[1]]
         meshes.append(PlanetMesh(mesh, body, gears, names[0] == table.planet))
     return with_computed_teeth(
-        replace(plane, damping=damping, balance=balance),
+        replace(without_free_rotation(plane), damping=damping, balance=balance),
         data["phases"],
         meshes,
         sun_drives=case.sun_drives(load),

@@ -21,7 +21,7 @@ from tribodyn.study.pipeline.tooth_contact import mesh_of
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.user_tables import PartsCase
 
 Value = TypeVar("Value")
 
@@ -74,7 +74,7 @@ def varied(
     return [members[index] for index in range(len(changes))]
 
 
-def identity(study: str, case: Case | MachineCase, over: Any, **options: Any) -> dict[str, Any]:
+def identity(study: str, case: Case | PartsCase, over: Any, **options: Any) -> dict[str, Any]:
     """Identity of a study; checkpoints are reused only if it is the same."""
     import tribodyn
 

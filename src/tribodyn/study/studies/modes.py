@@ -8,19 +8,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine_studies.modes import modes_at_rest, parts_campbell
 from tribodyn.study.studies.structure import build_system
-from tribodyn.study.studies.study_axes import operation_values
+from tribodyn.study.studies.study_axes import ends_of, operation_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from tribodyn.dynamics import Campbell, NaturalModes, System
+    from tribodyn.machine import MachineModes, PlanetaryModes
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.modes import MachineCampbell
 
 #: Mesh harmonics whose critical speeds are reported.
 ORDERS = (1, 2, 3, 4, 5)
 #: Number of speeds of a diagram, and its top speed over the operating speed or last resonance.
 _SPEEDS, _BEYOND = 201, 1.15
+_SPEED = "operation.speed"
 #: Smallest share of the energy that is reported.
 _LEAST = 0.05
 
@@ -37,19 +42,21 @@ class Mode:
     speeds: tuple[float, ...]  #: critical speeds, one for each of ``ORDERS`` [rad/s]
 
 
-def natural_modes(case: Case, progress: Progress = SILENT) -> NaturalModes:
+def natural_modes(
+    case: Case | PartsCase, progress: Progress = SILENT
+) -> NaturalModes | MachineModes | PlanetaryModes:
     """Find the natural frequencies of a case about its static load; no motion is computed.
 
     Parameters
     ----------
-    case : Case
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`.
     progress : Progress
         Receives the progress of the tooth contact; silent by default.
 
     Returns
     -------
-    NaturalModes
+    NaturalModes, MachineModes or PlanetaryModes
         With the mean stiffness of the mesh at this speed and load, contacts closed.
 
     Raises
@@ -66,35 +73,37 @@ def natural_modes(case: Case, progress: Progress = SILENT) -> NaturalModes:
     """
     from tribodyn.dynamics import natural_modes as compute
 
+    if isinstance(case, PartsCase):
+        return modes_at_rest(case, progress).modes
     return compute(build_system(case, progress=progress)[0])
 
 
 def campbell(
-    case: Case,
+    case: Case | PartsCase,
     between: tuple[Any, Any] | None = None,
     *,
     orders: Iterable[int] = ORDERS,
     progress: Progress = SILENT,
-) -> Campbell:
+) -> Campbell | MachineCampbell:
     """Find the speeds at which mesh harmonics of a case meet its natural frequencies.
 
     Parameters
     ----------
-    case : Case
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`.
     between : tuple, optional
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit; by
         default up to beyond the speed at which the mesh frequency meets the mode of the mesh.
     orders : iterable of int
-        Mesh harmonics.
+        Mesh harmonics; of pairs.
     progress : Progress
         Receives the progress of the tooth contact; silent by default.
 
     Returns
     -------
-    Campbell
-        Its speed is that of the gear whose speed the case gives; the stiffness is that at the
-        speed and load of the case.
+    Campbell or MachineCampbell
+        Its speed is that of the gear whose speed the case gives, or of the input; the stiffness is
+        that at the speed and load of the case.
 
     Raises
     ------
@@ -108,6 +117,11 @@ def campbell(
     >>> [(met.order, round(met.speed * 30 / np.pi)) for met in diagram.resonances]
     [(5, 3784), (4, 4730)]
     """
+    if isinstance(case, PartsCase):
+        if between is None:
+            return parts_campbell(case, None, progress)
+        low, high = ends_of(case, _SPEED, between)
+        return parts_campbell(case, np.linspace(low, high, 8), progress)
     system, mesh_frequency = build_system(case, progress=progress)
     ends = None if between is None else operation_values("speed", between, case)
     return diagram_of(system, case, mesh_frequency, ends, orders)

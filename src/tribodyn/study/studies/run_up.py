@@ -14,8 +14,8 @@ from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine_studies.over_speed import machine_run_up, machine_speed_sweep
+from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine_studies.over_speed import parts_run_up, parts_speed_sweep
 from tribodyn.study.pipeline.assembly import rotation_of
 from tribodyn.study.studies.case_grid import varied
 from tribodyn.study.studies.study_axes import read_axes
@@ -30,7 +30,7 @@ _SPEED = "operation.speed"
 
 
 def run_up(
-    case: Case | MachineCase,
+    case: Case | PartsCase,
     between: tuple[Any, Any] | None = None,
     duration: float = 10.0,
     *,
@@ -45,7 +45,7 @@ def run_up(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`.
     between : tuple
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
@@ -90,9 +90,9 @@ def run_up(
     from tribodyn.dynamics import speed_ramp
 
     low, high = _ends(between)
-    if isinstance(case, MachineCase):
+    if isinstance(case, PartsCase):
         ends = (low, high)
-        return machine_run_up(case, ends, duration, down=down, hold=hold, progress=progress)
+        return parts_run_up(case, ends, duration, down=down, hold=hold, progress=progress)
     count = int(tables)
     if count != tables or count < 1:
         what = f"tables = {tables}"
@@ -162,7 +162,7 @@ def supports(system: System) -> dict[str, Any]:
 
 
 def speed_sweep(
-    case: Case | MachineCase,
+    case: Case | PartsCase,
     between: tuple[Any, Any],
     points: int = 60,
     *,
@@ -174,7 +174,7 @@ def speed_sweep(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`.
     between : tuple
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
@@ -214,8 +214,8 @@ def speed_sweep(
         )
     (axis,) = read_axes(case, {_SPEED: (*between, points)})
     speeds = np.array(axis.values, dtype=float)
-    if isinstance(case, MachineCase):
-        return machine_speed_sweep(case, speeds, progress)
+    if isinstance(case, PartsCase):
+        return parts_speed_sweep(case, speeds, progress)
     nodes = np.geomspace(speeds[0], speeds[-1], tables) if tables > 1 else [speeds.mean()]
     with locate_errors(case), collected():
         systems, per_speed = speed_systems(case, nodes, progress)

@@ -20,8 +20,8 @@ from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine_studies.points import machine_points
+from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine_studies.points import points_of_parts
 from tribodyn.study.pipeline.run import (
     PendingRun,
     PreparedRun,
@@ -48,7 +48,7 @@ _SHARED_FILM_POINTS = 4
 
 @with_old_names
 def sweep(
-    case: Case | MachineCase,
+    case: Case | PartsCase,
     over: str | Mapping[str, Any] = "operation.speed",
     between: tuple[Any, Any] | None = None,
     points: int = 40,
@@ -62,7 +62,7 @@ def sweep(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`.
     over : str or mapping
         Dotted key that varies; or several, each with ``(first, last, points)``, a tuple, or a
@@ -114,10 +114,10 @@ def sweep(
     return Sweep(case, axes, _compute(axes, *sources, study, partial, progress, checkpoints))
 
 
-def _sources(case: Case | MachineCase, keys: Sequence[str]) -> tuple[PointsAt, CaseAt | None]:
+def _sources(case: Case | PartsCase, keys: Sequence[str]) -> tuple[PointsAt, CaseAt | None]:
     """What computes a case at values of its keys, and the pair whose kernels it needs first."""
-    if isinstance(case, MachineCase):
-        return partial(machine_points, case, keys), None
+    if isinstance(case, PartsCase):
+        return partial(points_of_parts, case, keys), None
     pending_at = partial(_pending_at, case, keys)
     return partial(_points, pending_at), pending_at
 
@@ -173,7 +173,7 @@ def _compute(
 
 
 def points_under(
-    case: Case | MachineCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
+    case: Case | PartsCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
 ) -> list[SweepPoint]:
     """Compute a case for several changes of the same keys; a failed point holds its reason."""
     done: dict[int, SweepPoint] = {}

@@ -34,13 +34,14 @@ _MOTIONS = (
     "contact_loss_share",
 )
 _FILMS = ("central_film", "minimum_film_ratio", "mean_friction_coefficient")
-#: Figures of the parts of a machine: of all meshes, and of the bearing and the housing node
-#: with the largest.
+#: Figures of the parts of a machine or stage: of all meshes, and of the bearing and the housing
+#: node with the largest.
 OF_PARTS = (
     "rms_mesh_force",
     "transmission_error_peak_to_peak",
     "rms_radial_force",
     "rms_acceleration",
+    "dynamic_load_factor",
 )
 _OF_ALL = OF_PARTS[:2]
 #: All of them.
@@ -73,7 +74,7 @@ class Sweep(Record):
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case, MachineCase or PlanetaryCase
         The case that was varied.
     axes : tuple of Axis
         Keys that vary, each with its values.

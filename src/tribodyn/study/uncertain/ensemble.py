@@ -14,7 +14,7 @@ from tribodyn.drawing import figures_of
 from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.user_tables import PartsCase
 from tribodyn.study.machine_studies.ensemble import MachineEnsemble, ensemble_of
 from tribodyn.study.studies.sweep import points_under
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
@@ -224,7 +224,7 @@ class CaseEnsemble(Record):
 
 
 def ensemble(
-    case: Case | MachineCase,
+    case: Case | PartsCase,
     distributions: Mapping[str, Any] | None = None,
     size: int = 64,
     *,
@@ -236,7 +236,7 @@ def ensemble(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`.
     distributions : mapping, optional
         Inputs that are spread, as :func:`tribodyn.uncertainty.sample` reads them: keys of the
@@ -291,7 +291,7 @@ def ensemble(
         why, remedy = "", 'Give {"friction.coefficient": "0.05 +- 0.83 %"}'
         raise InputError("nothing is spread", Argument("distributions"), why, remedy)
     values = draw(case, spread, require_whole("size", size, 3), method=method, seed=seed)
-    if isinstance(case, MachineCase):
+    if isinstance(case, PartsCase):
         return _of_machine(case, values, int(seed), progress)
     lanes = lanes_of(case, values, progress)
     signals = steady_cycles(lanes, _PHASES, progress)
@@ -310,14 +310,13 @@ def ensemble(
 
 
 def _of_machine(
-    case: MachineCase, values: Mapping[str, Array], seed: int, progress: Progress
+    case: PartsCase, values: Mapping[str, Array], seed: int, progress: Progress
 ) -> MachineEnsemble:
-    """Figures of a machine at the median of the values, and at each of them."""
+    """Figures of a machine or a stage at the median of the values, and at each of them."""
     for key, column in values.items():
         check_spread_key(case, key, column)
     medians = {key: float(np.median(column)) for key, column in values.items()}
-    stated = dict(case.values())
-    middle = {key: stated[key] if key in case.uncertain else medians[key] for key in values}
+    middle = {key: case.central(key) if key in case.uncertain else medians[key] for key in values}
     rows = [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]
     progress.start("Variants", len(rows) + 1)
     points = points_under(case, [middle, *rows], progress)

@@ -1,0 +1,118 @@
+"""Studies of planetary stages: modes, sweeps, run-ups, and values with a spread."""
+
+import json
+
+import numpy as np
+import pytest
+from tests.unit.study.test_machine_run import command
+from tests.unit.study.test_planetary_case import QUICK
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.machine import load_shares
+from tribodyn.study.machine.read import read_any_case
+
+#: Constant stiffness of a pair of teeth, so that the tooth contact takes no time.
+FAST = QUICK | {"film.model": "none", "stiffness.model": "rectangular",
+                "stiffness.pair_stiffness": "5e8 N/m"}  # fmt: skip
+ERRORS = [f"planets.low.pin_errors.{i}" for i in (1, 2, 3)]
+
+
+@pytest.fixture(scope="module")
+def case():
+    return td.load_case("planetary-stage").replace(FAST, by="test")
+
+
+@pytest.fixture(scope="module")
+def result(case):
+    return td.run(case)
+
+
+def test_modes_and_diagram_need_no_motion(case, result):
+    modes = td.study.natural_modes(case)
+    np.testing.assert_allclose(modes.frequency, result.modes.frequency)
+    diagram = td.study.campbell(case, ("0 rpm", "3000 rpm"))
+    assert diagram.excitation[:3] == ("mesh x 1 (T)", "mesh x 2 (T)", "mesh x 3 (R)")
+    assert diagram.order[0] == pytest.approx(17 * (1 - 1 / 4.588235), rel=1e-6)
+    first, second = diagram.frequency[:, 0], diagram.frequency[:, 1]
+    # A pair of translational modes is one at rest and splits in proportion to the speed.
+    assert second[0] - first[0] < 1e-6 * first[0]
+    split = (second - first)[[2, 4]]
+    assert split[1] / split[0] == pytest.approx(2.0, rel=1e-3)
+    assert "carrier at 326.92 rpm" in result.operation.stage_modes.frame_effect()
+
+
+def test_a_harmonic_excites_one_of_two_whirling_modes(result):
+    """Planets in sequence push a member around: forwards or backwards, by their phases."""
+    modes, orders = result.modes, result.operation.mesh_orders
+    for order in orders[:2]:
+        pairs = order.share[1:3]
+        assert pairs.min() < 1e-9 < 1e-3 < pairs.max()
+    rotational = np.array(modes.types) == "rotational"
+    assert orders[2].share[~rotational].max() < 1e-9 < 0.5 < orders[2].share[rotational].max()
+
+
+def test_levels_and_sweeps_have_the_figures_of_single_runs(case, result):
+    levels = td.speed_sweep(case, ("1500 rpm", "1600 rpm"), 2)
+    figures = result.summary()
+    assert levels.mesh == ("sun", "ring")
+    forces = [figures[f"meshes.{mesh}.rms_mesh_force"] for mesh in levels.mesh]
+    np.testing.assert_allclose(levels.mesh_force[0], forces, rtol=1e-6)
+    pins = np.hypot(*result.motion.rms(result.motion.pin_force).T).max()
+    assert levels.bearing_force[0, 0] == pytest.approx(pins, rel=1e-6)
+    sweep = td.sweep(case, ERRORS[1], ("0 um", "40 um"), 2)
+    for name, value in figures.items():
+        assert sweep[name][0] == pytest.approx(value, rel=1e-6, abs=1e-9), name
+    assert sweep.axes[0].name == "pin_errors_2"
+    assert "Load factor" in sweep.plot().to_json()
+
+
+def test_a_slow_run_up_has_the_levels_of_steady_motions(case, result):
+    rpm = np.pi / 30
+    run = td.run_up(case, (1499 * rpm, 1501 * rpm), 0.02)
+    middle = run.mesh_force[np.argmin(np.abs(run.speed - 1500 * rpm))]
+    steady = [result.summary()[f"meshes.{mesh}.rms_mesh_force"] for mesh in run.mesh]
+    np.testing.assert_allclose(middle, steady, rtol=0.01)
+
+
+def test_variants_have_the_load_shares_of_their_errors(case):
+    text = {"planets.low.pin_errors": "0 um +- 10 um", "planets.low.sun_support": "1e9 N/m"}
+    spread = case.replace(text, by="test")
+    assert list(spread.uncertain) == ERRORS
+    assert read_any_case(spread.to_toml()).uncertain == spread.uncertain
+    variants = td.ensemble(spread, size=4, seed=1)
+    factors = variants.figures()["planets.low.load_factor"]
+    assert factors[0] == pytest.approx(1.0)  # at the middle no pin has an error
+    data = td.run(spread.replace(dict.fromkeys(ERRORS, 0.0))).operation.data
+    for row, factor in zip(variants.value, factors[1:], strict=True):
+        shares = load_shares(**{**data, "carrier_speed": 0.0, "pin_errors": row})
+        assert factor == pytest.approx(shares.load_factor, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("changes", "location", "finding"),
+    [
+        ({"planets.low.pin_errors": "0 um +- 20 mm"}, "planets.low.pin_errors.1", "Allowed"),
+        ({"planets.low.pin_errors.4": "5 um"}, "planets.low.pin_errors.4", "has 3 values"),
+        ({"operation.torque": "600 N +- 2 %"}, "operation.torque", "N"),
+    ],
+)
+def test_spreads_that_make_no_sense_are_refused(case, changes, location, finding):
+    with pytest.raises(InputError) as fault:
+        case.replace({"planets.low.pin_errors": ["1 um", "0 um", "0 um"], **changes}, by="--set")
+    assert location in str(fault.value)
+    assert finding in str(fault.value)
+
+
+def test_commands(case, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.toml").write_text(case.to_toml(), encoding="utf-8")
+    assert command("modes", "s.toml", "--json") == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["excited_types"]["3"] == "R"
+    assert len(facts["modes"]) == 18
+    assert command("sweep", "s.toml", "planets.low.pin_stifness=1e8..2e8 N/m:2") == 2
+    assert 'Did you mean "planets.low.pin_stiffness"?' in capsys.readouterr().err
+    setting = "planets.low.pin_errors=0 um +- 5 um"
+    assert command("ensemble", "s.toml", "--size", "3", "--set", setting, "--json") == 0
+    assert "planets.low.load_factor" in json.loads(capsys.readouterr().out)
