@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.modes import MachineCampbell
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult, MachineResult
+    from tribodyn.study.machine.user_tables import PartsCase
     from tribodyn.study.machine_studies.ensemble import MachineEnsemble
     from tribodyn.study.machine_studies.levels import MachineLevels
     from tribodyn.study.pipeline.result import Result
@@ -65,6 +66,7 @@ __all__ = [
     "MachineLevels",
     "MachineMotion",
     "MachineResult",
+    "PartsCase",
     "PlanetaryCase",
     "PlanetaryLoadResult",
     "PlanetaryMotion",
@@ -120,6 +122,7 @@ _NAMES = {
     "machine.modes": "MachineCampbell",
     "machine.motion": "MachineMotion",
     "machine.result": "LoadResult MachineResult",
+    "machine.user_tables": "PartsCase",
     "machine_studies.ensemble": "MachineEnsemble",
     "machine_studies.levels": "MachineLevels",
     "pipeline.result": "Result",

@@ -207,10 +207,7 @@ class Source:
 def without_spread(
     data: Mapping[str, Any], prefix: str = "", *, lists: bool = False
 ) -> tuple[dict[str, Any], dict[str, str], list[tuple[str, Problem]]]:
-    """Return tables with central values, the spreads by key, and problems.
-
-    With ``lists`` values in lists may have spreads; their keys end with their number.
-    """
+    """Return tables with central values, the spreads by key (of lists by number), and problems."""
     plain: dict[str, Any] = {}
     spreads: dict[str, str] = {}
     faults: list[tuple[str, Problem]] = []

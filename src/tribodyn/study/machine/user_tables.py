@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from copy import deepcopy
 from pathlib import Path
@@ -26,8 +27,16 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.load_cases import LoadCase
 
 
-class PartsCase:
-    """Case of parts with names: a machine, or a planetary stage."""
+class PartsCase(ABC):
+    """Case of parts with names: a machine, or a planetary stage.
+
+    Parameters
+    ----------
+    source : Source, optional
+        Where the values come from; then a bare number for a dimension is refused.
+    **data : object
+        The tables of the case file.
+    """
 
     source: Source | None
     data: dict[str, Any]  #: tables of the case file, without spreads
@@ -36,14 +45,15 @@ class PartsCase:
     gears: dict[str, Gear]
     operating_point: LoadCase
 
-    def __init__(self, source: Source | None = None, /, **data: Any) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def __init__(self, source: Source | None = None, /, **data: Any) -> None: ...
 
     @property
+    @abstractmethod
     def assumptions(self) -> tuple[Assumption, ...]:
         """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
-        raise NotImplementedError
 
+    @abstractmethod
     def mesh_pairs(self) -> Iterator[tuple[str, Case, tuple[str, str]]]:
         """Iterate over the meshes with computed teeth.
 
@@ -52,7 +62,6 @@ class PartsCase:
         tuple of str, Case and (str, str)
             Key of the table of the mesh, its pair of gears as a case, and names of both gears.
         """
-        raise NotImplementedError
 
     def values(self) -> Iterator[tuple[str, Any]]:
         """Iterate over the values of the case file.
