@@ -60,7 +60,7 @@ def compliance(omega: np.ndarray) -> np.ndarray:
 
 
 def test_a_ripple_forces_the_torsional_oscillator() -> None:
-    ripple = TorqueRipple(orders=(2.0, 48.0), amplitudes=(3.0, 0.4), phases=(0.3, -1.1))
+    ripple = TorqueRipple(orders=(2.0, 48.0), torques=(3.0, 0.4), phases=(0.3, -1.1))
     drive = driven(pair(), ripple)
     assert drive.cycles == 8  # half a turn of the pinion
     omega, lines = lines_of_motion(drive, 512)
@@ -86,7 +86,7 @@ def test_a_ripple_forces_the_torsional_oscillator() -> None:
 
 
 def test_a_speed_fluctuation_turns_the_drive_and_modulates_the_mesh() -> None:
-    fluctuation = SpeedFluctuation(gear="wheel", orders=(1.0,), amplitudes=(0.02,))
+    fluctuation = SpeedFluctuation(gear="wheel", orders=(1.0,), fluctuations=(0.02,))
     error = 2e-6
     system = pair(error=lambda phase: error * np.cos(2.0 * np.pi * phase))
     drive = driven(system, fluctuation)
@@ -107,7 +107,7 @@ def test_a_speed_fluctuation_turns_the_drive_and_modulates_the_mesh() -> None:
 
 
 def test_events_stand_where_the_mesh_reaches_them() -> None:
-    fluctuation = SpeedFluctuation(orders=(1.0, 3.0), amplitudes=(0.05, 0.02))
+    fluctuation = SpeedFluctuation(orders=(1.0, 3.0), fluctuations=(0.05, 0.02))
 
     def jumping(phase: np.ndarray) -> np.ndarray:
         return np.where(phase < 0.37, 2e7, 3e7)
@@ -147,7 +147,7 @@ def test_a_random_load_has_its_density_and_the_drive_its_receptance() -> None:
 
 def test_the_clock_is_that_of_gears_and_orders() -> None:
     def cycles(*orders: float, gear: Any = "pinion", of_teeth: int = 1) -> int:
-        ripple = TorqueRipple(gear=gear, orders=orders, amplitudes=(1.0,) * len(orders))
+        ripple = TorqueRipple(gear=gear, orders=orders, torques=(1.0,) * len(orders))
         return clock_cycles(of_teeth, [ripple], TEETH, MESH)
 
     assert cycles(16.0) == 1  # once a mesh cycle
@@ -160,14 +160,14 @@ def test_the_clock_is_that_of_gears_and_orders() -> None:
 
 
 def test_excitations_that_do_not_fit_are_refused() -> None:
-    with pytest.raises(InputError, match="1 amplitudes for 2 orders"):
-        TorqueRipple(orders=(1.0, 2.0), amplitudes=(1.0,))
+    with pytest.raises(InputError, match="1 torques for 2 orders"):
+        TorqueRipple(orders=(1.0, 2.0), torques=(1.0,))
     with pytest.raises(InputError, match="has no line"):
         RandomLoad(frequencies=(10.0, 11.0), densities=(1.0, 1.0), duration=0.1)
     with pytest.raises(InputError, match="two ends"):
         RandomLoad.of_rms(3.0, (10.0, 20.0, 30.0))
     with pytest.raises(InputError, match=r"fluctuates by .* of its mean"):
-        driven(pair(), TorqueRipple(orders=(1.0,), amplitudes=(20.0,)))
+        driven(pair(), TorqueRipple(orders=(1.0,), torques=(20.0,)))
     held = System(np.eye(2), np.zeros((2, 2)), np.eye(2), [0.0, 0.0], pair().contacts)
     with pytest.raises(InputError, match="cannot turn freely"):
-        driven(held, SpeedFluctuation(orders=(1.0,), amplitudes=(0.01,)))
+        driven(held, SpeedFluctuation(orders=(1.0,), fluctuations=(0.01,)))

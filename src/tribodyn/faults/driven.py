@@ -148,7 +148,7 @@ def clock_cycles(
     A half order of an engine repeats after two turns.
 
     >>> from tribodyn.faults import TorqueRipple
-    >>> ripple = TorqueRipple(gear="pinion", orders=(0.5, 1.0), amplitudes=(5.0, 9.0))
+    >>> ripple = TorqueRipple(gear="pinion", orders=(0.5, 1.0), torques=(5.0, 9.0))
     >>> clock_cycles(24, [ripple], {"pinion": 16, "wheel": 24}, 800.0)
     96
     """
@@ -211,7 +211,7 @@ def drive(
     >>> from tribodyn.faults import TorqueRipple
     >>> pair = System(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), [3.0, -3.0],
     ...     [Contact([1.0, -1.0], 50.0, damping=0.3)])
-    >>> ripple = TorqueRipple(gear="pinion", orders=(1.0,), amplitudes=(0.1,))
+    >>> ripple = TorqueRipple(gear="pinion", orders=(1.0,), torques=(0.1,))
     >>> driven = drive(pair, 1, [ripple], mesh_frequency=2.0, teeth={"pinion": 4, "wheel": 4},
     ...     coordinates={"pinion": 0, "wheel": 1}, rotation=[1.5, 1.5])
     >>> driven.cycles, np.round(driven.system.force(np.array([0.0])), 6).tolist()

@@ -61,7 +61,7 @@ class ShaftExcitation:
 
     def _torque(self, shaft: Shaft) -> ComplexArray:
         """Peak amplitudes (k,) of the torque in the running sense at the harmonics of the clock."""
-        raise NotImplementedError
+        return np.zeros(1, dtype=complex)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,15 +69,15 @@ class _Orders(ShaftExcitation):
     """A series ``amplitude cos(order theta + phase)`` over the angle of the shaft."""
 
     orders: tuple[float, ...]
-    amplitudes: tuple[float, ...]
     phases: tuple[float, ...] = ()
 
+    _sizes = ""
     _unit = ""
     _most = math.inf
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name in ("orders", "amplitudes", "phases"):
+        for name in ("orders", self._sizes, "phases"):
             object.__setattr__(self, name, _numbers(getattr(self, name)))
         if not self.phases:
             object.__setattr__(self, "phases", (0.0,) * len(self.orders))
@@ -85,9 +85,9 @@ class _Orders(ShaftExcitation):
             why, remedy = "Each order has an amplitude", "Give for example orders = (2.0,)"
             raise InputError("no order is given", Argument("orders"), why, remedy)
         require_between("orders", self.orders, 1e-3, 1e5, "")
-        require_between("amplitudes", self.amplitudes, 0.0, self._most, self._unit)
+        require_between(self._sizes, getattr(self, self._sizes), 0.0, self._most, self._unit)
         require_between("phases", self.phases, -2.0 * math.pi, 2.0 * math.pi, "rad")
-        for name in ("amplitudes", "phases"):
+        for name in (self._sizes, "phases"):
             if len(getattr(self, name)) != len(self.orders):
                 what = f"{len(getattr(self, name))} {name} for {len(self.orders)} orders"
                 why = "Each order has its own"
@@ -113,7 +113,7 @@ class _Orders(ShaftExcitation):
         """Peak amplitudes (k,) of the series."""
         at = [int(_fraction(order) * shaft.turns) for order in self.orders]
         lines = np.zeros(max(at) + 1, dtype=complex)
-        for line, size, phase in zip(at, self.amplitudes, self.phases, strict=True):
+        for line, size, phase in zip(at, getattr(self, self._sizes), self.phases, strict=True):
             lines[line] += size * np.exp(1j * phase)
         return lines
 
@@ -128,7 +128,7 @@ class TorqueRipple(_Orders):
         Gear on whose shaft the torque acts, at the input or at the output.
     orders : tuple of float
         Periods in a turn of the shaft; halves and other fractions extend the clock [1].
-    amplitudes : tuple of float
+    torques : tuple of float
         Amplitude of each order [N*m].
     phases : tuple of float
         Phase of each order where tooth 1 comes into contact; zero by default [rad].
@@ -141,15 +141,18 @@ class TorqueRipple(_Orders):
 
     Notes
     -----
-    The torque ``amplitude cos(order theta + phase)`` is positive in the running sense of the shaft
+    The torque ``torque cos(order theta + phase)`` is positive in the running sense of the shaft
     and is added to the mean torque there. ``theta`` is the mean rotation of the shaft.
 
     Examples
     --------
-    >>> TorqueRipple(gear="pinion", orders=(2.0, 4.0), amplitudes=(20.0, 5.0)).phases
+    >>> TorqueRipple(gear="pinion", orders=(2.0, 4.0), torques=(20.0, 5.0)).phases
     (0.0, 0.0)
     """
 
+    torques: tuple[float, ...]
+
+    _sizes = "torques"
     _unit = "N*m"
     _most = 1e7
 
@@ -168,7 +171,7 @@ class SpeedFluctuation(_Orders):
         Gear whose shaft is driven so.
     orders : tuple of float
         Periods in a turn of the shaft [1].
-    amplitudes : tuple of float
+    fluctuations : tuple of float
         Amplitude of each order over the mean speed [1].
     phases : tuple of float
         Phase of each order where tooth 1 comes into contact; zero by default [rad].
@@ -176,19 +179,22 @@ class SpeedFluctuation(_Orders):
     Raises
     ------
     InputError
-        As :class:`TorqueRipple`, or if an amplitude exceeds 0.2.
+        As :class:`TorqueRipple`, or if a fluctuation exceeds 0.2.
 
     Notes
     -----
-    The speed of the whole drive is ``Omega (1 + amplitude cos(order Omega t + phase))``. The
+    The speed of the whole drive is ``Omega (1 + fluctuation cos(order Omega t + phase))``. The
     torque that this takes acts on the named shaft, and the mesh phase follows the rotation.
 
     Examples
     --------
-    >>> SpeedFluctuation(orders=(2.0,), amplitudes=(0.01,)).orders
+    >>> SpeedFluctuation(orders=(2.0,), fluctuations=(0.01,)).orders
     (2.0,)
     """
 
+    fluctuations: tuple[float, ...]
+
+    _sizes = "fluctuations"
     _most = 0.2
 
     def _torque(self, shaft: Shaft) -> ComplexArray:

@@ -42,7 +42,6 @@ KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "speed-fluctuation": (("gear", "orders", "fluctuations"), ("phases",)),
     "random-load": (("gear", "frequencies"), ("torque", "densities", "duration", "seed")),
 }
-_AMPLITUDES = dict.fromkeys(("torques", "fluctuations"), "amplitudes")
 #: Two keys of a kind of which one is stated.
 _EITHER = {"random-load": ("torque", "densities")}
 MEANINGS = {
@@ -228,8 +227,7 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
         "speed-fluctuation": faults.SpeedFluctuation,
         "random-load": faults.RandomLoad,
     }
-    renamed = {_AMPLITUDES.get(key, key): value for key, value in values.items()}
-    result: Fault | ShaftExcitation = kinds[fault.kind](**renamed)
+    result: Fault | ShaftExcitation = kinds[fault.kind](**values)
     return result
 
 
