@@ -15,7 +15,7 @@ from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.values import Plain
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.pair_cases import SHARED
-from tribodyn.study.machine.tables import TABLES, MeshDynamics
+from tribodyn.study.machine.tables import TABLES, MeshDynamics, mesh_table_kind
 from tribodyn.study.machine.user_tables import flat_keys
 
 #: Groups of the form, those of parts with a table for each of them.
@@ -25,10 +25,11 @@ _GROUPS = {
     "gears": "Gears",
     "bearings": "Bearings",
     "shafts": "Shafts",
+    "couplings": "Couplings",
     "faults": "Faults",
     "dynamics": "Motion",
 }
-_PARTS = ("meshes", "gears", "bearings", "shafts", "faults")
+_PARTS = ("meshes", "gears", "bearings", "shafts", "couplings", "faults")
 _MEANINGS = {
     "shafts": "their sections are edited in the file",
     "meshes": "with models of their own where these are given",
@@ -89,7 +90,8 @@ class MachineForm:
     def _of_part(self, name: str, part: str) -> dict[str, Option]:
         """Options of the table of a part, and those of what it gives besides."""
         prefix, body = f"{name}.{part}", self.case.data[name][part]
-        options = {f"{prefix}.{key}": option for key, option in _options(TABLES[name])}
+        table = mesh_table_kind(body) if name == "meshes" else TABLES[name]
+        options = {f"{prefix}.{key}": option for key, option in _options(table)}
         if name == "meshes" and "stiffness" in body and not isinstance(body["stiffness"], Mapping):
             options |= {f"{prefix}.{key}": option for key, option in _options(MeshDynamics)}
         given = {f"{prefix}.{key}": value for key, value in flat_keys(body)}
