@@ -10,8 +10,15 @@ import numpy as np
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
+from tribodyn.errors import InputError
 from tribodyn.machine.machine import Machine
-from tribodyn.machine.plane_law import coordinate_count, pair_coordinates, projected, run_back
+from tribodyn.machine.plane_law import (
+    SPATIAL,
+    coordinate_count,
+    pair_coordinates,
+    projected,
+    run_back,
+)
 from tribodyn.machine.reduction import machine_structure
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
@@ -149,10 +156,8 @@ def _friction(structure: MachineStructure, name: str) -> Any:
     mesh, direction = structure.machine.meshes[name], structure.machine.directions[name]
     functions = mesh.friction
     gears = np.vstack([structure.gear(gear) for gear in mesh.gears])
-
-    if mesh.crossing is not None and hasattr(functions, "friction"):
-        onto = mesh.crossing.pair_coordinates(direction.senses) @ gears
-        return lambda phase: np.asarray(functions.friction(phase) @ onto)
+    if mesh.crossing is not None:
+        return _crossed_friction(structure, name, gears)
 
     def friction(phase: Array) -> Array:
         forces = direction.friction(
@@ -163,3 +168,18 @@ def _friction(structure: MachineStructure, name: str) -> Any:
         return np.asarray(forces @ gears)
 
     return friction
+
+
+def _crossed_friction(structure: MachineStructure, name: str, gears: Array) -> Any:
+    """Friction of a mesh table in space; a driving wheel turns the driving pinion back in time."""
+    machine, mesh = structure.machine, structure.machine.meshes[name]
+    entry = getattr(mesh.friction, "friction", None)
+    if not callable(entry) or np.shape(entry(np.zeros(1)))[-1] != SPATIAL:
+        what, why = "friction has no components in space", "The axes of this mesh cross"
+        remedy = "Give the functions of the mesh table of a hypoid pair"
+        raise InputError(what, f"meshes.{name}.friction", why, remedy)
+    drives = machine.kinematics.meshes[name].driver == mesh.gears[0]
+    pair: dict[str, Any] = {"first_drives": drives, "crossing": mesh.crossing}
+    onto = pair_coordinates(machine.directions[name], SPATIAL, **pair) @ gears
+    law = Contact(direction=np.ones(SPATIAL), stiffness=0.0, friction=entry)
+    return projected(law if drives else run_back(law), onto).friction

@@ -72,14 +72,14 @@ class Mesh:
         Mesh phases at which an entry jumps.
     offset : float
         Mesh phase when the clock of the machine is at 0, in [0, period).
-    period : int
-        Mesh cycles after which the force law repeats, more than one where teeth differ: error,
-        contacts, frictions and events are then over the phase of all these cycles, in [0, 1).
     crossed : CrossedAxes, optional
         Axes and flanks of a hypoid or bevel pair, whose pinion is the first gear;
         :meth:`hypoid` makes such a mesh. Stiffness, damping, error and gap are then along the
         normal of the flanks, ``angle`` is the direction of the common perpendicular, and contacts
         and friction are those of a mesh table in space, whose pinion drives.
+    period : int
+        Mesh cycles after which the force law repeats, more than one where teeth differ: error,
+        contacts, frictions and events are then over the phase of all these cycles, in [0, 1).
 
     Raises
     ------

@@ -175,6 +175,47 @@ def test_rigid_motions_in_space_load_neither_teeth_nor_bearings_on_a_housing() -
             assert structure.bearing(name) @ values == pytest.approx(0.0, abs=1e-12)
 
 
+def test_straight_bevel_gears_have_the_loads_of_a_printed_example() -> None:
+    """Budynas and Nisbett, Shigley's Mechanical Engineering Design, example 13-8: 5 hp, 600 rpm."""
+    inch, pound, speed = 0.0254, 4.4482216, 600 * math.pi / 30
+    shape = hypoid_blank(15, 45, 0.0, 9 * inch, 1.309 * inch, 0.0, 0.1)
+    built = machine(shape, (1, 1), speed=speed, torque=5 * 745.7 / speed)
+    load = built.gear_loads["w"] / pound
+    assert abs(load[1]) == pytest.approx(406.0, rel=2e-3)  # tangential, by the torque
+    assert abs(load[2]) == pytest.approx(46.6, rel=5e-3)  # towards the axis
+    assert load[0] == pytest.approx(-140.0, rel=5e-3)  # away from the apex
+    assert built.directions["m"].sliding == pytest.approx(np.zeros(12))
+
+
+@pytest.mark.parametrize(("torque", "sign"), [(500.0, 1.0), (-500.0, -1.0)])
+def test_friction_functions_act_over_all_coordinates_and_turn_with_the_driver(
+    torque: float, sign: float
+) -> None:
+    law = flat_mesh()
+    mesh = Mesh.hypoid(("p", "w"), h1043(), apex=(-1, 1), stiffness=5e8, friction=law)
+    shafts = {name: Shaft() for name in ("in", "out")}
+    whole = {name: Bearing(name, 0.1, 1e8, 1e8, 1e8) for name in shafts}
+    moving = system(
+        machine_structure(
+            machine(
+                h1043(), (-1, 1), torque=torque, shafts=shafts, meshes={"m": mesh}, bearings=whole
+            )
+        )
+    )
+    entry = moving.contacts[0].friction
+    assert callable(entry)
+    phase = np.array([0.1, 0.35])
+    turns = [moving.names.index(f"{name}_theta_x") for name in ("in", "out")]
+    # A driving wheel: the reversed pinion of the table has its axis and its sliding the other way.
+    table = law.friction(phase if sign > 0.0 else -phase % 1.0)[:, [4, 10]]
+    assert entry(phase)[:, turns] == pytest.approx(table, rel=1e-12)
+    plain = SimpleNamespace(friction_sum=lambda p: 0.1 + 0.0 * p)
+    flat = Mesh.hypoid(("p", "w"), h1043(), stiffness=5e8, friction=plain)
+    plane = machine(h1043(), (1, 1), meshes={"m": flat})
+    with pytest.raises(InputError, match=r"meshes\.m\.friction: .*components in space"):
+        system(plane)
+
+
 @pytest.mark.parametrize("speed", [300.0, -300.0])
 def test_friction_opposes_the_sliding_of_the_flanks(speed: float) -> None:
     shape = blank("right")

@@ -18,6 +18,8 @@ from tribodyn.types import Array
 Reference = Literal["calculation-point", "crossing-point"]
 #: Points of a gear that its position may be that of.
 REFERENCES = ("calculation-point", "crossing-point")
+#: Sliding over the speed of the pitch circle that is rounding.
+_ROLLING = 1e-9
 _Z = np.array([0.0, 0.0, 1.0])
 
 
@@ -149,7 +151,10 @@ class CrossedGeometry:
     def sliding(self, sense: int, speed: int) -> Array:
         """Likewise of the way of the pinion's flank over that of the wheel, by a sign of speed."""
         way = self.pair.sliding(self._flanks[self.side(sense)][0])
-        return self._acting(sense, -self.apex[0] * speed * way / np.linalg.norm(way))
+        amount = float(np.linalg.norm(way))
+        if amount < _ROLLING * self.working_radii[0]:  # intersecting axes
+            return np.zeros(12)
+        return self._acting(sense, -self.apex[0] * speed * way / amount)
 
     def _acting(self, sense: int, way: Array) -> Array:
         point, parts = self._flanks[self.side(sense)][0], []

@@ -43,7 +43,8 @@ class MeshDirection:
         Signs of the speeds of both gears.
     sliding : (12,) array, optional
         On crossed axes, like ``direction``: of the way of the first flank over the second one,
-        against which friction acts [1, rotations m].
+        against which friction acts [1, rotations m]; zero where the axes intersect, so that the
+        flanks roll there.
 
     Notes
     -----
