@@ -1,4 +1,4 @@
-"""Form of the case of a machine as data: its parts by name, and the models of its teeth."""
+"""Form of a machine or a planetary stage as data: its parts by name, and models of its teeth."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from tribodyn.study.case.checks import case_options
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.values import Plain
-from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.pair_cases import SHARED
 from tribodyn.study.machine.tables import TABLES, MeshDynamics, mesh_table_kind
-from tribodyn.study.machine.user_tables import flat_keys
+from tribodyn.study.machine.user_tables import PartsCase, flat_keys
 
 #: Groups of the form, those of parts with a table for each of them.
 _GROUPS = {
     "operation": "Speed and load",
+    "planets": "Planetary stage",
     "meshes": "Meshes",
     "gears": "Gears",
     "bearings": "Bearings",
@@ -29,7 +29,7 @@ _GROUPS = {
     "faults": "Faults",
     "dynamics": "Motion",
 }
-_PARTS = ("meshes", "gears", "bearings", "shafts", "couplings", "faults")
+_PARTS = ("planets", "meshes", "gears", "bearings", "shafts", "couplings", "faults")
 _MEANINGS = {
     "shafts": "their sections are edited in the file",
     "meshes": "with models of their own where these are given",
@@ -37,16 +37,15 @@ _MEANINGS = {
 
 
 class MachineForm:
-    """Form of a machine, with typed text that is not part of the case yet."""
+    """Form of a machine or stage, with typed text that is not part of the case yet."""
 
-    def __init__(self, case: MachineCase, typed: Typed, units: Mapping[str, str]) -> None:
+    def __init__(self, case: PartsCase, typed: Typed, units: Mapping[str, str]) -> None:
         self.case, self.typed, self.units = case, typed, units
 
     @cached_property
     def _pair(self) -> Case | None:
         """Pair of gears whose models stand for those of all meshes."""
-        names = self.case.meshes_with_teeth
-        return self.case.pair(names[0], self.case.operating_point) if names else None
+        return next((pair for _, pair, _ in self.case.mesh_pairs()), None)
 
     @cached_property
     def _defaults(self) -> Mapping[str, Any]:
@@ -91,7 +90,9 @@ class MachineForm:
         """Options of the table of a part, and those of what it gives besides."""
         prefix, body = f"{name}.{part}", self.case.data[name][part]
         table = mesh_table_kind(body) if name == "meshes" else TABLES[name]
-        options = {f"{prefix}.{key}": option for key, option in _options(table)}
+        stage = name == "gears" and "planets" in self.case.data
+        skipped = ("shaft", "position") if stage else ()
+        options = {f"{prefix}.{k}": o for k, o in _options(table) if k not in skipped}
         if name == "meshes" and "stiffness" in body and not isinstance(body["stiffness"], Mapping):
             options |= {f"{prefix}.{key}": option for key, option in _options(MeshDynamics)}
         given = {f"{prefix}.{key}": value for key, value in flat_keys(body)}

@@ -12,6 +12,8 @@ from tribodyn.app.studies import STUDIES
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.report.figure_blocks import block_of_figure, topic_of
 from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.planetary.case import PlanetaryCase
 
 if TYPE_CHECKING:
     from tribodyn.app.jobs import Job
@@ -29,7 +31,10 @@ _FIRST = (
     "gear_loss_factor",
 )
 #: Ends of the keys of figures of machines that are displayed as cards.
-_OF_MACHINE = ("machine.input_power", "machine.output_torque", "mesh_frequency")
+_OF_MACHINE = (
+    *("machine.input_power", "machine.output_torque", "mesh_frequency"),
+    *("ratio", "planet_speed", "machine.clock_frequency"),
+)
 _CONFIG = {
     "displaylogo": False,
     "responsive": True,
@@ -86,7 +91,8 @@ def notice(heading: str, lines: list[str]) -> list[Any]:
 
 def rail(desk: TabSession) -> list[Any]:
     """Tabs of all views, and the list of runs."""
-    name = "Machine" if isinstance(desk.case, MachineCase) else "Gear pair"
+    kinds: dict[type, str] = {MachineCase: "Machine", PlanetaryCase: "Planetary stage"}
+    name = kinds.get(type(desk.case), "Gear pair")
     views = [("pair", name), ("files", "Open and save"), ("studies", "Studies")]
     tabs = [_tab(desk, view, text) for view, text in views]
     for job in desk.all_jobs():
@@ -131,8 +137,8 @@ def pair(desk: TabSession) -> list[Any]:
     from tribodyn.study.pipeline.preview import operating_figures
 
     case = desk.case
-    if isinstance(case, MachineCase):
-        return _machine(desk, case)
+    if isinstance(case, PartsCase):
+        return _parts(desk, case)
     with collected():
         figures = {n: float(v) for n, v in (geometry(case) | operating_figures(case)).items()}
         cautions = [str(caution) for caution in case_cautions(case)]
@@ -150,22 +156,28 @@ def pair(desk: TabSession) -> list[Any]:
     return [*_outdated(desk), html.Div(parts, className="outdated" if desk.faults else "")]
 
 
-def _machine(desk: TabSession, case: MachineCase) -> list[Any]:
-    """Side view, speeds, torques and assumptions of the current machine."""
+def _parts(desk: TabSession, case: PartsCase) -> list[Any]:
+    """View, speeds, torques and assumptions of the current machine or stage."""
     from tribodyn import plot
     from tribodyn.report.numbers import describe
     from tribodyn.study.machine.first_look import kinematic_figures, warn_of_period
+    from tribodyn.study.planetary.summary import kinematic_figures as stage_figures
 
-    machine = case.machine()
+    subject: Any
     with collected() as warnings:
-        warn_of_period(machine)
-    values = kinematic_figures(case)
+        if isinstance(case, MachineCase):
+            subject, figure = case.machine(), plot.machine
+            warn_of_period(case.machine())
+            values = kinematic_figures(case)
+        else:
+            assert isinstance(case, PlanetaryCase)
+            subject, figure = case, plot.planetary_stage
+            values = stage_figures(case, case.kinematics(case.operating_point))
     numbers = [describe(name, value) for name, value in values.items()]
     rows = [[n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers]
     first = [describe(n, value, 4) for n, value in values.items() if n.endswith(_OF_MACHINE)]
-    sketch = plot.machine.sketch(machine)
-    caption = plot.machine.caption_of(machine)
-    block = block_of_figure(plot.machine.name, plot.machine.heading, sketch, caption)
+    caption = figure.caption_of(subject)
+    block = block_of_figure(figure.name, figure.heading, figure.sketch(subject), caption)
     every = [html.Summary(f"All speeds, torques and powers ({len(rows)})")]
     every.append(table(["Quantity", "Value", "Meaning"], rows))
     assumed = [[a.key, a.value or "", a.reason or ""] for a in case.assumptions]
@@ -173,7 +185,7 @@ def _machine(desk: TabSession, case: MachineCase) -> list[Any]:
     parts = [
         cards([[n.label, n.value, n.unit] for n in first]),
         *notice("Warnings", [str(warning) for warning in warnings]),
-        _block(block.__dict__, "pair-machine", json.loads(block.json)),
+        _block(block.__dict__, f"pair-{figure.name}", json.loads(block.json)),
         html.Details(every, className="block"),
         *([html.Details(taken, className="block")] if assumed else []),
     ]
@@ -312,14 +324,13 @@ def _folder_name(desk: TabSession, job: Job) -> str:
 
 def files(desk: TabSession) -> list[Any]:
     """Cases to open, and the form to save this one."""
-    from tribodyn.cases.catalogue import cases, planetary_files
+    from tribodyn.cases.catalogue import cases
 
     case_names = desk.folder.cases()
     links = [html.Li(button(name, "open", f"file:{name}", className="link")) for name in case_names]
     built = [
         html.Li([button(name, "open", f"case:{name}", className="link"), " ", html.Span(title)])
         for name, title in cases(machines=True).items()
-        if name not in planetary_files()
     ]
     name = dcc.Input(id="case-name", value=desk.name or "my-gears.toml", autoComplete="off")
     write = button("Save", "save", id="save", data_from="case-name")

@@ -11,14 +11,13 @@ from tribodyn.app.case_form import CaseForm, key_label
 from tribodyn.app.jobs import Job, Jobs
 from tribodyn.app.machine_form import MachineForm
 from tribodyn.app.studies import STUDIES, first_values, form_of, numeric_keys
-from tribodyn.app.workspace import Workspace, planets_in_app
-from tribodyn.cases.catalogue import case_files, machine_files
+from tribodyn.app.workspace import Workspace
+from tribodyn.cases.catalogue import cases
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
 from tribodyn.nomenclature import GEARS
-from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.planetary.case import PlanetaryCase
+from tribodyn.study.machine.user_tables import PartsCase
 from tribodyn.study.result_comparison import differing
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
 from tribodyn.validated_files import plain_number
@@ -26,7 +25,7 @@ from tribodyn.validated_files import plain_number
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
-    AnyCase = Case | MachineCase
+    AnyCase = Case | PartsCase
 
 #: Greatest number of runs, and of studies, of a tab.
 RUNS = 6
@@ -71,7 +70,7 @@ class TabSession:
     @property
     def form(self) -> CaseForm | MachineForm:
         """The form of the case."""
-        if isinstance(self.case, MachineCase):
+        if isinstance(self.case, PartsCase):
             return MachineForm(self.case, self.typed, self.units)
         return CaseForm(self.case, self.typed, self.units)
 
@@ -222,7 +221,7 @@ class TabSession:
         kind, _, place = name.partition(":")
         if kind == "file":
             self.take(self.folder.load(place), place)
-        elif place in {**case_files(), **machine_files()} or not place:
+        elif place in cases(machines=True) or not place:
             self.take(initial_case(self.folder, place)[0], "")
         else:
             raise InputError(f'no built-in case is called "{place}"')
@@ -378,11 +377,8 @@ def initial_case(folder: Workspace, requested: str) -> tuple[AnyCase, str]:
 
     if not requested:
         return read_case(start_toml(), "case.toml"), ""
-    if requested in {**case_files(), **machine_files()} or not Path(requested).exists():
-        case = load_case(requested)  # raises with a list of cases if the name is unknown
-        if isinstance(case, PlanetaryCase):
-            raise planets_in_app(requested)
-        return case, ""
+    if requested in cases(machines=True) or not Path(requested).exists():
+        return load_case(requested), ""  # raises with a list of cases if the name is unknown
     place = Path(requested).resolve()
     if not place.is_relative_to(folder.root):
         why = f"The page reads and writes only in {folder.root}"

@@ -12,11 +12,11 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
 from queue import SimpleQueue
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.user_tables import PartsCase
 
 #: Shortest time between two messages about progress [s].
 _PAUSE = 0.15
@@ -103,23 +103,22 @@ def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
         tell(state="failed", problems=[f"{what}. This is a fault of tribodyn, not of the input."])
 
 
-def _case(order: Mapping[str, Any]) -> Case | MachineCase:
+def _case(order: Mapping[str, Any]) -> Case | PartsCase:
     from tribodyn.study.machine.read import read_any_case
 
-    # The page refuses planetary stages before a job is ordered.
-    return cast("Case | MachineCase", read_any_case(order["case"], "case.toml"))
+    return read_any_case(order["case"], "case.toml")
 
 
 def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Compute a case, send its contents, and write the directory of ``tribodyn run``."""
     from tribodyn.report.figure_blocks import figure_blocks
     from tribodyn.report.numbers import HEAD, headlines, modes_table, table
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.user_tables import PartsCase
     from tribodyn.study.pipeline.run import computed
 
     case = _case(order)
-    if isinstance(case, MachineCase):
-        _run_machine(case, folder, tell)
+    if isinstance(case, PartsCase):
+        _run_parts(case, folder, tell)
         return
     result = computed(case, Teller(tell))
     tell(task="Figures", done=0, total=None)
@@ -140,16 +139,19 @@ def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     tell(saved=True)
 
 
-def _run_machine(case: MachineCase, folder: Path, tell: Tell) -> None:
-    """Compute a machine, send its contents, and write the directory of ``tribodyn run``."""
+def _run_parts(case: PartsCase, folder: Path, tell: Tell) -> None:
+    """Compute a machine or stage, send its contents, and write the directory of the command."""
+    from tribodyn.cases.load import run
     from tribodyn.errors import collected
     from tribodyn.report.machine_report import machine_content
-    from tribodyn.study.machine.run import run_machine
+    from tribodyn.report.planetary_report import planetary_content
+    from tribodyn.study.machine.result import MachineResult
 
     with collected():  # the result has them
-        result = run_machine(case, Teller(tell))
+        result = run(case, Teller(tell))  # type: ignore[arg-type]
     tell(task="Figures", done=0, total=None)
-    content = machine_content(result)
+    machine = isinstance(result, MachineResult)
+    content = machine_content(result) if machine else planetary_content(result)
     tell(state="done", content={**content, "blocks": _written(content["blocks"], folder)}, task="")
     result.save(folder / "result")
     tell(saved=True)
@@ -168,13 +170,13 @@ def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     from tribodyn import plot
     from tribodyn.cases.stored_result import load_result
     from tribodyn.report.figure_blocks import block_of_figure
-    from tribodyn.study.machine.result import MachineResult
+    from tribodyn.study.pipeline.result import Result
     from tribodyn.study.result_comparison import compare_results, difference_rows
 
     results = [load_result(place) for place in order["results"]]
     comparison = compare_results(*results, names=order["names"])
-    machines = isinstance(results[0], MachineResult)
-    figure = plot.machine_comparison if machines else plot.result_comparison
+    pairs = isinstance(results[0], Result)
+    figure = plot.result_comparison if pairs else plot.machine_comparison
     block = block_of_figure(
         figure.name, figure.heading, comparison.plot(), figure.caption_of(comparison)
     )

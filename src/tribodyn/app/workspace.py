@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.study.case.read import named_files, parse_toml, read_text
@@ -15,6 +15,7 @@ from tribodyn.study.machine.read import machine_files, read_any_case
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.user_tables import PartsCase
 
 #: Characters of a name, case files that are listed, and how deep the search goes.
 _LONGEST, _LISTED, _DEEP = 120, 200, 3
@@ -76,26 +77,24 @@ class Workspace:
         except InputError:
             return False
 
-    def load(self, name: str) -> Case | MachineCase:
+    def load(self, name: str) -> Case | PartsCase:
         """Read a case file; files that it names have to be in the folder too."""
         place = self.inside(name, ".toml")
         if not place.is_file():
             raise InputError(f'there is no file "{name}"', "", "", "Choose one from the list")
         return self.read(read_text(place), place)
 
-    def read(self, text: str, place: Path) -> Case | MachineCase:
+    def read(self, text: str, place: Path) -> Case | PartsCase:
         """Read a case from text as a file of the folder."""
         name = self.relative_name(place)
         data = parse_toml(text, name)
         files = [named for _, named in named_files(text, name)]
-        if "planets" in data:
-            raise planets_in_app(place.name)
         for named in [*files, *(machine_files(data) if is_machine(data) else ())]:
             if not (place.parent / named).resolve().is_relative_to(self.root):
                 raise self._outside(named)
-        return cast("Case | MachineCase", read_any_case(text, str(place)))
+        return read_any_case(text, str(place))
 
-    def save_case(self, case: Case | MachineCase, name: str, force: bool = False) -> Path:
+    def save_case(self, case: Case | PartsCase, name: str, force: bool = False) -> Path:
         """Write a case file with the files of a housing; replace one only with ``force``."""
         from tribodyn.study.pipeline.save import write_file
 
@@ -125,10 +124,3 @@ class Workspace:
             raise InputError(
                 f'there is no folder "{parent_name}"', "", "", "Create it, or leave it out"
             )
-
-
-def planets_in_app(name: str) -> InputError:
-    """Error of a planetary stage, which the app has no form for."""
-    why = "The app computes gear pairs and machines with fixed axes"
-    remedy = f"Compute it with: tribodyn run {name}"
-    return InputError("this is a planetary stage", name, why, remedy)

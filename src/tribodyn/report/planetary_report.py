@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tribodyn import plot
 from tribodyn.drawing import report_of
@@ -65,6 +65,30 @@ def _blocks(result: PlanetaryResult) -> list[Block]:
         for figure, part, name, heading in parts
         if not figure.missing(part)
     ]
+
+
+def planetary_content(result: PlanetaryResult) -> dict[str, Any]:
+    """Cards, tables, warnings and figures of a stage for the page."""
+    summary = result.summary()
+    stage = result.operation.stage_modes
+    cards = [describe(key.format(result.case.name), summary[key.format(result.case.name)], 4)
+             for key in _CARDS]  # fmt: skip
+    numbers = [
+        (topic, number_of_part(key, summary[key]))
+        for topic, keys in by_topic(summary).items()
+        for key in keys
+    ]
+    rows = [[topic, n.label, f"{n.value} {n.unit}".strip(), n.meaning] for topic, n in numbers]
+    return {
+        "cards": [[card.label, card.value, card.unit] for card in cards],
+        "sentences": [stage.frame_effect()],
+        "warnings": [str(warning) for warning in result.warnings],
+        "tables": [
+            ["Natural modes", list(MODES_HEAD), stage.rows()],
+            ["All numbers", ["Part", "Quantity", "Value", "Meaning"], rows],
+        ],
+        "blocks": _blocks(result),
+    }
 
 
 def render_planetary_report(result: PlanetaryResult) -> str:

@@ -14,7 +14,9 @@ from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.machine.result import MachineResult
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
+from tribodyn.study.planetary.result import PlanetaryResult
 
+AnyResult = Result | MachineResult | PlanetaryResult
 #: Relative difference below which figures count as equal.
 _TOLERANCE = 1e-9
 
@@ -74,14 +76,14 @@ class ResultComparison(Record):
         Values of the cases by key, in SI, where they differ.
     figures : dict of str to tuple of float
         Figures of the summaries by name, in SI, where they differ; None where a result lacks it.
-    results : tuple of Result or of MachineResult
+    results : tuple of Result, of MachineResult or of PlanetaryResult
         The results.
     """
 
     names: tuple[str, ...]
     values: dict[str, tuple[Any, ...]]
     figures: dict[str, tuple[float | None, ...]]
-    results: tuple[Result | MachineResult, ...] = field(repr=False)
+    results: tuple[AnyResult, ...] = field(repr=False)
 
     def plot(self, *arguments: Any, **options: Any) -> Any:
         """Draw the motions of pairs overlaid, or the levels of the parts of machines.
@@ -95,8 +97,8 @@ class ResultComparison(Record):
         -------
         plotly.graph_objects.Figure
         """
-        machines = isinstance(self.results[0], MachineResult)
-        name = "machine_comparison" if machines else "result_comparison"
+        pairs = isinstance(self.results[0], Result)
+        name = "result_comparison" if pairs else "machine_comparison"
         return draw(self, name, *arguments, **options)
 
     def _parts(self) -> Parts:
@@ -121,15 +123,13 @@ class ResultComparison(Record):
         return html_table(repr(self), head, difference_rows(self.values, self.figures))
 
 
-def compare_results(
-    *results: Result | MachineResult, names: Sequence[str] | None = None
-) -> ResultComparison:
+def compare_results(*results: AnyResult, names: Sequence[str] | None = None) -> ResultComparison:
     """Compare results: a table of differing values and figures, and overlaid curves.
 
     Parameters
     ----------
-    *results : Result or MachineResult
-        Two or more, at most twelve, all of pairs or all of machines.
+    *results : Result, MachineResult or PlanetaryResult
+        Two or more, at most twelve, all of pairs, all of machines or all of stages.
     names : sequence of str, optional
         Name of each; by default the title of its case, with a number where titles are equal.
 
@@ -152,11 +152,12 @@ def compare_results(
     >>> compare_results(base, reduced, names=("as printed", "60 N m")).values
     {'operation.torque': (10.6, 60.0)}
     """
-    kind = MachineResult if results and isinstance(results[0], MachineResult) else Result
+    kinds = (MachineResult, PlanetaryResult)
+    kind = type(results[0]) if results and isinstance(results[0], kinds) else Result
     invalid = [result for result in results if not isinstance(result, kind)]
     if invalid:
         what = f"results holds {shortened(repr(invalid[0]))}"
-        why = "Expected: results of tribodyn.run, of pairs or of machines"
+        why = "Expected: results of tribodyn.run, of pairs or of machines or of stages"
         raise InputError(what, Argument("results"), why, "Run each case first")
     if not 2 <= len(results) <= 12:
         why = "Between 2 and 12 results can be compared"
@@ -177,7 +178,7 @@ def compare_results(
     )
 
 
-def _titles(results: Sequence[Result | MachineResult]) -> tuple[str, ...]:
+def _titles(results: Sequence[AnyResult]) -> tuple[str, ...]:
     titles = [result.case.title for result in results]
     if len(set(titles)) == len(titles):
         return tuple(titles)

@@ -10,7 +10,8 @@ import pytest
 import tribodyn
 from tribodyn.analysis import alternating_rms
 from tribodyn.errors import InputError
-from tribodyn.study.studies.run_up import _rotation, speed_systems
+from tribodyn.study.pipeline.assembly import rotation_of
+from tribodyn.study.studies.run_up import speed_systems
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +43,7 @@ def test_friction_and_inertia_follow_the_speed(case: tribodyn.Case) -> None:
     phase = np.array([0.1, 0.6])
     less = np.abs(slow.contacts[0].friction(phase)).max()
     assert less != pytest.approx(np.abs(quick.contacts[0].friction(phase)).max(), rel=0.02)
-    turning = _rotation(case, slow, per_speed)
+    turning = per_speed * rotation_of(case, slow.names)
     by_name = dict(zip(slow.names, turning, strict=True))
     # both gears roll on each other: teeth times angle agree
     pair = case.gear_pair

@@ -19,7 +19,7 @@ from tribodyn.types import Array, ComplexArray
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalGear
     from tribodyn.machine import RingSensorSignal
-    from tribodyn.study import PlanetaryMotion, PlanetaryResult
+    from tribodyn.study import PlanetaryCase, PlanetaryMotion, PlanetaryResult
     from tribodyn.study.planetary.tolerances import LoadShareStatistics
 
 #: Points of a tooth, those of them that are drawn, and pictures of the movement.
@@ -45,9 +45,9 @@ def _trace(points: ComplexArray, name: str, color: str) -> Trace:
     }  # fmt: skip
 
 
-def _start_angles(result: PlanetaryResult, angles: Array) -> tuple[float, list[float]]:
+def _start_angles(case: PlanetaryCase, angles: Array) -> tuple[float, list[float]]:
     """Rotations of the ring and of the planets in which their teeth engage, the sun's is 0."""
-    teeth = {role: abs(result.case.gears[getattr(result.case.table, role)].teeth)
+    teeth = {role: abs(case.gears[getattr(case.table, role)].teeth)
              for role in ("sun", "planet", "ring")}  # fmt: skip
     planets = []
     for at in angles:
@@ -65,18 +65,21 @@ def _start_angles(result: PlanetaryResult, angles: Array) -> tuple[float, list[f
     caption="Sun, planets and ring with their teeth in the transverse section, and the arms of the "
     "carrier, to scale, seen against the axis. Press Play to turn the stage: one step of the "
     "carrier from planet to planet, or the same time where the carrier is held.",
-    of=("PlanetaryResult",),
-    made_by="Run a case with planets: tribodyn.run.",
+    of=("PlanetaryResult", "PlanetaryCase"),
+    made_by="Load or run a case with planets: tribodyn.load_case, tribodyn.run.",
 )
-def planetary_stage(result: PlanetaryResult) -> Any:
+def planetary_stage(result: PlanetaryResult | PlanetaryCase) -> Any:
     """Draw a planetary stage with moving planets."""
-    case, stage = result.case, result.operation.kinematics
+    whole: Any = result
+    case: PlanetaryCase = getattr(whole, "case", whole)
+    load = case.operating_point
+    stage = case.kinematics(load)
     pairs = {mesh: pair.gear_pair for mesh, pair in case.pairs.items()}
     sun_side = "pinion" if case.gears_of("sun")[0] == case.table.sun else "wheel"
     sun = _outline(getattr(pairs["sun"], sun_side))
     planet, ring = _outline(pairs["ring"].pinion), _outline(pairs["ring"].wheel)
-    angles = np.asarray(result.operation.phases.angles) * case.turn(result.operation.load)
-    ring_start, planet_starts = _start_angles(result, angles)
+    angles = np.asarray(case.phases(load).angles) * case.turn(load)
+    ring_start, planet_starts = _start_angles(case, angles)
     distance = 1e3 * case.center_distance
     rates = stage.speeds
     slowest = abs(rates["carrier"]) or abs(rates["ring"])
