@@ -318,14 +318,14 @@ class System:
     @cached_property
     def clocked_contacts(self) -> tuple[Contact, ...]:
         """Contacts whose entries and events are over the clock."""
-        return tuple(on_clock(c, _CONTACT_ENTRIES, c.cycles, c.offset) for c in self.contacts)
+        return tuple(on_clock(c, CONTACT_ENTRIES, c.cycles, c.offset) for c in self.contacts)
 
     @cached_property
     def clocked_frictions(self) -> tuple[LoadFriction, ...]:
         """Frictions whose entries and events are over the clock."""
         clocks = [self.contacts[friction.contacts[0]] for friction in self.frictions]
         return tuple(
-            on_clock(friction, _FRICTION_ENTRIES, clock.cycles, clock.offset)
+            on_clock(friction, FRICTION_ENTRIES, clock.cycles, clock.offset)
             for friction, clock in zip(self.frictions, clocks, strict=True)
         )
 
@@ -336,10 +336,10 @@ class System:
 
 
 _MATRICES = ("mass", "damping", "stiffness")
-_CONTACT_ENTRIES = (
+CONTACT_ENTRIES = (
     "direction", "stiffness", "damping", "error", "gap", "friction", "ramp_stiffness", "ramp_gap"
 )  # fmt: skip
-_FRICTION_ENTRIES = ("direction", "coefficients")
+FRICTION_ENTRIES = ("direction", "coefficients")
 #: Inverses of mass matrices: a study builds the same structure many times.
 _inverses: Memo[Array] = Memo(8)
 

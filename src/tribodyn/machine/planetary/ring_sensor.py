@@ -127,15 +127,20 @@ def ring_sensor_signal(
     steps, count = force.shape
     at = read_angles(count, angles)
     turn = np.arange(teeth * steps) / (teeth * steps)
-    sense = -1.0 if backwards else 1.0
-    away = require_number("sensor_angle", sensor_angle) - at - 2.0 * np.pi * sense * turn[:, None]
-    away = (away + np.pi) % (2.0 * np.pi) - np.pi
-    weight = _weight(window)(away)
+    weight = passing_weights(at, -turn if backwards else turn, sensor_angle, window)
     signal = (weight * np.tile(force, (teeth, 1))).sum(axis=1)
     amplitude = 2.0 * np.abs(np.fft.rfft(signal)) / signal.size
     amplitude[0] *= 0.5
     order = np.arange(amplitude.size, dtype=float)
     return RingSensorSignal(turn, signal, order, amplitude, teeth, float(carrier_frequency))
+
+
+def passing_weights(
+    angles: Array, turn: Array, sensor_angle: float, window: float | Callable[[Array], Array] | None
+) -> Array:
+    """Weight of each planet at a sensor on the ring over the turns of the carrier (s, N)."""
+    away = require_number("sensor_angle", sensor_angle) - angles - 2.0 * np.pi * turn[:, None]
+    return _weight(window)((away + np.pi) % (2.0 * np.pi) - np.pi)
 
 
 def _weight(window: float | Callable[[Array], Array] | None) -> Callable[[Array], Array]:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult
+    from tribodyn.study.planetary.case import PlanetaryCase
 
 #: Steps of a cycle of the fastest mesh, tried in turn.
 _STEPS = (128, 256)
@@ -191,7 +192,7 @@ def _direction(axis: str) -> Array | None:
     return np.array([0.0, math.cos(angle), math.sin(angle)])
 
 
-def seat_accelerance(case: MachineCase) -> Callable[[Array], ComplexArray] | None:
+def seat_accelerance(case: MachineCase | PlanetaryCase) -> Callable[[Array], ComplexArray] | None:
     """Accelerance of a seat of one mass on a spring; None where the case has none."""
     data = case.motion
     if data.seat_mass is None or data.seat_frequency is None:

@@ -23,6 +23,10 @@ from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.user_input import Source, unsound, without_spread
 from tribodyn.study.case.values import KeyedProblems, Plain
+from tribodyn.study.faults.planetary_section import (
+    PlanetaryFaultTable,
+    planetary_fault_problems,
+)
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import MESH_KEYS, SHARED, mesh_tables, pair_case
 from tribodyn.study.machine.read_parts import (
@@ -35,7 +39,7 @@ from tribodyn.study.machine.read_parts import (
 from tribodyn.study.machine.tables import STIFF, MotionTable, PlanetsTable
 from tribodyn.study.machine.user_tables import PartsCase, stated_assumptions
 
-_TOP = ("title", "origin", "gears", "planets", "operation", "load_cases", "dynamics")
+_TOP = ("title", "origin", "gears", "planets", "operation", "load_cases", "dynamics", "faults")
 _MEMBERS = ("sun", "ring", "carrier")
 #: Keys of the case for arguments of the functions of a stage.
 _KEYS = {
@@ -108,6 +112,12 @@ class PlanetaryCase(PartsCase):
         dynamics = self.data.get("dynamics", {})
         motion = {k: v for k, v in dynamics.items() if k not in MESH_KEYS}
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
+        faults = {
+            name: table_of(PlanetaryFaultTable, body, f"faults.{name}", problems)
+            for name, body in tables_of(self.data, "faults", problems).items()
+        }
+        self.faults = {name: table for name, table in faults.items() if table is not None}
+        problems += planetary_fault_problems(self, self.faults)
         loads = read_loads(self.data, problems)
         if loads is not None and self.table is not None:
             self.ends, self.operating_point, self.load_cases = loads

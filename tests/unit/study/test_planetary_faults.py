@@ -1,0 +1,124 @@
+"""Faults of a planetary stage: waves of its gears, and the sensor that planets pass."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.study.faults.planetary_motion import mesh_waves, planetary_turning_motion
+
+QUICK = {
+    "film.model": "dowson-higginson", "friction.law": "constant", "friction.coefficient": 0.05,
+    "load_cases": None, "planets.low.sun_support": "1e9 N/m", "dynamics.seat_mass": "20 kg",
+    "dynamics.seat_frequency": "1.5 kHz",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def result() -> Any:
+    return td.run(td.load_case("planetary-stage").replace(QUICK, by="test"))
+
+
+def with_fault(result: Any, **fault: Any) -> Any:
+    return result.case.replace({f"faults.f.{key}": value for key, value in fault.items()})
+
+
+@pytest.mark.parametrize(
+    ("gear", "first", "driver"),
+    [("sun", 6, "sun"), ("planet", 12, "sun"), ("ring", 3, "sun"), ("planet", 12, "carrier")],
+)
+def test_an_eccentric_gear_moves_as_its_axis_would(
+    result: Any, gear: str, first: int, driver: str
+) -> None:
+    case = with_fault(result, kind="eccentricity", gear=gear, amplitude="2 um", phase="25 deg")
+    if gear == "planet":
+        case = case.replace({"faults.f.planet": 2})
+    sound = result.operation
+    if driver == "carrier":
+        case = case.replace({"operation.input": "carrier", "operation.output": "sun"})
+        with pytest.warns(td.ModelWarning, match="film-range"):
+            sound = td.run(case).operation
+    waves = mesh_waves(case, sound)
+    assert len(waves) == (2 if gear == "planet" else 3)
+    sense = (1.0 if case.sun_drives(sound.load) else -1.0) * (1.0 if gear == "sun" else -1.0)
+    offsets = {}
+    for number, (wave,) in waves.items():
+        entry: Any = sound.system.contacts[number].direction
+        row = entry(np.zeros(1))[0] if callable(entry) else np.asarray(entry)
+        along = row[first : first + 2]
+        assert np.hypot(*along) == pytest.approx(1.0)
+        # a gap -A cos(angle + phase) is a displacement of the axis whose direction turns
+        offsets[number] = np.arctan2(along[1], along[0]) + sense * wave.phase
+    start = next(iter(offsets.values()))
+    for offset in offsets.values():
+        assert np.cos(offset - start) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_without_faults_the_recording_is_that_of_the_ring_sensor(result: Any) -> None:
+    motion = result.turning_motion
+    assert motion.cycles == 61
+    sidebands = result.operation.ring_sensor(0.4).sidebands()
+    place = motion.sensor._replace(angle=0.4)
+    lines = np.abs(replace(motion, sensor=place).harmonics("ring.force")[1])
+    for distance, amplitude in sidebands.items():
+        assert lines[61 + distance] == pytest.approx(amplitude, abs=1e-3 * sidebands[-1])
+    recording = result.recording("ring.acceleration", 0.5, tacho="carrier", noise=0.1, seed=2)
+    edges = np.flatnonzero(np.diff(recording["tacho"]) > 0.0) / recording.sample_rate
+    carrier = result.operation.kinematics.speeds["carrier"] / (2 * np.pi)
+    assert np.diff(edges) * carrier == pytest.approx(1.0, rel=1e-3)
+    force, values = motion.harmonics("ring.force"), motion.harmonics("ring.acceleration")
+    ratio = force[0][60] / 1500.0
+    seat = -(ratio**2) / (20.0 * (1.0 - ratio**2 + 0.1j * ratio))
+    assert values[1][60] == pytest.approx(seat * force[1][60], rel=1e-9)
+
+
+def test_lines_of_an_eccentric_planet_are_those_of_the_kinematics(result: Any) -> None:
+    case = with_fault(result, kind="eccentricity", gear="planet", amplitude="1 um")
+    motion = planetary_turning_motion(case, result.operation)
+    assert (motion.repeat, motion.cycles) == (22, 22 * 61)
+    size = np.abs(motion.harmonics("ring.force")[1])
+    stage = result.operation.kinematics
+    planet, carrier = (
+        abs(speed) / (2 * np.pi) for speed in (stage.relative_speeds["planet"], motion_speed(stage))
+    )
+    frequency = motion.harmonics("ring.force")[0]
+    # turns of the planet, and one line of the passing window on both sides
+    lines = np.flatnonzero(size > 1e-4 * size[1:].max())
+    away = [(frequency[lines] + n * carrier) / planet for n in (-1, 0, 1)]
+    distance = np.min([np.abs(ratio - np.round(ratio)) for ratio in away], axis=0)
+    assert distance.max() < 1e-9
+    once = round(planet * motion.period)
+    passes = round(carrier * motion.period)
+    # all planets together carry the torque: only their passing shows the wave
+    assert size[once] < 0.01
+    assert min(size[once - passes], size[once + passes]) > 10.0
+    # the other planets feel the sun and the carrier move
+    own = np.abs(motion.harmonics("planet_1.sun_mesh_force")[1])[once]
+    other = np.abs(motion.harmonics("planet_2.sun_mesh_force")[1])[once]
+    assert own > other > 0.0
+
+
+def motion_speed(stage: Any) -> float:
+    """Speed of the carrier relative to the ring."""
+    return -float(stage.relative_speeds["ring"])
+
+
+@pytest.mark.parametrize(
+    ("fault", "expected"),
+    [
+        ({"kind": "crack"}, r"faults\.f\.kind.*Allowed: eccentricity, waviness"),
+        ({"gear": "pin"}, r"faults\.f\.gear.*Known: sun, planet, ring"),
+        ({"gear": "sun", "planet": 1}, r"faults\.f\.planet.*sun and ring are one each"),
+        ({"planet": 4}, r"faults\.f\.planet.*3 planets"),
+        ({"order": 5}, r"faults\.f\.order.*has: gear, amplitude, phase, planet"),
+    ],
+)
+def test_a_wrong_fault_names_its_key(result: Any, fault: dict[str, Any], expected: str) -> None:
+    stated = {"kind": "eccentricity", "gear": "planet", "amplitude": "1 um", **fault}
+    with pytest.raises(InputError, match=expected):
+        with_fault(result, **stated)
