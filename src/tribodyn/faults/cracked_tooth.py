@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError
+from tribodyn.checks import require_number
+from tribodyn.errors import Argument, InputError, require_between
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
 from tribodyn.stiffness.fe2d.provider import held_radius
@@ -20,12 +22,74 @@ from tribodyn.types import Array, Index
 _PLACES = 13
 #: Part of the tooth thickness beyond which the rest would bend plastically.
 _DEEPEST = 0.8
+#: Part of the depth from the root to the bore, or its substitute, that a crack may reach.
+_LOWEST = 0.5
 #: Refinement of the mesh of a whole gear: the tip of the crack needs small elements.
 _REFINED = 2.0
+#: Angles of a crack to the centre line of its tooth: into the body, and square to the tooth.
+STEEPEST, SQUARE = math.radians(45.0), 0.5 * math.pi
+#: Points at which the tangent of the fillet is tabulated.
+_TANGENTS = 401
+#: Factorization of a symmetric positive matrix.
+_SYMMETRIC: dict[str, Any] = {
+    "permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class CrackLine:
+    """Straight line of a crack from the surface of the root to its tip."""
+
+    depth: float  #: length from the surface to the tip [m]
+    angle: float = SQUARE  #: to the centre line of the tooth; smaller runs into the body [rad]
+    root_tangent: float | None = None  #: of the fillet where it begins, to the centre line [rad]
+
+    def start(self, gear: SpurGear) -> float:
+        """Length along the flank where the crack begins [modules]."""
+        side = ToothSide(gear)
+        foot = side.form_length - side.foot_length
+        if self.root_tangent is None:
+            return foot
+        length = np.linspace(side.form_length, foot, _TANGENTS)
+        step = np.diff(side.flank_points(length), axis=0)
+        tangent = np.arctan2(step[:, 0], -step[:, 1])
+        if not tangent[0] <= self.root_tangent <= tangent[-1]:
+            low, high = (math.degrees(tangent[end]) for end in (0, -1))
+            raise InputError(
+                f"root_tangent = {math.degrees(self.root_tangent):.4g} deg",
+                Argument("root_tangent"),
+                f"The fillet of this tooth has tangents at {low:.3g} to {high:.3g} deg to the "
+                "centre line, and the crack begins on it",
+                "Give an angle between them; the critical section of ISO 6336-3 has 30 deg",
+            )
+        return float(np.interp(self.root_tangent, tangent, 0.5 * (length[1:] + length[:-1])))
+
+    def check(self, gear: SpurGear) -> None:
+        """Raise InputError if the line leaves too little of the tooth, or of the body below it."""
+        require_number("angle", self.angle)
+        require_between("angle", self.angle, STEEPEST, SQUARE, "rad", remedy="Give 45 to 90 deg")
+        module = gear.normal_module
+        x, y = ToothSide(gear).flank_points(np.array(self.start(gear))) * module
+        thickness = 2.0 * math.hypot(x, y) * math.atan2(x, y)
+        limit = _DEEPEST * thickness / math.sin(self.angle)
+        why = f"The tooth is {1e3 * thickness:.4g} mm thick where the crack begins, of which at "
+        why += "least a fifth has to be left"
+        below = _LOWEST * (gear.root_radius - held_radius(gear)) / max(math.cos(self.angle), 1e-9)
+        if below < limit:
+            limit, why = below, "Half of the body under the root has to be left"
+        if self.depth > limit:
+            what, remedy = f"depth = {1e3 * self.depth:.4g} mm", f"at most {1e3 * limit:.3g} mm"
+            raise InputError(what, Argument("depth"), why, f"Give a depth of {remedy}")
 
 
 def crack_compliance(
-    gear: SpurGear, material: Material, depth: float, *, refined: float = _REFINED
+    gear: SpurGear,
+    material: Material,
+    depth: float,
+    *,
+    angle: float = SQUARE,
+    root_tangent: float | None = None,
+    refined: float = _REFINED,
 ) -> tuple[Array, Array]:
     """Compliance per face width that a root crack adds under a load on the flank.
 
@@ -34,7 +98,13 @@ def crack_compliance(
     gear, material : SpurGear, Material
         External gear and its material.
     depth : float
-        Length of the crack from the surface into the tooth [m].
+        Length of the crack from the surface to its tip [m].
+    angle : float
+        Angle of the crack to the centre line of the tooth [rad], from pi/4, into the body, to pi/2,
+        square to the tooth.
+    root_tangent : float, optional
+        Angle of the tangent of the fillet to the centre line where the crack begins [rad]; by
+        default it begins at the lower end of the fillet, where the body does.
     refined : float
         Size of the elements of whole gears over that of these [1].
 
@@ -48,13 +118,15 @@ def crack_compliance(
     Raises
     ------
     InputError
-        If the crack is deeper than 0.8 of the tooth at its root.
+        If the crack leaves less than a fifth of the tooth or half of the body, or an angle is out
+        of range.
 
     Notes
     -----
-    Plane stress, quadratic quadrilaterals, one tooth with its sector of the body held at the bore
-    and at both cuts: what the crack adds belongs to the tooth alone. The nodes of the element edge
-    that runs from the foot of the fillet through the tooth are doubled up to the tip of the crack.
+    Plane stress, quadratic quadrilaterals of the whole ring, held at the bore; the sound teeth are
+    reduced without loss to the cuts of the cracked one. A row of element edges is moved onto the
+    crack with the mesh around it, and its nodes are doubled up to the tip. The crack is open, and
+    what it adds at the neighbours is left out.
 
     Examples
     --------
@@ -64,87 +136,151 @@ def crack_compliance(
     >>> bool(np.all(added > 0.0))
     True
     """
-    check_depth(gear, depth)
-    unit = _unit_compliance(gear, material.poissons_ratio, depth, refined)
-    return unit[0], unit[1] / material.youngs_modulus
-
-
-def check_depth(gear: SpurGear, depth: float) -> None:
-    """Raise InputError if hardly any tooth is left beside a crack."""
-    side = ToothSide(gear)
-    x, y = side.flank_points(np.array(side.form_length - side.foot_length))
-    thickness = 2.0 * math.hypot(x, y) * math.atan2(x, y) * gear.normal_module
-    if depth > _DEEPEST * thickness:
-        raise InputError(
-            f"depth = {1e3 * depth:.4g} mm",
-            where=Argument("depth"),
-            why=f"The tooth is {1e3 * thickness:.4g} mm thick where the crack begins, of which at "
-            "least a fifth has to be left",
-            remedy=f"Give a depth of at most {_DEEPEST * 1e3 * thickness:.3g} mm",
-        )
+    line = CrackLine(depth, angle, root_tangent)
+    line.check(gear)
+    radius, added = _unit_compliance(gear, material.poissons_ratio, line, refined)
+    return radius, added / material.youngs_modulus
 
 
 @lru_cache(maxsize=64)
 def _unit_compliance(
-    gear: SpurGear, poissons_ratio: float, depth: float, refined: float
+    gear: SpurGear, poissons_ratio: float, line: CrackLine, refined: float
 ) -> tuple[Array, Array]:
-    mesh = tooth_mesh(gear, held_radius(gear), MeshSize().refined(refined))
+    mesh, rest = _sound_ring(gear, poissons_ratio, refined)
     base = gear.base_radius
     low = gear.roll_angle(max(gear.form_radius, base)) * base
     radius = np.linspace(
         max(low, 0.02 * gear.normal_module), gear.roll_angle(gear.tip_radius) * base, _PLACES
     )
     forces = flank_loads(gear, mesh, radius).forces
-    seam = mesh.tooth[:, -1]
+    added = np.zeros(radius.size)
+    for row, weight in crack_rows(gear, mesh, line):
+        tooth = open_seam(mesh, row, line.depth / gear.normal_module, line.angle)
+        sound, cracked = (
+            _self_compliance(part, forces, poissons_ratio, rest)
+            for part in (tooth.sound, tooth.cracked)
+        )
+        added += weight * tooth.part * (cracked - sound)
+    return radius, added
+
+
+def crack_rows(gear: SpurGear, mesh: SectorMesh, line: CrackLine) -> list[tuple[int, float]]:
+    """Rows of element edges between which the crack begins, and their weights."""
+    corners = mesh.flank_length[::2]  # falling
+    place = np.interp(-line.start(gear), -corners, np.arange(corners.size))
+    first = min(int(place), corners.size - 2)
+    weights = [(2 * first, first + 1.0 - place), (2 * first + 2, place - first)]
+    return [(row, float(weight)) for row, weight in weights if weight > 1e-9]
+
+
+@dataclass(frozen=True, eq=False)
+class CrackedTooth:
+    """A meshed tooth with an open seam."""
+
+    sound: SectorMesh  #: with a row of element edges on the crack
+    cracked: SectorMesh  #: the same with the nodes of the crack doubled, the second ones last
+    seam: Index  #: nodes that are doubled
+    part: float  #: compliance of the crack over that of the seam, which is an element at least
+
+
+def open_seam(mesh: SectorMesh, row: int, length: float, angle: float) -> CrackedTooth:
+    """Move a row of element edges onto a crack and open it; lengths in modules."""
+    seam = mesh.tooth[:, row]
     reach = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(mesh.nodes[seam], axis=0).T))])
-    length = depth / gear.normal_module
-    # Only corners of elements can be the tip of the crack: compliance between them is interpolated
-    # in the square of the depth, in which a shallow crack is linear.
-    corner = int(np.searchsorted(reach[::2], length))
-    sound = _self_compliance(mesh, mesh.elements, len(mesh.nodes), forces, poissons_ratio)
-    added = []
-    for tip in (corner - 1, corner):
-        elements, count = _opened(mesh, seam, 2 * tip)
-        loads = np.zeros((2 * count, radius.size))
-        loads[: forces.shape[0]] = forces
-        cracked = _self_compliance(mesh, elements, count, loads, poissons_ratio)
-        added.append(cracked - sound)
-    first, last = (reach[2 * tip] ** 2 for tip in (corner - 1, corner))
-    share = (length**2 - first) / (last - first)
-    return radius, (1.0 - share) * added[0] + share * added[1]
+    # The compliance of a shallow crack grows with the square of its depth.
+    meshed = max(length, reach[2])
+    tip = 2 + 2 * int(np.argmin(np.abs(reach[2:-2:2] - meshed * math.sin(angle))))
+    along = (reach[: tip + 1] * (meshed / reach[tip]))[:, None]
+    direction = np.array([math.sin(angle), math.cos(angle)])
+    shift = np.zeros((seam.size, 2))
+    shift[: tip + 1] = mesh.nodes[seam[0]] - along * direction - mesh.nodes[seam[: tip + 1]]
+    shift[tip:] = shift[tip] * ((reach[-1] - reach[tip:]) / (reach[-1] - reach[tip]))[:, None]
+    sound = _moved(mesh, row, shift)
+    twins = np.arange(len(mesh.nodes))
+    twins[seam[:tip]] = len(mesh.nodes) + np.arange(tip)
+    above = np.isin(mesh.elements, mesh.tooth[:, row - 1]).any(axis=1)
+    elements = np.where(above[:, None], twins[mesh.elements], mesh.elements)
+    nodes = np.concatenate([sound.nodes, sound.nodes[seam[:tip]]])
+    cracked = replace(sound, nodes=nodes, elements=elements)
+    return CrackedTooth(sound, cracked, seam[:tip], (length / meshed) ** 2)
 
 
-def _opened(mesh: SectorMesh, seam: Index, tip: int) -> tuple[Index, int]:
-    """Elements whose nodes of the seam before the tip are doubled, and the number of nodes."""
-    elements, count = mesh.elements.copy(), len(mesh.nodes)
-    split = seam[:tip]
-    twin = dict(zip(split.tolist(), range(count, count + split.size), strict=True))
-    above = np.isin(mesh.elements, mesh.tooth[:, -2]).any(axis=1)
-    rows = elements[above]
-    for old, new in twin.items():
-        rows[rows == old] = new
-    elements[above] = rows
-    return elements, count + split.size
+def _moved(mesh: SectorMesh, row: int, shift: Array) -> SectorMesh:
+    """Mesh whose row of nodes across the tooth is moved, less towards tip and bore."""
+    levels = np.arange(mesh.right_cut.size + 1)
+    columns = np.concatenate([mesh.tooth[:, :-1], mesh.tooth[:, -1:] + levels], axis=1)
+    place = mesh.nodes[columns]
+    reach = np.cumsum(np.hypot(*np.diff(place, axis=1, prepend=place[:, :1]).transpose(2, 0, 1)), 1)
+    at, end = reach[:, row, None], reach[:, -1:]
+    weight = np.minimum(reach / at, (end - reach) / (end - at))
+    nodes = mesh.nodes.copy()
+    nodes[columns] += weight[:, :, None] * shift[:, None]
+    return replace(mesh, nodes=nodes)
 
 
-def _self_compliance(
-    mesh: SectorMesh, elements: Index, count: int, forces: Array, poissons_ratio: float
-) -> Array:
-    """Work of each load on its own displacement, for a Young's modulus of one."""
+def _stiffness(mesh: SectorMesh, poissons_ratio: float) -> Any:
     from scipy.sparse import coo_array
-    from scipy.sparse.linalg import splu
 
     matrices = element_stiffness(mesh.nodes[mesh.elements], plane_stress(1.0, poissons_ratio))
-    freedoms = (2 * elements[:, :, None] + np.arange(2)).reshape(len(elements), 18)
+    freedoms = (2 * mesh.elements[:, :, None] + np.arange(2)).reshape(-1, 18)
     rows = np.broadcast_to(freedoms[:, :, None], matrices.shape)
     columns = np.broadcast_to(freedoms[:, None, :], matrices.shape)
     entries: Any = (matrices.ravel(), (rows.ravel(), columns.ravel()))
-    matrix = coo_array(entries, shape=(2 * count, 2 * count)).tocsc()
-    fixed = np.concatenate([mesh.fixed, mesh.right_cut, mesh.left_cut])
-    free = np.setdiff1d(np.arange(2 * count), (2 * fixed[:, None] + np.arange(2)).ravel())
-    symmetric: Any = {"SymmetricMode": True}
-    factors = splu(
-        matrix[free][:, free], permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric
-    )
-    displacement = factors.solve(np.ascontiguousarray(forces[free]))
-    return np.asarray(np.einsum("ik,ik->k", forces[free], displacement))
+    return coo_array(entries, shape=(2 * len(mesh.nodes), 2 * len(mesh.nodes))).tocsr()
+
+
+def _self_compliance(mesh: SectorMesh, forces: Array, poissons_ratio: float, rest: Array) -> Array:
+    """Work of each load on its own displacement in the ring, for a Young's modulus of one."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.linalg import splu
+
+    matrix = _stiffness(mesh, poissons_ratio)
+    cuts, turn = _cut_freedoms(mesh)
+    block = (turn.T @ rest @ turn).ravel()
+    places: Any = (np.repeat(cuts, cuts.size), np.tile(cuts, cuts.size))
+    matrix = matrix + coo_array((block, places), shape=matrix.shape).tocsr()
+    free = np.setdiff1d(np.arange(matrix.shape[0]), _freedoms(mesh.fixed))
+    load = np.zeros((matrix.shape[0], forces.shape[1]))
+    load[: forces.shape[0]] = forces
+    displacement = splu(matrix[free][:, free].tocsc(), **_SYMMETRIC).solve(load[free])
+    return np.asarray(np.einsum("ik,ik->k", load[free], displacement))
+
+
+@lru_cache(maxsize=8)
+def _sound_ring(gear: SpurGear, poissons_ratio: float, refined: float) -> tuple[SectorMesh, Array]:
+    """Mesh of a sector, and the stiffness of all others between its right and its left cut."""
+    from scipy.sparse.linalg import splu
+
+    mesh = tooth_mesh(gear, held_radius(gear), MeshSize().refined(refined))
+    matrix = _stiffness(mesh, poissons_ratio)
+    cuts, turn = _cut_freedoms(mesh)
+    inner = np.setdiff1d(np.arange(matrix.shape[0]), np.append(cuts, _freedoms(mesh.fixed)))
+    border = matrix[inner][:, cuts].toarray()
+    factors = splu(matrix[inner][:, inner].tocsc(), **_SYMMETRIC)
+    sector = turn @ (matrix[cuts][:, cuts].toarray() - border.T @ factors.solve(border)) @ turn.T
+    half = cuts.size // 2
+    right, left = np.arange(half), np.arange(half, 2 * half)
+    chain = sector  # of sectors that follow one another anticlockwise
+    for _sector in range(mesh.count - 2):
+        middle = np.linalg.inv(chain[np.ix_(left, left)] + sector[np.ix_(right, right)])
+        link = np.concatenate([chain[right][:, left], sector[left][:, right]])
+        ends = np.zeros_like(chain)
+        ends[:half, :half], ends[half:, half:] = chain[:half, :half], sector[half:, half:]
+        chain = ends - link @ middle @ link.T
+    # its right end is at the left cut
+    swap = np.append(left, right)
+    return mesh, chain[np.ix_(swap, swap)]
+
+
+def _cut_freedoms(mesh: SectorMesh) -> tuple[Index, Array]:
+    """Freedoms of both cuts, and the matrix that turns them into radial and tangential ones."""
+    cuts = np.concatenate([mesh.right_cut, mesh.left_cut])
+    x, y = (mesh.nodes[cuts] / np.hypot(*mesh.nodes[cuts].T)[:, None]).T
+    turn = np.zeros((cuts.size, 2, cuts.size, 2))
+    each = np.arange(cuts.size)
+    turn[each, :, each] = np.stack([np.stack([x, y], -1), np.stack([-y, x], -1)], axis=1)
+    return _freedoms(cuts), turn.reshape(2 * cuts.size, -1)
+
+
+def _freedoms(nodes: Index) -> Index:
+    return np.ravel(2 * nodes[:, None] + np.arange(2))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tribodyn.errors import InputError, require_between
-from tribodyn.faults.cracked_tooth import check_depth, crack_compliance
+from tribodyn.faults.cracked_tooth import SQUARE, CrackLine, crack_compliance
 from tribodyn.faults.fault import ToothFault
 from tribodyn.gear import Material, SpurPair
 from tribodyn.stiffness.loaded.problem import FAR, ContactPlaces
@@ -117,6 +117,11 @@ class Crack(ToothFault):
         Gear, and number of its tooth in the order of contact, from 1.
     depth : float
         Length of the crack from the surface into the tooth [m].
+    angle : float
+        Angle of the crack to the centre line of the tooth [rad], from pi/4, into the body, to pi/2,
+        square to the tooth.
+    root_tangent : float, optional
+        Angle of the tangent of the fillet to the centre line where the crack begins [rad].
     face_share : float
         Part of the face width that is cracked [1].
 
@@ -127,8 +132,8 @@ class Crack(ToothFault):
 
     Notes
     -----
-    The crack begins at the lower end of the root fillet and runs square to the tooth. It is open
-    under load. Of a crack on a part of the face, cracked and sound parts carry side by side.
+    By default the crack begins at the lower end of the root fillet. It is open under load. Of a
+    crack on a part of the face, cracked and sound parts carry in parallel.
 
     Examples
     --------
@@ -137,6 +142,8 @@ class Crack(ToothFault):
     """
 
     depth: float
+    angle: float = SQUARE
+    root_tangent: float | None = None
     face_share: float = 1.0
 
     def __post_init__(self) -> None:
@@ -150,13 +157,16 @@ class Crack(ToothFault):
         if self._gear_of(pair).is_ring:
             why = "The crack runs through a tooth of an external gear"
             raise InputError("the cracked gear is a ring", "gear", why, "Crack the other gear")
-        check_depth(self._gear_of(pair), self.depth)
+        CrackLine(self.depth, self.angle, self.root_tangent).check(self._gear_of(pair))
 
     def _compliance(self, places: ContactPlaces, material: Material, sound: Array) -> Array:
         """Compliance that the crack adds where its tooth carries (p, n)."""
         if self.depth == 0.0 or self.face_share == 0.0:
             return np.zeros(places.path.shape)
-        radius, added = crack_compliance(self._gear_of(places.contact.pair), material, self.depth)
+        gear, start = self._gear_of(places.contact.pair), self.root_tangent
+        radius, added = crack_compliance(
+            gear, material, self.depth, angle=self.angle, root_tangent=start
+        )
         cracked = sound + np.interp(self._radius_of(places), radius, added)
         combined = 1.0 / (self.face_share / cracked + (1.0 - self.face_share) / sound)
         return np.asarray(np.where(self._has_tooth(places), combined - sound, 0.0))

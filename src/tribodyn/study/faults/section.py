@@ -25,7 +25,7 @@ KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "pitch-deviations": (("gear", "accuracy_class"), ("seed",)),
     "spall": (("gear", "tooth", "depth", "start", "end"), ("face_share",)),
     "broken-tooth": (("gear", "tooth"), ("remaining",)),
-    "crack": (("gear", "tooth", "depth"), ("face_share",)),
+    "crack": (("gear", "tooth", "depth"), ("angle", "root_tangent", "face_share")),
     "bearing-defect": (
         (
             "gear",
@@ -80,6 +80,18 @@ class FaultTable(Section):
         None, 1, 1000, "from 1 in the order of contact", meaning="number of the tooth", example="1"
     )
     depth: float | None = _length("depth of a spall or of a crack", 1.0, '"1 mm"')
+    angle: float | None = number(
+        None, math.pi / 4.0, math.pi / 2.0, "cracks run into the body or square to the tooth",
+        unit="rad", display_unit="deg",
+        meaning="angle of a crack to the centre line of its tooth; 90 deg by default",
+        example='"70 deg"',
+    )  # fmt: skip
+    root_tangent: float | None = number(
+        None, 0.0, 1.2, "the fillet lies in it", unit="rad", display_unit="deg",
+        meaning="tangent of the fillet to the centre line where a crack begins; by default at "
+        "the lower end of the fillet",
+        example='"30 deg"',
+    )  # fmt: skip
     start: float | None = _share("lower end of a spall on the used flank, from its lowest point")
     end: float | None = _share("upper end of a spall on the used flank; 1 is the tip")
     face_share: float | None = _share("part of the face width that is damaged; all by default")
