@@ -41,6 +41,7 @@ from tribodyn.machine.planetary.phases import HarmonicExcitation, MeshPhases, me
 from tribodyn.machine.planetary.plane_model import planetary_plane_model
 from tribodyn.machine.planetary.positions import PlanetaryPositions, planetary_positions
 from tribodyn.machine.planetary.ring_sensor import RingSensorSignal, ring_sensor_signal
+from tribodyn.machine.planetary.stage_parts import PlanetaryStage
 from tribodyn.machine.reduction import machine_structure, reduce_structure
 from tribodyn.machine.rolling.ball_bearing import AngularContactBallBearing, DeepGrooveBallBearing
 from tribodyn.machine.rolling.bearing_types import ROLLING_BEARINGS
@@ -91,6 +92,7 @@ __all__ = [
     "PlanetaryKinematics",
     "PlanetaryModes",
     "PlanetaryPositions",
+    "PlanetaryStage",
     "Reduction",
     "RingSensorSignal",
     "RollingElementBearing",

@@ -143,7 +143,7 @@ def _damping(structure: MachineStructure, name: str) -> Entry:
     for gear, radius in zip(mesh.gears, machine.directions[name].base_radius, strict=True):
         shaft = machine.gears[gear].shaft
         inertia = structure.shafts[shaft].mass[3::6, 3::6].sum()
-        inertia += sum(
+        inertia += machine.shafts[shaft].moment_of_inertia + sum(
             machine.gear_bodies[other].moment_of_inertia
             for other, part in machine.gears.items()
             if part.shaft == shaft

@@ -39,6 +39,13 @@ def carried_along(distance: Array | float) -> Array:
     return out
 
 
+def carried_across(y: float, z: float) -> Array:
+    """Matrix (6, 6) that carries displacements rigidly across x; transposed, forces back."""
+    out = np.eye(6)
+    out[0, 4:], out[1, 3], out[2, 3] = (z, -y), -z, y
+    return out
+
+
 def part_of(section: Section, start: float, end: float) -> Section:
     """Return the part of a section between two positions from its beginning [m]."""
     first, last = (section.diameters(at / section.length) for at in (start, end))

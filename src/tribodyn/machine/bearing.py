@@ -20,12 +20,13 @@ _UNITS = {
     "radial": ("N/m", "N*s/m"),
     "axial": ("N/m", "N*s/m"),
     "tilting": ("N*m/rad", "N*m*s/rad"),
+    "torsional": ("N*m/rad", "N*m*s/rad"),
 }
 
 
 @dataclass(frozen=True, eq=False)
 class Bearing:
-    """A bearing between a shaft and the housing.
+    """A bearing between a shaft and the housing, or between a planet and its carrier.
 
     Parameters
     ----------
@@ -57,6 +58,16 @@ class Bearing:
         Rolling bearing, whose stiffness follows from its geometry and load.
     node : str, optional
         Node of the housing that carries the bearing; by default it is held by a rigid wall.
+    torsional_stiffness : float
+        Stiffness against rotation of the shaft, which is held by it and does not turn [N*m/rad].
+    torsional_damping : float
+        Damping of this rotation [N*m*s/rad].
+    carrier : str, optional
+        Shaft that carries the bearing in place of the housing, as a pin of a planet.
+    carrier_position : float
+        Position of its mid plane on the carrier [m].
+    offset : (6,) array
+        Displacement of its seat from where it should be, such as the error of a pin [m, rad].
 
     Raises
     ------
@@ -86,6 +97,11 @@ class Bearing:
     force: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     rolling: RollingElementBearing | None = None
     node: str | None = None
+    torsional_stiffness: float = 0.0
+    torsional_damping: float = 0.0
+    carrier: str | None = None
+    carrier_position: float = 0.0
+    offset: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         check_name(self, "shaft")
@@ -93,7 +109,7 @@ class Bearing:
         for way, units in _UNITS.items():
             for kind, unit in zip(("stiffness", "damping"), units, strict=True):
                 if getattr(self, name := f"{way}_{kind}") is not None:
-                    _check_pair(self, name, unit, 1 if way == "axial" else 2)
+                    _check_pair(self, name, unit, 1 if way in ("axial", "torsional") else 2)
         parts = [f"{way}_stiffness" for way in _UNITS if np.any(getattr(self, f"{way}_stiffness"))]
         parts += [name for name in ("stiffness", "rolling") if getattr(self, name) is not None]
         whole = {"stiffness", "rolling"} & set(parts)
@@ -108,12 +124,40 @@ class Bearing:
                 object.__setattr__(self, name, _matrix(name, getattr(self, name)))
         if self.node is not None:
             check_name(self, "node")
+        if self.carrier is not None:
+            check_name(self, "carrier")
+            if self.node is not None or self.torsional_stiffness:
+                other = "node" if self.node is not None else "torsional_stiffness"
+                what, why = f"carrier and {other} are given", "A planet turns on its pin"
+                raise InputError(what, Argument(f"Bearing.{other}"), why, f"Leave {other} out")
+        check_number(self, "carrier_position", "m", -1e3, 1e3)
+        shift = real_numbers(Argument("Bearing.offset"), self.offset)
+        if shift.shape != (6,) or not np.all(np.abs(shift) < 0.1):
+            what, why = f"offset = {shift.tolist()}", "Wanted: six numbers in m and rad below 0.1"
+            remedy = "Give the displacement of the seat along and about x, y, z"
+            raise InputError(what, Argument("Bearing.offset"), why, remedy)
 
     @property
     def is_default(self) -> bool:
         """Whether it has no data, so that it is stiff."""
         empty = self.radial_stiffness is None and self.stiffness is None and self.rolling is None
-        return empty and not (self.axial_stiffness or np.any(self.tilting_stiffness))
+        others = self.axial_stiffness, self.torsional_stiffness, np.any(self.tilting_stiffness)
+        return empty and not any(others)
+
+    @property
+    def holds(self) -> bool:
+        """Whether it holds the shaft, which does not turn."""
+        return self.torsional_stiffness > 0.0 and self.carrier is None
+
+    @property
+    def floats(self) -> bool:
+        """Whether a radial stiffness of zero is prescribed, so that a rigid shaft floats."""
+        return np.ndim(self.radial_stiffness or 0.0) == 0 and self.radial_stiffness == 0.0
+
+    @property
+    def rest_load(self) -> Array:
+        """Force and moment of the shaft on a linear bearing without a displacement (6,)."""
+        return np.asarray(self.force) - self.stiffness_matrix @ np.asarray(self.offset)
 
     @property
     def stiffness_matrix(self) -> Array:
@@ -170,4 +214,5 @@ def _assembled(bearing: Bearing, kind: str) -> Array:
         return np.array(matrix)
     radial = np.broadcast_to(np.asarray(getattr(bearing, f"radial_{kind}") or 0.0), 2)
     tilting = np.broadcast_to(np.asarray(getattr(bearing, f"tilting_{kind}")), 2)
-    return np.diag([getattr(bearing, f"axial_{kind}"), *radial, 0.0, *tilting]).astype(float)
+    along = getattr(bearing, f"axial_{kind}"), *radial
+    return np.diag([*along, getattr(bearing, f"torsional_{kind}"), *tilting]).astype(float)

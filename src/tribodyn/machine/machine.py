@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -20,11 +20,18 @@ from tribodyn.machine.graph.clock import Clock, clock_of
 from tribodyn.machine.graph.directions import MeshDirection, mesh_direction
 from tribodyn.machine.graph.kinematics import Kinematics, kinematics, ratio_problems
 from tribodyn.machine.graph.mesh_checks import mesh_problems
-from tribodyn.machine.graph.placement import Placement, placement_problems, shaft_poses
+from tribodyn.machine.graph.mobility import Drive
+from tribodyn.machine.graph.placement import (
+    Placement,
+    carrier_axes,
+    placement_problems,
+    shaft_poses,
+)
 from tribodyn.machine.graph.shaft_checks import drive_problems, place_problems, support_problems
 from tribodyn.machine.graph.shaft_graph import ShaftGraph
 from tribodyn.machine.housing import Housing
 from tribodyn.machine.mesh import Mesh
+from tribodyn.machine.planetary.stage_parts import PlanetaryStage
 from tribodyn.machine.shaft import Coupling, Shaft
 from tribodyn.types import Array
 
@@ -83,6 +90,8 @@ class Machine:
         Housing; rigid by default.
     couplings : mapping of str to Coupling
         Couplings by name.
+    planets : mapping of str to PlanetaryStage
+        Planetary stages by name; their planets, pins and meshes are added to the parts.
     operation : Operation
         Speed and torque.
 
@@ -108,9 +117,19 @@ class Machine:
     bearings: Mapping[str, Bearing] = field(default_factory=dict)
     housing: Housing | None = None
     couplings: Mapping[str, Coupling] = field(default_factory=dict)
+    planets: Mapping[str, PlanetaryStage] = field(default_factory=dict, kw_only=True)
     operation: Operation = field(kw_only=True)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "planets", _parts("planets", self.planets, PlanetaryStage))
+        if problems := [
+            problem for stage in self.planets for problem in self._stage_problems(stage)
+        ]:
+            raise InputError(problems)
+        for name, stage in self.planets.items():
+            for group, parts in stage.parts(name, self.gears).items():
+                present = getattr(self, group)
+                object.__setattr__(self, group, {**present, **parts, **present})
         kinds = {"shafts": Shaft, "gears": Gear, "meshes": Mesh, "bearings": Bearing,
                  "couplings": Coupling}  # fmt: skip
         for group, kind in kinds.items():
@@ -121,6 +140,8 @@ class Machine:
         for problems in (self._reference_problems, self._mesh_problems, self._place_problems):
             if listed := list(problems()):
                 raise InputError(listed)
+        for name in self.planets:
+            self._set_offsets(name)
 
     def __repr__(self) -> str:
         """One line."""
@@ -142,36 +163,36 @@ class Machine:
             for name, mesh in self.meshes.items()
         }
         edges |= {name: coupling.shafts for name, coupling in self.couplings.items()}
+        edges |= {name: (first, carrier) for name, (first, carrier, _) in self._carriers.items()}
         return ShaftGraph(edges, self.operation.input)
 
     @cached_property
     def kinematics(self) -> Kinematics:
         """Speeds, torques and power of shafts and meshes."""
-        run = self.operation
-        ends, operation = (run.input, run.output), (run.speed, run.torque)
-        loads = kinematics(self.graph, self.gears, self.meshes, ends, operation, self.couplings)
+        loads = kinematics(self.graph, self.gears, self.meshes, self._drive)
         return Kinematics({name: loads.shafts[name] for name in self.shafts}, loads.meshes)
 
     @cached_property
     def clock(self) -> Clock:
         """Common period of all meshes and of all teeth that differ."""
         ratios = {name: shaft.ratio for name, shaft in self.kinematics.shafts.items()}
-        cycles = {
-            name: abs(ratios[self.graph.edges[name][0]] * self.gears[mesh.gears[0]].teeth)
-            for name, mesh in self.meshes.items()
-        }
+        cycles = {}
+        for name, mesh in self.meshes.items():
+            gear = self.gears[mesh.gears[0]]
+            carrier = ratios[mesh.carrier] if mesh.carrier else 0
+            cycles[name] = abs((ratios[gear.shaft] - carrier) * gear.teeth)
         clock = clock_of(cycles, ratios, abs(self.operation.speed) / (2.0 * math.pi))
         return clock.with_whole_periods({name: mesh.period for name, mesh in self.meshes.items()})
 
     @cached_property
     def directions(self) -> Mapping[str, MeshDirection]:
         """Directions of each mesh in space."""
-        ratios = self.kinematics.shafts
-        sign = -1 if self.operation.speed < 0.0 else 1
+        forward = replace(self._drive, speed=1.0) if self.operation.speed == 0.0 else self._drive
+        turning = kinematics(self.graph, self.gears, self.meshes, forward).meshes
         directions = {}
         for name, mesh in self.meshes.items():
             first, second = (self.gears[gear] for gear in mesh.gears)
-            senses = [sign * (1 if ratios[g.shaft].ratio > 0 else -1) for g in (first, second)]
+            senses = [1 if speed > 0.0 else -1 for speed in turning[name].speeds]
             sense = self.kinematics.meshes[name].sense
             directions[name] = mesh_direction(mesh, (first, second), sense, (senses[0], senses[1]))
         return directions
@@ -186,9 +207,21 @@ class Machine:
         return Placement(starts, gears, bearings, {name: p.axes for name, p in poses.items()})
 
     @property
+    def _drive(self) -> Drive:
+        run = self.operation
+        fixed = dict.fromkeys(b.shaft for b in self.bearings.values() if b.holds)
+        springs = {name: c.torsional_stiffness for name, c in self.couplings.items()}
+        return Drive(run.input, run.output, run.speed, run.torque, tuple(fixed), springs)
+
+    @property
+    def _carriers(self) -> dict[str, tuple[str, str, float]]:
+        return carrier_axes(self.gears, self.meshes, self.bearings)
+
+    @property
     def _coupled_lengths(self) -> dict[str, float]:
-        """Length of the first shaft of each coupling [m]."""
-        return {name: self.shafts[c.shafts[0]].length for name, c in self.couplings.items()}
+        """Length of the first shaft of each coupling, and from an axis to its carrier [m]."""
+        lengths = {name: self.shafts[c.shafts[0]].length for name, c in self.couplings.items()}
+        return lengths | {name: along for name, (_, _, along) in self._carriers.items()}
 
     @cached_property
     def gear_bodies(self) -> Mapping[str, GearBody]:
@@ -211,6 +244,34 @@ class Machine:
             loads[mesh.gears[1]] += load[6:]
         return loads
 
+    def _stage_problems(self, name: str) -> Iterable[Problem]:
+        """Members of a planetary stage that do not exist, and planets that do not fit."""
+        stage, where = self.planets[name], f"planets.{name}"
+        for role in ("sun", "ring"):
+            yield from _missing(f"{where}.{role}", getattr(stage, role), "gear", self.gears)
+        yield from _missing(f"{where}.carrier", stage.carrier, "shaft", self.shafts)
+        if {stage.sun, stage.ring} <= set(self.gears):
+            ring = self.gears[stage.ring]
+            if not ring.is_ring:
+                why, remedy = "Internal teeth have a negative number", f"Give {-ring.teeth}"
+                yield Problem(f"teeth = {ring.teeth}", f"gears.{stage.ring}.teeth", why, remedy)
+                return
+            try:
+                stage.positions(self.gears)
+            except InputError as error:
+                yield from (replace(problem, where=where) for problem in error.problems)
+
+    def _set_offsets(self, name: str) -> None:
+        """Set the phases of the meshes of a planetary stage, by the sense of its sun."""
+        stage, meshes = self.planets[name], dict(self.meshes)
+        phases, names = stage.phases(self.gears), stage.mesh_names(name)
+        lags = self.directions[names["sun"][0]].senses[0] > 0
+        for mesh in ("sun", "ring"):
+            lag = getattr(phases, mesh)
+            for each, offset in zip(names[mesh], (-lag if lags else lag) % 1.0, strict=True):
+                meshes[each] = replace(meshes[each], offset=float(offset) % 1.0)
+        object.__setattr__(self, "meshes", MappingProxyType(meshes))
+
     def _mesh_of(self, gear: str) -> Mesh | None:
         return next((mesh for mesh in self.meshes.values() if gear in mesh.gears), None)
 
@@ -223,7 +284,7 @@ class Machine:
 
     def _place_problems(self) -> Iterable[Problem]:
         """Loops that do not close, and parts that are in a wrong place or not held."""
-        problems = ratio_problems(self.graph, self.gears, self.meshes, self.operation.speed)
+        problems = ratio_problems(self.graph, self.gears, self.meshes, self._drive)
         lengths = self._coupled_lengths
         problems += placement_problems(self.graph, self.gears, self.meshes, lengths)
         problems += place_problems(self.shafts, self.gears, self.bearings)
@@ -246,6 +307,11 @@ class Machine:
         for name, mesh in self.meshes.items():
             for gear in mesh.gears:
                 yield from _missing(f"meshes.{name}.gears", gear, "gear", self.gears)
+        for group, members in (("meshes", self.meshes), ("bearings", self.bearings)):
+            for name, member in members.items():
+                if member.carrier is not None:
+                    where = f"{group}.{name}.carrier"
+                    yield from _missing(where, member.carrier, "shaft", self.shafts)
         for name, coupling in self.couplings.items():
             for shaft in coupling.shafts:
                 yield from _missing(f"couplings.{name}.shafts", shaft, "shaft", self.shafts)

@@ -80,6 +80,9 @@ class Mesh:
     period : int
         Mesh cycles after which the force law repeats, more than one where teeth differ: error,
         contacts, frictions and events are then over the phase of all these cycles, in [0, 1).
+    carrier : str, optional
+        Shaft with which the axes of both gears turn: the carrier of planets. The angle is that at
+        the position of the carrier for which the machine is computed.
 
     Raises
     ------
@@ -112,6 +115,7 @@ class Mesh:
     offset: float = 0.0
     crossed: CrossedAxes | None = None
     period: int = 1
+    carrier: str | None = None
 
     @classmethod
     def hypoid(

@@ -23,7 +23,14 @@ class Shaft:
     material : Material
         Material of all sections.
     moment_of_inertia : float
-        Polar moment of inertia of what turns with its beginning, such as an engine [kg*m^2].
+        Polar moment of inertia of a body that turns with it, such as an engine, a coupling or a
+        carrier, besides sections and gears [kg*m^2].
+    mass : float
+        Mass of that body [kg].
+    transverse_moment_of_inertia : float
+        Its moment of inertia about an axis across the shaft [kg*m^2].
+    mass_position : float
+        Position of that body; at the beginning by default [m].
 
     Raises
     ------
@@ -39,6 +46,9 @@ class Shaft:
     sections: Sequence[Section] = ()
     material: Material = STEEL
     moment_of_inertia: float = 0.0
+    mass: float = 0.0
+    transverse_moment_of_inertia: float = 0.0
+    mass_position: float = 0.0
 
     def __post_init__(self) -> None:
         sections = tuple(self.sections)
@@ -49,7 +59,10 @@ class Shaft:
         if not isinstance(self.material, Material):
             what, remedy = f"material = {quoted(self.material)}", "Give a Material, such as STEEL"
             raise InputError(what, Argument("Shaft.material"), "Wanted: a Material", remedy)
-        check_number(self, "moment_of_inertia", "kg*m^2", 0.0)
+        check_number(self, "mass", "kg", 0.0)
+        for name in ("moment_of_inertia", "transverse_moment_of_inertia"):
+            check_number(self, name, "kg*m^2", 0.0)
+        check_number(self, "mass_position", "m", -1e3, 1e3)
 
     @property
     def length(self) -> float:

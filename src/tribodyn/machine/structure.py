@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -12,9 +13,12 @@ from numpy.typing import ArrayLike
 from tribodyn.errors import InputError
 from tribodyn.machine.beam import carried_along
 from tribodyn.machine.fields import check_number
+from tribodyn.machine.graph.bodies import GearBody
+from tribodyn.machine.graph.placement import pin_lever
 from tribodyn.machine.housing import AXES
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
+from tribodyn.machine.shaft import Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices
 from tribodyn.types import Array, Mask
 
@@ -123,11 +127,13 @@ class MachineStructure:
     @cached_property
     def shafts(self) -> dict[str, ShaftMatrices]:
         """Matrices of each shaft by name."""
-        places: dict[str, list[float]] = {name: [] for name in self.machine.shafts}
+        places = {name: [shaft.mass_position] for name, shaft in self.machine.shafts.items()}
         for gear in self.machine.gears.values():
             places[gear.shaft].append(gear.node_position)
         for bearing in self.machine.bearings.values():
             places[bearing.shaft].append(bearing.position)
+            if bearing.carrier is not None:
+                places[bearing.carrier].append(bearing.carrier_position)
         return {
             name: _matrices(shaft, tuple(places[name]), self.element_length)
             for name, shaft in self.machine.shafts.items()
@@ -158,17 +164,19 @@ class MachineStructure:
         total = self._projected(
             _blocks([s.mass for s in self.shafts.values()], self._housing("mass"))
         )
-        for name, body in self.machine.gear_bodies.items():
+        for _, body, motion in self._bodies():
             across = body.transverse_moment_of_inertia
             inertia = [*3 * [body.mass], body.moment_of_inertia, across, across]
-            motion = self.gear(name)
             total += motion.T @ np.diag(inertia) @ motion
-        for name, shaft in self.machine.shafts.items():
-            if shaft.moment_of_inertia:
-                turn = self.at(name, 0.0)[3]
-                total += shaft.moment_of_inertia * np.outer(turn, turn)
         self._refuse_massless(np.diag(total))
         return total
+
+    def _bodies(self) -> Iterator[tuple[str, GearBody | Shaft, Array]]:
+        """Shaft, inertia and displacement (6, n) of all gears and bodies on shafts."""
+        for name, body in self.machine.gear_bodies.items():
+            yield self.machine.gears[name].shaft, body, self.gear(name)
+        for name, shaft in self.machine.shafts.items():
+            yield name, shaft, self.at(name, shaft.mass_position)
 
     def _refuse_massless(self, inertia: Array) -> None:
         """Refuse a motion of a rigid shaft whose gears have no inertia."""
@@ -180,7 +188,7 @@ class MachineStructure:
             f"{name} has no inertia",
             f"shafts.{shaft}",
             "A rigid shaft has the masses and moments of inertia of its gears alone",
-            "Give its gears mass and moments of inertia, or the shaft sections",
+            "Give its gears or the shaft mass and moments of inertia, or the shaft sections",
         )
 
     @cached_property
@@ -243,9 +251,8 @@ class MachineStructure:
         ratios = {name: float(load.ratio) for name, load in self.machine.kinematics.shafts.items()}
         blocks = [speed * ratios[name] * shaft.gyroscopic for name, shaft in self.shafts.items()]
         total = self._projected(_blocks(blocks, 0.0 * self._housing("mass")))
-        for name, body in self.machine.gear_bodies.items():
-            motion = self.gear(name)
-            momentum = speed * ratios[self.machine.gears[name].shaft] * body.moment_of_inertia
+        for shaft, body, motion in self._bodies():
+            momentum = speed * ratios[shaft] * body.moment_of_inertia
             turned = momentum * np.outer(motion[4], motion[5])
             total += turned - turned.T
         return total
@@ -283,7 +290,7 @@ class MachineStructure:
         return self.at(gear.shaft, gear.node_position)
 
     def bearing(self, name: str) -> Array:
-        """Displacement of the shaft in a bearing against the housing per coordinate.
+        """Displacement of the shaft in a bearing against the housing or carrier per coordinate.
 
         Parameters
         ----------
@@ -296,6 +303,9 @@ class MachineStructure:
         """
         bearing = self.machine.bearings[name]
         motion = self.at(bearing.shaft, bearing.position)
+        if bearing.carrier is not None:
+            lever = pin_lever(self.machine.placement, bearing)
+            return np.asarray(motion - lever @ self.at(bearing.carrier, bearing.carrier_position))
         if bearing.node is None:
             return motion
         axes = self.machine.placement.axes[bearing.shaft]
@@ -416,7 +426,7 @@ class MachineStructure:
         force = sense * run.torque * self.at(run.input, 0.0)[3]
         force = force - turning * loads[run.output].torque * self.balance
         for name, bearing in self.machine.bearings.items():
-            force = force - self.bearing(name).T @ np.asarray(bearing.force)
+            force = force - self.bearing(name).T @ bearing.rest_load
         return np.asarray(force)
 
     def _projected(self, matrix: Array) -> Array:
@@ -461,18 +471,24 @@ class MachineStructure:
 
     def _rigid_motions(self, shaft: str) -> Mask:
         """Coordinates in which a rigid shaft moves: those in which its bearings hold it."""
-        total = np.zeros((6, 6))
+        total, floats = np.zeros((6, 6)), False
         for bearing in self.machine.bearings.values():
-            if bearing.shaft == shaft:
-                arm = carried_along(bearing.position)
-                total += arm.T @ bearing.stiffness_matrix @ arm
+            arm = carried_along(bearing.position)
+            if bearing.carrier == shaft:
+                lever = pin_lever(self.machine.placement, bearing)
+                arm = lever @ carried_along(bearing.carrier_position)
+            elif bearing.shaft != shaft:
+                continue
+            floats |= bearing.floats
+            total += arm.T @ bearing.stiffness_matrix @ arm
         size = np.sqrt(np.diag(total))
-        moving = size > 0.0
+        moving = size > 1e-9 * size.max(initial=0.0)
         tilt = [i for i in (1, 2, 4, 5) if moving[i]]
         scaled = total[np.ix_(tilt, tilt)] / np.outer(size[tilt], size[tilt])
         if tilt and np.linalg.eigvalsh(scaled)[0] < 1e-9:
             moving[4:] = False
         moving[3] = True
+        moving[1:3] |= floats
         return np.asarray(moving, dtype=bool)
 
 

@@ -18,11 +18,11 @@ def test_two_stages_turn_and_carry_by_their_tooth_numbers() -> None:
     shafts = two_stages().kinematics.shafts
     assert shafts["middle"].ratio == Fraction(-27, 51)
     assert shafts["output"].ratio == Fraction(27 * 23, 51 * 34)
-    assert shafts["output"].speed == pytest.approx(1234 * RPM * 27 * 23 / (51 * 34), rel=1e-14)
-    assert shafts["middle"].torque == pytest.approx(456.0 * 51 / 27, rel=1e-14)
-    assert shafts["output"].torque == pytest.approx(456.0 * 51 * 34 / (27 * 23), rel=1e-14)
+    assert shafts["output"].speed == pytest.approx(1234 * RPM * 27 * 23 / (51 * 34), rel=1e-12)
+    assert shafts["middle"].torque == pytest.approx(456.0 * 51 / 27, rel=1e-12)
+    assert shafts["output"].torque == pytest.approx(456.0 * 51 * 34 / (27 * 23), rel=1e-12)
     for shaft in shafts.values():
-        assert shaft.power == pytest.approx(456.0 * 1234 * RPM, rel=1e-14)
+        assert shaft.power == pytest.approx(456.0 * 1234 * RPM, rel=1e-12)
 
 
 def test_force_and_frequency_of_a_mesh_are_those_of_its_gears() -> None:
@@ -37,7 +37,7 @@ def test_force_and_frequency_of_a_mesh_are_those_of_its_gears() -> None:
 def test_a_ring_turns_with_its_pinion() -> None:
     shafts = pair((21, -72)).kinematics.shafts
     assert shafts["output"].ratio == Fraction(21, 72)
-    assert shafts["output"].torque == pytest.approx(100.0 * 72 / 21, rel=1e-14)
+    assert shafts["output"].torque == pytest.approx(100.0 * 72 / 21, rel=1e-12)
 
 
 @pytest.mark.parametrize("speed", [50.0, -50.0, 0.0])
@@ -87,7 +87,8 @@ def test_shafts_and_meshes_balance_in_a_loop_with_a_branch() -> None:
     )
     loads = machine.kinematics.meshes
     assert (loads["idle"].force, loads["idle"].driver, loads["idle"].shared) == (0.0, "bull", False)
-    assert (loads["last"].power, loads["last"].shared) == (8000.0, False)
+    assert loads["last"].power == pytest.approx(8000.0, rel=1e-12)
+    assert not loads["last"].shared
     torque = dict.fromkeys(machine.shafts, 0.0)
     for name, load in machine.gear_loads.items():
         torque[machine.gears[name].shaft] += load[3]
@@ -101,7 +102,7 @@ def test_one_turn_of_the_middle_shaft_is_a_period_of_the_two_stages() -> None:
     clock = two_stages().clock
     assert dict(clock.cycles) == {"first": 51, "second": 23}
     assert clock.turns["middle"] == 1
-    assert clock.frequency == pytest.approx(1234 / 60 * 27 / 51, rel=1e-14)
+    assert clock.frequency == pytest.approx(1234 / 60 * 27 / 51, rel=1e-12)
 
 
 def test_common_divisors_shorten_the_period() -> None:
@@ -124,7 +125,7 @@ def test_a_clock_with_whole_turns_is_the_hunting_tooth_period() -> None:
     hunting = clock.with_whole_turns("input", "output")
     assert hunting.cycles == {"mesh": 54}  # 18*27/gcd(18, 27)
     assert hunting.turns == {"input": 3, "output": 2}
-    assert hunting.frequency == pytest.approx(clock.frequency / 54, rel=1e-14)
+    assert hunting.frequency == pytest.approx(clock.frequency / 54, rel=1e-12)
     with pytest.raises(InputError, match=r'no shaft "outputs".*Did you mean "output"'):
         clock.with_whole_turns("outputs")
 

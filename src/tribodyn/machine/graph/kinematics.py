@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-
-import numpy as np
 
 from tribodyn.errors import Problem
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
+from tribodyn.machine.graph.mobility import Drive, Mobility
 from tribodyn.machine.graph.shaft_graph import ShaftGraph, listed
 from tribodyn.machine.mesh import Mesh, mean_over_phase
-from tribodyn.machine.shaft import Coupling
 
 #: Mesh stiffness per face width by which loops share where none is given [Pa].
 _USUAL_STIFFNESS = 14e9
-#: Share of the torque below which a mesh of a loop is unloaded.
-_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -36,6 +32,10 @@ class ShaftLoad:
         Torque that enters the shaft and leaves it again, negative while the output drives [N*m].
     power : float
         Power that it transmits, negative while the output drives [W].
+
+    Notes
+    -----
+    The torque of a shaft that is held is that of its support.
     """
 
     ratio: Fraction
@@ -60,12 +60,14 @@ class MeshLoad:
     force : float
         Force along the transverse line of action, on crossed axes along the normal [N].
     power : float
-        Power from the driving to the driven gear [W].
+        Power from the driving to the driven gear, relative to their carrier [W].
     sense : int
         Sign of the torque of the first gear about x: which flank carries.
     shared : bool
         Whether the mesh is in a loop, where torques are shared by stiffness: the value is that of
         rigid shafts with the mean mesh stiffnesses.
+    speeds : (float, float)
+        Speeds of both gears, relative to the carrier of the mesh where it has one [rad/s].
     """
 
     mesh_frequency: float
@@ -76,6 +78,7 @@ class MeshLoad:
     power: float
     sense: int
     shared: bool
+    speeds: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -94,95 +97,72 @@ class Kinematics:
     meshes: Mapping[str, MeshLoad]
 
 
-def shaft_ratios(
-    graph: ShaftGraph, gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]
-) -> dict[str, Fraction]:
-    """Speed of each shaft over that of the input, by the meshes and couplings of the tree."""
-
-    def step(link: str, forward: bool, ratio: Fraction) -> Fraction:
-        return ratio * _ratio(link, gears, meshes) ** (1 if forward else -1)
-
-    return graph.propagate(Fraction(1), step)
-
-
-def _ratio(link: str, gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> Fraction:
-    """Ratio of a mesh; 1 of a coupling."""
-    if link not in meshes:
-        return Fraction(1)
-    mesh = meshes[link]
-    return mesh.ratio((gears[mesh.gears[0]], gears[mesh.gears[1]]))
-
-
 def ratio_problems(
     graph: ShaftGraph,
     gears: Mapping[str, Gear],
     meshes: Mapping[str, Mesh],
-    speed: float,
+    drive: Drive,
 ) -> list[Problem]:
-    """Loops of meshes whose ratios contradict each other."""
-    ratios = shaft_ratios(graph, gears, meshes)
-    problems = []
-    for mesh in graph.loops:
+    """Loops of meshes whose ratios contradict each other, and speeds that nothing determines."""
+    mobility = Mobility(graph, gears, meshes, drive)
+    ratios, speed, problems = mobility.ratios, drive.speed, []
+    for mesh in mobility.contradictions:
+        pair = meshes[mesh].gears if mesh in meshes else ()
+        where = f"meshes.{mesh}.gears" if pair else f"couplings.{mesh}"
+        teeth = ", ".join(f"{gear} has {gears[gear].teeth}" for gear in pair)
+        remedy = f"Correct teeth ({teeth}), or remove one of these" if pair else "Remove it"
         first, second = graph.edges[mesh]
-        by_mesh = ratios[first] * _ratio(mesh, gears, meshes)
-        if by_mesh == ratios[second]:
+        if mobility.has_carriers:
+            what = f"the speeds of shafts {first} and {second} contradict it"
+            why = "The other meshes and the shafts that are held determine them"
+            problems.append(Problem(what, where, why, remedy))
             continue
+        factors = mobility.rows[mesh]
+        ratio = Fraction(-factors[first], factors[second])
         stated = [
             display(float(ratio) * speed, "rad/s")
             if speed
             else f"{float(ratio):.6g} times the input"
-            for ratio in (ratios[second], by_mesh)
+            for ratio in (ratios[second], ratios[first] * ratio)
         ]
         path = graph.path(second)
         by_path = f"by {listed(path)}" if path else "as the input"
-        pair = meshes[mesh].gears if mesh in meshes else ()
-        teeth = ", ".join(f"{gear} has {gears[gear].teeth}" for gear in pair)
         problems.append(
             Problem(
                 f'shaft "{second}" turns at {stated[0]} {by_path}, and at {stated[1]} by '
                 f"{listed([*graph.path(first), mesh])}",
-                f"meshes.{mesh}.gears" if pair else f"couplings.{mesh}",
+                where,
                 "All meshes of a loop must give one speed",
-                f"Correct teeth ({teeth}), or remove one of these" if pair else "Remove it",
+                remedy,
             )
         )
-    return problems
+    return problems or list(mobility.problems())
 
 
 def kinematics(
-    graph: ShaftGraph,
-    gears: Mapping[str, Gear],
-    meshes: Mapping[str, Mesh],
-    ends: tuple[str, str],
-    operation: tuple[float, float],
-    couplings: Mapping[str, Coupling],
+    graph: ShaftGraph, gears: Mapping[str, Gear], meshes: Mapping[str, Mesh], drive: Drive
 ) -> Kinematics:
-    """Speeds and torques of a machine between (input, output) at (speed, torque) of the input."""
-
-    def conductance(link: str) -> float:
-        if link in couplings:
-            return couplings[link].torsional_stiffness * float(ratios[graph.edges[link][0]]) ** 2
-        return _conductance(meshes[link], gears, ratios)
-
-    (start, _), (speed, torque) = ends, operation
-    ratios = shaft_ratios(graph, gears, meshes)
+    """Speeds and torques of a machine at speed and torque of its input."""
+    mobility = Mobility(graph, gears, meshes, drive)
+    ratios, speed, torque = mobility.ratios, drive.speed, drive.torque
     sense = -1.0 if speed < 0.0 else 1.0
-    flows = _flows(graph, ends, torque, conductance)
+    weight = {}
+    for name, mesh in meshes.items():
+        pair = gears[mesh.gears[0]], gears[mesh.gears[1]]
+        lever = base_radius(mesh, pair[0]) / pair[0].teeth
+        weight[name] = mean_stiffness(mesh, pair) * lever**2
+    loads = mobility.loads(sense * torque, weight | drive.couplings)
     mesh_loads = {}
-    inflow = dict.fromkeys(ratios, 0.0)
-    inflow[start if torque >= 0.0 else ends[1]] = abs(torque)
-    for name, (flow, shared) in flows.items():
-        shafts = graph.edges[name]
-        inflow[shafts[flow > 0.0]] += abs(flow)
-        if name in couplings:
-            continue
-        first = flow > 0.0 or (flow == 0.0 and _leads(graph, name))
-        mesh, ratio = meshes[name], [float(ratios[shaft]) for shaft in shafts]
-        about = (sense * flow / ratio[0], sense * flow / ratio[1])
+    for name, mesh in meshes.items():
+        (load, shared), factors = loads[name], [*mobility.rows[name].values()]
+        relative = [float(mobility.relative(name, gears[gear].shaft)) for gear in mesh.gears]
+        about = -factors[0] * load, factors[1] * load
+        flow = about[0] * relative[0]
+        first = sense * flow > 0.0 or (flow == 0.0 and _leads(graph, name))
         drives, follows = mesh.gears if first else mesh.gears[::-1]
-        turn = int(math.copysign(1.0, sense * ratio[0] * (1.0 if first else -1.0)))
+        turn = int(math.copysign(1.0, sense * relative[0] * (1.0 if first else -1.0)))
         mesh_loads[name] = MeshLoad(
-            mesh_frequency=abs(ratio[0] * gears[mesh.gears[0]].teeth * speed) / (2.0 * math.pi),
+            mesh_frequency=abs(relative[0] * factors[0] * speed) / (2.0 * math.pi),
             driver=drives,
             driven=follows,
             torque=about,
@@ -190,17 +170,15 @@ def kinematics(
             power=abs(flow * speed),
             sense=turn,
             shared=shared,
+            speeds=(relative[0] * speed, relative[1] * speed),
         )
     sign = -1.0 if torque < 0.0 else 1.0
-    shaft_loads = {
-        name: ShaftLoad(
-            ratio=ratio,
-            speed=float(ratio) * speed,
-            torque=sign * inflow[name] / abs(float(ratio)),
-            power=sign * inflow[name] * abs(speed),
-        )
-        for name, ratio in ratios.items()
-    }
+    shaft_loads = {}
+    for name, ratio in ratios.items():
+        parts = [r[name] * loads[mesh][0] for mesh, r in mobility.rows.items() if name in r]
+        entering = sign * 0.5 * (sum(map(abs, parts)) + abs(sum(parts)))
+        turning = float(ratio) * speed
+        shaft_loads[name] = ShaftLoad(ratio, turning, entering, entering * abs(turning))
     return Kinematics(shaft_loads, mesh_loads)
 
 
@@ -223,45 +201,3 @@ def mean_stiffness(mesh: Mesh, gears: tuple[Gear, Gear]) -> float:
     if mesh.stiffness is None:
         return _USUAL_STIFFNESS * min(gear.face_width for gear in gears)
     return mean_over_phase(mesh.stiffness)
-
-
-def _conductance(mesh: Mesh, gears: Mapping[str, Gear], ratios: Mapping[str, Fraction]) -> float:
-    """Torsional stiffness of a mesh, referred to the input."""
-    first, second = (gears[gear] for gear in mesh.gears)
-    lever = base_radius(mesh, first) * float(ratios[first.shaft])
-    return mean_stiffness(mesh, (first, second)) * lever**2
-
-
-def _flows(
-    graph: ShaftGraph,
-    ends: tuple[str, str],
-    torque: float,
-    conductance: Callable[[str], float],
-) -> dict[str, tuple[float, bool]]:
-    """Torque from first to second gear, referred to the input, and whether loops share it."""
-    flows, loops = {}, []
-    for mesh, (first, second) in graph.edges.items():
-        side = graph.side(mesh, first)
-        if second in side:
-            loops.append(mesh)
-            continue
-        flow = torque * ((ends[0] in side) - (ends[1] in side))
-        flows[mesh] = (flow, False)
-    if loops:
-        shafts = list(dict.fromkeys(shaft for ends in graph.edges.values() for shaft in ends))
-        incidence = np.zeros((len(shafts), len(graph.edges)))
-        for column, (first, second) in enumerate(graph.edges.values()):
-            incidence[shafts.index(first), column] = 1.0
-            incidence[shafts.index(second), column] = -1.0
-        weight = np.array([conductance(mesh) for mesh in graph.edges])
-        source = np.zeros(len(shafts))
-        source[shafts.index(ends[0])] += torque
-        source[shafts.index(ends[1])] -= torque
-        laplacian = (incidence * weight) @ incidence.T
-        potential = np.zeros(len(shafts))
-        potential[1:] = np.linalg.solve(laplacian[1:, 1:], source[1:])
-        shared = weight * (incidence.T @ potential)
-        shared[np.abs(shared) < _ROUNDING * abs(torque)] = 0.0
-        numbers = dict(zip(graph.edges, shared.tolist(), strict=True))
-        flows.update({mesh: (numbers[mesh], True) for mesh in loops})
-    return {mesh: flows[mesh] for mesh in graph.edges}

@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.errors import Problem
+from tribodyn.machine.beam import carried_across
+from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.directions import center_distance
@@ -58,13 +60,39 @@ class Pose(NamedTuple):
         return _point(np.add(self.start, position * self.axes[:, 0]))
 
 
+def carrier_axes(
+    gears: Mapping[str, Gear], meshes: Mapping[str, Mesh], bearings: Mapping[str, Bearing]
+) -> dict[str, tuple[str, str, float]]:
+    """Shaft with the axis of each carrier, the carrier, and its distance along x [m], by key."""
+    axes: dict[str, tuple[str, str, float]] = {}
+    pins = {(b.carrier, b.shaft): b for b in reversed(bearings.values()) if b.carrier}
+    for mesh in meshes.values():
+        for central, planet in (mesh.gears, mesh.gears[::-1]):
+            inner, outer = gears[central], gears[planet]
+            pin = pins.get((mesh.carrier, outer.shaft))
+            if pin is None or mesh.carrier is None or (mesh.carrier, inner.shaft) in pins:
+                continue
+            along = inner.node_position - outer.node_position
+            along += pin.position - pin.carrier_position
+            axes.setdefault(f"shafts.{mesh.carrier}", (inner.shaft, mesh.carrier, along))
+    return axes
+
+
+def pin_lever(place: Placement, bearing: Bearing) -> Array:
+    """Displacement of the pin of a bearing per displacement of its carrier (6, 6)."""
+    carrier = bearing.carrier or ""
+    between = np.subtract(place.shafts[bearing.shaft], place.shafts[carrier])
+    _, y, z = (between @ place.axes[carrier]).tolist()
+    return carried_across(y, z)
+
+
 def shaft_poses(
     graph: ShaftGraph,
     gears: Mapping[str, Gear],
     meshes: Mapping[str, Mesh],
     lengths: Mapping[str, float],
 ) -> dict[str, Pose]:
-    """How each shaft lies in space, by meshes and couplings of the tree; lengths of couplings."""
+    """How each shaft lies in space, by the tree; lengths are those of couplings and carriers."""
 
     def step(name: str, forward: bool, pose: Pose) -> Pose:
         shift, turn = _step(name, gears, meshes, lengths)
@@ -87,7 +115,7 @@ def _step(
     lengths: Mapping[str, float],
 ) -> tuple[Array, Array]:
     """From the beginning of the first shaft to that of the second, and its axes as columns."""
-    if name in lengths:  # a coupling behind the first shaft
+    if name in lengths:  # a coupling behind the first shaft, or a carrier on its axis
         return np.array([lengths[name], 0.0, 0.0]), np.eye(3)
     mesh = meshes[name]
     pair = mesh.crossing
@@ -122,16 +150,16 @@ def placement_problems(
         if not np.allclose(frame @ turn, poses[second].axes, atol=1e-6) or (
             (name not in meshes or meshes[name].crossing) and math.dist(wanted, shift) > _FACE
         ):
-            kind = "meshes" if name in meshes else "couplings"
+            kind = "meshes." if name in meshes else "" if "." in name else "couplings."
             what = f'it puts shaft "{second}" in another place than the other meshes of its loop'
             remedy = "Correct positions, angles and apex sides, or remove it"
-            problems.append(Problem(what, f"{kind}.{name}", "Each shaft has one axis", remedy))
+            problems.append(Problem(what, f"{kind}{name}", "Each shaft has one axis", remedy))
             continue
         mesh = meshes[name]
         ring = {*graph.path(first), *graph.path(second)} - (
             {*graph.path(first)} & {*graph.path(second)}
         )
-        others = listed(sorted(ring, key=list(graph.edges).index))
+        others = listed(sorted(ring & {*meshes}, key=list(graph.edges).index))
         if math.dist(wanted[1:], shift[1:]) > _AXIS * mesh.normal_module:
             distance, angle = math.hypot(*wanted[1:]), math.degrees(math.atan2(*wanted[:0:-1]))
             problems.append(

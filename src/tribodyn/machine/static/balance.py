@@ -161,7 +161,8 @@ class StaticBalance:
                 state = self.bearings[name]
                 stiffness = state.stiffness
                 force = state.load - stiffness @ state.displacement
-                bearings[name] = replace(bearing, rolling=None, stiffness=stiffness, force=force)
+                linear = {"rolling": None, "stiffness": stiffness, "force": force}
+                bearings[name] = replace(bearing, **linear, offset=np.zeros(6))
                 if not stiffness.any():
                     warn(
                         "unloaded-bearing",
@@ -384,7 +385,8 @@ def _balance(
         if rolling is not None:
             _check_direction(name, rolling, load)
         with collected() as warnings:
-            state = rolling.state(moved[list(HELD)]) if rolling else None
+            seat = np.asarray(model.machine.bearings[name].offset)
+            state = rolling.state((moved - seat)[list(HELD)]) if rolling else None
         for warning in warnings:
             warn(warning.code, f'bearing "{name}": {warning.message}')
         bearings[name] = BearingBalance(moved, load, stiffness, state)

@@ -97,6 +97,7 @@ class StaticModel:
     def bearing(self, name: str, displacement: Array) -> tuple[Array, Array]:
         """Load and stiffness of a bearing."""
         part = self.machine.bearings[name]
+        displacement = displacement - np.asarray(part.offset)
         if part.rolling is None:
             matrix = part.stiffness_matrix
             return matrix @ displacement, matrix

@@ -217,7 +217,7 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
         motion = structure.bearing(name).T
         springs = fine.position @ motion @ bearing.stiffness_matrix
         dampers = fine.velocity @ motion @ bearing.damping_matrix
-        bearings[name] = np.asarray(springs + dampers + np.asarray(bearing.force))
+        bearings[name] = np.asarray(springs + dampers + bearing.rest_load)
     nodes = machine.housing.nodes if machine.housing is not None else {}
     accelerations = {n: fine.acceleration @ structure.housing_node(n)[:3].T for n in nodes or {}}
     return MachineMotion(
