@@ -33,13 +33,11 @@ class Drive:
 
 @dataclass(frozen=True, eq=False)
 class Mobility:
-    """Speeds of the shafts over that of the input, and loads of the meshes.
+    """Speeds of the shafts over that of the input, and loads of the meshes."""
 
-    In every mesh the speeds of both gears relative to their carrier, times their numbers of teeth,
-    add up to zero (Willis); a coupling has the factors 1 and -1. By virtual power the same factors
-    times the load per tooth are the torques of a mesh on these shafts.
-    """
-
+    # In every mesh the speeds of both gears relative to their carrier, times their numbers of
+    # teeth, add up to zero (Willis); a coupling has the factors 1 and -1. By virtual power the
+    # same factors times the load per tooth are the torques of a mesh on these shafts.
     graph: ShaftGraph
     gears: Mapping[str, Gear]
     meshes: Mapping[str, Mesh]
