@@ -69,13 +69,23 @@ def machine(
     return Machine(**{**values, **parts})
 
 
+DESIGNS: list[tuple[str, dict[str, Any]]] = [
+    ("left", {}),
+    ("right", {}),
+    ("right", {"shaft_angle": math.radians(75.0), "offset": 15e-3}),
+    ("left", {"shaft_angle": math.radians(98.0), "offset": 10e-3, "wheel_generation": "generated"}),
+    ("right", {"process": "face-hobbing", "blade_groups": 13, "cutter_radius": 0.088}),
+]
+
+
 @pytest.mark.parametrize("apex", APEXES)
-@pytest.mark.parametrize("hand", ["left", "right"])
+@pytest.mark.parametrize("design", DESIGNS)
 @pytest.mark.parametrize("speed", [300.0, -300.0])
 def test_forces_are_those_of_the_formulas_of_gleason(
-    apex: tuple[int, int], hand: str, speed: float
+    apex: tuple[int, int], design: tuple[str, dict[str, Any]], speed: float
 ) -> None:
-    shape = blank(hand)
+    hand, changes = design
+    shape = blank(hand, **changes)
     built = machine(shape, apex, speed=speed)
     line, load = built.directions["m"].direction, built.kinematics.meshes["m"]
     # Seen from the back towards the apex a left-hand pinion that turns counterclockwise is driven
@@ -109,8 +119,11 @@ def test_forces_are_those_of_the_formulas_of_gleason(
 
 
 @pytest.mark.parametrize("apex", APEXES)
-def test_bearings_torques_and_meshes_balance_in_space(apex: tuple[int, int]) -> None:
-    built = machine(blank(), apex)
+@pytest.mark.parametrize("design", DESIGNS[1:4])
+def test_bearings_torques_and_meshes_balance_in_space(
+    apex: tuple[int, int], design: tuple[str, dict[str, Any]]
+) -> None:
+    built = machine(blank(design[0], **design[1]), apex)
     balance, place = static_balance(built), built.placement
     force, moment = np.zeros(3), np.zeros(3)
     for name, bearing in balance.bearings.items():

@@ -99,6 +99,16 @@ def test_the_torque_decides_which_side_of_the_teeth_carries() -> None:
     assert speeds[1] == -speeds[0]
 
 
+def test_a_deflection_beyond_the_range_of_the_teeth_names_the_mesh() -> None:
+    soft = {f"bearings__{name}__{key}": None for name in ("rear", "head")
+            for key in ("type", "bore_diameter", "outer_diameter", "width", "contact_angle",
+                        "preload", "direction")}  # fmt: skip
+    springs = {f"bearings__{name}__{key}_stiffness": "2e6 N/m" for name in ("rear", "head")
+               for key in ("radial", "axial")}  # fmt: skip
+    with pytest.raises(td.ComputationError, match=r"meshes\.axle: the deflection displaces"):
+        td.run(axle(**soft, **springs))
+
+
 @pytest.mark.slow
 def test_a_driving_wheel_turns_the_coast_side_back_in_time() -> None:
     """The flank of the reversed pinion carries, at the same load; friction acts the other way."""
@@ -146,6 +156,8 @@ def test_engine_and_load_are_coupled_in_the_case_file() -> None:
         ({"meshes.axle.cutter_radius": "20 mm"}, r"meshes\.axle\.cutter_radius.*limit curvature"),
         ({"meshes.axle.cutter_radius": None}, r"meshes\.axle\.cutter_radius.*missing"),
         ({"meshes.axle.apex_wheel": "x"}, r"meshes\.axle\.apex_wheel"),
+        ({"meshes.axle.kind": "worm"}, r'^replace: meshes\.axle\.kind: kind = "worm"'),
+        ({"meshes.axle.gears": [["z1"], "z2"]}, r"meshes\.axle\.gears"),
         ({"meshes.axle.gears": ["z2", "z1"]}, "meshes.axle"),
         ({"meshes.axle.normal_module": "5 mm"}, r"normal_module.*unknown key"),
         ({"gears.z1.profile_shift_coefficient": 0.3}, r"gears\.z1\.profile_shift_coefficient"),

@@ -106,7 +106,7 @@ def support_problems(
             )
         if stiffness[0, 0] <= 0.0 and abs(force := pushed.get(name, 0.0)) > 1e-6:
             yield Problem(
-                f"no bearing holds the shaft along its axis, and its helical meshes push it with "
+                f"no bearing holds the shaft along its axis, and its meshes push it with "
                 f"{force:.6g} N",
                 where,
                 "axial_stiffness is 0 by default, and cylindrical roller bearings have none",

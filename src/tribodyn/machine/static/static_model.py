@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.errors import ComputationError, InputError
 from tribodyn.gear import Misalignment
 from tribodyn.machine.bearing import HELD, Bearing
 from tribodyn.machine.graph.kinematics import mean_stiffness
@@ -75,7 +76,13 @@ class StaticModel:
         if mesh.crossing is None:
             return None
         moved = np.array([self.gears[gear] @ displacement for gear in mesh.gears])
-        return mesh.crossing.misalignment(moved)
+        try:
+            return mesh.crossing.misalignment(moved)
+        except InputError as error:
+            what = f"the deflection displaces its gears too far: {error.problems[0].what}"
+            why = "The teeth are computed for small displacements of the gears"
+            remedy = "Reduce the torque, or stiffen shafts and bearings"
+            raise ComputationError(what, f"meshes.{name}", why, remedy) from None
 
     def law(self, name: str) -> MeshLaw:
         """Law of a mesh: the caller's, or a constant stiffness."""

@@ -156,7 +156,7 @@ def read_blanks(
         names, bodies = body.get("gears"), groups["gears"]
         if mesh_table_kind(body) is not HypoidMeshTable or not isinstance(names, list | tuple):
             continue
-        pair = [bodies.get(gear, {}) for gear in names]
+        pair = [bodies.get(gear, {}) for gear in names if isinstance(gear, str)]
         teeth = [count for each in pair if type(count := _plain(each.get("teeth"))) is int]
         inner = mesh_tables(body)
         values = {k: v for k, v in body.items() if k in HypoidMeshTable.fields and k not in inner}

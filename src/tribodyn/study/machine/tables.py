@@ -212,8 +212,10 @@ class HypoidMeshTable(Section):
 
 
 def mesh_table_kind(body: Mapping[str, Any]) -> type[Section]:
-    """Table of a mesh by its ``kind``."""
-    return HypoidMeshTable if body.get("kind") == "hypoid" else MeshTable
+    """Table of a mesh by its ``kind``; of an unknown one, which is reported, by its keys."""
+    kind = str(body.get("kind", "spur"))
+    crossed = kind == "hypoid" or (kind not in _KINDS and "cutter_radius" in body)
+    return HypoidMeshTable if crossed else MeshTable
 
 
 class CouplingTable(Section):
