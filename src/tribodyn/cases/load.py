@@ -14,8 +14,7 @@ from tribodyn.progress import SILENT, Progress
 
 if TYPE_CHECKING:
     from tribodyn.study import Case
-    from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.planetary.case import PlanetaryCase
+    from tribodyn.study.machine.user_tables import PartsCase
 
 #: Endings of gearbox models of other programs.
 _REXS = (".rexs", ".rexsj", ".rexsz")
@@ -101,14 +100,12 @@ def _not_found(name: str, path: Path, names: list[str]) -> Problem:
     return Problem("no built-in case and no file has this name", name, why, remedy)
 
 
-def run(
-    case: Case | MachineCase | PlanetaryCase | str | os.PathLike[str], progress: Progress = SILENT
-) -> Any:
+def run(case: Case | PartsCase | str | os.PathLike[str], progress: Progress = SILENT) -> Any:
     """Compute a case: a gear pair, a machine of several shafts, or a planetary stage.
 
     Parameters
     ----------
-    case : Case, MachineCase, PlanetaryCase, str or path
+    case : Case, PartsCase, str or path
         From :func:`tribodyn.load_case`, or what that function takes.
     progress : Progress
         Reports the steps of the run; silent by default.
@@ -139,7 +136,7 @@ def run(
     from tribodyn.study.planetary.case import PlanetaryCase
     from tribodyn.study.planetary.run import run_planetary
 
-    ready = load_case(case) if isinstance(case, (str, os.PathLike)) else case
+    ready: Any = load_case(case) if isinstance(case, (str, os.PathLike)) else case
     if isinstance(ready, PlanetaryCase):
         return run_planetary(ready, progress, stacklevel=3)
     if isinstance(ready, MachineCase):

@@ -242,7 +242,7 @@ def drive(
     driven = _on_longer_clock(system, total // cycles)
     driven = replace(driven, force=Series(force) if len(force) > 1 else force[0].real)
     if np.abs(lead).max() > 1e-13:
-        driven = _on_uneven_clock(driven, _UnevenClock(Series(lead / total)))
+        driven = _on_uneven_clock(driven, _UnevenClock(Series(lead * (1.0 / total))))
     return DrivenSystem(driven, total, ahead, turning)
 
 
@@ -263,7 +263,7 @@ def _free_rotation(
     return turning
 
 
-def _sum(first: ComplexArray, second: ComplexArray) -> ComplexArray:
+def _sum(first: ComplexArray, second: Array | ComplexArray) -> ComplexArray:
     """Sum of two series of lines, of which one may be longer."""
     total = np.zeros((max(len(first), len(second)), *first.shape[1:]), dtype=complex)
     total[: len(first)] += first
@@ -304,5 +304,6 @@ def _on_uneven_clock(system: System, clock: _UnevenClock) -> System:
         for part in clocked:
             entries = {key: value for key, value in vars(part).items() if callable(value)}
             warped = {key: _Warped(value, clock) for key, value in entries.items()}
-            parts[name].append(replace(part, events=clock.times(part.events), **warped))
+            changed: dict[str, Any] = {"events": clock.times(part.events), **warped}
+            parts[name].append(replace(part, **changed))
     return replace(system, **parts)

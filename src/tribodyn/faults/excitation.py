@@ -281,8 +281,12 @@ class RandomLoad(ShaftExcitation):
             Root mean square [N*m].
         band : (float, float)
             Its ends [Hz].
-        gear, duration, seed
-            As of the class.
+        gear : "pinion" or "wheel"
+            Shaft on which it acts.
+        duration : float
+            Time after which the draw repeats [s].
+        seed : int
+            Of the draw.
 
         Raises
         ------

@@ -11,8 +11,7 @@ from tribodyn.cli.console import figures, say, say_json, show_warnings, table, t
 from tribodyn.cli.settings import CaseName, Flag, Settings, changed_any_case, check_file
 
 if TYPE_CHECKING:
-    from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.planetary.case import PlanetaryCase
+    from tribodyn.study.machine.user_tables import PartsCase
 
 
 def cases(*, json: Flag = False) -> None:
@@ -41,16 +40,15 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
         Write one flat JSON object in SI to stdout.
     """
     from tribodyn.study.case.provenance import assumptions
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.user_tables import PartsCase
     from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions
     from tribodyn.study.pipeline.preview import operating_figures
     from tribodyn.study.pipeline.run import rehearse
     from tribodyn.study.pipeline.summary_figures import summary_rows
-    from tribodyn.study.planetary.case import PlanetaryCase
 
     ready = changed_any_case(case, set_ or [])
-    if isinstance(ready, MachineCase | PlanetaryCase):
+    if isinstance(ready, PartsCase):
         _check_machine(ready, json)
         return
     warnings = rehearse(ready)
@@ -71,7 +69,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     )
 
 
-def _check_machine(case: MachineCase | PlanetaryCase, json: bool) -> None:
+def _check_machine(case: PartsCase, json: bool) -> None:
     """Show speeds, torques and power of a machine, after rehearsing its teeth."""
     from tribodyn.errors import collected
     from tribodyn.study.machine.case import MachineCase
@@ -81,6 +79,7 @@ def _check_machine(case: MachineCase | PlanetaryCase, json: bool) -> None:
         warn_of_period,
     )
     from tribodyn.study.pipeline.summary_figures import summary_rows
+    from tribodyn.study.planetary.case import PlanetaryCase
     from tribodyn.study.planetary.run import rehearse_planetary
     from tribodyn.study.planetary.summary import kinematic_figures as stage_figures
 
@@ -89,9 +88,11 @@ def _check_machine(case: MachineCase | PlanetaryCase, json: bool) -> None:
             rehearse_machine(case)
             warn_of_period(case.machine())
             values = kinematic_figures(case)
-        else:
+        elif isinstance(case, PlanetaryCase):
             rehearse_planetary(case)
             values = stage_figures(case, case.kinematics(case.operating_point))
+        else:
+            raise TypeError(f"no check of {type(case).__name__}")
     if json:
         say_json(values)
     else:

@@ -93,5 +93,5 @@ def turning_clock(case: Case) -> TurningClock:
             f"shorter duration ({of_teeth} mesh cycles are those of the teeth)",
         )
     cost = _LEAST + of_teeth * _TEETH + cycles * _MOTION
-    turns = (cycles / teeth[gear] for gear in ("pinion", "wheel"))
-    return TurningClock(cycles, cycles / frequency, *turns, cost)
+    turns_pinion, turns_wheel = (cycles / teeth[gear] for gear in ("pinion", "wheel"))
+    return TurningClock(cycles, cycles / frequency, turns_pinion, turns_wheel, cost)
