@@ -92,7 +92,7 @@ def changed_case(name_or_path: str, settings: Sequence[str]) -> Case:
     if isinstance(case, Case):
         return case
     kind = "machine" if hasattr(case, "machine") else "planetary stage"
-    why = f"This command computes one pair of gears, and the case is a {kind}"
+    why = "This command computes one pair of gears"
     remedy = (
         "Machines and planetary stages: tribodyn run, check, modes, sweep, run-up, ensemble, sobol "
         "and compare"

@@ -87,6 +87,13 @@ def test_variants_have_the_load_shares_of_their_errors(case):
     for row, factor in zip(variants.value, factors[1:], strict=True):
         shares = load_shares(**{**data, "carrier_speed": 0.0, "pin_errors": row})
         assert factor == pytest.approx(shares.load_factor, rel=1e-9)
+    statistics = td.study.load_share_statistics(spread, samples=20, seed=1)
+    for pins, share in zip(statistics.pin_errors[:3], statistics.share, strict=False):
+        expected = load_shares(**{**data, "carrier_speed": 0.0, "pin_errors": pins}).share
+        np.testing.assert_allclose(share, expected, rtol=1e-9)
+    assert "95 % of 4 stages" in variants.plot("load_share_statistics").layout.title.text
+    with pytest.raises(InputError, match="has a spread"):
+        td.study.load_share_statistics(case)
 
 
 @pytest.mark.parametrize(
@@ -102,6 +109,20 @@ def test_spreads_that_make_no_sense_are_refused(case, changes, location, finding
         case.replace({"planets.low.pin_errors": ["1 um", "0 um", "0 um"], **changes}, by="--set")
     assert location in str(fault.value)
     assert finding in str(fault.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "finding"),
+    [
+        ({"planets.low.count": 1}, "sun_support = 0 N/m with 1 planet"),
+        ({"planets.low.ring_support": "0 N/m"}, "sun_support = 0 N/m and ring_support = 0 N/m"),
+    ],
+)
+def test_members_that_nothing_holds_are_refused(case, changes, finding):
+    with pytest.raises(InputError, match=finding):
+        case.replace(changes, by="--set")
+    held = case.replace({**changes, "planets.low.sun_support": "1e8 N/m"}, by="--set")
+    assert (td.study.natural_modes(held).frequency == 0.0).sum() == 1
 
 
 def test_commands(case, tmp_path, monkeypatch, capsys):

@@ -49,7 +49,7 @@ def ensemble(
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.errors import InputError
     from tribodyn.plot import ensemble as spread
-    from tribodyn.plot import machine_ensemble
+    from tribodyn.plot import load_share_statistics, machine_ensemble
     from tribodyn.plot.signals.bands import banded
     from tribodyn.report.figure_blocks import sections_of
     from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
@@ -79,7 +79,8 @@ def ensemble(
     statements = [f"{len(result.value)} variants over {', '.join(map(str, result.input))}"]
     statements += [f"{key} = {text}" for key, text in ready.uncertain.items()]
     if isinstance(result, MachineEnsemble):
-        figures = [figure_with_caption(machine_ensemble, result)]
+        parts = (machine_ensemble, load_share_statistics)
+        figures = [figure_with_caption(each, result) for each in parts if not each.missing(result)]
     else:
         figures = [figure_with_caption(spread, result), *banded(result, sections_of(ready))]
     share = f"{_SHARE:.0%} of the variants"

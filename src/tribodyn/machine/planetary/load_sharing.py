@@ -97,12 +97,32 @@ def load_shares(**stage: Any) -> LoadShares:
     spring, along, error = _planet_springs(system)
     # Backwards the opposite flanks press.
     sense = 1.0 if load > 0.0 else -1.0
-    force, position = _equilibrium(system, spring, sense * along, sense * error)
+    parts = spring, sense * along, sense * error
+    force, position = _equilibrium(np.asarray(system.stiffness), np.asarray(system.force), *parts)
     central = position[:9].reshape(3, 3)
     displacement = {
         name: (float(row[0]), float(row[1])) for name, row in zip(CENTRAL, central, strict=True)
     }
     return LoadShares(sense * force + 0.0, force / force.mean(), displacement)
+
+
+def sampled_shares(pin_errors: Array, thickness_errors: Array, **stage: Any) -> Array:
+    """Shares of the planets of many stages (m, N) that differ in their errors (m, N) [m]."""
+    system = planetary_plane_model(**stage)
+    spring, along, error = _planet_springs(system)
+    sense = 1.0 if stage["force_per_planet"] > 0.0 else -1.0
+    stiffness, rest = np.asarray(system.stiffness), np.asarray(system.force)
+    units = np.eye(spring.size)  # what a pin that is 1 m ahead adds to the forces
+    pushed = [planetary_plane_model(**stage, pin_errors=0.1 * unit).force for unit in units]
+    ahead = 10.0 * (np.array(pushed) - rest)
+    forces = [
+        _equilibrium(
+            stiffness, rest + pins @ ahead, spring, sense * along, sense * (error - excess)
+        )
+        for pins, excess in zip(pin_errors, thickness_errors, strict=True)
+    ]
+    loads = np.array([force for force, _ in forces])
+    return loads / loads.mean(axis=1, keepdims=True)
 
 
 def _check_names(stage: dict[str, Any]) -> None:
@@ -141,13 +161,14 @@ def _planet_springs(system: System) -> tuple[Array, Array, Array]:
     return spring, direction[sun] + direction[ring], error[sun] + error[ring]
 
 
-def _equilibrium(system: System, spring: Array, along: Array, error: Array) -> tuple[Array, Array]:
+def _equilibrium(
+    matrix: Array, load: Array, spring: Array, along: Array, error: Array
+) -> tuple[Array, Array]:
     """Forces of the planets and the position at rest."""
     # The energy is convex. Weak springs to the last position hold what is free to move; their
     # forces vanish as the position settles.
-    matrix, load = np.asarray(system.stiffness), np.asarray(system.force)
     # The rotation of a planet does nothing in the sum of its two meshes.
-    free = [i for i in range(system.size) if i < 9 or i % 3 != 2]
+    free = [i for i in range(load.size) if i < 9 or i % 3 != 2]
     matrix, load, along = matrix[np.ix_(free, free)], load[free], along[:, free]
     weak = _WEAK * float(np.diag(matrix).max()) * np.eye(len(free))
     position, last = np.zeros(len(free)), np.full(spring.size, np.inf)
@@ -161,7 +182,7 @@ def _equilibrium(system: System, spring: Array, along: Array, error: Array) -> t
     else:
         what, why = "the loads of the planets do not settle", f"{_ROUNDS} iterations were made"
         raise ComputationError(what, "load_shares", why, "Check the supports and the errors")
-    full = np.zeros(system.size)
+    full = np.zeros(3 * len(spring) + 9)
     full[free] = position
     return force, full
 

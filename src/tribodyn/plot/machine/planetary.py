@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tribodyn.gear import CylindricalGear
     from tribodyn.machine import RingSensorSignal
     from tribodyn.study import PlanetaryCase, PlanetaryMotion, PlanetaryResult
+    from tribodyn.study.machine_studies.ensemble import MachineEnsemble
     from tribodyn.study.planetary.tolerances import LoadShareStatistics
 
 #: Points of a tooth, those of them that are drawn, and pictures of the movement.
@@ -218,20 +219,36 @@ def ring_sensor(signal: RingSensorSignal) -> Any:
     return stack_rows(title, panels)
 
 
+def _load_factors(statistics: LoadShareStatistics | MachineEnsemble) -> Array:
+    """Mesh load factor of every stage at rest; empty for variants of a machine."""
+    if not hasattr(statistics, "figures"):
+        return statistics.load_factor
+    columns = statistics.figures().items()
+    factors = [values[1:] for key, values in columns if key.endswith(".load_factor")]
+    return np.asarray(factors[0] if factors else [])
+
+
+def _without_factors(statistics: LoadShareStatistics | MachineEnsemble) -> str:
+    if _load_factors(statistics).size:
+        return ""
+    return "It is the ensemble of a machine without planets; draw machine_ensemble."
+
+
 @drawing(
     "load_share_statistics",
     heading="Load sharing over tolerances",
     caption="Part of the stages whose mesh load factor K_gamma does not exceed a value. The "
     "steeper the curve, the less the tolerances matter.",
-    of="LoadShareStatistics",
-    made_by="Call tribodyn.study.load_share_statistics(...) and its plot method.",
+    missing=_without_factors,
+    of=("LoadShareStatistics", "MachineEnsemble"),
+    made_by="Call tribodyn.study.load_share_statistics(...) or tribodyn.ensemble(stage, seed=1).",
 )
-def load_share_statistics(statistics: LoadShareStatistics) -> Any:
+def load_share_statistics(statistics: LoadShareStatistics | MachineEnsemble) -> Any:
     """Draw the distribution of the mesh load factor."""
-    factor = np.sort(statistics.load_factor)
+    factor = np.sort(_load_factors(statistics))
     part = 100.0 * (np.arange(factor.size) + 0.5) / factor.size
     curve = line(factor, part, "stages", PINION, unit="%")
-    marks = [(f"{p:g} %", statistics.quantile(0.01 * p)) for p in (50.0, 95.0)]
+    marks = [(f"{p:g} %", float(np.quantile(factor, 0.01 * p))) for p in (50.0, 95.0)]
     row = Row("Mesh load factor K_gamma", Panel("Stages [%]", [curve]), marks=marks)
     title = f"95 % of {factor.size} stages have a load factor of at most {marks[1][1]:.4g}"
     return stack_rows(title, [row])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.drawing import draw
 from tribodyn.errors import ComputationError, warn
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
@@ -58,6 +59,20 @@ class MachineEnsemble(Record):
         """
         columns = np.vstack((self.middle, self.sample)).T
         return {str(name): column for name, column in zip(self.figure, columns, strict=True)}
+
+    def plot(self, figure: str = "machine_ensemble") -> Any:
+        """Draw the levels of the parts, or ``load_share_statistics`` of a planetary stage.
+
+        Parameters
+        ----------
+        figure : str
+            Name in :data:`tribodyn.plot.FIGURES`.
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+        """
+        return draw(self, figure)
 
     def __repr__(self) -> str:
         """One line."""

@@ -164,12 +164,25 @@ class PlanetaryCase(PartsCase):
         if self.ends[0] == self.ends[1]:
             what, why = f'output = "{self.ends[1]}" is the input', "Power leaves by another member"
             problems.append(("operation.output", Problem(what, "", why, "Name another member")))
+        problems += self._floating_members()
         for name in ("angles", "pin_errors", "thickness_errors"):
             values = getattr(table, name)
             if values is not None and len(values) != table.count:
                 what = f"{name} has {len(values)} values for {table.count} planets"
                 problem = Problem(what, "", "", "Give one value for each planet")
                 problems.append((f"{key}.{name}", problem))
+
+    def _floating_members(self) -> KeyedProblems:
+        """Problems of members that nothing holds across the axis."""
+        key, table = f"planets.{self.name}", self.table
+        floating = [role for role in _MEMBERS if getattr(table, f"{role}_support") == 0.0]
+        if len(floating) > (table.count > 2):
+            what = " and ".join(f"{role}_support = 0 N/m" for role in floating)
+            what += f" with {table.count} planet{'s' * (table.count != 1)}"
+            why = "The meshes of three or more planets centre one floating member, fewer none"
+            remedy = f"Give {floating[-1]}_support a stiffness, for example 1e6 N/m"
+            return [(f"{key}.{floating[-1]}_support", Problem(what, "", why, remedy))]
+        return []
 
     def _check_stage(self) -> None:
         """Refuse planets that do not fit, and teeth that cannot run."""

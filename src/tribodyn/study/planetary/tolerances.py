@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.errors import Argument, InputError
 from tribodyn.machine import load_shares
+from tribodyn.machine.planetary.load_sharing import sampled_shares
 from tribodyn.record import Record, quantity, record
+from tribodyn.study.planetary.stage_modes import stage_modes
+from tribodyn.study.uncertain.lanes import draw
 from tribodyn.types import Array
 from tribodyn.uncertainty import distribution, sample
+
+if TYPE_CHECKING:
+    from tribodyn.study.planetary.case import PlanetaryCase
+
+#: Errors of the planets that may have tolerances.
+_KINDS = ("pin_errors", "thickness_errors")
 
 
 @record
@@ -52,20 +62,24 @@ class LoadShareStatistics(Record):
 
 
 def load_share_statistics(
+    case: PlanetaryCase | None = None,
     *,
-    planets: int,
+    planets: int | None = None,
     pin_errors: Any = "0 um",
     thickness_errors: Any = "0 um",
     samples: int = 256,
     seed: int = 0,
     **stage: Any,
 ) -> LoadShareStatistics:
-    """Compute the load sharing of stages whose errors are drawn from tolerances.
+    """Compute the load sharing of stages whose errors are sampled within tolerances.
 
     Parameters
     ----------
-    planets : int
-        Number of planets.
+    case : PlanetaryCase, optional
+        Stage with computed teeth, whose ``pin_errors`` and ``thickness_errors`` have spreads; then
+        only ``samples`` and ``seed`` are given besides.
+    planets : int, optional
+        Number of planets, without a case.
     pin_errors, thickness_errors : str, float or distribution
         Spread of each error, independent from planet to planet: ``"0 um +- 10 um"`` or
         ``"normal 0 um +- 4 um"``, as :func:`tribodyn.uncertainty.distribution` takes it.
@@ -83,20 +97,57 @@ def load_share_statistics(
     Raises
     ------
     InputError
-        If an argument is wrong.
+        If an argument is wrong, or no error of the case has a spread.
+
+    Notes
+    -----
+    The loads are those at rest. :func:`ensemble` computes the motion of every variant of a case,
+    with other values that have spreads too.
     """
-    inputs = {
-        f"{kind}_{planet}": distribution(f"{kind}_errors", spread, "m")
-        for kind, spread in (("pin", pin_errors), ("thickness", thickness_errors))
-        for planet in range(planets)
-    }
-    drawn = sample(inputs, samples, seed=seed)
+    if case is not None:
+        data = dict(stage_modes(case).data)
+        planets = int(data.pop("planets"))
+        errors = (data.pop("pin_errors"), data.pop("thickness_errors"))
+        stage = {**data, "carrier_speed": 0.0, **stage}
+        turn = (case.turn(case.operating_point), 1)
+        sampled = draw(case, _spread_errors(case), samples, seed=seed)
+    else:
+        if planets is None:
+            what, remedy = "there is no stage", "Give a case, or planets and the data of the stage"
+            raise InputError(what, Argument("planets"), "", remedy)
+        load_shares(planets=planets, **stage)  # raises with every wrong argument
+        errors, turn = (0.0, 0.0), (1, 1)
+        tolerances = zip(_KINDS, (pin_errors, thickness_errors), strict=True)
+        spreads = {
+            f"{kind}.{planet + 1}": distribution(kind, spread, "m")
+            for kind, spread in tolerances
+            for planet in range(planets)
+        }
+        sampled = sample(spreads, samples, seed=seed)
+    columns = {".".join(key.rsplit(".", 2)[-2:]): values for key, values in sampled.items()}
     pins, thick = (
-        np.stack([np.broadcast_to(drawn[f"{kind}_{i}"], samples) for i in range(planets)], axis=1)
-        for kind in ("pin", "thickness")
+        np.stack(
+            [
+                np.broadcast_to(
+                    sign * columns[f"{kind}.{i + 1}"] if f"{kind}.{i + 1}" in columns else value,
+                    samples,
+                )
+                for i, value in enumerate(np.broadcast_to(middle, planets))
+            ],
+            axis=1,
+        )
+        for kind, middle, sign in zip(_KINDS, errors, turn, strict=True)
     )
-    shares = [
-        load_shares(planets=planets, pin_errors=p, thickness_errors=t, **stage).share
-        for p, t in zip(pins, thick, strict=True)
-    ]
-    return LoadShareStatistics(np.arange(1.0, samples + 1.0), pins, thick, np.array(shares))
+    shares = sampled_shares(pins, thick, planets=planets, **stage)
+    return LoadShareStatistics(np.arange(1.0, samples + 1.0), pins, thick, shares)
+
+
+def _spread_errors(case: PlanetaryCase) -> dict[str, str]:
+    """Errors of pins and teeth of a case that have a spread."""
+    names = tuple(f"planets.{case.name}.{kind}." for kind in _KINDS)
+    spreads = {key: text for key, text in case.uncertain.items() if key.startswith(names)}
+    if not spreads:
+        what = f"no error of the pins or teeth of {case.name} has a spread"
+        remedy = f'Write planets.{case.name}.pin_errors = "0 um +- 10 um"'
+        raise InputError(what, Argument("case"), "All stages would be equal", remedy)
+    return spreads
