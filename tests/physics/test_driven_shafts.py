@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tribodyn.dynamics import Contact, System, harmonic_balance
+from tribodyn.dynamics import Contact, System, harmonic_balance, run_up
 from tribodyn.errors import InputError
 from tribodyn.faults import (
     DrivenSystem,
@@ -19,6 +19,7 @@ from tribodyn.faults import (
     clock_cycles,
     drive,
 )
+from tribodyn.signals.run_up_orders import run_up_order_map
 
 TEETH = {"pinion": 16, "wheel": 24}
 RADIUS, INERTIA = np.array([0.034, 0.051]), np.array([2e-3, 6e-3])
@@ -143,6 +144,23 @@ def test_a_random_load_has_its_density_and_the_drive_its_receptance() -> None:
         assert abs(ratio - 1.0) < 4.0 / math.sqrt(band.size)
     outside = np.setdiff1d(np.arange(1, omega.size), inside)
     assert np.abs(lines[outside, 1]).max() < 1e-3 * np.abs(lines[inside, 1]).max()
+
+
+def test_orders_of_a_ripple_stand_still_in_the_order_map_of_a_run_up() -> None:
+    torque, order = 5.0, 3.0
+    drive = driven(pair(), TorqueRipple(orders=(order,), torques=(torque,)))
+    run = run_up(
+        drive.system, ([0.0, 1.0], [MESH, 2.0 * MESH]), teeth=16, cycles=drive.cycles, samples=32
+    )
+    turned = run_up_order_map(run, "deflection", cycles=64)
+    amplitude = turned.amplitude.T  # blocks in rows; the mean leaks into two orders
+    strongest = turned.order[3 + np.argmax(amplitude[:, 3:], axis=1)]
+    np.testing.assert_allclose(strongest, order, atol=1e-9)
+    # far below the natural frequency the teeth carry their part of the torque
+    mass = 1.0 / (RADIUS**2 / INERTIA).sum()
+    at_rest = mass * RADIUS[0] * torque / INERTIA[0] / STIFFNESS
+    line = amplitude[:, np.argmin(np.abs(turned.order - order))]
+    np.testing.assert_allclose(line, at_rest, rtol=0.02)
 
 
 def test_the_clock_is_that_of_gears_and_orders() -> None:

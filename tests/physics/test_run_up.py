@@ -56,6 +56,23 @@ def exact(time: np.ndarray) -> np.ndarray:
     return np.where(time <= 60.0, up.sol(np.minimum(time, 60.0))[0], late)
 
 
+def test_a_longer_clock_is_the_same_run() -> None:
+    profile = ([0.0, 60.0], [0.1, 0.3])
+    options = {"samples": 16, "steps": 256, "start": ([0.1], [0.0]), "teeth": 6}
+    single = run_up(oscillator(), profile, **options)
+    pair = replace(oscillator().contacts[0], cycles=3)
+    triple = run_up(replace(oscillator(), contacts=(pair,)), profile, cycles=3, **options)
+    assert single.cycles.time.size == triple.cycles.time.size == 12
+    for name in ("time", "phase", "mesh_frequency", "speed", "position", "contact_force"):
+        np.testing.assert_allclose(
+            getattr(triple, name), getattr(single, name), rtol=1e-9, atol=1e-9, err_msg=name
+        )
+    means = single.cycles.deflection.mean.reshape(4, 3, 1)
+    weights = 1.0 / single.cycles.mesh_frequency.reshape(4, 3, 1)
+    expected = (means * weights).sum(axis=1) / weights.sum(axis=1)
+    np.testing.assert_allclose(triple.cycles.deflection.mean[::3], expected, atol=1e-3)
+
+
 def test_through_resonance_it_equals_an_adaptive_integrator_at_fourth_order() -> None:
     profile = ([0.0, 60.0, 90.0], [0.05, 0.35, 0.1])
     errors = []

@@ -168,6 +168,7 @@ def drive(
     teeth: Mapping[str, int],
     coordinates: Mapping[str, int],
     rotation: ArrayLike | None,
+    fixed_phase: bool = False,
 ) -> DrivenSystem:
     """Let torques and speeds of the shafts vary.
 
@@ -187,6 +188,9 @@ def drive(
         Number of the coordinate on which the torque of each shaft acts.
     rotation : (n,) array, optional
         Change of the coordinates in a mesh cycle [rad].
+    fixed_phase : bool
+        Whether the mesh phase is that of the mean speed and its prescribed fluctuation alone, and
+        does not follow the rotation that torques cause.
 
     Returns
     -------
@@ -222,7 +226,7 @@ def drive(
     period, mass = total / mesh_frequency, np.asarray(system.mass)
     turning = _free_rotation(system, rotation, excitations)
     inertia = float(turning @ mass @ turning)
-    lead = np.zeros(1, dtype=complex)
+    lead = moving = np.zeros(1, dtype=complex)  # of the drive, and of its mesh
     force = np.zeros((1, system.size), dtype=complex)
     for each in excitations:
         at, turns = coordinates[each.gear], Fraction(total, teeth[each.gear])
@@ -233,16 +237,18 @@ def drive(
         force = _sum(force, push - np.multiply.outer(acceleration, mass @ turning))
         rate = 2.0 * np.pi * np.maximum(np.arange(torque.size), 1) / period
         lead = _sum(lead, -acceleration / rate**2)
+        if isinstance(each, SpeedFluctuation) or not fixed_phase:
+            moving = _sum(moving, -acceleration / rate**2)
     ahead = Series(lead)
-    _refuse_large(ahead, total)
+    _refuse_large(Series(moving), total)
     steady = system.force
     if callable(steady):
         raise InputError("the force varies", "System.force", "It is the mean load", "Give numbers")
     force[0] += np.asarray(steady, dtype=float)
     driven = _on_longer_clock(system, total // cycles)
     driven = replace(driven, force=Series(force) if len(force) > 1 else force[0].real)
-    if np.abs(lead).max() > 1e-13:
-        driven = _on_uneven_clock(driven, _UnevenClock(Series(lead * (1.0 / total))))
+    if np.abs(moving).max() > 1e-13:
+        driven = _on_uneven_clock(driven, _UnevenClock(Series(moving * (1.0 / total))))
     return DrivenSystem(driven, total, ahead, turning)
 
 

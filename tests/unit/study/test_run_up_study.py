@@ -43,13 +43,49 @@ def test_friction_and_inertia_follow_the_speed(case: tribodyn.Case) -> None:
     phase = np.array([0.1, 0.6])
     less = np.abs(slow.contacts[0].friction(phase)).max()
     assert less != pytest.approx(np.abs(quick.contacts[0].friction(phase)).max(), rel=0.02)
-    turning = per_speed * rotation_of(case, slow.names)
+    cycle = rotation_of(case, slow.names)
+    assert cycle is not None
+    turning = per_speed * cycle
     by_name = dict(zip(slow.names, turning, strict=True))
     # both gears roll on each other: teeth times angle agree
     pair = case.gear_pair
     rolled = [by_name[f"{g}_theta"] * getattr(pair, g).teeth for g in ("pinion", "wheel")]
     assert rolled[0] == pytest.approx(rolled[1])
     assert 2 * np.pi * per_speed == pytest.approx(rolled[0])
+
+
+@pytest.mark.slow
+def test_a_run_up_with_faults_is_the_motion_over_whole_turns(case: tribodyn.Case) -> None:
+    faults = {
+        "axis": {"kind": "eccentricity", "gear": "pinion", "amplitude": "10 um"},
+        "motor": {
+            "kind": "torque-ripple",
+            "gear": "pinion",
+            "orders": [2.0],
+            "torques": ["0.1 N*m"],
+        },
+    }
+    faulty = case.replace(
+        {"stiffness.model": "analytic", "dynamics.backlash": "0.2 mm"}
+        | {f"faults.{name}.{key}": v for name, table in faults.items() for key, v in table.items()}
+    )
+    low = case.operation.speed
+    run = tribodyn.run_up(faulty, (low, (1.0 + 1e-6) * low), 0.19, tables=1, samples=64)
+    assert run.samples == 64
+    assert run.cycles.time.size == 16 * 3
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", tribodyn.ModelWarning)
+        motion = tribodyn.run(faulty).turning_motion
+    force = run.signal("contact_force")[0][-16 * 64 :]
+    expected = motion.mesh_force[:: motion.mesh_force.size // (16 * 64)]
+    lines = np.abs(np.fft.rfft([force, expected])) / force.size
+    # turn, ripple and mesh: the ripple's own rotation moves the mesh of the motion alone
+    relative = np.abs(lines[0] / lines[1] - 1.0)[[0, 2, 16, 32]]
+    assert np.all(relative < [0.01, 0.1, 0.01, 0.02])
+    road = {"kind": "random-load", "gear": "wheel", "frequencies": ["9 Hz", "90 Hz"]}
+    changes = {f"faults.road.{key}": value for key, value in road.items()}
+    with pytest.raises(InputError, match="a random load in a run-up"):
+        tribodyn.run_up(faulty.replace({**changes, "faults.road.torque": "1 N*m"}), (low, 2 * low))
 
 
 @pytest.mark.parametrize(

@@ -34,6 +34,7 @@ def run_up(
     *,
     duration: float | None = None,
     teeth: int = 1,
+    cycles: int = 1,
     start: tuple[ArrayLike, ArrayLike] | None = None,
     steps: int | None = None,
     samples: int = 128,
@@ -56,6 +57,9 @@ def run_up(
         Length of the run [s], for a function of time.
     teeth : int
         Mesh cycles per revolution of the shaft whose speed is reported.
+    cycles : int
+        Mesh cycles of a period of the system's clock, where its teeth differ. Statistics of each
+        mesh cycle are then those of its period.
     start : (position, velocity), optional
         Two (n,) arrays [m or rad, m/s or rad/s]; the steady state at the first speed by default.
     steps : int, optional
@@ -103,31 +107,35 @@ def run_up(
     >>> run_up(system, ([0.0, 40.0], [0.2, 0.8]), samples=16)
     RunUp(40 s, 20 mesh cycles, mesh frequency 0.2 to 0.8 Hz, 1 coordinate, 16 samples per cycle)
     """
-    path = read_profile(profile, duration)
+    of_mesh = read_profile(profile, duration)
     require_positive("teeth", teeth)
     require_whole("samples", samples, 2)
+    cycles = require_whole("cycles", cycles)
+    path = of_mesh.times(1.0 / cycles)
     frequency, systems = systems_by_frequency(system)
-    first = systems[0]
-    tables = Tables(systems, int(samples), path.lowest, steps)
+    frequency, first = frequency / cycles, systems[0]
+    every = None if steps is None else steps * cycles // first.cycles
+    tables = Tables(systems, int(samples) * cycles, path.lowest, every)
     linear = read_outputs(outputs, first)
-    marcher = CycleMarcher(
-        tables, frequency, path.lowest, linear, _inertia(first, rotation, int(teeth))
-    )
+    inertia = _inertia(first, rotation, int(teeth) / cycles)
+    marcher = CycleMarcher(tables, frequency, path.lowest, linear, inertia)
     state = _begin(marcher, path, start)
     count = max(math.ceil(path.cycles - 1e-9), 1)
-    collector = Samples(systems, frequency, count, int(samples))
-    progress.start("Mesh cycles of the run-up", count)
+    collector = Samples(systems, frequency, count, int(samples) * cycles)
+    progress.start("Mesh cycles of the run-up" if cycles == 1 else "Turns of the run-up", count)
     figures = _march(marcher, path, count, state, collector, progress)
     progress.finish()
+    series = collector.series(linear)
+    series |= {name: cycles * series[name] for name in ("phase", "mesh_frequency")}
     return RunUp(
-        **collector.series(linear),
+        **series,
         names=tuple(first.names),
         output_names=tuple(outputs or ()),
         output_unit=output_unit,
         samples=int(samples),
         teeth=int(teeth),
-        cycles=_statistics(path, count, *figures[:3], first),
-        profile=path,
+        cycles=_statistics(of_mesh, count, *figures[:3], first, cycles),
+        profile=of_mesh,
         step_number=figures[3],
         modes=_modes(systems[len(systems) // 2]),
     )
@@ -191,7 +199,7 @@ def read_outputs(outputs: Mapping[str, ArrayLike] | None, system: System) -> Arr
     return np.array(rows) if rows else np.zeros((0, 2 * system.size))
 
 
-def _inertia(system: System, rotation: ArrayLike | None, teeth: int) -> Array:
+def _inertia(system: System, rotation: ArrayLike | None, teeth: float) -> Array:
     """Generalized force against a mesh frequency that rises by 1 Hz/s."""
     if rotation is None:
         return np.zeros(system.size)
@@ -252,11 +260,18 @@ def _take_drift(
 
 
 def _statistics(
-    path: SpeedProfile, count: int, moments: Array, extras: Array, steps: list[int], system: System
+    path: SpeedProfile,
+    count: int,
+    moments: Array,
+    extras: Array,
+    steps: list[int],
+    system: System,
+    cycles: int,
 ) -> CycleStatistics:
-    time = path.time_at(np.arange(count + 1))
+    # Figures of a period of the clock are those of all of its mesh cycles.
+    time = path.time_at(np.arange(count * cycles + 1))
     period = np.diff(time)
-    rows = moments.reshape(-1, PLAIN_MOMENTS, count)
+    rows = np.repeat(moments, cycles, axis=-1).reshape(-1, PLAIN_MOMENTS, count * cycles)
     contacts, size = len(system.contacts), system.size
 
     return CycleStatistics(
@@ -268,6 +283,6 @@ def _statistics(
         acceleration=lane_statistics(rows[2 * contacts : 2 * contacts + size]),
         output=lane_statistics(rows[2 * contacts + size :]),
         contact_loss_share=rows[contacts : 2 * contacts, 4].T,
-        extra_force=extras,
-        steps=np.array(steps, dtype=np.int64),
+        extra_force=np.repeat(extras, cycles, axis=0),
+        steps=np.repeat(np.array(steps, dtype=np.int64) // cycles, cycles),
     )

@@ -73,6 +73,22 @@ class SpeedProfile:
         object.__setattr__(self, "mesh_frequency", frequency)
         object.__setattr__(self, "_phase", np.append(0.0, np.cumsum(np.diff(time) * mean)))
 
+    def times(self, factor: float) -> SpeedProfile:
+        """The profile with all frequencies times a factor.
+
+        Parameters
+        ----------
+        factor : float
+            Above zero [1].
+
+        Returns
+        -------
+        SpeedProfile
+        """
+        if factor == 1.0:
+            return self
+        return SpeedProfile(self.time, np.asarray(self.mesh_frequency) * factor)
+
     @property
     def duration(self) -> float:
         """Length [s]."""

@@ -45,6 +45,12 @@ class TurningClock(NamedTuple):
         )
 
 
+def varies_over_turns(case: Case) -> bool:
+    """Whether teeth of a gear differ, or torques or speeds vary over the turns."""
+    pair = case.spur_pair
+    return case.faults is not None or (pair is not None and pair.teeth_differ)
+
+
 def turning_clock(case: Case) -> TurningClock:
     """Find the period of the motion with the faults of a case, without computing anything.
 

@@ -18,7 +18,9 @@ from tribodyn.types import Array, ComplexArray
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.faults import BearingImpacts, DrivenSystem, TurningMesh
+    from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
+    from tribodyn.study.pipeline.assembly import Damping
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import PreparedRun
 
@@ -127,30 +129,38 @@ def turning_mesh_of(case: Case) -> TurningMesh:
 
 def turning_system(result: Result | PreparedRun, mesh: TurningMesh) -> System:
     """The structure of a result with the mesh over whole turns as its contact."""
+    return _turning_system(result.case, result.mesh, result.damping, mesh)
+
+
+def _turning_system(case: Case, table: MeshTable, damping: Damping, mesh: TurningMesh) -> System:
+    """The structure of a case with the mesh over whole turns as its contact."""
     from tribodyn.dynamics import law_contact
     from tribodyn.study.pipeline.assembly import structure_of
 
-    functions = mesh.functions(result.mesh.functions())
-    system = structure_of(result.case, functions, result.damping, "stiffness")
+    functions = mesh.functions(table.functions())
+    system = structure_of(case, functions, damping, "stiffness")
     first, *others = system.contacts
     return replace(system, contacts=(law_contact(first, mesh.force_law), *others))
 
 
-def driven_system(result: Result | PreparedRun, mesh: TurningMesh) -> DrivenSystem:
-    """The system of :func:`turning_system` with the torques and speeds of its shafts."""
+def driven_system(
+    case: Case, table: MeshTable, damping: Damping, mesh: TurningMesh, *, fixed_phase: bool = False
+) -> DrivenSystem:
+    """The system with the mesh over whole turns and the excitation of its shafts."""
     from tribodyn.faults import drive
     from tribodyn.study.faults.section import excitations
     from tribodyn.study.pipeline.assembly import rotation_of, shaft_coordinates
 
-    case, system = result.case, turning_system(result, mesh)
+    system = _turning_system(case, table, damping, mesh)
     return drive(
         system,
         mesh.cycles,
         tuple(excitations(case).values()),
-        mesh_frequency=result.mesh.mesh_frequency,
+        mesh_frequency=table.mesh_frequency,
         teeth={name: abs(gear.teeth) for name, gear in case.gears.by_name.items()},
         coordinates=shaft_coordinates(case, system),
         rotation=rotation_of(case, system.names),
+        fixed_phase=fixed_phase,
     )
 
 
@@ -164,7 +174,7 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
         clock = turning_clock(case)
         progress.start(f"Teeth over whole turns: {clock}")
         mesh = turning_mesh_of(case)
-        driven = driven_system(result, mesh)
+        driven = driven_system(case, result.mesh, result.damping, mesh)
         frequency = result.mesh.mesh_frequency / driven.cycles
         response: Response | None = None
         for steps in _STEPS:

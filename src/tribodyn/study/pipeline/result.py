@@ -122,9 +122,9 @@ class Result(Computed):
     @property
     def turns(self) -> TurningMotion | None:
         """Motion over whole turns; None where all teeth of a gear are alike."""
-        pair = self.case.spur_pair
-        differ = self.case.faults is not None or (pair is not None and pair.teeth_differ)
-        return self.turning_motion if differ else None
+        from tribodyn.study.faults.clock import varies_over_turns
+
+        return self.turning_motion if varies_over_turns(self.case) else None
 
     def recording(
         self,

@@ -13,11 +13,12 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
+from tribodyn.study.faults.clock import turning_clock, varies_over_turns
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.machine.user_tables import PartsCase
 from tribodyn.study.machine_studies.over_speed import parts_run_up, parts_speed_sweep
 from tribodyn.study.pipeline.assembly import rotation_of
-from tribodyn.study.studies.case_grid import varied
+from tribodyn.study.studies.case_grid import Member, varied
 from tribodyn.study.studies.study_axes import read_axes
 
 if TYPE_CHECKING:
@@ -70,6 +71,8 @@ def run_up(
     RunUp or MachineLevels
         Its speed is that of the gear whose speed the case gives. Outputs are the forces of the
         supports, where there are any. The inertia of the prescribed acceleration loads the teeth.
+        Faults of the case follow the angle of the shafts, over whole turns; the mesh phase then
+        follows a prescribed fluctuation of the speed, not the rotation that a ripple causes.
         A machine has the levels of each period of its clock, without this inertia; its teeth, film
         and gyroscopic moments are those of the mean speed (``tables``, ``samples`` and ``steps``
         are of pairs).
@@ -99,7 +102,10 @@ def run_up(
         raise InputError(what, "argument tables", "A whole number >= 1", "Give 1 or more")
     speeds = np.geomspace(low, high, count) if count > 1 else np.array([np.sqrt(low * high)])
     with locate_errors(case), collected(), compile_in_parallel(case, "run-up"):
-        systems, per_speed = speed_systems(case, speeds, progress)
+        if varies_over_turns(case):
+            _check_faults(case)
+        members, per_speed = _members(case, speeds, progress)
+        systems, cycles = _turning_systems(case, members)
         first = next(iter(systems.values()))
         rotation = rotation_of(case, first.names)
         profile = speed_ramp(low * per_speed, high * per_speed, duration, hold=hold, down=down)
@@ -107,6 +113,7 @@ def run_up(
             systems if count > 1 else first,
             profile,
             teeth=round(2.0 * np.pi * per_speed),
+            cycles=cycles,
             samples=samples,
             steps=steps or case.solver.steps_per_mesh_cycle,
             outputs=supports(first),
@@ -119,9 +126,44 @@ def speed_systems(
     case: Case, speeds: Any, progress: Progress = SILENT
 ) -> tuple[dict[float, System], float]:
     """Build the structure of a case at each speed, by mesh frequency."""
+    members, per_speed = _members(case, speeds, progress)
+    return {member.mesh.mesh_frequency: member.system for member in members}, per_speed
+
+
+def _members(case: Case, speeds: Any, progress: Progress) -> tuple[list[Member], float]:
+    """The case at each speed, and its mesh frequency over the speed."""
     members = varied(case, [{_SPEED: float(speed)} for speed in speeds], progress)
-    systems = {member.mesh.mesh_frequency: member.system for member in members}
-    return systems, members[-1].mesh.mesh_frequency / float(speeds[-1])
+    return members, members[-1].mesh.mesh_frequency / float(speeds[-1])
+
+
+def _turning_systems(case: Case, members: list[Member]) -> tuple[dict[float, System], int]:
+    """Structures at each speed by mesh frequency, and the mesh cycles of their clock."""
+    if not varies_over_turns(case):
+        return {member.mesh.mesh_frequency: member.system for member in members}, 1
+    from tribodyn.dynamics.equations.ramps import split_ramps
+    from tribodyn.study.faults.motion import driven_system, turning_mesh_of
+    from tribodyn.study.pipeline.assembly import damping_of
+
+    mesh = turning_mesh_of(case)
+    systems = {}
+    for each in members:
+        damping = damping_of(each.case, each.mesh)
+        driven = driven_system(each.case, each.mesh, damping, mesh, fixed_phase=True)
+        systems[each.mesh.mesh_frequency] = split_ramps(driven.system)
+    return systems, driven.cycles
+
+
+def _check_faults(case: Case) -> None:
+    """Refuse faults that do not repeat with the turns, and periods that are too long."""
+    from tribodyn.faults import RandomLoad
+    from tribodyn.study.faults.section import excitations
+
+    for name, excitation in excitations(case).items():
+        if isinstance(excitation, RandomLoad):
+            what, why = "a random load in a run-up", "It repeats in time, a run-up in the angle"
+            remedy = f"Set faults.{name} aside for the run-up"
+            raise InputError(what, f"faults.{name}", why, remedy)
+    turning_clock(case)
 
 
 def _ends(between: tuple[Any, Any] | None) -> tuple[float, float]:
