@@ -219,7 +219,7 @@ def tooth_mesh(form: ToothForm, bore_radius: float, size: MeshSize | None = None
     root = side.root_points(_with_middles(_even(1.0, _root_share(side, size), size.root)))
     top = np.concatenate([root[:-1], tooth[:, -1], (root * [-1.0, 1.0])[-2::-1]])
     body = _body_points(top, _with_middles(_body_levels(side, bore, size)), bore)
-    return _numbered(form, tooth, body, root.shape[0] - 1, lengths)
+    return numbered_sector(abs(form.teeth), form.sign, tooth, body, lengths)
 
 
 def _check_rim(form: ToothForm, bore_radius: float) -> None:
@@ -293,10 +293,11 @@ def _body_points(top: Array, levels: Array, bore: float) -> Array:
     return _cartesian(radii, angle)
 
 
-def _numbered(
-    form: ToothForm, tooth: Array, body: Array, side_columns: int, lengths: Array
+def numbered_sector(
+    count: int, sign: int, tooth: Array, body: Array, lengths: Array
 ) -> SectorMesh:
     """Join the two grids: the lowest row of the tooth is a part of the top row of the body."""
+    side_columns = (body.shape[0] - tooth.shape[0]) // 2
     under = np.arange(body.shape[0] * body.shape[1]).reshape(body.shape[:2])
     upper = under.size + np.arange(tooth.shape[0] * (tooth.shape[1] - 1))
     foot = under[side_columns : side_columns + tooth.shape[0], :1]
@@ -311,9 +312,9 @@ def _numbered(
         ]
     )
     # anticlockwise elements; the tip of a ring is inside
-    around = slice(None, None, form.sign)
+    around = slice(None, None, sign)
     return SectorMesh(
-        count=abs(form.teeth),
+        count=count,
         nodes=np.concatenate([body.reshape(-1, 2), tooth[:, :-1].reshape(-1, 2)]),
         elements=np.concatenate([grid_elements(under[around]), grid_elements(grid[around])]),
         right_cut=under[0, :-1],

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribodyn.stiffness.fe3d.face import FaceBasis
-from tribodyn.stiffness.fe3d.sections import SectionMatrices
+from tribodyn.stiffness.fe3d.sections import SectionMatrices, SolidMatrices
 from tribodyn.types import Array, Index
 
 
@@ -26,19 +26,19 @@ def eliminated(matrix: Array, count: int) -> Array:
 
 def condensed(
     freedoms: Index,
-    matrices: SectionMatrices,
+    matrices: SectionMatrices | SolidMatrices,
     groups: Sequence[Index],
     retained: Index,
-    face: FaceBasis,
+    face: FaceBasis | None,
 ) -> Array:
-    """Stiffness (f, z, f, z) of the retained freedoms of a section, the others free of loads."""
+    """Stiffness (f, z, f, z) of the retained freedoms, the others free of loads."""
     # Elements (e, n) whose negative freedoms cannot move are assembled in groups, in this order.
     last = np.full(freedoms.max() + 1, -1)
     for step, group in enumerate(groups):
         members = freedoms[group]
         last[members[members >= 0]] = step
     last[retained] = len(groups)
-    count, front = face.count, np.empty(0, dtype=int)
+    count, front = face.count if face else 1, np.empty(0, dtype=int)
     stiffness = np.zeros((0, count, 0, count))
     for step, group in enumerate(groups):
         members = freedoms[group]
@@ -47,8 +47,8 @@ def condensed(
         order = np.concatenate([joined[leaving], joined[~leaving]])
         place = np.full(freedoms.max() + 2, -1)
         place[order] = np.arange(order.size)
-        section = _assembled(place[members], [parts[group] for parts in matrices], order.size)
-        full = section.of_solid(face)
+        sums = _assembled(place[members], [parts[group] for parts in matrices], order.size)
+        full = type(matrices)(*sums).of_solid(face)
         at = place[front]
         full[at[:, None], :, at[None, :], :] += stiffness.transpose(0, 2, 1, 3)
         size = int(leaving.sum()) * count
@@ -59,7 +59,7 @@ def condensed(
     return np.ascontiguousarray(stiffness[place][:, :, place])
 
 
-def _assembled(place: Index, parts: Sequence[Array], size: int) -> SectionMatrices:
+def _assembled(place: Index, parts: Sequence[Array], size: int) -> list[Array]:
     """Sum of element matrices, the freedoms that cannot move left out."""
     rows = np.broadcast_to(place[:, :, None], parts[0].shape)
     columns = np.swapaxes(rows, 1, 2)
@@ -69,4 +69,4 @@ def _assembled(place: Index, parts: Sequence[Array], size: int) -> SectionMatric
         total = np.zeros((size, size))
         np.add.at(total, (rows[valid], columns[valid]), matrix[valid])
         sums.append(total)
-    return SectionMatrices(*sums)
+    return sums

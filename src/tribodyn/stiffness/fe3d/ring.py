@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
 from tribodyn.arrays.bspline import bspline_values, interpolation_knots
 from tribodyn.progress import SILENT, Progress
-from tribodyn.stiffness.fe3d.annulus import annulus_radii, annulus_stiffness
 from tribodyn.stiffness.fe3d.condense import eliminated
-from tribodyn.stiffness.fe3d.sector import Sector
 from tribodyn.types import Array, Index
 
 #: Harmonics that are all solved; beyond, the next one is so much larger, and those between
 #: follow by a spline over the logarithm.
 _ALL, _RATIO = 8, 1.25
-#: First radial size of the ring [modules].
-_RING_SIZE = 0.4
-
 
 def solved_harmonics(count: int) -> Index:
     """Harmonics of a ring of ``count`` sectors that are solved."""
@@ -45,13 +41,47 @@ def harmonic_weights(count: int, harmonics: Index, sectors: Index) -> Array:
     return np.asarray(wave @ spline)
 
 
+class RingSector(Protocol):
+    """One of the equal sectors of a ring."""
+
+    @property
+    def count(self) -> int:
+        """Number of sectors of the ring."""
+
+    @property
+    def loaded_freedoms(self) -> int:
+        """Number of freedoms of the tooth that are retained."""
+
+    @property
+    def border(self) -> tuple[Index, Index, Index]:
+        """Nodes of the right and left cut and of the circle on the ring below."""
+
+    @property
+    def border_points(self) -> Array:
+        """Places of the nodes on the ring below."""
+
+    @property
+    def waves(self) -> int:
+        """Waves around the axis, per tooth and on each side of a harmonic, in the ring below."""
+
+    @property
+    def load_square(self) -> float:
+        """Square of the length of a unit load."""
+
+    def condensed(self) -> Array:
+        """Stiffness (f, z, f, z) of the tooth and of the borders in polar directions."""
+
+    def ring_stiffness(self, order: int) -> Array:
+        """Stiffness of the ring below for waves around the axis."""
+
+
 class Ring:
     """Ring of equal sectors that is held along its inner circle."""
 
-    def __init__(self, sector: Sector) -> None:
+    def __init__(self, sector: RingSector) -> None:
         self._sector = sector
         self._stiffness = sector.condensed()
-        sizes = [sector.flank.size, *(3 * nodes.size for nodes in sector.border)]
+        sizes = [sector.loaded_freedoms, *(3 * nodes.size for nodes in sector.border)]
         ends = np.cumsum([0, *sizes])
         self._flank, self._right, self._left, self._inner = (
             slice(*pair) for pair in pairwise(ends)
@@ -73,47 +103,44 @@ class Ring:
 
     def harmonic_compliance(self, harmonic: int) -> Array:
         """Compliance (f, z, f, z) under loads that turn by a harmonic from sector to sector."""
-        sector, face = self._sector, self._sector.face.count
-        turn = self._turn(harmonic)
-        size = turn.shape[1]
-        half = np.tensordot(np.conj(turn.T), self._stiffness, 1)
-        stiffness = np.ascontiguousarray((half.transpose(0, 1, 3, 2) @ turn).transpose(0, 1, 3, 2))
+        sector, face = self._sector, self._stiffness.shape[1]
+        phase = np.exp(2j * np.pi * harmonic / sector.count)
+        waves = self._waves(harmonic)
+        reduced = self._folded(self._stiffness, np.conj(phase), np.conj(waves))
+        folded = self._folded(reduced.transpose(2, 3, 0, 1), phase, waves)
+        stiffness, size = np.ascontiguousarray(folded.transpose(2, 3, 0, 1)), len(folded)
         first = self._right.stop - self._right.start
         for place, order in enumerate(self._orders(harmonic)):
-            radii = annulus_radii(sector.held, sector.interface, order, _RING_SIZE)
-            ring = annulus_stiffness(radii, order, sector.twist, sector.stress, sector.face)
+            ring = sector.ring_stiffness(order)
             rows = slice(first + 3 * place, first + 3 * place + 3)
             share = 2.0 * np.pi / sector.count
             stiffness[rows, :, rows, :] += share * ring.reshape(3, face, 3, face)
         loaded = self._flank.stop
         below = (size - loaded) * face
         inverse = np.linalg.inv(eliminated(stiffness.reshape(size * face, -1), below))
-        # the load is a unit vector in the section only
-        square = 1.0 + (sector.twist * sector.base_radius) ** 2
-        compliance = 0.5 * square * (inverse + np.conj(inverse.T))
+        compliance = 0.5 * sector.load_square * (inverse + np.conj(inverse.T))
         return np.asarray(compliance.reshape(loaded, face, loaded, face))
 
     def _orders(self, harmonic: int) -> list[int]:
         """Waves around the axis on the inner circle."""
         sector = self._sector
-        if not sector.on_ring:
+        if not sector.border[2].size:
             return []
-        waves = range(-sector.size.waves, sector.size.waves + 1)
+        waves = range(-sector.waves, sector.waves + 1)
         return [harmonic + wave * sector.count for wave in waves]
 
-    def _turn(self, harmonic: int) -> Array:
-        """Retained freedoms per cut, waves on the inner circle, and flank."""
-        sector, orders = self._sector, self._orders(harmonic)
-        cut = self._right.stop - self._right.start
-        below = cut + 3 * len(orders)
-        turn = np.zeros((self._inner.stop, below + self._flank.stop), dtype=complex)
-        turn[self._flank, below:] = np.eye(self._flank.stop)
-        turn[self._right, :cut] = np.eye(cut)
-        turn[self._left, :cut] = np.exp(2j * np.pi * harmonic / sector.count) * np.eye(cut)
-        points = sector.mesh.nodes[sector.border[2]]
+    def _folded(self, values: Array, phase: complex, waves: Array) -> Array:
+        """Rows per cut, wave on the inner circle and flank from those of all retained freedoms."""
+        cut = values[self._right] + phase * values[self._left]
+        inner = np.tensordot(waves, values[self._inner], 1)
+        return np.concatenate([cut, inner, values[self._flank]])
+
+    def _waves(self, harmonic: int) -> Array:
+        """Displacements (3 waves, freedoms) of the inner circle."""
+        orders, points = self._orders(harmonic), self._sector.border_points
         angle = np.arctan2(-points[:, 0], points[:, 1])
+        waves = np.zeros((3 * len(orders), 3 * len(points)), dtype=complex)
         for place, order in enumerate(orders):
             for axis in range(3):
-                rows = slice(self._inner.start + axis, self._inner.stop, 3)
-                turn[rows, cut + 3 * place + axis] = np.exp(1j * order * angle)
-        return turn
+                waves[3 * place + axis, axis::3] = np.exp(1j * order * angle)
+        return waves

@@ -27,12 +27,24 @@ class SectionMatrices(NamedTuple):
     single: Array  #: slope of the second displacement
     double: Array  #: slopes of both
 
-    def of_solid(self, face: FaceBasis) -> Array:
+    def of_solid(self, face: FaceBasis | None) -> Array:
         """Stiffness (f, z, f, z) of the solid of a section with ``f`` freedoms."""
+        assert face is not None  # A section alone is no solid.
         parts = self.none, self.single, np.conj(self.single.T), self.double
         faces = face.mass, face.slope, face.slope.T, face.bending
         # [f, 1, g, part] times [z, part, w]
         return np.asarray(np.stack(parts, axis=-1)[:, None] @ np.stack(faces, axis=1))
+
+
+class SolidMatrices(NamedTuple):
+    """Matrix of a solid, or of each of its elements."""
+
+    stiffness: Array
+
+    def of_solid(self, face: FaceBasis | None) -> Array:
+        """Stiffness (f, 1, f, 1) in the shape of that over a face."""
+        assert face is None  # The freedoms of a solid stand for themselves.
+        return self.stiffness[:, None, :, None]
 
 
 def elasticity(poissons_ratio: float) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.gear import SpurGear
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, tooth_mesh
+from tribodyn.stiffness.fe3d.annulus import annulus_radii, annulus_stiffness
 from tribodyn.stiffness.fe3d.condense import condensed
 from tribodyn.stiffness.fe3d.face import FaceBasis, FaceSize, face_basis
 from tribodyn.stiffness.fe3d.sections import SectionMatrices, elasticity, element_matrices
@@ -16,6 +17,8 @@ from tribodyn.types import Array, Index
 
 #: Least radius of curvature of a load [modules].
 LEAST_CURVATURE = 0.02
+#: First radial size of the ring [modules].
+_RING_SIZE = 0.4
 #: Least depth of a ring under the meshed part of the body [modules].
 _LEAST_RING = 0.3
 #: Length along the flank that is rounding [modules].
@@ -148,29 +151,53 @@ class Sector:
         mesh = self.mesh
         return mesh.right_cut, mesh.left_cut, mesh.fixed if self.on_ring else mesh.fixed[:0]
 
+    @property
+    def border_points(self) -> Array:
+        """Places of the nodes on the ring."""
+        return self.mesh.nodes[self.border[2]]
+
+    @property
+    def loaded_freedoms(self) -> int:
+        """Number of loaded places."""
+        return self.flank.size
+
+    @property
+    def waves(self) -> int:
+        """Waves on each side of a harmonic in the ring."""
+        return self.size.waves
+
+    @property
+    def load_square(self) -> float:
+        """Square of the length of a load, which is a unit vector in the section only."""
+        return 1.0 + (self.twist * self.base_radius) ** 2
+
+    def ring_stiffness(self, order: int) -> Array:
+        """Stiffness of the ring for waves around the axis."""
+        radii = annulus_radii(self.held, self.interface, order, _RING_SIZE)
+        return annulus_stiffness(radii, order, self.twist, self.stress, self.face)
+
     def condensed(self) -> Array:
         """Stiffness (f, z, f, z) of the flank, in its loaded direction, and of the borders."""
         mesh = self.mesh
         matrices = element_matrices(mesh.nodes[mesh.elements], self.twist, self.stress)
         turn = self._directions()[mesh.elements]
 
-        def turned(matrix: Array) -> Array:
-            blocks = matrix.reshape(-1, 9, 3, 9, 3).transpose(0, 1, 3, 2, 4)
-            right = blocks @ turn[:, None]
-            return (
-                (np.swapaxes(turn, 2, 3)[:, :, None] @ right)
-                .transpose(0, 1, 3, 2, 4)
-                .reshape(-1, 27, 27)
-            )
-
-        freedoms = _freedoms(mesh.elements)
+        freedoms = node_freedoms(mesh.elements)
         if not self.on_ring:
             freedoms[np.repeat(np.isin(mesh.elements, mesh.fixed), 3, axis=1)] = -1
-        retained = np.concatenate([3 * self.flank, *map(_freedoms, self.border)], axis=None)
-        parts = SectionMatrices(*map(turned, matrices))
+        retained = np.concatenate([3 * self.flank, *map(node_freedoms, self.border)], axis=None)
+        parts = SectionMatrices(*(turned_stiffness(matrix, turn) for matrix in matrices))
         return condensed(freedoms, parts, self._groups(), retained, self.face)
 
 
-def _freedoms(nodes: Index) -> Index:
+def turned_stiffness(matrix: Array, turn: Array) -> Array:
+    """Element matrices (e, 3 n, 3 n) for directions (e, n, 3, freedom) of their nodes."""
+    elements, nodes = turn.shape[:2]
+    blocks = matrix.reshape(elements, nodes, 3, nodes, 3).transpose(0, 1, 3, 2, 4)
+    blocks = np.swapaxes(turn, 2, 3)[:, :, None] @ (blocks @ turn[:, None])
+    return np.asarray(blocks.transpose(0, 1, 3, 2, 4).reshape(matrix.shape))
+
+
+def node_freedoms(nodes: Index) -> Index:
     """Freedoms of rows of nodes."""
     return np.reshape(3 * nodes[..., None] + np.arange(3), (*nodes.shape[:-1], -1))
