@@ -3,6 +3,7 @@
 | module | what it answers |
 | --- | --- |
 | `cells` | contact lines in cells, and the forces of their springs |
+| `coupled` | the same on the compliance of the teeth by finite elements |
 | `loaded_contact` | load of every cell, stiffness, transmission error, pressure |
 | `harris` | transmission error over phase and torque |
 | `film` | oil film of every cell, in series with the teeth |

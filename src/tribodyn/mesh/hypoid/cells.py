@@ -117,11 +117,23 @@ def _gaps(cells: ContactCells, lead: Array | float) -> tuple[Array, Array]:
     return cells.edge_gap[:, :-1] - lead, cells.edge_gap[:, 1:] - lead
 
 
-def carried(cells: ContactCells, springs: CellSprings, lag: Array) -> tuple[Array, Array, Array]:
-    """Forces of the cells of a wheel that lags (p,) [rad], its torque, and the slope of that."""
+class ClosedCells(NamedTuple):
+    """Closed parts of all cells (lines, cells)."""
+
+    force: Array
+    spring: Array  #: stiffness of the closed part [N/m]
+    middle: Array  #: its middle as a share of the cell
+    lever: Array  #: of the normal there about the wheel's axis
+
+
+def closed_cells(
+    cells: ContactCells, springs: CellSprings, lag: Array, deflection: Array | None = None
+) -> ClosedCells:
+    """Cells under the lag (p,) [rad] whose teeth bend away by a deflection (lines, cells + 1)."""
     lever, at_line = cells.edge_lever, lag[cells.row, None]
     gaps = _gaps(cells, springs.lead)
-    first, second = lever[:, :-1] * at_line - gaps[0], lever[:, 1:] * at_line - gaps[1]
+    approach = lever * at_line - (0.0 if deflection is None else deflection)
+    first, second = approach[:, :-1] - gaps[0], approach[:, 1:] - gaps[1]
     with np.errstate(divide="ignore", invalid="ignore"):
         turn = first / (first - second)
     # The closed part of the cell, between shares of its length.
@@ -130,10 +142,15 @@ def carried(cells: ContactCells, springs: CellSprings, lag: Array) -> tuple[Arra
     closed, middle = end - begin, 0.5 * (begin + end)
     spring = springs.stiffness * cells.length * closed
     force = spring * np.maximum(first + (second - first) * middle, 0.0)
-    slope = spring * (lever[:, :-1] + (lever[:, 1:] - lever[:, :-1]) * middle)
-    arm = cells.touch.lever
-    torque, rate = (cells.summed((each * arm).sum(axis=1)) for each in (force, slope))
-    return force, torque, rate
+    return ClosedCells(force, spring, middle, lever[:, :-1] + np.diff(lever) * middle)
+
+
+def carried(cells: ContactCells, springs: CellSprings, lag: Array) -> tuple[Array, Array, Array]:
+    """Forces of the cells of a wheel that lags (p,) [rad], its torque, and the slope of that."""
+    closed, arm = closed_cells(cells, springs, lag), cells.touch.lever
+    slope = closed.spring * closed.lever
+    torque, rate = (cells.summed((each * arm).sum(axis=1)) for each in (closed.force, slope))
+    return closed.force, torque, rate
 
 
 def _lags(cells: ContactCells, lead: Array | float) -> Array:

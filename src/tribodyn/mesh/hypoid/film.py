@@ -115,7 +115,7 @@ class _CellTeeth:
 
     def shared_load(self, film: FilmSprings | None = None) -> Any:
         """Share of each cell in the torque, with its film in series."""
-        cells, teeth = self._cells, self._dry.line_stiffness
+        cells, teeth = self._cells, self._dry.springs.stiffness
         self.loaded = self._dry
         if film is not None:
             lead = 0.0 if film.lead is None else self._of_lines(film.lead)

@@ -63,7 +63,9 @@ def hypoid_transmission_error_over_torque(
     return HarrisMap(
         gear_pair=None,
         provider="contact lines",
-        reference=f"{loaded.line_stiffness * 1e-9:g} N/(mm um) of contact line",
+        reference="finite elements of the teeth"
+        if loaded.compliance
+        else f"{loaded.line_stiffness * 1e-9:g} N/(mm um) of contact line",
         torque=torques,
         phase=phase,
         mesh_cycles=1,

@@ -12,6 +12,7 @@ from tribodyn.contact import effective_modulus, hertz_line
 from tribodyn.errors import (
     ComputationError,
     require_between,
+    require_one_of,
 )
 from tribodyn.gear import HypoidFlanks, Material, Misalignment
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
@@ -24,6 +25,8 @@ from tribodyn.mesh.hypoid.cells import (
     lag_under,
     wrench,
 )
+from tribodyn.mesh.hypoid.coupled import LineCompliance, coupled_load, line_compliance
+from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, figure_method, quantity, record
 from tribodyn.types import Array
 
@@ -67,7 +70,8 @@ class HypoidLoadedContact(Record):
     pinion_torque : float [N*m]
         Torque on the pinion.
     line_stiffness : float [Pa]
-        Stiffness of the teeth per length of contact line.
+        Stiffness of the teeth per length of contact line; with the compliance of finite elements,
+        that of all closed cells together.
     grid : PhaseGrid
         The phases.
     cells : ContactCells
@@ -78,6 +82,10 @@ class HypoidLoadedContact(Record):
         Springs of the teeth with the oil film of each cell in series; None without films.
     loading : array (phase,) or float
         Torque of each phase over the nominal one.
+    compliance : LineCompliance, optional
+        Compliance of the teeth along the contact lines; None where it is the line stiffness.
+    tooth_springs : CellSprings, optional
+        Springs of the flanks on this compliance.
     """
 
     phase: Array = quantity(*_PHASES, unit="1", axis=True)
@@ -101,11 +109,13 @@ class HypoidLoadedContact(Record):
     material: Material = field()
     film_springs: CellSprings | None = field(default=None)
     loading: Array | float = field(default=1.0)
+    compliance: LineCompliance | None = field(default=None)
+    tooth_springs: CellSprings | None = field(default=None)
 
     @property
     def springs(self) -> CellSprings:
         """Springs of the cells."""
-        return self.film_springs or CellSprings(self.line_stiffness)
+        return self.film_springs or self.tooth_springs or CellSprings(self.line_stiffness)
 
     @property
     def wheel_torque(self) -> float:
@@ -147,6 +157,11 @@ class HypoidLoadedContact(Record):
         """Force of the cells of the lines (lines, cells)."""
         return np.asarray(self.cell_force[self.cells.in_contact])
 
+    @property
+    def _teeth(self) -> tuple[ContactCells, PhaseGrid, Material, LineCompliance | float]:
+        """What does not depend on the load."""
+        return self.cells, self.grid, self.material, self.compliance or self.line_stiffness
+
     def under(self, pinion_torque: float) -> HypoidLoadedContact:
         """Find the same contact under another torque.
 
@@ -161,7 +176,7 @@ class HypoidLoadedContact(Record):
             If the torque is not positive.
         """
         torque = _required_torque(pinion_torque)
-        return _loaded(self.cells, self.grid, torque, self.line_stiffness, self.material)
+        return _loaded(*self._teeth, torque)
 
     def with_film(self, springs: CellSprings | None) -> HypoidLoadedContact:
         """Find the contact under the same torque with oil films in series with the teeth.
@@ -175,8 +190,7 @@ class HypoidLoadedContact(Record):
         -------
         HypoidLoadedContact
         """
-        contact = self.cells, self.grid, self.pinion_torque, self.line_stiffness, self.material
-        return _loaded(*contact, springs, self.loading)
+        return _loaded(*self._teeth, self.pinion_torque, springs, self.loading)
 
     def under_loading(self, loading: Array) -> HypoidLoadedContact:
         """Find the contact of the teeth at the nominal torque times a factor.
@@ -190,8 +204,7 @@ class HypoidLoadedContact(Record):
         -------
         HypoidLoadedContact
         """
-        contact = self.cells, self.grid, self.pinion_torque, self.line_stiffness, self.material
-        return _loaded(*contact, None, loading)
+        return _loaded(*self._teeth, self.pinion_torque, None, loading)
 
     plot_pressure = figure_method("hypoid_pressure", "Draw the pressure over the flank.")
     plot_load = figure_method("hypoid_load", "Draw load sharing, transmission error and stiffness.")
@@ -212,8 +225,10 @@ def hypoid_loaded_contact(
     misalignment: Misalignment | None = None,
     material: Material | None = None,
     line_stiffness: float = 14e9,
+    stiffness_model: str = "line",
     steps: int = 100,
     cells: int = 48,
+    progress: Progress = SILENT,
 ) -> HypoidLoadedContact:
     """Share the load of a hypoid pair among the cells of all its contact lines.
 
@@ -230,10 +245,15 @@ def hypoid_loaded_contact(
     line_stiffness : float
         Force per length of contact line and approach of the teeth [Pa]; the default of
         14 N/(mm um) has the order of the mesh stiffness of ISO 6336.
+    stiffness_model : str
+        ``"line"``, or ``"fe3d"``: finite elements of the teeth of both gears, coupled along all
+        contact lines, instead of the line stiffness.
     steps : int
         Intervals of the mesh cycle, at least 16.
     cells : int
         Cells of each contact line, at least 4.
+    progress : Progress
+        Receiver of the progress of the finite elements.
 
     Raises
     ------
@@ -245,9 +265,11 @@ def hypoid_loaded_contact(
     Notes
     -----
     Each cell carries in proportion to its length and to what the rotation of the wheel leaves of
-    its gap. The gap is taken to first order along the contact lines of the conjugate flanks, whose
-    ends on both flanks are exact, and within a cell as straight, so that a cell may carry in part.
-    The rotation is that at which the moments of all cells balance the torque.
+    its gap. With ``"fe3d"`` the loads of all cells also bend the teeth of both gears under them
+    (:func:`tribodyn.stiffness.fe3d.hypoid_influence`), and the contact is compressed as a line. The
+    gap is taken to first order along the contact lines of the conjugate flanks, whose ends on both
+    flanks are exact, and within a cell as straight, so that a cell may carry in part. The rotation
+    is that at which the moments of all cells balance the torque.
 
     Examples
     --------
@@ -268,7 +290,10 @@ def hypoid_loaded_contact(
         require_between(name, require_whole(name, count, least), least, 2000)
     grid = phase_grid((0.0,), steps)
     lines = _lines(flanks, misalignment or Misalignment(), grid, cells)
-    return _loaded(lines, grid, torque, line_stiffness, material or Material())
+    material = material or Material()
+    if require_one_of("stiffness_model", stiffness_model, ("line", "fe3d")) == "line":
+        return _loaded(lines, grid, material, line_stiffness, torque)
+    return _loaded(lines, grid, material, _compliance(lines, material, progress), torque)
 
 
 def _required_torque(pinion_torque: float) -> float:
@@ -290,26 +315,44 @@ def _lines(
     return lines
 
 
+def _compliance(cells: ContactCells, material: Material, progress: Progress) -> LineCompliance:
+    """Compliance along contact lines, which cache the last one."""
+    cached_material, cached = vars(cells).get("_compliance_found_last", (None, None))
+    if isinstance(cached, LineCompliance) and cached_material == material:
+        return cached
+    compliance = line_compliance(cells, material, progress)
+    vars(cells)["_compliance_found_last"] = (material, compliance)
+    return compliance
+
+
 def wheel_torque_at(loaded: HypoidLoadedContact, lag: Array) -> Array:
     """Torque on a wheel that lags by some angles (..., phase) [rad]."""
     lags = np.reshape(lag, (-1, loaded.phase.size))
-    torques = [carried(loaded.cells, loaded.springs, each)[1] for each in lags]
+    if loaded.compliance is None:
+        torques = [carried(loaded.cells, loaded.springs, each)[1] for each in lags]
+    else:
+        force, torques = loaded.line_force, []
+        for each in lags:
+            load = coupled_load(
+                loaded.cells, loaded.compliance, each, force, springs=loaded.film_springs
+            )
+            torques.append(load.torque)
     return np.reshape(torques, np.shape(lag))
 
 
 def _loaded(
     cells: ContactCells,
     grid: PhaseGrid,
-    torque: float,
-    line_stiffness: float,
     material: Material,
+    teeth: LineCompliance | float,
+    torque: float,
     film_springs: CellSprings | None = None,
     loading: Array | float = 1.0,
 ) -> HypoidLoadedContact:
     wheel_torque = torque * cells.flanks.blank.ratio * loading
-    springs = film_springs or CellSprings(line_stiffness)
-    lag, start = lag_under(cells, springs, wheel_torque), first_touch(cells, springs.lead)
-    force, balanced, rate = carried(cells, springs, lag)
+    lag, force, balanced, rate, springs = _balanced(cells, teeth, wheel_torque, film_springs)
+    start = first_touch(cells, springs.lead)
+    coupled = not isinstance(teeth, float)
     normals = force[..., None] * cells.touch.contact.wheel.normal
     pinion, wheel = (
         cells.summed(wrench(cells, normals, gear).sum(axis=1)) for gear in ("pinion", "wheel")
@@ -334,13 +377,47 @@ def _loaded(
         load_per_width=cells.spread(width),
         hertz_pressure=cells.spread(_pressure(cells, width, material)),
         pinion_torque=torque,
-        line_stiffness=line_stiffness,
+        line_stiffness=_over_lines(cells, lag, force) if coupled else teeth,
         grid=grid,
         cells=cells,
         material=material,
         film_springs=film_springs,
         loading=loading,
+        compliance=teeth if coupled else None,
+        tooth_springs=springs if coupled and film_springs is None else None,
     )
+
+
+def _balanced(
+    cells: ContactCells,
+    teeth: LineCompliance | float,
+    wheel_torque: Array | float,
+    film_springs: CellSprings | None,
+) -> tuple[Array, Array, Array, Array, CellSprings]:
+    """Lag of the wheel, forces of the cells, torque, its slope, and the springs of the cells."""
+    if isinstance(teeth, float):
+        springs = film_springs or CellSprings(teeth)
+        lag = lag_under(cells, springs, wheel_torque)
+        return lag, *carried(cells, springs, lag), springs
+    even = wheel_torque / cells.summed((cells.length * cells.touch.lever).sum(axis=1))
+    force = cells.length * even[cells.row, None]
+    start = film_springs or teeth.local_springs(cells, force / cells.length)
+    torque = np.broadcast_to(wheel_torque, cells.phase.shape)
+    load = coupled_load(
+        cells,
+        teeth,
+        lag_under(cells, start, wheel_torque),
+        force,
+        wheel_torque=torque,
+        springs=film_springs,
+    )
+    return load.lag, load.closed.force, load.torque, load.rate, load.springs
+
+
+def _over_lines(cells: ContactCells, lag: Array, force: Array) -> float:
+    """Stiffness per length of all cells together that the rotation closes."""
+    closing = np.maximum(cells.touch.lever * lag[cells.row, None] - cells.gap, 0.0)
+    return float(force.sum() / (cells.length * closing).sum())
 
 
 def _pressure(cells: ContactCells, load_per_width: Array, material: Material) -> Array:

@@ -293,9 +293,7 @@ def _body_points(top: Array, levels: Array, bore: float) -> Array:
     return _cartesian(radii, angle)
 
 
-def numbered_sector(
-    count: int, sign: int, tooth: Array, body: Array, lengths: Array
-) -> SectorMesh:
+def numbered_sector(count: int, sign: int, tooth: Array, body: Array, lengths: Array) -> SectorMesh:
     """Join the two grids: the lowest row of the tooth is a part of the top row of the body."""
     side_columns = (body.shape[0] - tooth.shape[0]) // 2
     under = np.arange(body.shape[0] * body.shape[1]).reshape(body.shape[:2])

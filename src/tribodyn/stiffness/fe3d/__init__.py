@@ -9,10 +9,16 @@
 | `sections` | elements of a solid whose section turns along the face |
 | `face` | functions over the face width |
 | `condense` | elimination of freedoms |
+| `bevel` | influence over the flank of a hypoid or spiral bevel gear |
+| `bevel_sector` | section of one of its teeth in hexahedra |
+| `bevel_tooth` | flanks, fillets and cones of that tooth |
+| `block` | stiffness of hexahedra |
 | `local` | local compression that the elements show, which belongs to the contact |
 """
 
+from tribodyn.stiffness.fe3d.bevel import FlankInfluence, hypoid_influence
+from tribodyn.stiffness.fe3d.bevel_sector import BevelSize
 from tribodyn.stiffness.fe3d.provider import fe3d_influence
 from tribodyn.stiffness.fe3d.sector import SolidSize
 
-__all__ = ["SolidSize", "fe3d_influence"]
+__all__ = ["BevelSize", "FlankInfluence", "SolidSize", "fe3d_influence", "hypoid_influence"]

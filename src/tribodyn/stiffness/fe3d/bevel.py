@@ -46,8 +46,7 @@ def node_weights(place: Array, elements: int) -> Array:
 def _grid_weights(place: Array, row: Array, shape: tuple[int, int]) -> Array:
     """Weights (n, nodes) of the nodes of a flank at places counted in stations and rows."""
     stations, rows = (
-        node_weights(each, (size - 1) // 2)
-        for each, size in zip((place, row), shape, strict=True)
+        node_weights(each, (size - 1) // 2) for each, size in zip((place, row), shape, strict=True)
     )
     return np.asarray((stations[:, :, None] * rows[:, None, :]).reshape(place.size, -1))
 
@@ -185,7 +184,8 @@ def hypoid_influence(
     blank, size = flanks.blank, size or BevelSize()
     tooth = BevelTooth(flanks, gear)
     sector = BevelSector(tooth, material.poissons_ratio, size)
-    unit = _looked_up(sector, progress) if cache else unit_flank_compliances(sector, progress=progress)
+    looked_up = _looked_up if cache else unit_flank_compliances
+    unit = looked_up(sector, progress=progress)
     module, modulus = blank.mean_normal_module, material.youngs_modulus
     return FlankInfluence(gear_cone(flanks, gear), unit, tooth.sense, module, modulus)
 
@@ -205,7 +205,7 @@ def _looked_up(sector: BevelSector, progress: Progress) -> UnitFlankCompliances:
         nodes = unit.layer.size
         if unit.compliance.shape[1:] == (nodes, nodes) and np.all(np.isfinite(unit.compliance)):
             return unit
-    announce(f"computing the compliance of the teeth of the {gear}, once on this machine, 10 seconds")
+    announce(f"computing the compliance of the {gear} by finite elements, once, 10 seconds")
     unit = unit_flank_compliances(sector, progress=progress)
     store_arrays(name, unit._asdict(), "fe3d")
     return unit

@@ -42,6 +42,8 @@ class BevelSize:
         Thickness of the layer under the loaded flank, at whose bottom displacements are taken.
     depth : float [-]
         Depth of the body below the root cone; its bottom is held.
+    fillet : float [-]
+        Largest radius of the fillets; it is less where the root is narrow.
     """
 
     face: int = 10
@@ -51,6 +53,7 @@ class BevelSize:
     body: int = 3
     layer: float = 0.4
     depth: float = 2.7
+    fillet: float = 0.3
 
 
 def _middles(edges: Array) -> Array:
@@ -88,7 +91,7 @@ class BevelSector:
 
     @cached_property
     def _corners(self) -> tuple[Array, Array]:
-        return self.tooth.fillets(self.along)
+        return self.tooth.fillets(self.along, self.size.fillet)
 
     @cached_property
     def up(self) -> Array:
@@ -145,8 +148,8 @@ class BevelSector:
         size, stations = self.size, self.along.size
         along = np.broadcast_to(self.along[:, None], self.up.shape)
         flanks = [np.stack([fit(along, self.up), self.up], axis=-1) for fit in self.tooth.fits]
-        # Rows of the other flank are as high; its fillet begins where that of the loaded one does.
-        upper, lower = self._arcs(np.array([0.25, 0.5])), self._arcs(np.array([0.5]))
+        # Rows of both flanks are equally high, down to where the upper one of the fillets begins.
+        upper = self._arcs(np.array([0.25, 0.5]))
         right, left = (
             np.concatenate([flank, arc], axis=1) for flank, arc in zip(flanks, upper, strict=True)
         )
@@ -157,10 +160,8 @@ class BevelSector:
         inner = right + np.stack([first, np.zeros_like(first)], axis=-1)
         layer = 0.5 * (right + inner)
         rest = inner[:, None] + across[:, None, None] * (left - inner)[:, None]
-        # Heights of a row go over linearly from flank to flank.
         tooth = np.concatenate([right[:, None], layer[:, None], rest], axis=1)
-        roots = [self._root(side, lower[side, :, 0], foot) for side, foot in enumerate((right, left))]
-        top = np.concatenate([roots[0], tooth[:, :, -1], roots[1]], axis=1)
+        top = np.concatenate([self._root(0), tooth[:, :, -1], self._root(1)], axis=1)
         steps = np.cumsum(np.concatenate([[0.0], 1.5 ** np.arange(size.body)]))
         levels = _middles(steps / steps[-1])
         bottom = self.tooth.cone.height(self.tooth.cone.root, self.along) - self.depth
@@ -168,7 +169,7 @@ class BevelSector:
         body[..., 1] += levels * (bottom[:, None, None] - top[:, :, None, 1])
         return tooth, body
 
-    def _root(self, side: int, middle: Array, flank: Array) -> Array:
+    def _root(self, side: int) -> Array:
         """Nodes of half a root without the foot of the tooth, in the order of the angle."""
         ends = self._corners[0][:, :, 2]
         cut = 0.5 * (ends[1, :, 0] - self.tooth.pitch + ends[0, :, 0])

@@ -22,8 +22,8 @@ from tribodyn.types import Array
 
 #: Grid of points of a flank, how far it goes beyond it, and degrees along and up of the fit.
 _GRID, _WIDER, _DEGREES = 17, 0.05, (6, 4)
-#: Radius of the fillet over the module, and the share of half a root that both its ends may take.
-_FILLET, _ROOT_SHARE = 0.3, 0.85
+#: Share of half a root that a fillet may take.
+_ROOT_SHARE = 0.85
 
 
 class Cone(NamedTuple):
@@ -202,8 +202,8 @@ class BevelTooth:
             )
         return np.stack(columns, axis=-1)
 
-    def fillets(self, along: Array) -> tuple[Array, Array]:
-        """Corners (sides, stations, 3, 2) of the arcs of both fillets (angle, up); shares of arcs.
+    def fillets(self, along: Array, largest: float) -> tuple[Array, Array]:
+        """Corners (sides, stations, 3, 2) of the arcs of both fillets (angle, up), and cosines.
 
         The first corner is on the flank, the second where flank and root would meet, the third on
         the root; the angle in which the arc turns is twice that whose cosine is returned.
@@ -226,9 +226,9 @@ class BevelTooth:
             raise ComputationError(
                 f"the {self.gear} has no room between the feet of its teeth",
                 why="Flanks and root cone leave no root land at one end of the face",
-                remedy="Leave the stiffness model out, or give thinner teeth",
+                remedy='Set stiffness_model = "line", or give thinner teeth',
             )
-        length = min(_FILLET, most) * reach
+        length = min(largest, most) * reach
         corners = []
         for k, (fit, inwards) in enumerate(zip(self.fits, (1.0, -1.0), strict=True)):
             high = root + length[k] * np.cos(leans[k])

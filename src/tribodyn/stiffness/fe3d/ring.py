@@ -16,6 +16,7 @@ from tribodyn.types import Array, Index
 #: follow by a spline over the logarithm.
 _ALL, _RATIO = 8, 1.25
 
+
 def solved_harmonics(count: int) -> Index:
     """Harmonics of a ring of ``count`` sectors that are solved."""
     harmonics = list(range(min(_ALL, count // 2) + 1))

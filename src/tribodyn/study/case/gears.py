@@ -313,6 +313,14 @@ HYPOID_KEYS: dict[str, Option | Table] = {
         example='"14 N/(mm*um)"',
         meaning="stiffness of the teeth of a pair over the length of their contact line",
     ),
+    "stiffness_model": choice(
+        "line",
+        {
+            "line": "line_stiffness, the same for every length of contact line",
+            "fe3d": "finite elements of the teeth of both gears, coupled along the contact lines",
+        },
+        meaning="how the teeth of the pair give way",
+    ),
     "entrainment": choice(
         "contact",
         ENTRAINMENTS,

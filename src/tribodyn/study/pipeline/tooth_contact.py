@@ -92,7 +92,7 @@ def mesh_of(
     settings = _rehearsed(contact_settings(case)) if rehearsal else contact_settings(case)
     if case.hypoid_flanks is not None:
         fewest = {"steps": _FEWEST, "cells": _FEWEST} if rehearsal else {}
-        loaded = hypoid_loaded_contact_of(case, load=load, **fewest)
+        loaded = hypoid_loaded_contact_of(case, load=load, progress=progress, **fewest)
         return _friction_in_cells(case, loaded, settings).table()
     fitted: FittedLaw = mesh_law_of(case) == "force-law"
     if about_load:
@@ -184,7 +184,7 @@ def _friction_in_cells(
 
 
 def hypoid_loaded_contact_of(
-    case: Case, *, load: float = 1.0, **resolution: int
+    case: Case, *, load: float = 1.0, progress: Progress = SILENT, **resolution: int
 ) -> HypoidLoadedContact:
     """Loaded contact of the hypoid pair of a case, with phases (``steps``) and ``cells``."""
     from tribodyn.mesh import hypoid_loaded_contact
@@ -196,6 +196,9 @@ def hypoid_loaded_contact_of(
         misalignment=mounting(case.gears),
         material=case.material_properties,
         line_stiffness=case.gears.line_stiffness,
+        # fewer phases or cells are a rehearsal, which takes no time
+        stiffness_model="line" if "cells" in resolution else case.gears.stiffness_model,
+        progress=progress,
         **resolution,
     )
 
