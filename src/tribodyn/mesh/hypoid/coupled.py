@@ -224,10 +224,7 @@ def coupled_load(
     wheel_torque: Array | None = None,
     springs: CellSprings | None = None,
 ) -> CoupledLoad:
-    """Balance of all phases under a torque, or at a lag; springs replace the local compression.
-
-    Forces (lines, cells) are a guess of the loads under which the flanks compress.
-    """
+    """Balance of all phases under a torque, or at a lag; springs replace the local compression."""
     balance = _Balance(cells, compliance)
     if springs is not None:
         return balance.solve(springs, lag, wheel_torque)

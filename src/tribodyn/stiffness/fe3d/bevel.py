@@ -74,13 +74,7 @@ class FlankInfluence:
     youngs_modulus: float
 
     def weights(self, along: Array, up: Array) -> Array:
-        """Weights (n, nodes) of the nodes at places along and up the pitch cone of the gear.
-
-        Parameters
-        ----------
-        along, up : array (n,)
-            Places [m]; those beyond the flank are at its edge.
-        """
+        """Weights (n, nodes) of the nodes at places [m] along and up the pitch cone of the gear."""
         unit, along, up = self.unit, along / self.module, up / self.module
         shape, stations = unit.up.shape, np.arange(unit.along.size, dtype=float)
         place = np.interp(along, unit.along, stations)

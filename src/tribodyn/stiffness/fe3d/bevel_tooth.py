@@ -203,11 +203,8 @@ class BevelTooth:
         return np.stack(columns, axis=-1)
 
     def fillets(self, along: Array, largest: float) -> tuple[Array, Array]:
-        """Corners (sides, stations, 3, 2) of the arcs of both fillets (angle, up), and cosines.
-
-        The first corner is on the flank, the second where flank and root would meet, the third on
-        the root; the angle in which the arc turns is twice that whose cosine is returned.
-        """
+        """Corners (sides, stations, 3, 2) of both fillets' arcs, and cosines of half their turn."""
+        # The corners are on the flank, where flank and root would meet, and on the root.
         root = self.cone.height(self.cone.root, along)
         radius = self.cone.at(along, root)[0]
         leans, feet, scales = [], [], []
