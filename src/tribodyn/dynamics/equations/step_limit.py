@@ -34,7 +34,7 @@ _SAMPLES, _LANES = 32, 256
 _SQUARINGS, _FIRST, _ROUNDING = 12, 4, 1e-9
 #: Factors of stiffness, damping and friction of an unscaled system.
 _PLAIN = (1.0, 1.0, 1.0)
-_AS_IT_STANDS = np.array([_PLAIN])
+_UNSCALED = np.array([_PLAIN])
 #: ``omega_max * dt`` at which figures of a spur gear pair are good to about 1e-6.
 _ACCURATE = 0.2
 #: Range of the recommended steps; the limit of 2.7 still holds above it.
@@ -48,7 +48,7 @@ def largest_rate(system: System, nodes: Nodes, factors: tuple[float, ...] = _PLA
 
 
 def rates_at(
-    system: System, nodes: Nodes, places: tuple[Index, ...], factors: Array = _AS_IT_STANDS
+    system: System, nodes: Nodes, places: tuple[Index, ...], factors: Array = _UNSCALED
 ) -> Array:
     """Largest modulus of an eigenvalue at ``places``, for each row of ``factors`` (f, 3).
 
@@ -128,10 +128,10 @@ def _spectral_radius(matrices: Array) -> Array:
 def _blocks(pattern: Mask) -> list[Index]:
     """Indices of the diagonal blocks of a block triangular matrix, which have its eigenvalues."""
     count = len(pattern)
-    reached = (np.eye(count, dtype=bool) | pattern).astype(float)
+    connected = (np.eye(count, dtype=bool) | pattern).astype(float)
     for _ in range(count.bit_length()):  # twice as many steps along the couplings every time
-        reached = (reached @ reached > 0.0).astype(float)
-    _, block = np.unique((reached > 0.0) & (reached.T > 0.0), axis=0, return_inverse=True)
+        connected = (connected @ connected > 0.0).astype(float)
+    _, block = np.unique((connected > 0.0) & (connected.T > 0.0), axis=0, return_inverse=True)
     return [np.flatnonzero(block == number) for number in range(block.max(initial=-1) + 1)]
 
 

@@ -211,8 +211,8 @@ def option_of(case: PartsCase, key: str) -> Option | None:
         return None
     group, *names, name = key.split(".")
     if name.isdigit():
-        whole = option_of(case, ".".join((group, *names)))
-        return replace(whole, kind="number") if whole and whole.kind == "numbers" else None
+        listed = option_of(case, ".".join((group, *names)))
+        return replace(listed, kind="number") if listed and listed.kind == "numbers" else None
     table = _table(case.data, [group, *names[:1]])
     rolling = str(table.get("type")) if group == "bearings" and table is not None else ""
     options = rolling_options(ROLLING_BEARINGS[rolling]) if rolling in ROLLING_BEARINGS else {}

@@ -127,7 +127,7 @@ class PlanetaryCase(PartsCase):
         try:
             self._check_stage()
         except InputError as error:
-            raise InputError([self._placed(each) for each in error.problems]) from None
+            raise InputError([self._located(each) for each in error.problems]) from None
         self._check_spreads(origin)
 
     def _read_planets(self, problems: KeyedProblems) -> tuple[str, Any]:
@@ -155,7 +155,7 @@ class PlanetaryCase(PartsCase):
                 problems.append((f"{key}.{role}", problem))
         if table.carrier in bodies:
             what, why = f'carrier = "{table.carrier}" is a gear', "The carrier has no teeth"
-            problems.append((f"{key}.carrier", Problem(what, "", why, "Give it its own name")))
+            problems.append((f"{key}.carrier", Problem(what, "", why, "Rename the carrier")))
         for end, name in zip(("input", "output"), self.ends, strict=True):
             if name not in self.members.values():
                 what = f'{end} = "{name}" is no member of the stage'
@@ -201,7 +201,7 @@ class PlanetaryCase(PartsCase):
         )
         self.kinematics(self.operating_point)
 
-    def _placed(self, problem: Problem) -> Problem:
+    def _located(self, problem: Problem) -> Problem:
         """Problem of a function of the stage at the key of the case."""
         if isinstance(problem.where, Argument):
             roles = {role: getattr(self.table, role) for role in ("sun", "ring", "planet")}
@@ -222,8 +222,8 @@ class PlanetaryCase(PartsCase):
         """Which of sun, ring and carrier drives, is driven, and is held."""
         roles = {name: role for role, name in self.members.items()}
         ends = [roles[name] for name in self.ends]
-        (held,) = (role for role in _MEMBERS if role not in ends)
-        return ends[0], ends[1], held
+        (fixed,) = (role for role in _MEMBERS if role not in ends)
+        return ends[0], ends[1], fixed
 
     @property
     def _teeth(self) -> dict[str, Any]:
@@ -253,7 +253,7 @@ class PlanetaryCase(PartsCase):
         InputError
             If the torque brakes the input, or the stage locks itself.
         """
-        driver, _, held = self.roles
+        driver, _, fixed = self.roles
         if load.speed == 0.0 or load.torque == 0.0:
             name = "speed" if load.speed == 0.0 else "torque"
             why = "Teeth that stand, or that carry nothing, have no film and no motion"
@@ -262,7 +262,7 @@ class PlanetaryCase(PartsCase):
             sun_teeth=self.gears[self.table.sun].teeth,
             ring_teeth=self.gears[self.table.ring].teeth,
             planet_teeth=self.gears[self.table.planet].teeth,
-            held=cast("Literal['sun', 'ring', 'carrier']", held),
+            held=cast("Literal['sun', 'ring', 'carrier']", fixed),
             input=cast("Literal['sun', 'ring', 'carrier']", driver),
             input_speed=load.speed,
             input_torque=load.torque * float(np.sign(load.speed)),
@@ -295,7 +295,7 @@ class PlanetaryCase(PartsCase):
         return self.pairs_under(self.operating_point)
 
     def pairs_under(self, load: LoadCase) -> dict[str, Case]:
-        """Sun mesh and ring mesh of one planet under a load, each as a case of its own.
+        """Sun mesh and ring mesh of one planet under a load, each as the case of a pair.
 
         Parameters
         ----------

@@ -78,7 +78,7 @@ def stage_data(
 ) -> dict[str, Any]:
     """Arguments of :func:`planetary_plane_model`, in the direction of the torque on the sun."""
     table, turn, stage = case.table, case.turn(load), case.kinematics(load)
-    held = case.roles[2]
+    fixed = case.roles[2]
     pairs = {mesh: case.pairs[mesh].gear_pair for mesh in MESHES}
     sun_radius = geometry(case.pairs["ring"])["base_radius_pinion"]
     sun_radius *= case.gears[table.sun].teeth / case.gears[table.planet].teeth
@@ -90,7 +90,7 @@ def stage_data(
         **{f"{mesh}_pressure_angle": pairs[mesh].operating_pressure_angle for mesh in MESHES},
         "pin_stiffness": table.pin_stiffness,
         **{f"{role}_support": getattr(table, f"{role}_support") for role in case.members},
-        f"{held}_torsional_support": table.torsional_support,
+        f"{fixed}_torsional_support": table.torsional_support,
         "force_per_planet": abs(stage.torques["sun"]) / sun_radius / table.count,
         "carrier_speed": turn * stage.speeds["carrier"],
         "pin_errors": turn * np.array(table.pin_errors or 0.0),

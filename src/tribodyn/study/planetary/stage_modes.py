@@ -118,14 +118,15 @@ class StageModes(NamedTuple):
         rpm = f"{abs(speed) * 30.0 / np.pi:.5g} rpm"
         if not speed:
             return "The carrier is at rest: its frame has no Coriolis and centripetal forces."
-        rest = natural_modes(planetary_plane_model(**{**self.data, "carrier_speed": 0.0})).frequency
+        still = planetary_plane_model(**{**self.data, "carrier_speed": 0.0})
+        unturned = natural_modes(still).frequency
         frequency = self.modes.frequency
-        change = np.where(rest > 0.0, frequency / np.where(rest > 0.0, rest, 1.0) - 1.0, 0.0)
+        change = frequency / np.where(unturned > 0.0, unturned, np.inf) - (unturned > 0.0)
         most = int(np.abs(change).argmax())
         return (
             f"The Coriolis and centripetal forces of the carrier at {rpm} change the natural "
             f"frequencies by at most {100.0 * abs(change[most]):.2g} %: mode {most + 1} from "
-            f"{rest[most]:.6g} to {frequency[most]:.6g} Hz."
+            f"{unturned[most]:.6g} to {frequency[most]:.6g} Hz."
         )
 
     def excitation_text(self) -> str:
