@@ -127,6 +127,9 @@ class Machine:
         ]:
             raise InputError(problems)
         for name, stage in self.planets.items():
+            names = stage.mesh_names(name)
+            if {*names["sun"], *names["ring"]} <= {*self.meshes}:
+                continue  # a copy, with its parts
             for group, parts in stage.parts(name, self.gears).items():
                 present = getattr(self, group)
                 object.__setattr__(self, group, {**present, **parts, **present})

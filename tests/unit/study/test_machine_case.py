@@ -111,7 +111,7 @@ def test_load_cases_have_names_and_shares(reducer):
         ({"load_cases": [{"share": "120 %"}]}, "load_cases.share", "at most 1"),
         ({"load_cases": [{"share": 0.6}, {"share": 0.6}]}, "load_cases", "add up to 120 %"),
         ({"housing.mass_file": "missing.mtx"}, "housing.mass_file", "cannot be read"),
-        ({"planets": {}}, "planets", "unknown key"),
+        ({"planets": {}}, "planets", "no stage"),
         ({"meshes": None}, "meshes", "no mesh"),
     ],
 )

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from copy import copy, deepcopy
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.gear import Misalignment
-from tribodyn.machine import Bearing, Coupling, Gear, Housing, Machine, Mesh, Operation, Shaft
+from tribodyn.machine import (
+    Bearing,
+    Coupling,
+    Gear,
+    Housing,
+    Machine,
+    Mesh,
+    Operation,
+    PlanetaryStage,
+    Shaft,
+)
 from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
@@ -52,9 +63,20 @@ from tribodyn.study.machine.tables import (
     mesh_table_kind,
 )
 from tribodyn.study.machine.user_tables import PartsCase, default_assumptions, stated_assumptions
+from tribodyn.study.planetary.machine_stages import MEMBERS, CaseStage, read_stages, stage_mesh
 
 _TOP = (
-    *("title", "origin", *GROUPS, "housing", "operation", "load_cases", "dynamics", *SHARED),
+    *(
+        "title",
+        "origin",
+        *GROUPS,
+        "planets",
+        "housing",
+        "operation",
+        "load_cases",
+        "dynamics",
+        *SHARED,
+    ),
     "assumed",
 )
 #: Keys of a mesh that its object takes as they are.
@@ -117,16 +139,18 @@ class MachineCase(PartsCase):
         problems += reason_faults(data.get("assumed", {}))
         groups = {group: tables_of(self.data, group, problems) for group in GROUPS}
         self._blanks = read_blanks(groups, problems)
+        stages = read_stages(self.data, groups["gears"], problems, source)
         self.gears: dict[str, Gear] = _read(groups, "gears", read_gear, problems)
-        self._add_shafts(groups["shafts"])
+        self._add_shafts(groups["shafts"], [table.carrier for table, _ in stages.values()])
         self._add_material(groups["shafts"])
         self.shafts: dict[str, Shaft] = _read(groups, "shafts", read_shaft, problems)
         self.bearings: dict[str, Bearing] = _read(groups, "bearings", read_bearing, problems)
         self._mesh_dynamics: dict[str, Any] = {}
+        self._stage_of: dict[str, tuple[CaseStage, str]] = {}
         self._mesh_tables = {
             name: self._read_mesh(name, body, problems) for name, body in groups["meshes"].items()
         }
-        if not groups["meshes"]:
+        if not groups["meshes"] and "planets" not in self.data:
             remedy = 'Add [meshes.NAME] with gears = ["z1", "z2"] and normal_module'
             problems.append(("meshes", Problem("there is no mesh", "", "", remedy)))
         self.couplings: dict[str, Coupling] = _read(groups, "couplings", read_coupling, problems)
@@ -146,6 +170,7 @@ class MachineCase(PartsCase):
             raise InputError(origin.place(problems))
         self._check_meshes()
         try:
+            self._add_stages(stages)
             self.machine()
             for name in self.meshes_with_teeth:
                 self.pair(name, self.operating_point)
@@ -155,11 +180,32 @@ class MachineCase(PartsCase):
             raise InputError(origin.place(problems))
         self._check_spreads(origin)
 
-    def _add_shafts(self, shafts: dict[str, Any]) -> None:
-        """A shaft that only its gears name is a rigid one."""
+    def _add_stages(self, stages: Mapping[str, tuple[Any, Gear]]) -> None:
+        """Planetary stages, with supports of members that have none."""
+        self.stages = {
+            name: CaseStage(name, table, self.data, planet, dict(self.gears), self.source)
+            for name, (table, planet) in stages.items()
+        }
+        linked = [self.gears[g].shaft for mesh in self._mesh_tables for g in self._names(mesh)]
+        linked += [shaft for coupling in self.couplings.values() for shaft in coupling.shafts]
+        for stage in self.stages.values():
+            self._stage_of |= {mesh: (stage, role) for mesh, role in stage.mesh_roles().items()}
+            self.shafts[stage.table.carrier] = stage.carrier_shaft(self.shafts)
+            others = [other for other in self.stages.values() if other is not stage]
+            members = [other.shaft_of(role) for other in others for role in MEMBERS]
+            links = {*linked, *members, *self.ends}
+            self.bearings |= stage.supports(self.shafts, self.bearings, links)
+            parts = stage.stage().parts(stage.name, stage.gears)
+            self.gears |= parts["gears"]
+            self._mesh_tables |= dict.fromkeys(parts["meshes"], stage.table)
+
+    def _add_shafts(self, shafts: dict[str, Any], carriers: Sequence[str]) -> None:
+        """A shaft that only its gears name is a rigid one, and so is a carrier."""
+        implied = [*(g.shaft for g in self.gears.values()), *carriers]
         self.implied_shafts = tuple(
-            dict.fromkeys(g.shaft for g in self.gears.values() if g.shaft not in shafts)
+            dict.fromkeys(name for name in implied if name not in shafts)
         ) if not shafts else ()  # fmt: skip
+        shafts.update({name: {} for name in carriers if name not in shafts})
         shafts.update({name: {} for name in self.implied_shafts})
 
     def _add_material(self, shafts: dict[str, Any]) -> None:
@@ -211,12 +257,15 @@ class MachineCase(PartsCase):
         source = self.source or Source()
         return [
             source.place([(str(problem.where), problem)])[0]
-            if str(problem.where).partition(".")[0] in (*GROUPS, "operation", "housing")
+            if str(problem.where).partition(".")[0] in (*GROUPS, "planets", "operation", "housing")
             else problem
             for problem in error.problems
         ]
 
     def _names(self, mesh: str) -> tuple[str, str]:
+        if mesh in self._stage_of:
+            stage, role = self._stage_of[mesh]
+            return stage.machine_names(mesh, role)
         first, second = self.data["meshes"][mesh]["gears"]
         return first, second
 
@@ -236,7 +285,8 @@ class MachineCase(PartsCase):
     @cached_property
     def meshes_with_teeth(self) -> tuple[str, ...]:
         """Names of the meshes whose tooth contact is computed."""
-        return tuple(n for n, table in self._mesh_tables.items() if table.stiffness is None)
+        tables = self._mesh_tables.items()
+        return tuple(n for n, table in tables if getattr(table, "stiffness", None) is None)
 
     def mesh_table(self, mesh: str) -> Any:
         """Values of the table of a mesh.
@@ -269,9 +319,24 @@ class MachineCase(PartsCase):
         """
         load = load or self.operating_point
         operation = Operation(*self.ends, load.speed, load.torque)
-        objects = {n: self._mesh(n, meshes.get(n, {})) for n in self._mesh_tables}
+        tables = [name for name in self._mesh_tables if name not in self._stage_of]
+        objects = {n: self._mesh(n, meshes.get(n, {})) for n in tables}
         parts = self.shafts, self.gears, objects, self.bearings, self.housing, self.couplings
-        return Machine(*parts, operation=operation)
+        machine = Machine(*parts, planets=self._stages(True), operation=operation)
+        if not self.stages:
+            return machine
+        flow, planets = machine.kinematics.meshes, {}
+        for name, stage in self.stages.items():
+            drives = flow[f"{name}_sun1"].driver == stage.table.sun
+            planets[name] = self._stages(drives)[name]
+        objects |= {
+            n: self._exchanged(stage_mesh(machine.meshes[n], meshes.get(n, {})))
+            for n in self._stage_of
+        }
+        return replace(machine, meshes=objects, planets=planets)
+
+    def _stages(self, sun_drives: bool) -> dict[str, PlanetaryStage]:
+        return {name: stage.stage(sun_drives=sun_drives) for name, stage in self.stages.items()}
 
     def _mesh(self, name: str, fields: Mapping[str, Any]) -> Mesh:
         table = self._mesh_tables[name]
@@ -288,8 +353,11 @@ class MachineCase(PartsCase):
             values |= constant_law(law)
         if values["center_distance"] is None:
             values["center_distance"] = self._center_distances.get(name)
-        mesh = Mesh(self._names(name), **{**values, **fields})
-        pinion, wheel = self._pinion_and_wheel(name)
+        return self._exchanged(Mesh(self._names(name), **{**values, **fields}))
+
+    def _exchanged(self, mesh: Mesh) -> Mesh:
+        """Mesh whose contacts were those of its pinion and its wheel."""
+        pinion, wheel = pinion_and_wheel(mesh.gears, self.gears)
         if mesh.gears == (pinion, wheel):
             return mesh
         return with_exchanged_gears(mesh, internal=self.gears[wheel].is_ring)
@@ -299,7 +367,8 @@ class MachineCase(PartsCase):
         """Centre distances of pairs of gears from their profile shifts [m]."""
         distances = {}
         for name in self.meshes_with_teeth:
-            if name not in self._blanks and self._mesh_tables[name].center_distance is None:
+            computed = name in self._blanks or name in self._stage_of
+            if not computed and self._mesh_tables[name].center_distance is None:
                 names = self._pinion_and_wheel(name)
                 parts = self.data, f"meshes.{name}", names, self.source
                 pair = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
@@ -333,18 +402,23 @@ class MachineCase(PartsCase):
         machine = self.machine(load)
         names, flow = self._pinion_and_wheel(mesh), machine.kinematics
         part, mesh_load = machine.meshes[mesh], flow.meshes[mesh]
-        pinion, speed = names[0], flow.shafts[self.gears[names[0]].shaft].speed
+        pinion, speed = names[0], mesh_load.speeds[part.gears.index(names[0])]
         if isinstance(misalignment, float):
             # The gap grows along the axis about which the pinion turns.
             misalignment = misalignment if speed < 0.0 else -misalignment
         side = part.crossing.side(mesh_load.sense) if part.crossing else ""
+        data, key, driver = self.data, f"meshes.{mesh}", mesh_load.driver
+        if mesh in self._stage_of:
+            stage, role = self._stage_of[mesh]
+            data, key, names = stage.pair_data, stage.key, stage.names_of(role)
+            driver = stage.case_name(driver)
         return pair_case(
-            self.data,
-            f"meshes.{mesh}",
+            data,
+            key,
             names,
             self.source,
             # Hypoid teeth are those of a driving pinion; a driving wheel turns it back in time.
-            driver=pinion if side else mesh_load.driver,
+            driver=pinion if side else driver,
             operation=(abs(speed), abs(mesh_load.torque[part.gears.index(pinion)])),
             hand=side or (gear_hand(pinion, self.gears, part) if part.helix_angle else ""),
             misalignment=misalignment,
@@ -359,8 +433,27 @@ class MachineCase(PartsCase):
             Key of the table of the mesh, its pair of gears as a case, and names of both gears.
         """
         for mesh in self.meshes_with_teeth:
-            pair = self.pair(mesh, self.operating_point)
-            yield f"meshes.{mesh}", pair, self._pinion_and_wheel(mesh)
+            pair, names = self.pair(mesh, self.operating_point), self._pinion_and_wheel(mesh)
+            if mesh in self._stage_of:
+                stage, role = self._stage_of[mesh]
+                yield stage.key, pair, stage.names_of(role)
+                continue
+            yield f"meshes.{mesh}", pair, names
+
+    def tooth_group(self, mesh: str) -> str:
+        """Name that meshes with equal teeth share: those of all planets with one member.
+
+        Parameters
+        ----------
+        mesh : str
+            Name of the mesh.
+
+        Returns
+        -------
+        str
+        """
+        stage, role = self._stage_of.get(mesh, (None, ""))
+        return mesh if stage is None else f"{stage.key}.{role}"
 
     @property
     def housing_files(self) -> dict[str, str]:

@@ -80,7 +80,9 @@ def excitations(structure: MachineStructure, harmonics: int = _HARMONICS) -> dic
     }
     return {
         **orders,
-        **{f"shaft {name}": abs(float(shaft.ratio)) for name, shaft in flow.shafts.items()},
+        **{
+            f"shaft {n}": abs(float(shaft.ratio)) for n, shaft in flow.shafts.items() if shaft.ratio
+        },
     }
 
 

@@ -35,9 +35,11 @@ def read_any_case(
     """Check the text of a case file: of a stage with planets, of a machine, or of a pair."""
     data = parse_toml(text, name)
     source = Source(name or "case", partial(key_lines, text))
-    if "planets" in data:
+    stages = data.get("planets")
+    several = isinstance(stages, Mapping) and len(stages) > 1
+    if "planets" in data and not (is_machine(data) or several):
         return PlanetaryCase(source, **data)
-    if not is_machine(data):
+    if not (is_machine(data) or several):
         return read_case(text, name)
     place = Path(name).parent if folder is None else folder
     housing = data.get("housing")

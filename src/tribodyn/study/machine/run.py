@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 #: Passes of teeth and balance at most, and change of the misalignment over the compression of the
 #: teeth that ends them.
 _PASSES, _SAME = 4, 0.1
+#: Difference of misalignments of equal teeth that is rounding [m].
+_EQUAL = 1e-8
 #: A single spring, which the ramps of a force law replace.
 _SPRING = {"dynamics.mesh_law": "stiffness"}
 
@@ -111,8 +113,7 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
     for _ in range(_PASSES):
         before = {name: static.meshes[name] for name in case.meshes_with_teeth}
         misalignment = {name: misalignment_of(mesh) for name, mesh in before.items()}
-        pairs = [case.pair(name, load, value) for name, value in misalignment.items()]
-        teeth = dict(zip(before, in_threads(teeth_of, pairs, processors()), strict=True))
+        teeth = _teeth(case, load, misalignment)
         tables = {name: table for name, (table, _, _) in teeth.items()}
         laws = {name: law for name, (_, law, _) in teeth.items()}
         mesh_warnings = [  # those of the last pass are in force
@@ -129,6 +130,20 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
             break
     progress.finish()
     return Balanced(static, tables, misalignment, mesh_warnings)
+
+
+def _teeth(
+    case: MachineCase, load: LoadCase, misalignment: Mapping[str, float | Misalignment]
+) -> dict[str, tuple[MeshTable, dict[str, Any], list[ModelWarning]]]:
+    """Computed teeth by mesh; planets with equal teeth and misalignment share them."""
+    groups: dict[Any, list[str]] = {}
+    for name, value in misalignment.items():
+        shift = round(value / _EQUAL) if isinstance(value, float) else name
+        groups.setdefault((case.tooth_group(name), shift), []).append(name)
+    pairs = [case.pair(names[0], load, misalignment[names[0]]) for names in groups.values()]
+    computed = zip(groups.values(), in_threads(teeth_of, pairs, processors()), strict=True)
+    teeth = {name: each for names, each in computed for name in names}
+    return {name: teeth[name] for name in misalignment}
 
 
 def misalignment_of(mesh: MeshBalance) -> float | Misalignment:

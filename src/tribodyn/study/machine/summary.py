@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.machine.plane_law import mean_in_space
+from tribodyn.study.planetary.machine_stages import stage_figures
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine, MeshBalance
@@ -25,6 +26,7 @@ def summary_of(result: LoadResult) -> dict[str, float]:
         ("meshes", {name: _of_mesh(result, name) for name in result.motion.mesh}),
         ("shafts", {name: _of_shaft(result, name) for name in result.machine.shafts}),
         ("bearings", {name: _of_bearing(result, name) for name in result.motion.bearing}),
+        ("planets", stage_figures(result)),
         ("housing", {name: _of_node(result, name) for name in result.motion.node}),
     ):
         for name, figures in parts.items():

@@ -57,6 +57,11 @@ class BearingTable(Section):
         default=0.0,
         pair=True,
     )
+    torsional_stiffness: float = _stiffness(
+        "stiffness against rotation of a shaft that is held, such as that of a ring",
+        "N*m/rad",
+        default=0.0,
+    )
     radial_damping: tuple[float, ...] | float = _stiffness(
         "damping across the shaft, one value or those along y and z",
         "N*s/m",
@@ -366,6 +371,9 @@ class PlanetsTable(Section):
     )
     torsional_support: float = _support(
         "stiffness of the held member against rotation, along its base circle or that of the pins"
+    )
+    carrier_position: float = _position(
+        "position of the pins on the shaft of the carrier, in a machine with shafts", 0.0
     )
     carrier_mass: float | None = number(
         None, 1e-9, 1e6, _GUARD, of="mass", meaning="mass of the carrier", basis="a steel disc"

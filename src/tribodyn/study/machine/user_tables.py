@@ -215,6 +215,9 @@ def default_assumptions(case: MachineCase) -> Iterator[Assumption]:
             yield Assumption(f"bearings.{name}", "1e9 N/m", "default", why)
         for key, value, why in _estimates(getattr(bearing.rolling, "assumptions", ())):
             yield Assumption(f"bearings.{name}.{key}", value, "default", why)
+    for name in case.stages:
+        reason = "planets stay at their angles while all teeth turn: Coriolis forces are left out"
+        yield Assumption(f"planets.{name}: carrier", "fixed position", "default", reason)
     if case.housing is None:
         yield Assumption("housing", "rigid", "default", "without [housing]")
 

@@ -1,0 +1,99 @@
+"""Planetary stages in the case of a machine with further shafts."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.study.machine.case import MachineCase
+
+TEXT = """
+title = "Planetary and parallel stage"
+[lubricant]
+name = "ISO VG 320"
+temperature = "60 degC"
+[gears]
+s = { shaft = "low", teeth = 22, face_width = "200 mm" }
+p = { teeth = 29, face_width = "200 mm" }
+r = { shaft = "ring", teeth = -80, face_width = "200 mm" }
+wheel = { shaft = "low", position = "400 mm", teeth = 88, face_width = "150 mm" }
+pinion = { shaft = "high", teeth = 23, face_width = "150 mm" }
+[planets.main]
+sun = "s"
+ring = "r"
+planet = "p"
+carrier = "rotor"
+count = 3
+normal_module = "10 mm"
+[meshes.last]
+gears = ["wheel", "pinion"]
+normal_module = "7 mm"
+helix_angle = "12 deg"
+[operation]
+input = "rotor"
+output = "high"
+speed = "20 rpm"
+torque = "200 kN*m"
+"""
+
+
+def read(tmp_path: Path, text: str = TEXT) -> MachineCase:
+    path = tmp_path / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    case = td.load_case(path)
+    assert isinstance(case, MachineCase)
+    return case
+
+
+def test_a_stage_with_further_shafts_is_a_machine(tmp_path: Path) -> None:
+    case = read(tmp_path)
+    machine = case.machine()
+    flow = machine.kinematics
+    ratio = (1.0 + 80.0 / 22.0) * 88.0 / 23.0
+    assert flow.shafts["high"].speed == pytest.approx(-20.0 * math.pi / 30.0 * ratio, rel=1e-12)
+    assert flow.shafts["high"].torque == pytest.approx(200e3 / ratio, rel=1e-9)
+    assert flow.shafts["ring"].speed == 0.0
+    assert [n for n, bearing in machine.bearings.items() if bearing.holds] == ["main_ring"]
+    sun = case.pair("main_sun2", case.operating_point)
+    force = 200e3 * 22 / 102 / 3 / (0.5 * 22 * 10e-3 * math.cos(math.radians(20.0)))
+    assert flow.meshes["main_sun2"].force == pytest.approx(force, rel=1e-9)
+    assert sun.gear_pair.center_distance == pytest.approx(0.255)
+    assert sun.gears.driver == "wheel"  # the planets drive the sun
+    relative = flow.shafts["low"].speed - flow.shafts["rotor"].speed
+    assert sun.operation.speed == pytest.approx(relative, rel=1e-12)
+    # The ring mesh has the centre distance of the sun mesh, and all phases follow from the teeth.
+    ring = case.pair("main_ring2", case.operating_point).gear_pair
+    assert abs(ring.center_distance) == pytest.approx(0.255)
+    offsets = [machine.meshes[f"main_sun{i}"].offset for i in (1, 2, 3)]
+    assert offsets == pytest.approx([0.0, (-22 / 3) % 1.0, (-44 / 3) % 1.0])
+    assert case.tooth_group("main_sun1") == case.tooth_group("main_sun3")
+    assert read(tmp_path, case.to_toml()).to_toml() == case.to_toml()
+
+
+def test_faults_of_a_stage_name_the_key_of_the_file(tmp_path: Path) -> None:
+    for old, new, message in (
+        ("count = 3", "count = 4", r"planets\.main"),
+        ('planet = "p"', 'planet = "q"', r'planets\.main\.planet.*no gear "q"'),
+        ("teeth = -80", "teeth = 80", r"gears\.r\.teeth"),
+        ("count = 3", 'count = 3\nangles = ["0 deg"]', r"planets\.main\.angles"),
+    ):
+        with pytest.raises(InputError, match=message):
+            read(tmp_path, TEXT.replace(old, new))
+
+
+@pytest.mark.slow
+def test_a_stage_with_a_parallel_one_runs(tmp_path: Path) -> None:
+    result = td.run(read(tmp_path))
+    figures = result.summary()
+    teeth = {m: figures[f"meshes.main_{m}1.static_mesh_force"] for m in ("sun", "ring")}
+    assert teeth["sun"] == pytest.approx(teeth["ring"], rel=1e-6)
+    assert figures["planets.main.load_factor"] > 1.0  # the helical wheel pushes the sun aside
+    assert figures["machine.output_torque"] == pytest.approx(
+        200e3 / ((1.0 + 80.0 / 22.0) * 88.0 / 23.0), rel=1e-6
+    )
+    lost = sum(v for k, v in figures.items() if k.endswith(".friction_power") and "meshes" in k)
+    assert figures["machine.friction_power"] == pytest.approx(lost)
