@@ -82,6 +82,28 @@ def test_heat_made_is_heat_led_away(shear):
         )
 
 
+@pytest.mark.parametrize(
+    ("shear", "load", "speed", "ratio", "radius"),
+    [
+        # Oil that yields, that thins steeply, and that runs around in a thick inlet.
+        ("bair-winer", 8.43e4, 0.853, 0.591, 6.1e-3),
+        ("bair-winer", 1.54e5, 8.22, 0.024, 11.6e-3),
+        ("bair-winer", 6.40e4, 16.0, 0.0, 11.3e-3),
+        ("carreau-eyring", 6.31e4, 1.67, 0.214, 5.7e-3),
+        ("ree-eyring", 3.12e4, 15.5, 0.00955, 17.5e-3),
+    ],
+)
+def test_contacts_of_any_shear_settle_with_their_heat_in_balance(shear, load, speed, ratio, radius):
+    contact = (load, radius, speed, OIL, MODULUS)
+    film = solve_line_contact(
+        *contact, nodes=257, thermal=ThermalModel(shear), sliding_speed=ratio * speed
+    )
+    assert abs(film.heat_balance_error) < 1e-3
+    assert film.central_film < solve_line_contact(*contact, nodes=257).central_film
+    # The limit of Bair and Winer, and Eyring's stress with thinning, bound the friction.
+    assert film.friction_coefficient < 0.06
+
+
 def test_more_sliding_makes_a_hotter_thinner_film():
     films = [heated(ratio) for ratio in (0.0, 0.5, 1.0, 1.5)]
     hottest = [film.film_temperature.max() for film in films]

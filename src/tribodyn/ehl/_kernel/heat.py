@@ -17,10 +17,11 @@ from tribodyn.types import Array
 
 #: Largest change of a temperature in a step [K].
 _CAP = 60.0
-#: Change of the temperature [K] from which on Newton's method goes to the end.
-_SETTLED = 5.0
-#: Steps of a column at most when the sweep comes to it, and change at which it stays [K].
-_LOCAL, _STILL = 6, 0.05
+#: Steps of a column at most when the sweep comes to it, change at which it stays [K], and shortest
+#: part of a step.
+_LOCAL, _STILL, _SHORTEST = 12, 0.01, 0.1
+#: Part of the temperatures of the sweep before that oil which flows back retains.
+_SWIRL = 0.4
 
 
 @nb.njit(**INNER)
@@ -40,60 +41,103 @@ class Column(NamedTuple):
     up: Array
     rhs: Array  #: residual; becomes the change of the temperature
     shared: Array  #: heat per change of the stress in the middle
+    steeper: Array  #: heat per change of the gradient of the pressure
     answer: Array  #: change of that stress per kelvin
+    climb: Array  #: change of that gradient per kelvin
+    reach: Array  #: flow per rate of shear
+    before: Array  #: temperatures before the step
 
 
 @nb.njit(**INNER)
 def _solve_column(last: int, c: Column) -> float:
-    """Newton step: the band and one product, that of the stress that all nodes share."""
+    """Newton step: the band and two products, of stress and gradient that all nodes share."""
     for j in range(1, last + 1):
         ratio = c.low[j] / c.middle[j - 1]
         c.middle[j] -= ratio * c.up[j - 1]
         c.rhs[j] -= ratio * c.rhs[j - 1]
         c.shared[j] -= ratio * c.shared[j - 1]
-    c.rhs[last] /= c.middle[last]
-    c.shared[last] /= c.middle[last]
-    for j in range(last - 1, -1, -1):
-        c.rhs[j] = (c.rhs[j] - c.up[j] * c.rhs[j + 1]) / c.middle[j]
-        c.shared[j] = (c.shared[j] - c.up[j] * c.shared[j + 1]) / c.middle[j]
-    first = second = largest = 0.0
+        c.steeper[j] -= ratio * c.steeper[j - 1]
+    for j in range(last, -1, -1):
+        if j < last:
+            c.rhs[j] -= c.up[j] * c.rhs[j + 1]
+            c.shared[j] -= c.up[j] * c.shared[j + 1]
+            c.steeper[j] -= c.up[j] * c.steeper[j + 1]
+        c.rhs[j] /= c.middle[j]
+        c.shared[j] /= c.middle[j]
+        c.steeper[j] /= c.middle[j]
+    f0 = f1 = a00 = a01 = a10 = a11 = largest = 0.0
     for j in range(last + 1):
-        first += c.answer[j] * c.rhs[j]
-        second += c.answer[j] * c.shared[j]
+        f0 += c.answer[j] * c.rhs[j]
+        f1 += c.climb[j] * c.rhs[j]
+        a00 += c.answer[j] * c.shared[j]
+        a01 += c.answer[j] * c.steeper[j]
+        a10 += c.climb[j] * c.shared[j]
+        a11 += c.climb[j] * c.steeper[j]
+    det = (1.0 - a00) * (1.0 - a11) - a01 * a10
+    stress = ((1.0 - a11) * f0 + a01 * f1) / det
+    slope = ((1.0 - a00) * f1 + a10 * f0) / det
     for j in range(last + 1):
-        c.rhs[j] += c.shared[j] * first / (1.0 - second)
+        c.rhs[j] += c.shared[j] * stress + c.steeper[j] * slope
         largest = max(largest, abs(c.rhs[j]))
     return largest
 
 
 @nb.njit(**INNER)
-def _heat_column(
+def _answers(i: int, h: float, follows: float, a: Across, c: Column) -> bool:
+    """Changes of stress and gradient that hold speeds and flow; whether the film is sheared."""
+    last = c.rhs.size - 1
+    above = steep = tilted = flow = sheared = 0.0
+    for j in range(last, -1, -1):
+        # Everything above a node moves with the shear below it.
+        lower = above
+        above += a.mass[i, j] / a.velocity[i, j] if abs(a.velocity[i, j]) > 1e-12 else 0.0
+        weight = 0.5 if j == 0 or j == last else 1.0
+        c.reach[j] = 0.5 * (lower + (above if j > 0 else 0.0))
+        arm = h * (j / last - 0.5)
+        steep += weight * a.steep[i, j]
+        tilted += weight * a.steep[i, j] * arm
+        sheared += c.reach[j] * a.steep[i, j]
+        flow += c.reach[j] * a.steep[i, j] * arm
+    if not steep > 0.0:
+        c.answer[:] = 0.0
+        c.climb[:] = 0.0
+        return False
+    det = steep * flow - tilted * sheared
+    for j in range(last + 1):
+        weight = 0.5 if j == 0 or j == last else 1.0
+        faster = a.rate[i, j] * a.falling[i, j]
+        c.climb[j] = 0.0
+        if follows > 0.0 and det != 0.0:
+            c.climb[j] = follows * (sheared * weight - steep * c.reach[j]) * faster / det
+        c.answer[j] = -(weight * faster + tilted * c.climb[j]) / steep
+    return True
+
+
+@nb.njit(**INNER)
+def _balance_column(
     i: int, k: int, dx: float, h: float, slope: float, west: Array, east: Array,
     rises: tuple[float, float], selfs: tuple[float, float], exact: bool, o: Sheared, a: Across,
     b: Along, c: Column,
 ) -> float:  # fmt: skip
-    """Change the temperatures of a column, by Newton's method if exact; its greatest change."""
+    """Equations of a column, for Newton's method if exact; size of what is missing."""
     last, T = west.size - 1, a.temperature
     dz, unit = h / last, h * dx / last
-    conduction = o.conductivity * dx / dz
-    steepness = climb = answer = 0.0
+    conduction, climb, even, missing = o.conductivity * dx / dz, 0.0, 0.0, 0.0
+    sheared = _answers(i, h, b.follows[i], a, c)
     for j in range(last + 1):
-        weight = 0.5 if j == 0 or j == last else 1.0
-        steepness += weight * a.steep[i, j]
-        answer -= weight * a.rate[i, j] * a.falling[i, j]
         c.middle[j] = c.rhs[j] = c.low[j] = c.up[j] = 0.0
-    answer = answer / steepness if steepness > 0.0 else 0.0
+        even += c.answer[j]
     for j in range(last + 1):
         weight = 0.5 if j == 0 or j == last else 1.0
         volume, heating = weight * unit, a.stress[i, j] * a.rate[i, j]
         squeeze = a.expansion[i, j] * a.velocity[i, j] * slope * volume
         own, stress = heating * a.falling[i, j] * volume, a.stress[i, j] * a.steep[i, j]
-        c.shared[j] = (a.rate[i, j] + stress) * volume if steepness > 0.0 else 0.0
-        c.answer[j] = -weight * a.rate[i, j] * a.falling[i, j] / max(steepness, 1e-300)
+        c.shared[j] = (a.rate[i, j] + stress) * volume if sheared else 0.0
+        c.steeper[j] = c.shared[j] * h * (j / last - 0.5)
         if not exact:
             # As if the column were evenly warmer: this never runs away.
-            own = min(own + c.shared[j] * answer, 0.0)
-            c.shared[j] = 0.0
+            own = min(own + c.shared[j] * even, 0.0)
+            c.shared[j] = c.steeper[j] = 0.0
         into, back = max(west[j], 0.0) * o.capacity, max(-east[j], 0.0) * o.capacity
         behind = T[i + 1, j] if i < k else o.temperature
         c.middle[j] += into + back - own - min(squeeze, 0.0)
@@ -110,13 +154,9 @@ def _heat_column(
     for wall, j in ((0, 0), (1, last)):
         c.middle[j] += dx / selfs[wall]
         c.rhs[j] -= dx * (T[i, j] - rises[wall]) / selfs[wall]
-    largest = _solve_column(last, c)
-    damped = 1.0 if largest <= _CAP else _CAP / largest
     for j in range(last + 1):
-        T[i, j] += damped * c.rhs[j]
-    b.heat[0, i] = (T[i, 0] - rises[0]) / selfs[0]
-    b.heat[1, i] = (T[i, last] - rises[1]) / selfs[1]
-    return largest
+        missing += c.rhs[j] * c.rhs[j]
+    return missing
 
 
 @nb.njit(**INNER)
@@ -146,6 +186,51 @@ class Stations(NamedTuple):
     response: tuple[Array, Array]  #: rise of both surfaces at each by the heat at each
 
 
+@nb.njit(**INNER)
+def _relax(
+    i: int, k: int, again: bool, s: Stations, rises: tuple[float, float],
+    selfs: tuple[float, float], log_viscosity: float, density: float, flux: float, o: Sheared,
+    a: Across, b: Along, c: Column, fluidity: Array, west: Array, east: Array,
+) -> float:  # fmt: skip
+    """Solve one column by Newton's method with shorter steps where it misses; first change."""
+    last, T, h, dx, first = west.size - 1, a.temperature, s.film[i], s.width[i], 0.0
+    pressure, before, part, largest = s.pressure[i], np.inf, 1.0, 0.0
+    exact = True
+    for local in range(_LOCAL):
+        if local > 0 or again:
+            shear_column(
+                i, h, s.slope[i], pressure * o.hertz, log_viscosity, density, flux, o, a, b,
+                fluidity,
+            )  # fmt: skip
+            _faces(i, k, a.mass, west, east)
+        missing = _balance_column(
+            i, k, dx, h, s.slope[i], west, east, rises, selfs, exact, o, a, b, c
+        )
+        if not missing < before and part > _SHORTEST:
+            # Back to a shorter step; one without stress and gradient where none helps.
+            part *= 0.5
+            for j in range(last + 1):
+                T[i, j] -= part * c.before[j]
+            continue
+        if not missing < before and exact:
+            exact = False
+            _balance_column(i, k, dx, h, s.slope[i], west, east, rises, selfs, False, o, a, b, c)
+            missing = np.inf
+        largest = _solve_column(last, c)
+        part, before = (1.0 if largest <= _CAP else _CAP / largest), missing
+        for j in range(last + 1):
+            c.before[j] = c.rhs[j]
+            T[i, j] += part * c.rhs[j]
+        b.heat[0, i] = (T[i, 0] - rises[0]) / selfs[0]
+        b.heat[1, i] = (T[i, last] - rises[1]) / selfs[1]
+        first = largest if local == 0 else first
+        if largest < _STILL:
+            break
+        exact = True
+    b.moved[i] = largest
+    return first
+
+
 def _build(digest: str) -> Any:
     @cached_njit(**JIT)
     def heat_film(
@@ -156,8 +241,8 @@ def _build(digest: str) -> Any:
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         count, last = s.film.size, a.temperature.shape[1] - 1
         lneta, dlneta, rho, drho = np.empty((4, count))
-        fluidity, west, east, q0, q1, q2, q3, q4, q5 = np.empty((9, last + 1))
-        c = Column(q0, q1, q2, q3, q4, q5)
+        fluidity, west, east, q0, q1, q2, q3, q4, q5, q6, q7, q8, q9 = np.empty((13, last + 1))
+        c = Column(q0, q1, q2, q3, q4, q5, q6, q7, q8, q9)
         oil_state(count - 1, s.pressure, oil[:PLAIN], lneta, dlneta, rho, drho)
         T, largest = a.temperature, 0.0
         both_ahead = o.speed_1 > 0.0 and o.speed_2 > 0.0
@@ -173,7 +258,7 @@ def _build(digest: str) -> Any:
                     _faces(i, k, a.mass, west, east)
                     _count(i, k, s.width[i], s.film[i], s.slope[i], west, east, o, a, b, balance)
                 break
-            largest = 0.0
+            largest, earlier = 0.0, T.copy()
             for step in range(2 * k):
                 i = step + 1 if step < k else 2 * k - step
                 _faces(i, k, a.mass, west, east)
@@ -187,23 +272,17 @@ def _build(digest: str) -> Any:
                     o.surface_2 + _conducted(i, k, s.response[1], b.heat[1]),
                 )
                 selfs = (s.response[0][i, i], s.response[1][i, i])
-                for local in range(_LOCAL):
-                    if local > 0 or step >= k:
-                        pressure = s.pressure[i] * o.hertz
-                        shear_column(
-                            i, s.film[i], s.slope[i], pressure, lneta[i], rho[i], flux, o, a, b,
-                            fluidity,
-                        )  # fmt: skip
-                        _faces(i, k, a.mass, west, east)
-                    exact = b.moved[i] < _SETTLED
-                    b.moved[i] = _heat_column(
-                        i, k, s.width[i], s.film[i], s.slope[i], west, east, rises, selfs, exact,
-                        o, a, b, c,
-                    )  # fmt: skip
-                    if local == 0 and step < k:
-                        largest = max(largest, b.moved[i])
-                    if b.moved[i] < _STILL:
-                        break
+                moved = _relax(
+                    i, k, step >= k, s, rises, selfs, lneta[i], rho[i], flux, o, a, b, c, fluidity,
+                    west, east,
+                )  # fmt: skip
+                largest = max(largest, moved)
+                if step >= k and np.min(east) < 0.0:
+                    # Oil that runs around in the inlet would swing between hot and cold.
+                    for j in range(last + 1):
+                        T[i, j] += _SWIRL * (earlier[i, j] - T[i, j])
+                    b.heat[0, i] = (T[i, 0] - rises[0]) / selfs[0]
+                    b.heat[1, i] = (T[i, last] - rises[1]) / selfs[1]
         for i in range(count):
             if i <= k and i > 0:
                 continue

@@ -78,6 +78,8 @@ class Along(NamedTuple):
     share: Array  #: step of the factors that a flow which grows faster than the pressure allows
     slope: Array  #: of the pressure
     driven: Array  #: flow by pressure, over the flow
+    growth: Array  #: of the flow with the gradient of the pressure
+    follows: Array  #: part of the gradient that follows the flow at other temperatures
     moved: Array  #: greatest change of a temperature in the last sweep
 
 
@@ -156,7 +158,11 @@ def _mean_stress(
             high = stress
         else:
             low = stress
-        step = stress + (rate - value) / slope
+        # Over the logarithms of large rates, which grow as fast as the sinh or the power law.
+        unit = fluid * min(o.eyring, o.carreau)
+        step = stress + (np.arcsinh(rate / unit) - np.arcsinh(value / unit)) * (
+            np.hypot(value, unit) / slope
+        )
         if not low < step < high:
             step = 0.5 * (low + high)
         if abs(step - stress) <= 1e-10 * abs(step) + 1e-3:
@@ -171,31 +177,75 @@ def shear_column(
     flux: float, o: Sheared, a: Across, b: Along, fluidity: Array,
 ) -> None:  # fmt: skip
     """Stress, rate, velocity, mass flux and factors of one column at its temperatures."""
-    last, T, b.slope[i] = fluidity.size - 1, a.temperature[i], slope
-    for _ in range(_BOUNDED):
-        _fluidity(i, log_viscosity, T, o, a, b, fluidity)
-        _stresses(i, h, b.slope[i], pressure, o, a, b, fluidity)
-        moved, flow = _flow(i, h, density, log_viscosity, o, a, b, fluidity)
-        # While pressure and temperatures are not settled, the gradient that the mass flux needs
-        # counts where it drives much of it, and elsewhere no more than could be needed: else heat
-        # and flow would run away.
-        missing = moved - flux
-        b.driven[i] = abs(missing) / flux
-        part = min(max(b.driven[i] / _DRIVEN - 0.5, 0.0), 1.0)
-        most = (_EXCESS * abs(missing) + _SPARE * flux) / flow
-        better = part * missing / flow + (1.0 - part) * min(max(slope, -most), most)
-        if abs(better - b.slope[i]) * flow < _NEGLIGIBLE * flux:
-            break
-        ratio = better / b.slope[i] if b.slope[i] != 0.0 else 0.0
-        # Over the logarithms, as the flow of an oil that thins grows with the gradient.
-        if ratio > 0.0:
-            b.slope[i] *= ratio ** b.share[i]
+    last, T = fluidity.size - 1, a.temperature[i]
+    _fluidity(i, log_viscosity, T, o, a, b, fluidity)
+    _stresses(i, h, 0.0, pressure, o, a, b, fluidity)
+    flow, idle = _flow(i, h, density, o, a, b, fluidity)
+    # While pressure and temperatures are not settled, the gradient that the mass flux needs
+    # counts where it drives much of it, and elsewhere no more than could be needed: else heat
+    # and flow would run away. Both are roots of a flow that rises with the gradient.
+    missing = idle - flux
+    b.driven[i] = abs(missing) / flux
+    part = min(max(b.driven[i] / _DRIVEN - 0.5, 0.0), 1.0)
+    most, needed, better, b.follows[i] = _EXCESS * abs(missing) + _SPARE * flux, 0.0, slope, 1.0
+    if part > 0.0:
+        needed = _gradient(i, h, pressure, density, idle, missing, flow, o, a, b, fluidity)
+    if part < 1.0:
+        _stresses(i, h, slope, pressure, o, a, b, fluidity)
+        moved = idle - _flow(i, h, density, o, a, b, fluidity)[1]
+        if abs(moved) > most:
+            better = _gradient(
+                i, h, pressure, density, idle, np.copysign(most, slope), flow, o, a, b, fluidity
+            )
         else:
-            b.slope[i] += b.share[i] * (better - b.slope[i])
-    scale = flux / np.sum(a.mass[i])
+            b.follows[i] = part
+    b.slope[i] = part * needed + (1.0 - part) * better
+    slips = _stresses(i, h, b.slope[i], pressure, o, a, b, fluidity)
+    secant, total = _flow(i, h, density, o, a, b, fluidity)
+    moved = total + secant * b.slope[i]
+    b.factors[1, i] = max(moved / (density * h * 0.5 * (o.speed_1 + o.speed_2)), _LEAST_FLOW)
+    # The sum over the nodes has this part of the integral for a cold film.
+    exact = 1.0 - 1.0 / (last * last)
+    unit = 12.0 * o.viscosity * exp_(log_viscosity) / (density * h * h * h * exact)
+    b.factors[0, i] = np.log(b.factors[1, i] / max(unit * secant, _LEAST_FLOW))
+    b.share[i] = secant / b.growth[i]
+    scale = flux / total
     for j in range(last + 1):
         # The same flow everywhere, to the last digit.
         a.mass[i, j] *= scale * o.density
+        if slips:
+            # A film that yields makes the same heat at any temperature.
+            a.falling[i, j] = 0.0
+
+
+@nb.njit(**INNER)
+def _gradient(
+    i: int, h: float, pressure: float, density: float, idle: float, wanted: float, flow: float,
+    o: Sheared, a: Across, b: Along, fluidity: Array,
+) -> float:  # fmt: skip
+    """Gradient of the pressure that drives a flow, by Newton's method over the logarithms."""
+    size, low = abs(wanted), 0.0
+    # An oil that thins needs no more than Newton's oil, up to the effect of uneven density.
+    high = 1.5 * size / flow
+    if o.model == NEWTONIAN or high == 0.0:
+        return wanted / flow
+    gradient = min(abs(b.slope[i]), 0.7 * high)
+    if gradient == 0.0:
+        gradient = 0.5 * high
+    for _ in range(_BOUNDED):
+        _stresses(i, h, np.copysign(gradient, wanted), pressure, o, a, b, fluidity)
+        driven = abs(idle - _flow(i, h, density, o, a, b, fluidity)[1])
+        if abs(driven - size) < _NEGLIGIBLE * size:
+            break
+        if driven > size:
+            high = gradient
+        else:
+            low = gradient
+        step = np.log(size / driven) * driven / (gradient * b.growth[i]) if driven > 0.0 else 9.0
+        gradient *= np.exp(min(max(step, -9.0), 9.0))
+        if not low < gradient < high:
+            gradient = np.sqrt(low * high) if low > 0.0 else 0.05 * high
+    return float(np.copysign(gradient, wanted))
 
 
 @nb.njit(**INNER)
@@ -223,8 +273,8 @@ def _fluidity(
 def _stresses(
     i: int, h: float, slope: float, pressure: float, o: Sheared, a: Across, b: Along,
     fluidity: Array,
-) -> None:  # fmt: skip
-    """Stress and rate across a column; the fluidity becomes that at this stress."""
+) -> bool:  # fmt: skip
+    """Stress and rate across a column; whether the film yields."""
     last = fluidity.size - 1
     rate, half, limit = (o.speed_2 - o.speed_1) / h, 0.5 * h * slope, np.inf
     if o.limit < np.inf:
@@ -243,58 +293,48 @@ def _stresses(
         g, steep = _thinned(stress, limit, o)
         a.stress[i, j] = stress
         a.rate[i, j] = g * fluidity[j] + slip
-        # A film that yields makes the same heat at any temperature.
         a.steep[i, j] = steep * fluidity[j] if slip == 0.0 else 0.0
-        if slip != 0.0:
-            a.falling[i, j] = 0.0
-        fluidity[j] *= g / stress if abs(stress) > 1e-3 else 1.0
-        if slip != 0.0 and abs(stress) > 1e-3:
-            fluidity[j] = max(a.rate[i, j] / stress, fluidity[j])
+    return slip != 0.0
 
 
 @nb.njit(**INNER)
 def _flow(
-    i: int, h: float, density: float, log_viscosity: float, o: Sheared, a: Across, b: Along,
-    fluidity: Array,
-) -> tuple[float, float]:  # fmt: skip
-    """Flow of a column by the surfaces, and that by pressure over its gradient; its factors."""
+    i: int, h: float, density: float, o: Sheared, a: Across, b: Along, fluidity: Array
+) -> tuple[float, float]:
+    """Flow by pressure over its gradient, and all flow."""
     last, T = fluidity.size - 1, a.temperature[i]
-    dz, difference = h / last, o.speed_2 - o.speed_1
-    fluid = tilted = mass = by_shear = by_pressure = before = 0.0
+    dz = h / last
+    fluid = tilted = by_shear = by_pressure = before = total = eased = 0.0
     steep_fluid = steep_tilted = steep_shear = steep_pressure = steep_before = 0.0
     u = o.speed_1
     for j in range(last + 1):
         weight = 0.5 if j == 0 or j == last else 1.0
-        now = fluidity[j] * h * (j / last - 0.5)
+        stress, ease = a.stress[i, j], fluidity[j]
+        if abs(stress) > 1e-3:
+            ease = max(a.rate[i, j] / stress, ease)
+        now = ease * h * (j / last - 0.5)
         steep_now = a.steep[i, j] * h * (j / last - 0.5)
         if j > 0:
             steep_fluid += 0.5 * dz * (a.steep[i, j - 1] + a.steep[i, j])
             steep_tilted += 0.5 * dz * (steep_before + steep_now)
-            fluid += 0.5 * dz * (fluidity[j - 1] + fluidity[j])
+            fluid += 0.5 * dz * (eased + ease)
             tilted += 0.5 * dz * (before + now)
             u += 0.5 * dz * (a.rate[i, j - 1] + a.rate[i, j])
-        before, steep_before = now, steep_now
+        before, steep_before, eased = now, steep_now, ease
         ratio = max(density - o.fall * (T[j] - o.temperature), _LEAST_DENSITY)
         a.expansion[i, j] = o.fall / ratio
         rho = weight * dz * ratio
         a.velocity[i, j] = u
         a.mass[i, j] = rho * u
-        mass += rho
+        total += rho * u
         by_shear += rho * fluid
         by_pressure += rho * tilted
         steep_shear += rho * steep_fluid
         steep_pressure += rho * steep_tilted
-    moved = o.speed_1 * mass + difference * by_shear / fluid
-    b.factors[1, i] = max(moved / (density * h * 0.5 * (o.speed_1 + o.speed_2)), _LEAST_FLOW)
-    # The sum over the nodes has this part of the integral for a cold film.
-    exact = 1.0 - 1.0 / (last * last)
     flow = by_shear * tilted / fluid - by_pressure
-    unit = 12.0 / (density * h * h * h * exact)
-    easier = max(unit * flow * o.viscosity * exp_(log_viscosity), _LEAST_FLOW)
-    b.factors[0, i] = np.log(b.factors[1, i] / easier)
-    b.share[i] = 1.0
+    # Growth of the flow with the gradient; the oil of a film that yields flows as it does cold.
+    steep = flow
     if steep_fluid > 0.0:
-        b.share[i] = min(
-            flow / max(steep_shear * steep_tilted / steep_fluid - steep_pressure, flow), 1.0
-        )
-    return moved, flow
+        steep = max(steep_shear * steep_tilted / steep_fluid - steep_pressure, flow)
+    b.growth[i] = steep
+    return flow, total

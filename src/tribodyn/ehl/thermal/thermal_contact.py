@@ -28,6 +28,9 @@ _MEMORY = 8
 #: Change of the factors that does not move the film, and traction over the load that is none.
 _NO_CHANGE, _IDLE = 1e-5, 1e-6
 _EVEN = 0.5
+#: Part of a change of the factors for which the film could not be solved; part of the heat that may
+#: be missing, and how often it is sought.
+_PART, _MISSING, _BALANCING = 0.25, 5e-4, 15
 #: Part of a change of the factors that the tolerance allows.
 _OF_FACTORS = 0.02
 #: How strongly short waves of the factors are damped.
@@ -82,11 +85,9 @@ class _Temperatures:
         self.responses = responses[0], responses[1]
         fields = np.zeros((7, columns, across))
         self.across = Across(np.full((columns, across), oil.temperature), *fields)
-        zeros, ones = np.zeros((5, columns)), np.ones((4, columns))
+        zeros, ones = np.zeros((5, columns)), np.ones((6, columns))
         unsettled = np.full(columns, math.inf)
-        self.along = Along(
-            zeros[:2], zeros[2], zeros[3:], ones[0], ones[1], ones[2], ones[3], unsettled
-        )
+        self.along = Along(zeros[:2], zeros[2], zeros[3:], *ones, unsettled)
         self.balance = np.zeros(5)
 
     def solve(self, grid: DiscreteContact, sweeps: int) -> float:
@@ -119,6 +120,14 @@ class _Temperatures:
         first, second, share, weight = self.everywhere(rows, nodes)
         ones = np.ones(nodes)
         return np.stack([first, second]), np.stack([share, share**_EVEN]), np.stack([weight, ones])
+
+    def balance_heat(self, grid: DiscreteContact) -> None:
+        """Improve the temperatures of a settled film until the heat made is that led away."""
+        for _ in range(_BALANCING):
+            shear, compression, first, second, carried = self.balance.tolist()
+            if abs(shear + compression - first - second - carried) <= _MISSING * shear:
+                break
+            self.solve(grid, 4)
 
     @property
     def traction(self) -> float:
@@ -206,17 +215,32 @@ def solve_heated(
             abs(traction), _IDLE * case.load_per_width
         )
         traction = temperatures.traction
-        flow = float(np.max(np.abs(change * weight)))
-        if flow < _NO_CHANGE or max(film, drag, _OF_FACTORS * flow) < model.tolerance:
+        flow = float(np.max(np.abs(change * share * weight)))
+        settled = flow < _NO_CHANGE or max(film, drag, _OF_FACTORS * flow) < model.tolerance
+        if settled:
+            temperatures.balance_heat(grid)
             return _scaled(solved, cold, grid), temperatures.film(grid.n + 1, passes)
         change = _smooth(change * share, grid)
-        point = prediction.next(point, change, weight)
-        oil = np.concatenate([problem.oil[:6], point[0], np.exp(point[1])])
-        solved = solve_problem(replace(problem, oil=oil, start=grid), cold.method)
+        last, point = point, prediction.next(point, change, weight)
+        solved, point = _toward(replace(problem, start=grid), cold.method, last, point)
         before, grid = grid, solved.outcome.grid
         assert grid is not None
         film = float(np.max(np.abs(_films(grid) / _films(before) - 1.0)))
     raise _not_settled(case, model, sliding_speed, (film, drag, moved))
+
+
+def _toward(
+    problem: ContactProblem, method: str, last: Array, point: Array
+) -> tuple[Verified, Array]:
+    """Solve the film with new factors, or with some between them and the last that have one."""
+    while True:
+        oil = np.concatenate([problem.oil[:6], point[0], np.exp(point[1])])
+        try:
+            return solve_problem(replace(problem, oil=oil), method), point
+        except ComputationError:
+            if np.max(np.abs(point - last)) < _NO_CHANGE:
+                raise
+        point = last + _PART * (point - last)
 
 
 def _films(grid: DiscreteContact) -> Array:
