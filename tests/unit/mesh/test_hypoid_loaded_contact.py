@@ -11,7 +11,8 @@ from tribodyn.gear import Misalignment, hypoid_flanks, tooth_contact
 from tribodyn.gear.hypoid.contact_lines import ContactLines
 from tribodyn.gear.hypoid.flank import SIDES
 from tribodyn.mesh import hypoid_loaded_contact
-from tribodyn.mesh.hypoid.cells import contact_cells, first_touch
+from tribodyn.mesh.hypoid.cells import CellSprings, contact_cells, first_touch
+from tribodyn.mesh.hypoid.loaded_contact import wheel_torque_at
 
 COARSE = {"steps": 16, "cells": 16}
 
@@ -157,3 +158,59 @@ def test_wrong_arguments_are_refused():
     ):  # fmt: skip
         with pytest.raises(InputError):
             hypoid_loaded_contact(**({"flanks": flanks, "pinion_torque": 500.0} | change))
+
+
+@pytest.fixture(scope="module")
+def solid():
+    return hypoid_loaded_contact(eased(), 500.0, stiffness_model="fe3d", **COARSE)
+
+
+def test_solid_teeth_balance_the_torque_and_leave_the_contact_without_load(solid):
+    one_number = hypoid_loaded_contact(eased(), 500.0, **COARSE)
+    for loaded in (solid, solid.under(50.0)):
+        assert loaded.load_share.sum(axis=1) == pytest.approx(1.0, abs=1e-12)
+        moment = loaded.mesh_force * loaded.wheel_lever
+        assert moment == pytest.approx(loaded.wheel_torque, rel=1e-11)
+        assert loaded.unloaded_rotation == pytest.approx(one_number.unloaded_rotation, abs=1e-15)
+        assert loaded.cell_force.min() == 0.0
+    # ISO 6336 has 14 N/(mm um) for a pair of steel, of which solid wheels have some 20.
+    assert 14e9 < solid.line_stiffness < 25e9
+    assert solid.mean_mesh_stiffness > 1.1 * one_number.mean_mesh_stiffness
+
+
+def test_each_closed_cell_of_solid_teeth_is_pressed_by_structure_and_contact(solid):
+    # The definition, summed up cell by cell without the solver.
+    cells, compliance = solid.cells, solid.compliance
+    count = compliance.hats.shape[1]
+    middle = 0.5 * (compliance.hats[1:] + compliance.hats[:-1])
+    loads = cells.spread(solid.line_force @ middle).reshape(cells.phase.size, -1)
+    nodes = np.einsum("pij,pj->pi", compliance.structure, loads)
+    lines = nodes.reshape(*cells.in_contact.shape, count)[cells.in_contact]
+    force = solid.line_force / cells.length
+    bent = lines @ middle.T + force / solid.springs.stiffness
+    approach = cells.touch.lever * solid.loaded_rotation[cells.row, None]
+    gap = 0.5 * (cells.edge_gap[:, 1:] + cells.edge_gap[:, :-1])
+    closed = force > 0.3 * force.max()
+    assert (bent + gap)[closed] == pytest.approx(approach[closed], rel=5e-3)
+    assert compliance.structure == pytest.approx(
+        np.swapaxes(compliance.structure, 1, 2), abs=0.02 * compliance.structure.max()
+    )
+
+
+def test_tangent_stiffness_of_solid_teeth_is_the_slope_of_their_torque(solid):
+    turn = 1e-3 * (solid.loaded_rotation - solid.unloaded_rotation)
+    torque = wheel_torque_at(solid, solid.loaded_rotation + np.array([[1.0], [-1.0]]) * turn)
+    slope = (torque[0] - torque[1]) / (2.0 * turn) / solid.wheel_lever**2
+    assert solid.mesh_stiffness_tangent == pytest.approx(slope, rel=2e-3)
+
+
+def test_films_in_series_let_solid_teeth_lag_more(solid):
+    soft = CellSprings(0.5 * solid.springs.stiffness)
+    assert np.all(solid.with_film(soft).loaded_rotation > solid.loaded_rotation)
+    same = solid.with_film(solid.springs)
+    assert same.loaded_rotation == pytest.approx(solid.loaded_rotation, rel=1e-9)
+
+
+def test_stiffness_models_are_two():
+    with pytest.raises(InputError, match="stiffness_model"):
+        hypoid_loaded_contact(eased(), 500.0, stiffness_model="fe2d", **COARSE)
