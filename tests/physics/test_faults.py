@@ -16,6 +16,7 @@ from tribodyn.faults import (
     BrokenTooth,
     Crack,
     Fault,
+    FlankDeviations,
     PitchDeviations,
     Spall,
     TurningMesh,
@@ -23,10 +24,18 @@ from tribodyn.faults import (
     crack_compliance,
     eccentricity,
     pitch_tolerances,
+    slope_tolerances,
     turning_mesh,
     turns_of,
 )
-from tribodyn.gear import FlankModification, Material, SpurGear, SpurPair, spur_pair
+from tribodyn.gear import (
+    FlankModification,
+    Material,
+    SpurGear,
+    SpurPair,
+    cylindrical_pair,
+    spur_pair,
+)
 from tribodyn.stiffness import loaded_contact
 
 TORQUE = 90.0
@@ -82,6 +91,90 @@ def test_waves_make_one_line_of_their_amplitude(
     assert abs(added[order] - 5e-6) < 1e-12  # all pairs in contact have the same deviation
     added[order] = 0.0
     assert np.abs(added[1:]).max() < 1e-12
+
+
+def test_a_slope_that_all_teeth_share_is_the_modification(pair: SpurPair) -> None:
+    alike = FlankDeviations(profile_slopes=(6e-6,) * 16, helix_slopes=(9e-6,) * 16)
+    modification = FlankModification(profile_slope=6e-6, lead_slope=9e-6)
+    modified = replace(pair, pinion=replace(pair.pinion, modification=modification))
+    mesh = mesh_with(pair, alike, phases=32)
+    assert mesh.cycles == 16
+    expected = loaded_contact(modified, TORQUE, provider="analytic", phases=32)
+    np.testing.assert_allclose(
+        mesh.transmission_error[:-1], np.tile(expected.transmission_error, 16), atol=1e-15
+    )
+
+
+def test_slopes_of_a_class(pair: SpurPair) -> None:
+    drawn = FlankDeviations(gear="wheel", accuracy_class=8, seed=4)
+    slopes = drawn.slopes(pair.wheel)
+    tolerances = slope_tolerances(pair.wheel, 8)
+    for values, tolerance in zip(slopes, tolerances, strict=True):
+        assert values.size == 24
+        assert abs(np.abs(values).max() - tolerance) < 1e-18
+    listed = FlankDeviations(
+        gear="wheel", profile_slopes=tuple(slopes[0]), helix_slopes=tuple(slopes[1])
+    )
+    meshes = [mesh_with(pair, each, phases=32) for each in (drawn, listed)]
+    np.testing.assert_array_equal(*(each.transmission_error for each in meshes))
+    with pytest.raises(InputError, match="The pinion has 16 teeth"):
+        mesh_with(pair, FlankDeviations(profile_slopes=(1e-6, 0.0)))
+    with pytest.raises(InputError, match="neither slopes nor"):
+        FlankDeviations()
+
+
+def test_inclined_crests_cancel_over_the_face(pair: SpurPair) -> None:
+    """The mean of a wave over the face is its sinc, which a soft mesh of equal slices takes."""
+    wave = {"gear": "wheel", "amplitude": 1e-7, "order": 31}
+    half = 0.5 * pair.common_face_width
+    ratios = []
+    for turned in (0.0, 0.5 * np.pi, np.pi):  # phase at the end of the face against its middle
+        angle = math.atan(turned / 31 * pair.wheel.base_radius / half)
+        inclined = lines(mesh_with(pair, Waviness(**wave, lead_angle=angle + 1e-12)))  # type: ignore[arg-type]
+        ratios.append(inclined[31])
+    assert abs(ratios[0] - 1e-7) < 1e-12
+    # the mean of the slices is that of the face to (phase/slices)^2/6
+    assert abs(ratios[1] / ratios[0] - 2.0 / np.pi) < 2e-3
+    assert ratios[2] / ratios[0] < 2e-3
+
+
+def helical(pair: SpurPair, degrees: float) -> SpurPair:
+    return cylindrical_pair(
+        pinion_teeth=16, wheel_teeth=24, normal_module=4.5e-3, pinion_face_width=0.02,
+        normal_pressure_angle=math.radians(20.0), pinion_bore_diameter=0.03,
+        wheel_bore_diameter=0.03, pinion_profile_shift_coefficient=0.18,
+        wheel_profile_shift_coefficient=0.17, helix_angle=math.radians(degrees),
+    )  # fmt: skip
+
+
+def test_faults_of_helical_teeth(pair: SpurPair) -> None:
+    slanted = helical(pair, 18.0)
+    healthy = mesh_with(slanted, eccentricity("pinion", 0.0), phases=16)
+    broken = mesh_with(slanted, BrokenTooth(tooth=4, remaining=0.5), phases=16)
+    spalled = mesh_with(
+        slanted, Spall(tooth=4, depth=1e-4, start=0.4, end=0.6, face_share=0.4), phases=16
+    )
+    np.testing.assert_allclose(broken.load_share.sum(axis=1), 1.0, rtol=1e-9)
+    changes = [
+        np.abs(mesh.transmission_error - healthy.transmission_error)[:-1].reshape(16, 16).max(1)
+        for mesh in (broken, spalled)
+    ]
+    for change in changes:
+        assert change.max() > 1e-7
+        assert change[np.r_[0:2, 8:16]].max() < 1e-12
+    assert changes[0].max() > changes[1].max()
+    error = lines(mesh_with(slanted, Waviness(amplitude=2e-6, order=5), phases=16))
+    added = error - lines(healthy)
+    assert abs(added[5] - 2e-6) < 1e-12
+    spall = Spall(tooth=4, depth=1e-4, start=0.4, end=0.6)
+    small = mesh_with(helical(pair, 0.02), spall, phases=16)
+    straight = turning_mesh(
+        pair, TORQUE, [spall], provider="analytic", phases=16, extended_contact=False
+    )
+    inside = np.abs(small.transmission_error - straight.transmission_error)
+    assert np.median(inside) < 0.01 * np.ptp(straight.transmission_error)
+    with pytest.raises(InputError, match="cracked tooth is helical"):
+        mesh_with(slanted, Crack(tooth=4, depth=1e-3))
 
 
 def test_an_eccentric_gear_is_one_with_run_out(pair: SpurPair) -> None:

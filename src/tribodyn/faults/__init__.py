@@ -4,6 +4,7 @@
 |---|---|
 | ``fault`` | what every fault answers: the gear, the gap and the compliance that it adds |
 | ``deviations`` | eccentricity and waviness, pitch deviations of an accuracy class |
+| ``flanks`` | slopes of profile and helix that differ from tooth to tooth |
 | ``damage`` | spalls, broken teeth, root cracks |
 | ``cracked_tooth`` | compliance of a cracked tooth by finite elements |
 | ``turning`` | force law of a mesh over the turns of its gears |
@@ -25,6 +26,7 @@ from tribodyn.faults.excitation import (
     TorqueRipple,
 )
 from tribodyn.faults.fault import Fault
+from tribodyn.faults.flanks import FlankDeviations, slope_tolerances
 from tribodyn.faults.turning import TurningMesh, turning_mesh, turns_of
 
 __all__ = [
@@ -35,6 +37,7 @@ __all__ = [
     "Crack",
     "DrivenSystem",
     "Fault",
+    "FlankDeviations",
     "PitchDeviations",
     "RandomLoad",
     "ShaftExcitation",
@@ -48,6 +51,7 @@ __all__ = [
     "drive",
     "eccentricity",
     "pitch_tolerances",
+    "slope_tolerances",
     "turning_mesh",
     "turns_of",
 ]

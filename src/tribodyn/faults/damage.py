@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribodyn.errors import InputError, require_between
+from tribodyn.errors import Argument, InputError, require_between
 from tribodyn.faults.cracked_tooth import SQUARE, CrackLine, crack_compliance
 from tribodyn.faults.fault import ToothFault
 from tribodyn.gear import Material, SpurPair
@@ -152,8 +152,12 @@ class Crack(ToothFault):
         require_between("face_share", self.face_share, 0.0, 1.0, "")
 
     def _check(self, pair: SpurPair) -> None:
-        """Raise InputError if there is no such tooth, or the gear is a ring."""
+        """Raise InputError if there is no such tooth, or the gear is a ring or helical."""
         super()._check(pair)
+        if pair.helix_angle:
+            why = "The compliance of a cracked tooth is that of a plane section of spur teeth"
+            remedy = "Give helix_angle = 0, or a spall or a broken tooth"
+            raise InputError("the cracked tooth is helical", Argument("kind"), why, remedy)
         if self._gear_of(pair).is_ring:
             why = "The crack runs through a tooth of an external gear"
             raise InputError("the cracked gear is a ring", "gear", why, "Crack the other gear")

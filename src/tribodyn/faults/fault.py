@@ -69,6 +69,14 @@ class Fault:
             return places.pinion_curvature_radius
         return places.wheel_curvature_radius
 
+    def _flank_share(self, places: ContactPlaces) -> Array:
+        """Place on the used flank (p, n), 0 at its lowest point and 1 at the tip."""
+        from tribodyn.gear.mesh_geometry import flank_ranges
+
+        pair = places.contact.pair
+        flank = flank_ranges(pair)[GEARS.index(self.gear)]
+        return np.asarray((self._radius_of(places) - flank.lowest) / flank.length)
+
     def _check(self, pair: SpurPair) -> None:
         """Raise InputError if the pair cannot have this fault."""
 
@@ -80,24 +88,12 @@ class ToothFault(Fault):
     tooth: int = 1
 
     def _check(self, pair: SpurPair) -> None:
-        """Raise InputError if there is no such tooth, or the teeth are helical."""
+        """Raise InputError if there is no such tooth."""
         count = abs(self._gear_of(pair).teeth)
         if not 1 <= self.tooth <= count:
             what, why = f"tooth = {self.tooth}", f"The {self.gear} has {count} teeth, 1 to {count}"
             raise InputError(what, Argument("tooth"), why, "Count in the order of contact")
-        if pair.helix_angle:
-            why = "The contact of a damaged tooth is known for spur teeth"
-            remedy = "Give helix_angle = 0, or a deviation: eccentricity, waviness, pitch"
-            raise InputError("the damaged tooth is helical", Argument("kind"), why, remedy)
 
     def _has_tooth(self, places: ContactPlaces) -> Mask:
         """Whether the damaged tooth is at each contact (p, n)."""
         return np.asarray(self._tooth_numbers(places) == self.tooth)
-
-    def _flank_share(self, places: ContactPlaces) -> Array:
-        """Place on the used flank (p, n), 0 at its lowest point and 1 at the tip."""
-        from tribodyn.gear.mesh_geometry import flank_ranges
-
-        pair = places.contact.pair
-        flank = flank_ranges(pair)[GEARS.index(self.gear)]
-        return np.asarray((self._radius_of(places) - flank.lowest) / flank.length)

@@ -19,7 +19,7 @@ from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.stiffness.loaded.contact import contact_problem
 from tribodyn.stiffness.loaded.face_problem import has_slices
-from tribodyn.stiffness.loaded.problem import FAR, ContactProblem
+from tribodyn.stiffness.loaded.problem import FAR, Compliance, ContactProblem, slice_gaps
 from tribodyn.stiffness.model import MODELS
 from tribodyn.types import Array
 
@@ -237,10 +237,18 @@ def turning_mesh(
         phase=np.arange(cycles * phases + 1) / phases,
         transmission_error=_closed(approach),
         mesh_stiffness_tangent=_closed(solved.tangent[0]),
-        load_share=_closed(problem.forces(solved.load[0]) / force),
+        load_share=_closed(_of_pairs(problem, problem.forces(solved.load[0]) / force)),
         force_law=law,
         cycles=cycles,
     )
+
+
+def _of_pairs(problem: ContactProblem, share: Array) -> Array:
+    """Shares of tooth pairs from those of their slices (p, n)."""
+    if not problem.places.is_sliced:
+        return share
+    count = np.unique(problem.places.number).size
+    return np.asarray(share.reshape(len(share), count, -1).sum(axis=2))
 
 
 def _closed(values: Array) -> Array:
@@ -252,18 +260,40 @@ def _problem(
     pair: SpurPair, faults: Sequence[Fault], phase: Array, material: Material, **settings: Any
 ) -> ContactProblem:
     """Loaded tooth contact with the gaps and compliances of all faults."""
-    if not has_slices(pair, MODELS[settings["provider"]]):
+    sliced = has_slices(pair, MODELS[settings["provider"]])
+    if not sliced:
         varies = any(fault._varies_over_face for fault in faults)
         settings["slices"] = _SLICES if varies else None
-    problem = contact_problem(pair, phase=phase, material=material, **settings)
-    places, count = problem.places, problem.gaps.shape[1]
+    problem = contact_problem(pair, phase=phase[phase < 1.0], material=material, **settings)
+    count = problem.gaps.shape[1]
+    number = problem.places.number
+    if sliced:  # contacts are the slices of one pair after the other
+        count = number.size // np.unique(number).size
     face = (((np.arange(count) + 0.5) / count - 0.5) * pair.common_face_width)[:, None]
-    gaps, structure = problem.gaps.copy(), problem.compliance.structure.copy()
-    contacts = np.arange(structure.shape[1])
+    if sliced:
+        face = np.tile(face.T, problem.gaps.shape[2] // count)
+    problem = _repeated(problem, phase, face)
+    places, gaps, structure = problem.places, problem.gaps, problem.compliance.structure
+    contacts, apart = np.arange(structure.shape[1]), gaps >= FAR
     for fault in faults:
-        gaps += fault._gap(places, face)
+        gaps = gaps + fault._gap(places, face)
         sound = structure[:, contacts, contacts]
         structure[:, contacts, contacts] = sound + fault._compliance(places, material, sound)
-    gaps = np.where(problem.gaps >= FAR, FAR, np.minimum(gaps, FAR))
-    compliance = replace(problem.compliance, structure=structure)
-    return replace(problem, gaps=gaps, compliance=compliance)
+    return replace(problem, gaps=np.where(apart, FAR, np.minimum(gaps, FAR)))
+
+
+def _repeated(problem: ContactProblem, phase: Array, face: Array) -> ContactProblem:
+    """The problem of a mesh cycle at the phases of many: places and compliances repeat."""
+    cycles = phase.size // problem.places.phase.size
+
+    def tiled(values: Array) -> Array:
+        """Rows of a cycle for all cycles."""
+        return np.tile(values, (cycles, *(1,) * (values.ndim - 1)))
+
+    names = ("path", "separation", "pinion_curvature_radius", "wheel_curvature_radius")
+    rows = {name: tiled(getattr(problem.places, name)) for name in names}
+    places = replace(problem.places, phase=phase, **rows)
+    parts, widths = problem.compliance, problem.widths
+    compliance = Compliance(tiled(parts.structure), tiled(parts.local), parts.logarithm)
+    gaps = slice_gaps(places, face)
+    return ContactProblem(places, compliance, gaps, widths if len(widths) == 1 else tiled(widths))

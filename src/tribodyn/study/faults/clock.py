@@ -11,8 +11,9 @@ if TYPE_CHECKING:
 
 #: Mesh cycles of the longest motion: beyond it the samples need more memory than a notebook has.
 MOST_CYCLES = 6000
-#: Seconds of one core: at least, and for each mesh cycle of the teeth and of the motion.
-_LEAST, _TEETH, _MOTION = 0.2, 5e-3, 1.2e-2
+#: Seconds of one core: at least, for each mesh cycle of the motion, and of the teeth whose contacts
+#: are lines, slices of the face, or slices of helical teeth.
+_LEAST, _MOTION, _TEETH = 0.2, 1.2e-2, (5e-3, 0.05, 0.6)
 
 
 class TurningClock(NamedTuple):
@@ -88,7 +89,8 @@ def turning_clock(case: Case) -> TurningClock:
     pair = case.gear_pair
     teeth = {name: abs(gear.teeth) for name, gear in pair.gears.items()}
     frequency = case.pinion_speed * teeth["pinion"] / 6.283185307179586
-    of_teeth = turns_of(pair, tuple(gear_faults(case).values()))
+    faults = tuple(gear_faults(case).values())
+    of_teeth = turns_of(pair, faults)
     cycles = clock_cycles(of_teeth, tuple(excitations(case).values()), teeth, frequency)
     if cycles > MOST_CYCLES:
         raise InputError(
@@ -98,6 +100,8 @@ def turning_clock(case: Case) -> TurningClock:
             "Give faults of one gear, orders that repeat after fewer turns, or a random load of a "
             f"shorter duration ({of_teeth} mesh cycles are those of the teeth)",
         )
-    cost = _LEAST + of_teeth * _TEETH + cycles * _MOTION
+    over_face = pair.has_lead_modification or any(fault._varies_over_face for fault in faults)
+    cost_of_teeth = _TEETH[2 if pair.helix_angle else 1 if over_face else 0]
+    cost = _LEAST + of_teeth * cost_of_teeth + cycles * _MOTION
     turns_pinion, turns_wheel = (cycles / teeth[gear] for gear in ("pinion", "wheel"))
     return TurningClock(cycles, cycles / frequency, turns_pinion, turns_wheel, cost)

@@ -23,6 +23,7 @@ KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "eccentricity": (("gear", "amplitude"), ("phase",)),
     "waviness": (("gear", "amplitude", "order"), ("phase", "lead_angle")),
     "pitch-deviations": (("gear", "accuracy_class"), ("seed",)),
+    "flank-deviations": (("gear",), ("profile_slopes", "helix_slopes", "accuracy_class", "seed")),
     "spall": (("gear", "tooth", "depth", "start", "end"), ("face_share",)),
     "broken-tooth": (("gear", "tooth"), ("remaining",)),
     "crack": (("gear", "tooth", "depth"), ("angle", "root_tangent", "face_share")),
@@ -48,6 +49,7 @@ MEANINGS = {
     "eccentricity": "axis of the toothing beside the axis of rotation",
     "waviness": "waves that run on from tooth to tooth, a ghost order",
     "pitch-deviations": "pitch deviations drawn from an accuracy class",
+    "flank-deviations": "slopes of profile and helix that differ from tooth to tooth",
     "spall": "material missing on a part of one flank",
     "broken-tooth": "a tooth whose upper part is gone",
     "crack": "a crack at the root of one tooth",
@@ -111,6 +113,15 @@ class FaultTable(Section):
     accuracy_class: int | None = integer(
         None, 1, 11, "classes of ISO 1328-1", meaning="accuracy class", example="6"
     )
+    profile_slopes: tuple[float, ...] | None = numbers(
+        -5e-4, 5e-4, _GUARD, unit="m", display_unit="um", example='["4 um", "-3 um", "0 um"]',
+        meaning="slope of the profile of each tooth in the order of contact: material taken away "
+        "at the tip",
+    )  # fmt: skip
+    helix_slopes: tuple[float, ...] | None = numbers(
+        -5e-4, 5e-4, _GUARD, unit="m", display_unit="um", example='["4 um", "-3 um", "0 um"]',
+        meaning="slope of the helix of each tooth: material taken away at one end of the face",
+    )  # fmt: skip
     seed: int | None = integer(
         None, 0, 10**9, "any whole number", meaning="number of the random draw", example="1"
     )
@@ -232,6 +243,7 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
     kinds: dict[str, Any] = {
         "waviness": faults.Waviness,
         "pitch-deviations": faults.PitchDeviations,
+        "flank-deviations": faults.FlankDeviations,
         "spall": faults.Spall,
         "broken-tooth": faults.BrokenTooth,
         "crack": faults.Crack,

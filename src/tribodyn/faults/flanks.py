@@ -1,0 +1,162 @@
+"""Slopes of profile and helix that differ from tooth to tooth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from tribodyn.checks import require_whole
+from tribodyn.errors import Argument, InputError, require_between
+from tribodyn.faults.fault import Fault
+from tribodyn.gear import SpurGear, SpurPair
+from tribodyn.stiffness.loaded.problem import ContactPlaces
+from tribodyn.types import Array
+
+#: Largest slope that is a deviation and not a slip of the unit [m].
+_MOST = 0.5e-3
+
+
+def slope_tolerances(gear: SpurGear, accuracy_class: int) -> tuple[float, float]:
+    """Tolerances of the slope deviations of profile and helix.
+
+    Parameters
+    ----------
+    gear : SpurGear
+        The gear.
+    accuracy_class : int
+        Class of ISO 1328-1, 1 to 11.
+
+    Returns
+    -------
+    (float, float) [m]
+
+    Raises
+    ------
+    InputError
+        If there is no such class.
+
+    Notes
+    -----
+    ISO 1328-1:2013: f_HaT = (0.4 m + 0.001 d + 4) sqrt(2)^(A - 5) and f_HbT = (0.05 sqrt(d) +
+    0.35 sqrt(b) + 4) sqrt(2)^(A - 5) in um, with d, m and b in mm, without the rounding of the
+    standard.
+
+    Examples
+    --------
+    >>> from tribodyn.gear import spur_pair
+    >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=50, normal_module=5e-3,
+    ...     normal_pressure_angle=0.3490658504, pinion_face_width=0.025)
+    >>> [round(1e6 * value, 3) for value in slope_tolerances(pair.pinion, 5)]
+    [6.1, 6.25]
+    """
+    require_between("accuracy_class", accuracy_class, 1, 11, "")
+    diameter, module = 2e3 * abs(gear.reference_radius), 1e3 * gear.normal_module
+    scale = 1e-6 * math.sqrt(2.0) ** (accuracy_class - 5)
+    profile = 0.4 * module + 0.001 * diameter + 4.0
+    helix = 0.05 * math.sqrt(diameter) + 0.35 * math.sqrt(1e3 * gear.face_width) + 4.0
+    return profile * scale, helix * scale
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlankDeviations(Fault):
+    """Slope deviations of profile and helix that differ from tooth to tooth.
+
+    Parameters
+    ----------
+    gear : "pinion" or "wheel"
+        Gear that has them.
+    profile_slopes : tuple of float
+        Material taken away at the tip, growing from the lowest used point, of each tooth in the
+        order of contact [m].
+    helix_slopes : tuple of float
+        Material taken away at one end of the face more than at the other, of each tooth [m].
+    accuracy_class : int, optional
+        Class of ISO 1328-1 from which both are drawn where neither is given.
+    seed : int
+        Number of the draw.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or lists and class are both or neither given.
+
+    Notes
+    -----
+    Signs are those of ``profile_slope`` and ``lead_slope`` of
+    :class:`tribodyn.gear.FlankModification`. Drawn slopes are independent and normal; the largest
+    is the tolerance of the class.
+
+    Examples
+    --------
+    >>> FlankDeviations(gear="wheel", accuracy_class=7, seed=2).accuracy_class
+    7
+    """
+
+    profile_slopes: tuple[float, ...] = ()
+    helix_slopes: tuple[float, ...] = ()
+    accuracy_class: int | None = None
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("profile_slopes", "helix_slopes"):
+            values = np.atleast_1d(np.asarray(getattr(self, name), dtype=float))
+            object.__setattr__(self, name, tuple(values.tolist()))
+            if values.size:
+                require_between(name, values, -_MOST, _MOST, "m")
+        object.__setattr__(self, "seed", require_whole("seed", self.seed, 0))
+        if self.accuracy_class is not None:
+            require_between("accuracy_class", self.accuracy_class, 1, 11, "")
+        if (self.accuracy_class is None) != bool(self.profile_slopes or self.helix_slopes):
+            what = "slopes and accuracy_class are both given"
+            if self.accuracy_class is None:
+                what = "neither slopes nor an accuracy_class are given"
+            why = "Each tooth has its listed slopes, or those drawn from a class"
+            raise InputError(what, Argument("accuracy_class"), why, "Give one of them")
+
+    @property
+    def _varies_over_face(self) -> bool:  # type: ignore[override]
+        """Whether the helix deviates."""
+        return self.accuracy_class is not None or any(self.helix_slopes)
+
+    def _check(self, pair: SpurPair) -> None:
+        """Raise InputError if a list has not a value for each tooth."""
+        count = abs(self._gear_of(pair).teeth)
+        for name in ("profile_slopes", "helix_slopes"):
+            values = getattr(self, name)
+            if values and len(values) != count:
+                what = f"{name} has {len(values)} values"
+                why = f"The {self.gear} has {count} teeth"
+                raise InputError(what, Argument(name), why, f"Give {count} values")
+
+    def slopes(self, gear: SpurGear) -> tuple[Array, Array]:
+        """Slopes of profile and helix of all teeth.
+
+        Parameters
+        ----------
+        gear : SpurGear
+            The gear.
+
+        Returns
+        -------
+        two (z,) arrays [m]
+        """
+        count = abs(gear.teeth)
+        if self.accuracy_class is None:
+            listed = (self.profile_slopes, self.helix_slopes)
+            profile, helix = (np.asarray(values or np.zeros(count)) for values in listed)
+            return profile, helix
+        draw = np.random.default_rng(self.seed).standard_normal((2, count))
+        tolerances = np.array(slope_tolerances(gear, self.accuracy_class))
+        scaled = draw * (tolerances / np.abs(draw).max(axis=1))[:, None]
+        return scaled[0], scaled[1]
+
+    def _gap(self, places: ContactPlaces, face: Array) -> Array:
+        """Gap (p, s, n)."""
+        gear = self._gear_of(places.contact.pair)
+        profile, helix = self.slopes(gear)
+        tooth = self._tooth_numbers(places) - 1
+        along = profile[tooth] * self._flank_share(places)
+        return np.asarray(along[:, None, :] + helix[tooth][:, None, :] * face / gear.face_width)
