@@ -89,6 +89,11 @@ COMMANDS = (
     ),
     ("compare", "compare_command:compare", "Show what differs between two results."),
     (
+        "recording",
+        "recordings.recording_command:recording",
+        "Record what a sensor sees of a case with faults, or a labelled set.",
+    ),
+    (
         "signal",
         "signal_command:signal",
         "List the channels of a recording, or analyse one: spectra, orders, indicators.",

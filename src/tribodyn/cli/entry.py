@@ -117,6 +117,7 @@ _EXAMPLES = {
     "friction-from-loss": "losses.csv --case fzg-roughness",
     "experiment": "friction",
     "compare": "first second",
+    "recording": "fzg-roughness --sensor pinion_y --out rig.mat",
     "signal": "rig.csv --channel acc --tacho pulses --pulses 60 --teeth 29",
     "import": "gearbox.rexs --out my.toml",
     "export": "fzg-roughness --rexs gearbox.rexs",

@@ -23,11 +23,7 @@ def write(
 ) -> Path:
     """Write a recording in the format of a file name, and its truth beside it as JSON."""
     place = Path(path)
-    writer = _WRITERS.get(place.suffix.lower())
-    if writer is None:
-        what = f'"{place.name}" has no ending of a recording'
-        why = f"Recordings are written as {', '.join(_WRITERS)}"
-        raise InputError(what, "argument path", why, "Choose one of these endings")
+    writer = check_ending(place)
     if not place.parent.is_dir():
         why, remedy = "A recording is written into a folder that exists", "Make the folder first"
         raise InputError(f"there is no folder {place.parent}", "argument path", why, remedy)
@@ -40,6 +36,16 @@ def write(
         with atomic_write(place.with_suffix(".json")) as part:
             part.write_text(json.dumps(labels, indent=2, allow_nan=False) + "\n", encoding="utf-8")
     return place
+
+
+def check_ending(place: Path) -> Callable[[Recording, Path], None]:
+    """Return the writer of a file name; raise InputError if there is none."""
+    writer = _WRITERS.get(place.suffix.lower())
+    if writer is None:
+        what = f'"{place.name}" has no ending of a recording'
+        why = f"Recordings are written as {', '.join(_WRITERS)}"
+        raise InputError(what, "argument path", why, "Choose one of these endings")
+    return writer
 
 
 def _wav(recording: Recording, path: Path) -> None:

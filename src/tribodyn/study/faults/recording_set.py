@@ -160,7 +160,11 @@ def record_set(
                 Scatter(noise, speed_fluctuation, tacho_jitter, _seed(seed, number, draw))
                 for draw in range(repeats)
             ]
-            units = _write(part, case.replace(values), sampling, draws)
+            try:
+                units = _write(part, case.replace(values), sampling, draws)
+            except InputError:
+                _abandon(place)
+                raise
         progress.advance()
     progress.finish()
     return _finished(place, card, axes, points, units)
@@ -192,6 +196,13 @@ def _opened(folder: Path, card: dict[str, Any]) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     _store(folder, card)
     return folder
+
+
+def _abandon(folder: Path) -> None:
+    """Remove a set without any recording, so that the corrected call finds an empty place."""
+    if [file.name for file in folder.iterdir()] == [CARD]:
+        (folder / CARD).unlink()
+        folder.rmdir()
 
 
 def _store(folder: Path, card: Mapping[str, Any]) -> None:
