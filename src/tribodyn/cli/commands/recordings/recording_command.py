@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import (
@@ -31,18 +34,53 @@ _OPTIONS = {
 } | {"path": "--out", "folder": "--out"}
 
 
+def _help(text: str) -> Any:
+    return Parameter(help=text)
+
+
+@Parameter(name="*")
+@dataclass
+class Sampling:
+    """What is recorded, and what scatters."""
+
+    sensor: Annotated[
+        str,
+        _help(
+            'Signals such as "pinion_y,wheel_y", "mesh_force" or "transmission_error"; one for a '
+            "set."
+        ),
+    ]
+    duration: Annotated[str, _help('Length of a recording: "2 s".')] = "1 s"
+    sample_rate: Annotated[str, _help('Sampling rate: "25600 Hz".')] = "25600 Hz"
+    noise: Annotated[
+        float, _help("Standard deviation of white noise, in the SI unit of the sensor.")
+    ] = 0.0
+    speed_fluctuation: Annotated[
+        float, _help("Standard deviation of slow changes of the speed, over the speed.")
+    ] = 0.0
+    tacho_jitter: Annotated[
+        float, _help("Standard deviation of the edges of the tacho, over a turn.")
+    ] = 0.0
+    seed: Annotated[int, _help("Number of the draw of all that scatters.")] = 0
+    repeats: Annotated[int, _help("Recordings of each variant of a set.")] = 1
+
+    def settings(self) -> dict[str, Any]:
+        """Return the arguments of a recording, all but the sensor."""
+        return {
+            "duration": _quantity("--duration", self.duration, "s", "2 s"),
+            "sample_rate": _quantity("--sample-rate", self.sample_rate, "Hz", "25600 Hz"),
+            "noise": self.noise,
+            "speed_fluctuation": self.speed_fluctuation,
+            "tacho_jitter": self.tacho_jitter,
+            "seed": self.seed,
+        }
+
+
 def recording(
     case: CaseName,
     /,
     *over: str,
-    sensor: str,
-    duration: str = "1 s",
-    sample_rate: str = "25600 Hz",
-    noise: float = 0.0,
-    speed_fluctuation: float = 0.0,
-    tacho_jitter: float = 0.0,
-    seed: int = 0,
-    repeats: int = 1,
+    sampling: Sampling,
     out: Path | None = None,
     set_: Settings = None,
     force: Force = False,
@@ -55,112 +93,84 @@ def recording(
     over : str
         What varies, such as "faults.crack.depth=0,1,2 mm": writes a folder of labelled recordings,
         which the same command continues after an interruption. Several make a grid.
-    sensor : str
-        Signals such as "pinion_y,wheel_y", "mesh_force" or "transmission_error"; one for a set.
-    duration : str
-        Length of a recording: "2 s".
-    sample_rate : str
-        Sampling rate: "25600 Hz".
-    noise : float
-        Standard deviation of white noise, in the SI unit of the sensor.
-    speed_fluctuation : float
-        Standard deviation of slow changes of the speed, over the speed.
-    tacho_jitter : float
-        Standard deviation of the edges of the tacho, over a turn.
-    seed : int
-        Number of the draw of all that scatters.
-    repeats : int
-        Recordings of each variant of a set.
     out : Path
         File to write, .mat, .wav, .h5, .uff or .csv, with its truth as .json of that name; of a set
         its folder. By default that of the case with "-recording".
     json : bool
         Write what was recorded as one JSON object to stdout.
     """
-    settings: dict[str, Any] = {
-        "duration": _quantity("--duration", duration, "s", "2 s"),
-        "sample_rate": _quantity("--sample-rate", sample_rate, "Hz", "25600 Hz"),
-        "noise": noise,
-        "speed_fluctuation": speed_fluctuation,
-        "tacho_jitter": tacho_jitter,
-        "seed": seed,
-    }
     with collected() as warnings:
         try:
             if over:
                 if force:
                     why = "The same command continues a set, and another one is not replaced"
                     raise InputError("--force is given for a set", "--force", why, "Remove it")
-                folder = out if out is not None else Path(f"{Path(case).stem}-recordings")
-                _record_set(case, over, folder, sensor, repeats, set_, settings, json)
+                facts, lines = _record_set(case, over, out, sampling, set_)
             else:
-                if repeats != 1:
-                    why = "One recording is made where nothing varies"
-                    what, remedy = (
-                        f"repeats = {repeats}",
-                        'Add for example "faults.NAME.depth=0,1 mm"',
-                    )
-                    raise InputError(what, "--repeats", why, remedy)
-                file = out if out is not None else Path(f"{Path(case).stem}-recording.mat")
-                _record(case, file, sensor, set_, force, settings, json)
+                facts, lines = _record(case, out, sampling, set_, force)
         except TribodynError as error:
             raise type(error)([_by_option(each) for each in error.problems]) from None
     show_warnings(warnings)
+    if json:
+        say_json(facts)
+        return
+    say(lines[0])
+    for text in lines[1:]:
+        tell(text)
 
 
 def _record(
-    case: str, file: Path, sensor: str, set_: Settings, force: bool, settings: dict[str, Any],
-    json: bool,
-) -> None:  # fmt: skip
-    """Write one recording and its truth."""
+    case: str, out: Path | None, sampling: Sampling, set_: Settings, force: bool
+) -> tuple[dict[str, Any], list[str]]:
+    """Write one recording and its truth; return facts and lines of text."""
     from tribodyn.cases.load import run
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.measurement.writers import check_ending
 
+    file = out if out is not None else Path(f"{Path(case).stem}-recording.mat")
+    settings = sampling.settings()
+    if sampling.repeats != 1:
+        why, remedy = "It counts the recordings of a set", 'Add "faults.NAME.depth=0,1 mm"'
+        raise InputError(f"repeats = {sampling.repeats}", "--repeats", why, remedy)
     check_file(file, force)
     check_ending(file)
     ready = changed_any_case(case, set_ or [])
+    names = [name.strip() for name in sampling.sensor.split(",")]
     with progress_bar() as progress:
         result: Any = run(ready, progress)
-        names = [name.strip() for name in sensor.split(",")]
-        made: Recording = result.recording(names, settings.pop("duration"), **settings)
+        recorded: Recording = result.recording(names, settings.pop("duration"), **settings)
     faults = getattr(ready, "faults", None)
     truth = {
         name: {key: value for key, value in vars(fault).items() if value is not None}
         for name, fault in (vars(faults) if faults is not None else {}).items()
     }
-    made.save(file, truth={"title": ready.title, "faults": truth})
-    if json:
-        rate, size = made.sample_rate, next(iter(made.channels.values())).size
-        facts = {"file": str(file), "sample_rate": rate, "samples": size, "units": dict(made.units)}
-        say_json({**facts, "faults": truth})
-        return
-    say(f"{ready.title}\n{made}")
-    tell(f"Recording: {file}, truth: {file.with_suffix('.json')}")
-    tell(f"Analyse it: tribodyn signal {file} --channel {names[0]} --tacho tacho")
+    recorded.save(file, truth={"title": ready.title, "faults": truth})
+    rate, size = recorded.sample_rate, next(iter(recorded.channels.values())).size
+    facts = {"file": str(file), "sample_rate": rate, "samples": size}
+    return {**facts, "units": dict(recorded.units), "faults": truth}, [
+        f"{ready.title}\n{recorded}",
+        f"Recording: {file}, truth: {file.with_suffix('.json')}",
+        f"Analyse it: tribodyn signal {file} --channel {names[0]} --tacho tacho",
+    ]
 
 
 def _record_set(
-    case: str, over: tuple[str, ...], folder: Path, sensor: str, repeats: int, set_: Settings,
-    settings: dict[str, Any], json: bool,
-) -> None:  # fmt: skip
-    """Write a labelled set."""
+    case: str, over: tuple[str, ...], out: Path | None, sampling: Sampling, set_: Settings
+) -> tuple[dict[str, Any], list[str]]:
+    """Write a labelled set; return facts and lines of text."""
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.study import record_set
 
+    folder = out if out is not None else Path(f"{Path(case).stem}-recordings")
     ranges, ready = read_ranges(over), changed_case(case, set_ or [])
+    settings = {**sampling.settings(), "sensor": sampling.sensor, "repeats": sampling.repeats}
     with progress_bar() as progress:
-        labelled = record_set(
-            ready, folder, ranges, sensor=sensor, repeats=repeats, progress=progress, **settings
-        )
-    if json:
-        say_json({"folder": str(folder), "recordings": len(labelled), "card": dict(labelled.card)})
-        return
-    rows = [
-        [key, axis["unit"], str(len(axis["values"]))] for key, axis in labelled.card["keys"].items()
-    ]
-    say(f"{ready.title}\n{labelled}\n{table([['key', 'unit', 'values'], *rows])}")
-    tell(f"Set: {folder} with card.json and labels.csv")
+        labelled = record_set(ready, folder, ranges, progress=progress, **settings)
+    facts = {"folder": str(folder), "recordings": len(labelled), "card": dict(labelled.card)}
+    keys = labelled.card["keys"].items()
+    rows = [[key, axis["unit"], str(len(axis["values"]))] for key, axis in keys]
+    text = f"{ready.title}\n{labelled}\n{table([['key', 'unit', 'values'], *rows])}"
+    return facts, [text, f"Set: {folder} with card.json and labels.csv"]
 
 
 def _quantity(option: str, text: str, unit: str, example: str) -> float:
