@@ -11,7 +11,6 @@ from cyclopts import Parameter
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import (
     CaseName,
-    Flag,
     Force,
     Settings,
     changed_any_case,
@@ -79,26 +78,28 @@ class Sampling:
 def recording(
     case: CaseName,
     /,
-    *over: str,
+    *over: Annotated[
+        str,
+        _help(
+            'What varies, such as "faults.crack.depth=0,1,2 mm": writes a folder of labelled '
+            "recordings, which the same command continues. Several make a grid."
+        ),
+    ],
     sampling: Sampling,
-    out: Path | None = None,
+    out: Annotated[
+        Path | None,
+        _help(
+            "File to write, .mat, .wav, .h5, .uff or .csv, with its truth as .json; of a set its "
+            'folder. By default that of the case with "-recording".'
+        ),
+    ] = None,
     set_: Settings = None,
     force: Force = False,
-    json: Flag = False,
+    json: Annotated[
+        bool, Parameter(negative="", help="Write what was recorded as JSON to stdout.")
+    ] = False,
 ) -> None:
-    """Record what a sensor sees of the motion of a case; over values of keys, a labelled set.
-
-    Parameters
-    ----------
-    over : str
-        What varies, such as "faults.crack.depth=0,1,2 mm": writes a folder of labelled recordings,
-        which the same command continues after an interruption. Several make a grid.
-    out : Path
-        File to write, .mat, .wav, .h5, .uff or .csv, with its truth as .json of that name; of a set
-        its folder. By default that of the case with "-recording".
-    json : bool
-        Write what was recorded as one JSON object to stdout.
-    """
+    """Record what a sensor sees of the motion of a case; over values of keys, a labelled set."""
     with collected() as warnings:
         try:
             if over:
