@@ -13,7 +13,7 @@ from tests.unit.study.test_machine_run import GEARED
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.machine import Gear, Machine, Mesh, Operation, Shaft
-from tribodyn.measurement import read
+from tribodyn.measurement import read, shaft_angle
 from tribodyn.study.faults.impact_transfer import impact_spectrum, pulse
 from tribodyn.study.faults.machine_motion import (
     machine_turning_motion,
@@ -28,6 +28,14 @@ AXIS = {"kind": "eccentricity", "gear": "gears.z1", "amplitude": "2 um"}
 DEFECT = {
     "kind": "bearing-defect", "bearing": "A", "place": "outer", "impact_force": "200 N",
     "rolling_elements": 9, "element_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "slip": 0.0,
+}  # fmt: skip
+#: A spur stage with computed teeth on the same shafts.
+TEETH = {
+    "gears.z1.teeth": 17, "gears.z2.teeth": 24, "meshes.first.helix_angle": "0 deg",
+    "meshes.first.center_distance": None, "meshes.first.stiffness": None,
+    "meshes.first.transmission_error_amplitude": None, "stiffness.model": "analytic",
+    "film.model": "none", "friction.law": "constant", "friction.coefficient": 0.05,
+    "dynamics.backlash": "60 um", "operation.speed": "900 rpm", "load_cases": None,
 }  # fmt: skip
 SEAT = {"dynamics.seat_mass": "10 kg", "dynamics.seat_frequency": "2 kHz"}
 
@@ -201,3 +209,25 @@ def test_an_idler_is_eccentric_in_one_direction() -> None:
         across = [moved @ push / np.hypot(*push[1:]) for push in pushes]
         waves = [np.cos(angle + fault.phase) for fault in (first, second)]
         np.testing.assert_allclose(waves, across, atol=1e-12)
+
+
+@pytest.mark.slow
+def test_a_cracked_tooth_shows_on_its_shaft_alone() -> None:
+    from tribodyn.signals import condition_indicators, time_synchronous_average
+
+    crack = {"kind": "crack", "gear": "z1", "tooth": 5, "depth": "2.5 mm"}
+    stated = {f"faults.crack.{key}": value for key, value in crack.items()}
+    cracked = td.run(case_with().replace({**TEETH, **stated}, by="test"))
+    sensor = "bearings.B.acceleration_y"
+    recording = cracked.recording(sensor, 4.0, 12_800.0, noise=0.05, speed_fluctuation=1e-3, seed=1)
+    rate = recording.sample_rate
+    angle = shaft_angle(recording["tacho"], rate, 1)
+    time = np.arange(angle.size) / rate
+    fm4 = {}
+    for gear, teeth in (("z1", 17), ("z2", 24)):
+        average = time_synchronous_average(
+            recording[sensor], time, teeth=teeth, rotation=angle * 17 / teeth,
+            mesh_harmonics=3,
+        )  # fmt: skip
+        fm4[gear] = condition_indicators(average).fm4
+    assert fm4["z1"] > 9.0 > 6.5 > fm4["z2"]

@@ -15,6 +15,7 @@ from tribodyn.errors import InputError, collected, warn
 from tribodyn.faults import BearingForce, BearingImpacts, Fault, Waviness
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.faults.clock import MOST_CYCLES
 from tribodyn.study.faults.impact_transfer import FreeStructure, ImpactResponse, impact_response
 from tribodyn.study.faults.machine_section import faults_of_mesh
 from tribodyn.study.faults.motion import SAMPLES, signal_lines
@@ -263,6 +264,17 @@ def _error_over_turns(
     return {"error": error, "period": period}
 
 
+def _refuse_long_period(machine: Machine) -> None:
+    """Refuse a motion that would need more memory than a notebook has."""
+    cycles = max(machine.clock.cycles.values())
+    if cycles > MOST_CYCLES:
+        seconds = 1.0 / machine.clock.frequency
+        what = f"the machine repeats only after {cycles} mesh cycles, {seconds:.4g} s"
+        why = f"At most {MOST_CYCLES} mesh cycles are computed"
+        remedy = "Give faults of one gear only, or numbers of teeth with common factors"
+        raise InputError(what, "faults", why, remedy)
+
+
 def repeated(response: Response, frequency: float, slower: float) -> Response:
     """A periodic motion over the longer period of a slower clock."""
     count, last = round(frequency / slower), -1
@@ -284,6 +296,7 @@ def machine_turning_motion(
         progress.start("Teeth over whole turns")
         machine = turning_machine(case, sound)
         warn_of_period(machine)
+        _refuse_long_period(machine)
         structure = replace(sound.structure, machine=machine)
         system = system_of(structure)
         cycles = max(machine.clock.cycles.values())
