@@ -134,6 +134,11 @@ def test_commands(case, tmp_path, monkeypatch, capsys):
     assert len(facts["modes"]) == 18
     assert command("sweep", "s.toml", "planets.low.pin_stifness=1e8..2e8 N/m:2") == 2
     assert 'Did you mean "planets.low.pin_stiffness"?' in capsys.readouterr().err
+    assert command("sweep", "s.toml", "planets.low.pin_errors=0..9 um:2") == 2
+    assert "such as planets.low.pin_errors.1" in capsys.readouterr().err
+    assert command("sweep", "s.toml", "planets.low.pin_errors.4=0..9 um:2") == 1  # none is computed
+    assert "has 3 values, counted from 1" in (tmp_path / "s-sweep" / "sweep.csv").read_text("utf-8")
+    capsys.readouterr()
     setting = "planets.low.pin_errors=0 um +- 5 um"
     assert command("ensemble", "s.toml", "--size", "3", "--set", setting, "--json") == 0
     assert "planets.low.load_factor" in json.loads(capsys.readouterr().out)

@@ -67,9 +67,10 @@ def _title(levels: Iterable[tuple[Sequence[str], Array]], x: Sequence[str]) -> s
     """Where the housing, or what there is, vibrates most."""
     texts = ("Mesh", "The transmission error of mesh", "Bearing", "The housing at", "Stage")
     rows = zip(texts, _PANELS, levels, strict=False)
-    text, (quantity, _), (names, values) = [row for row in rows if len(row[2][0])][-1]
-    if not np.any(np.isfinite(values)):
+    present = [row for row in rows if np.any(np.isfinite(row[2][1]))]
+    if not present:
         return "No value has a motion"
+    text, (quantity, _), (names, values) = present[-1]
     at, part = np.unravel_index(int(np.nanargmax(values)), values.shape)
     greatest = rounded(quantity, float(values[at, part]))
     return f"{text} {names[int(part)]} has the largest level at {x[int(at)]}: {greatest}"

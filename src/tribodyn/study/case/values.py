@@ -241,7 +241,8 @@ def read_value(spec: Option, name: str, value: Any) -> Any:
 
 def _list(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ...]:
     if isinstance(value, str) or not hasattr(value, "__iter__"):
-        remedy = f"Write for example {name} = [{spec.example}]"
+        example = spec.example if spec.example.startswith("[") else f"[{spec.example}]"
+        remedy = f"Write for example {name} = {example}"
         raise FaultError(f"{name} = {written(value)}", f"{name} must be a list", remedy)
     result = []
     for position, item in enumerate(value):

@@ -95,8 +95,13 @@ def member_value(case: Case | PartsCase, key: str, value: Any, by: str) -> Any:
         case.replace({key: value}, by=by or "over")  # raises an error that lists the keys
         what, why = f'there is no key "{key}"', "Axes of a study are keys of the case"
         raise InputError(what, _location(by), why, "Choose a key that tribodyn explain lists")
+    if spec.kind == "numbers":
+        what, why = f"{key} is a list", "An axis of a study is one value"
+        raise InputError(what, _location(by), why, f"Name one of its values, such as {key}.1")
+    names = key.split(".")
+    name = ".".join(names[-2:]) if names[-1].isdigit() else names[-1]
     try:
-        return read_value(spec, key.rpartition(".")[2], value if by else Plain(value))
+        return read_value(spec, name, value if by else Plain(value))
     except FaultError as fault:
         problem = fault.problem
         where, remedy = f"{by} {key}".strip(), problem.remedy
