@@ -161,8 +161,9 @@ class StaticBalance:
                 state = self.bearings[name]
                 stiffness = state.stiffness
                 force = state.load - stiffness @ state.displacement
-                linear = {"rolling": None, "stiffness": stiffness, "force": force}
-                bearings[name] = replace(bearing, **linear, offset=np.zeros(6))
+                bearings[name] = replace(
+                    bearing, rolling=None, stiffness=stiffness, force=force, offset=np.zeros(6)
+                )
                 if not stiffness.any():
                     warn(
                         "unloaded-bearing",
