@@ -198,7 +198,7 @@ def open_seam(mesh: SectorMesh, row: int, length: float, angle: float) -> Cracke
     sound = _moved(mesh, row, shift)
     twins = np.arange(len(mesh.nodes))
     twins[seam[:tip]] = len(mesh.nodes) + np.arange(tip)
-    above = np.isin(mesh.elements, mesh.tooth[:, row - 1]).any(axis=1)
+    above = np.asarray(np.isin(mesh.elements, mesh.tooth[:, row - 1]).any(axis=1))
     elements = np.where(above[:, None], twins[mesh.elements], mesh.elements)
     nodes = np.concatenate([sound.nodes, sound.nodes[seam[:tip]]])
     cracked = replace(sound, nodes=nodes, elements=elements)

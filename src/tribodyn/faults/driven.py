@@ -248,7 +248,9 @@ def drive(
     driven = _on_longer_clock(system, total // cycles)
     driven = replace(driven, force=Series(force) if len(force) > 1 else force[0].real)
     if np.abs(moving).max() > 1e-13:
-        driven = _on_uneven_clock(driven, _UnevenClock(Series(moving * (1.0 / total))))
+        driven = _on_uneven_clock(
+            driven, _UnevenClock(Series(np.asarray(moving / total, dtype=complex)))
+        )
     return DrivenSystem(driven, total, ahead, turning)
 
 

@@ -157,7 +157,7 @@ class Bearing:
     @property
     def rest_load(self) -> Array:
         """Force and moment of the shaft on a linear bearing without a displacement (6,)."""
-        return np.asarray(self.force) - self.stiffness_matrix @ np.asarray(self.offset)
+        return np.asarray(np.asarray(self.force) - self.stiffness_matrix @ np.asarray(self.offset))
 
     @property
     def stiffness_matrix(self) -> Array:

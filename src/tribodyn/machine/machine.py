@@ -140,8 +140,8 @@ class Machine:
         if not isinstance(self.operation, Operation):
             what, remedy = f"operation = {quoted(self.operation)}", "Give an Operation"
             raise InputError(what, "operation", "A machine runs at a speed under a torque", remedy)
-        for problems in (self._reference_problems, self._mesh_problems, self._place_problems):
-            if listed := list(problems()):
+        for check in (self._reference_problems, self._mesh_problems, self._place_problems):
+            if listed := list(check()):
                 raise InputError(listed)
         for name in self.planets:
             self._set_offsets(name)

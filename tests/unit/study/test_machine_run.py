@@ -167,7 +167,10 @@ def test_every_key_of_the_summary_has_a_meaning_and_a_unit(result):
 
 def test_commands_for_pairs_name_those_for_machines(capsys):
     assert command("harris", "two-stage-spur") == 2
-    assert "Machines: tribodyn run, check, modes, sweep" in capsys.readouterr().err
+    assert (
+        "Machines and planetary stages: tribodyn run, check, modes, sweep"
+        in capsys.readouterr().err
+    )
 
 
 def test_check_shows_speeds_and_torques(capsys):

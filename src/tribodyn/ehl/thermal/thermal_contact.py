@@ -87,7 +87,7 @@ class _Temperatures:
         self.across = Across(np.full((columns, across), oil.temperature), *fields)
         zeros, ones = np.zeros((5, columns)), np.ones((6, columns))
         unsettled = np.full(columns, math.inf)
-        self.along = Along(zeros[:2], zeros[2], zeros[3:], *ones, unsettled)
+        self.along = Along._make([zeros[:2], zeros[2], zeros[3:], *ones, unsettled])
         self.balance = np.zeros(5)
 
     def solve(self, grid: DiscreteContact, sweeps: int) -> float:

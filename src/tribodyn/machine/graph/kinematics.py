@@ -151,7 +151,7 @@ def kinematics(
         pair = gears[mesh.gears[0]], gears[mesh.gears[1]]
         lever = base_radius(mesh, pair[0]) / pair[0].teeth
         weight[name] = mean_stiffness(mesh, pair) * lever**2
-    loads = mobility.loads(sense * torque, weight | drive.couplings)
+    loads = mobility.loads(sense * torque, {**weight, **drive.couplings})
     mesh_loads = {}
     for name, mesh in meshes.items():
         (load, shared), factors = loads[name], [*mobility.rows[name].values()]

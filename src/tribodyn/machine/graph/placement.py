@@ -65,7 +65,10 @@ def carrier_axes(
 ) -> dict[str, tuple[str, str, float]]:
     """Shaft with the axis of each carrier, the carrier, and its distance along x [m], by key."""
     axes: dict[str, tuple[str, str, float]] = {}
-    pins = {(b.carrier, b.shaft): b for b in reversed(bearings.values()) if b.carrier}
+    latest_first = reversed([*bearings.values()])
+    pins: dict[tuple[str | None, str], Bearing] = {
+        (b.carrier, b.shaft): b for b in latest_first if b.carrier
+    }
     for mesh in meshes.values():
         for central, planet in (mesh.gears, mesh.gears[::-1]):
             inner, outer = gears[central], gears[planet]

@@ -122,7 +122,7 @@ def sampled_shares(pin_errors: Array, thickness_errors: Array, **stage: Any) -> 
         for pins, excess in zip(pin_errors, thickness_errors, strict=True)
     ]
     loads = np.array([force for force, _ in forces])
-    return loads / loads.mean(axis=1, keepdims=True)
+    return np.asarray(loads / loads.mean(axis=1, keepdims=True))
 
 
 def _check_names(stage: dict[str, Any]) -> None:

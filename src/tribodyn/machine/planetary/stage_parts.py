@@ -204,7 +204,7 @@ class PlanetaryStage:
         dict
             By ``shafts``, ``gears``, ``meshes`` and ``bearings``.
         """
-        rack = {
+        rack: dict[str, Any] = {
             "normal_module": self.normal_module,
             "helix_angle": self.helix_angle,
             "pressure_angle": self.pressure_angle,
@@ -212,8 +212,10 @@ class PlanetaryStage:
             "carrier": self.carrier,
         }
         other: Hand = "left" if self.hand == "right" else "right"
-        stiff = {"axial_stiffness": 1e9, "tilting_stiffness": 1e6} if self.helix_angle else {}
-        pin = self.pin or Bearing("planet", 0.0, 1e9, **stiff)
+        axial, tilting = (1e9, 1e6) if self.helix_angle else (0.0, 0.0)
+        pin = self.pin or Bearing(
+            "planet", 0.0, 1e9, axial_stiffness=axial, tilting_stiffness=tilting
+        )
         parts: dict[str, dict[str, Any]] = {
             k: {} for k in ("shafts", "gears", "meshes", "bearings")
         }

@@ -352,7 +352,7 @@ def _loaded(
     wheel_torque = torque * cells.flanks.blank.ratio * loading
     lag, force, balanced, rate, springs = _balanced(cells, teeth, wheel_torque, film_springs)
     start = first_touch(cells, springs.lead)
-    coupled = not isinstance(teeth, float)
+    coupled = None if isinstance(teeth, float) else teeth
     normals = force[..., None] * cells.touch.contact.wheel.normal
     pinion, wheel = (
         cells.summed(wrench(cells, normals, gear).sum(axis=1)) for gear in ("pinion", "wheel")
@@ -377,13 +377,13 @@ def _loaded(
         load_per_width=cells.spread(width),
         hertz_pressure=cells.spread(_pressure(cells, width, material)),
         pinion_torque=torque,
-        line_stiffness=_over_lines(cells, lag, force) if coupled else teeth,
+        line_stiffness=teeth if isinstance(teeth, float) else _over_lines(cells, lag, force),
         grid=grid,
         cells=cells,
         material=material,
         film_springs=film_springs,
         loading=loading,
-        compliance=teeth if coupled else None,
+        compliance=coupled,
         tooth_springs=springs if coupled and film_springs is None else None,
     )
 

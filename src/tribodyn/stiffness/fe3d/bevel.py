@@ -121,7 +121,7 @@ def _below(sector: BevelSector) -> Array:
     back = np.swapaxes(steps, -1, -2)
     shift = -np.linalg.solve(back @ steps, back @ aside[..., None])[..., 0]
     shape = sector.flank.shape
-    grid = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1) + shift
+    grid = np.moveaxis(np.indices(shape, dtype=float), 0, -1) + shift
     return _grid_weights(grid[..., 0].ravel(), grid[..., 1].ravel(), (shape[0], shape[1]))
 
 

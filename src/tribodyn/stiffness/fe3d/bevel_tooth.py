@@ -65,21 +65,23 @@ class FlankFit:
     @classmethod
     def through(cls, along: Array, up: Array, angle: Array) -> FlankFit:
         """Fit to points."""
-        places = np.stack([along, up])
+        places: Array = np.stack([along, up])
         low, high = places.min(axis=1), places.max(axis=1)
-        scale = np.stack([0.5 * (low + high), 0.5 * (high - low)])
+        scale: Array = np.stack([0.5 * (low + high), 0.5 * (high - low)])
         x, y = (places - scale[0][:, None]) / scale[1][:, None]
         terms = np.polynomial.legendre.legvander2d(x, y, _DEGREES)
         solution = np.linalg.lstsq(terms, angle, rcond=None)[0]
-        return cls(scale, solution.reshape(_DEGREES[0] + 1, _DEGREES[1] + 1))
+        return cls(
+            scale, np.asarray(solution.reshape(_DEGREES[0] + 1, _DEGREES[1] + 1), dtype=float)
+        )
 
     def __call__(self, along: Array, up: Array, slope: int | None = None) -> Array:
         """Angle, or its slope along (0) or up (1)."""
         x = (along - self.scale[0, 0]) / self.scale[1, 0]
         y = (up - self.scale[0, 1]) / self.scale[1, 1]
-        coefficients, over = self.coefficients, 1.0
+        coefficients, over = np.asarray(self.coefficients), 1.0
         if slope is not None:
-            coefficients = np.polynomial.legendre.legder(coefficients, axis=slope)
+            coefficients = np.asarray(np.polynomial.legendre.legder(coefficients, axis=slope))
             over = self.scale[1, slope]
         return np.asarray(np.polynomial.legendre.legval2d(x, y, coefficients) / over)
 
@@ -162,8 +164,8 @@ class BevelTooth:
             fits.append(FlankFit.through(*places, angle))
         thickness = getattr(blank, f"mean_normal_thickness_{self.gear}") / unit
         spiral = getattr(blank, f"mean_spiral_angle_{self.gear}")
-        radius = cone.distance * math.sin(cone.pitch)
-        fits[1].coefficients[0, 0] += thickness / (radius * math.cos(spiral))
+        mean_radius = cone.distance * math.sin(cone.pitch)
+        fits[1].coefficients[0, 0] += thickness / (mean_radius * math.cos(spiral))
         return sense, fits[0], fits[1]
 
     @property

@@ -146,7 +146,7 @@ class CaseStage:
             if not (loose or hold):
                 continue
             radial = getattr(self.table, f"{role}_support") if loose else None
-            axial = radial if loose and self.table.helix_angle else 0.0
+            axial = (radial or 0.0) if loose and self.table.helix_angle else 0.0
             bearings[f"{self.name}_{role}"] = Bearing(
                 *(shaft, 0.0, radial),
                 axial_stiffness=axial,

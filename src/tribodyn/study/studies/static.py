@@ -113,7 +113,8 @@ def _hypoid_map(case: Case, torques: list[float], phases: int | None) -> HarrisM
 
     if phases is not None:
         require_between("phases", require_whole("phases", phases), *_PHASES)
-    loaded = hypoid_loaded_contact_of(case, **({} if phases is None else {"steps": phases}))
+    steps: dict[str, Any] = {} if phases is None else {"steps": phases}
+    loaded = hypoid_loaded_contact_of(case, **steps)
     return hypoid_transmission_error_over_torque(loaded, torques)
 
 
