@@ -56,6 +56,7 @@ _BEFORE_MAPS = 2
 _CARDS = (
     "machine.input_power",
     "machine.efficiency",
+    ".load_factor",
     "mesh_frequency",
     "dynamic_factor_peak",
     "transmission_error_peak_to_peak",
@@ -69,14 +70,14 @@ def number_of_part(key: str, value: float, digits: int = 5) -> Number:
 
 
 def _cards(summary: dict[str, float]) -> list[Number]:
-    keys = [
-        key
-        for end in _CARDS
-        for key in summary
-        if key.endswith(end) and not key.startswith("load_cases")
-    ]
+    keys: dict[tuple[str, Any], str] = {}
+    for end in _CARDS:
+        for key in summary:
+            if key.endswith(end) and not key.startswith("load_cases"):
+                # The meshes of all planets have one frequency.
+                keys.setdefault((end, summary[key] if end == "mesh_frequency" else key), key)
     cards = []
-    for key in keys[:_MOST_CARDS]:
+    for key in list(keys.values())[:_MOST_CARDS]:
         card = number_of_part(key, summary[key], 4)
         cards.append(replace(card, label=in_words(key)) if key.startswith("meshes.") else card)
     return cards

@@ -9,6 +9,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import InputError
+from tribodyn.plot.machine.power import _gains
 from tribodyn.study.machine.case import MachineCase
 
 TEXT = """
@@ -72,6 +73,14 @@ def test_a_stage_with_further_shafts_is_a_machine(tmp_path: Path) -> None:
     assert offsets == pytest.approx([0.0, (-22 / 3) % 1.0, (-44 / 3) % 1.0])
     assert case.tooth_group("main_sun1") == case.tooth_group("main_sun3")
     assert read(tmp_path, case.to_toml()).to_toml() == case.to_toml()
+
+
+def test_power_of_a_stage_enters_by_the_carrier(tmp_path: Path) -> None:
+    machine = read(tmp_path).machine()
+    for mesh in machine.meshes:
+        assert sum(_gains(machine, mesh).values()) == pytest.approx(0.0, abs=1e-6)
+    power = sum(_gains(machine, mesh).get("rotor", 0.0) for mesh in machine.meshes)
+    assert power == pytest.approx(-200e3 * 20.0 * math.pi / 30.0, rel=1e-9)
 
 
 def test_faults_of_a_stage_name_the_key_of_the_file(tmp_path: Path) -> None:

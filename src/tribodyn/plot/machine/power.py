@@ -10,6 +10,7 @@ from tribodyn.plot.theme.labels import rounded
 from tribodyn.plot.theme.style import MUTED, figure, translucent
 
 if TYPE_CHECKING:
+    from tribodyn.machine import Machine
     from tribodyn.study.machine.result import MachineResult
 
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 def machine_power(result: MachineResult) -> Any:
     """Draw the power that flows through shafts and meshes, and what is lost."""
     machine, tables = result.machine, result.operation.tables
-    flow, run = machine.kinematics, machine.operation
+    run = machine.operation
     drives = run.torque * run.speed >= 0.0
     names = [f"shaft {name}" for name in machine.shafts]
     names += [f"mesh {name}" for name in machine.meshes] + ["input", "output", "friction"]
@@ -34,12 +35,17 @@ def machine_power(result: MachineResult) -> Any:
     start, end = (run.input, run.output) if drives else (run.output, run.input)
     links.append(("input", f"shaft {start}", power, MUTED))
     lost = 0.0
-    for place, (name, load) in enumerate(flow.meshes.items()):
+    for place, name in enumerate(machine.meshes):
         color = COLORS[place % len(COLORS)]
         friction = tables[name].mean_friction_power if name in tables else 0.0
-        driver, driven = (f"shaft {machine.gears[g].shaft}" for g in (load.driver, load.driven))
-        links.append((driver, f"mesh {name}", load.power, color))
-        links.append((f"mesh {name}", driven, load.power - friction, color))
+        gains = _gains(machine, name)
+        entering = sum(gain for gain in gains.values() if gain > 0.0)
+        for shaft, gain in gains.items():
+            if gain < 0.0:
+                links.append((f"shaft {shaft}", f"mesh {name}", -gain, color))
+            elif gain > 0.0:
+                rest = gain * (1.0 - friction / entering)
+                links.append((f"mesh {name}", f"shaft {shaft}", rest, color))
         if friction:
             links.append((f"mesh {name}", "friction", friction, color))
         lost += friction
@@ -65,3 +71,14 @@ def machine_power(result: MachineResult) -> Any:
     efficiency = f", efficiency {100.0 * (1.0 - lost / power):.4g} %" if lost and power else ""
     title = f"{rounded('power', power)} in, {rounded('power', power - lost)} out{efficiency}"
     return figure(title, [trace], {"height": 360, "hovermode": "closest"})
+
+
+def _gains(machine: Machine, name: str) -> dict[str, float]:
+    """Power that a mesh gives to its shafts and to its carrier; negative where it takes it."""
+    flow, mesh = machine.kinematics, machine.meshes[name]
+    first, second = flow.meshes[name].torque
+    shafts = [machine.gears[gear].shaft for gear in mesh.gears]
+    torques = dict(zip(shafts, (-first, second), strict=True))
+    if mesh.carrier:
+        torques[mesh.carrier] = first - second
+    return {shaft: torque * flow.shafts[shaft].speed for shaft, torque in torques.items()}

@@ -215,7 +215,13 @@ def default_assumptions(case: MachineCase) -> Iterator[Assumption]:
             yield Assumption(f"bearings.{name}", "1e9 N/m", "default", why)
         for key, value, why in _estimates(getattr(bearing.rolling, "assumptions", ())):
             yield Assumption(f"bearings.{name}.{key}", value, "default", why)
-    for name in case.stages:
+    for name, stage in case.stages.items():
+        for role in ("sun", "ring", "carrier"):
+            support = case.bearings.get(f"{name}_{role}")
+            if support is not None and support.radial_stiffness is not None:
+                value = f"{support.radial_stiffness:g} N/m"
+                reason = f"support of shaft {stage.shaft_of(role)}, which has no bearing"
+                yield Assumption(f"bearings.{name}_{role}", value, "default", reason)
         reason = "planets stay at their angles while all teeth turn: Coriolis forces are left out"
         yield Assumption(f"planets.{name}: carrier", "fixed position", "default", reason)
     if case.housing is None:
