@@ -156,10 +156,11 @@ class _Balance:
         for _ in range(_STEPS):
             lines = self.nodes.reshape(*cells.in_contact.shape, _NODES)[cells.in_contact]
             closed = closed_cells(cells, springs, lag, lines @ self._compliance.hats.T)
-            load = self._at_nodes(closed, closed.force)
+            shapes = self._shapes(closed)
+            load = self._at_nodes(shapes, closed.force[:, None])[0]
             torque = cells.summed((closed.force * cells.touch.lever).sum(axis=1))
             error = self.nodes - np.einsum("pij,pj->pi", structure, load)
-            step, turned, pull, rate = self._slopes(closed, closed.spring, error)
+            step, turned, pull, rate = self._slopes(closed, shapes, closed.spring, error)
             left = np.abs(error).max(initial=0.0) / max(np.abs(self.nodes).max(initial=0.0), 1e-12)
             if wheel_torque is not None:
                 left = max(left, float(np.max(np.abs(torque - wheel_torque) / wheel_torque)))
@@ -181,24 +182,27 @@ class _Balance:
 
     def tangent(self, load: CoupledLoad, share: Array) -> CoupledLoad:
         """The same load with the slope of springs that are softer in their tangent by a share."""
-        *_, rate = self._slopes(load.closed, load.closed.spring * share, np.zeros(self.nodes.shape))
+        closed, still = load.closed, np.zeros(self.nodes.shape)
+        *_, rate = self._slopes(closed, self._shapes(closed), closed.spring * share, still)
         return load._replace(rate=rate)
 
-    def _slopes(self, closed: ClosedCells, spring: Array, error: Array) -> tuple[Array, ...]:
+    def _slopes(
+        self, closed: ClosedCells, shapes: Array, spring: Array, error: Array
+    ) -> tuple[Array, ...]:
         """Change of the nodes that ends their error, and per lag; slope of the torque by both."""
         cells, structure = self._cells, self._compliance.structure
-        arm, shapes = cells.touch.lever, self._shapes(closed)
-        pull, push = (self._at_nodes(closed, spring * each) for each in (arm, closed.lever))
+        arm = cells.touch.lever
+        pull, push = self._at_nodes(shapes, np.stack([spring * arm, spring * closed.lever], axis=1))
         system = np.eye(error.shape[1]) + structure @ self._block(shapes, spring)
         right = np.stack([-error, np.einsum("pij,pj->pi", structure, push)], axis=-1)
         step, turned = np.moveaxis(np.linalg.solve(system, right), -1, 0)
         rate = cells.summed((spring * closed.lever * arm).sum(axis=1))
         return step, turned, pull, rate - np.einsum("pi,pi->p", pull, turned)
 
-    def _at_nodes(self, closed: ClosedCells, values: Array) -> Array:
-        """Sum (p, n) at the nodes of values of the closed parts of the cells."""
-        sums = (self._shapes(closed) * values[..., None]).sum(axis=1)
-        return np.asarray(self._cells.spread(sums).reshape(self.nodes.shape))
+    def _at_nodes(self, shapes: Array, values: Array) -> Array:
+        """Sums (k, p, n) at the nodes of values (lines, k, cells) of the closed parts."""
+        sums = np.swapaxes(values @ shapes, 0, 1)
+        return np.stack([self._cells.spread(each).reshape(self.nodes.shape) for each in sums])
 
     def _shapes(self, closed: ClosedCells) -> Array:
         """Displacement of the closed parts of the cells per that of the nodes of their line."""
