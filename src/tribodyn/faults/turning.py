@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import cached_property
+from hashlib import sha256
 from typing import Any
 
 import numpy as np
@@ -21,12 +22,14 @@ from tribodyn.stiffness.loaded.contact import contact_problem
 from tribodyn.stiffness.loaded.face_problem import has_slices
 from tribodyn.stiffness.loaded.problem import FAR, Compliance, ContactProblem, slice_gaps
 from tribodyn.stiffness.model import MODELS
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 #: Phases of a mesh cycle at which the teeth are solved, where the turns are not too many.
 _PHASES, _FEWEST = 256, 32
 #: Most phases of all turns: beyond it the table needs more memory than a notebook has.
 _MOST = 400_000
+#: Gaps that differ by less than half of its inverse are rounding [1/m].
+_SAME = 1e17
 #: Slices of the face where a fault is narrower than it.
 _SLICES = 21
 
@@ -219,8 +222,9 @@ def turning_mesh(
         pair, faults, np.arange(cycles * phases) / phases, material,
         provider=provider, extended_contact=extended_contact, total_force=force, options=options,
     )  # fmt: skip
-    solved = problem.at_loads(np.array([force]))
-    approach = solved.approach[0]
+    shift, distinct, rows = _distinct(problem, cycles)
+    solved = distinct.at_loads(np.array([force]))
+    approach = solved.approach[0][rows] + shift
     if approach.max() > 0.5 * FAR:
         cycle = problem.places.phase[int(np.argmax(approach))]
         raise InputError(
@@ -229,18 +233,42 @@ def turning_mesh(
             "The neighbours of the damaged tooth do not come into contact",
             "Leave more of the tooth, or take extended contact",
         )
-    place, stiffness = ramps_about(problem, approach)
+    place, stiffness = ramps_about(distinct, solved.approach[0])
+    place, stiffness = place[rows] + shift[:, None], stiffness[rows]
     law = MeshForceLaw(
         phase_grid((0.0,), cycles * phases), *(_closed(x) for x in (place, stiffness))
     )
     return TurningMesh(
         phase=np.arange(cycles * phases + 1) / phases,
         transmission_error=_closed(approach),
-        mesh_stiffness_tangent=_closed(solved.tangent[0]),
-        load_share=_closed(_of_pairs(problem, problem.forces(solved.load[0]) / force)),
+        mesh_stiffness_tangent=_closed(solved.tangent[0][rows]),
+        load_share=_closed(_of_pairs(problem, distinct.forces(solved.load[0])[rows] / force)),
         force_law=law,
         cycles=cycles,
     )
+
+
+def _distinct(problem: ContactProblem, cycles: int) -> tuple[Array, ContactProblem, Index]:
+    """Shift of the approach (p,), the mesh cycles that differ by more, and their rows (p,)."""
+    shift = problem.least_gap[:, None, None]
+    gaps = np.where(problem.gaps >= FAR, FAR, problem.gaps - shift)
+    structure, phases = problem.compliance.structure, len(gaps) // cycles
+    groups: dict[bytes, int] = {}
+    number, first = np.empty(cycles, dtype=np.int64), []
+    for cycle in range(cycles):
+        part = slice(cycle * phases, (cycle + 1) * phases)
+        key = np.rint(gaps[part] * _SAME).tobytes() + structure[part].tobytes()
+        number[cycle] = groups.setdefault(sha256(key).digest(), len(groups))
+        if number[cycle] == len(first):
+            first.append(cycle)
+    within = np.arange(phases)
+    chosen = (np.array(first)[:, None] * phases + within).ravel()
+    parts, widths = problem.compliance, problem.widths
+    compliance = Compliance(structure[chosen], parts.local[chosen], parts.logarithm)
+    distinct = ContactProblem(
+        problem.places, compliance, gaps[chosen], widths if len(widths) == 1 else widths[chosen]
+    )
+    return shift[:, 0, 0], distinct, (number[:, None] * phases + within).ravel()
 
 
 def _of_pairs(problem: ContactProblem, share: Array) -> Array:

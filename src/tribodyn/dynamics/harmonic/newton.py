@@ -108,8 +108,10 @@ class Residual:
 
 def _scatter(force: Array, breaks: Breaks, values: Array) -> None:
     part = breaks.fraction[:, None]
-    np.add.at(force, breaks.step, (1.0 - part) * values)
-    np.add.at(force, (breaks.step + 1) % len(force), part * values)
+    at = np.concatenate([breaks.step, (breaks.step + 1) % len(force)])
+    shares = np.concatenate([(1.0 - part) * values, part * values])
+    for column, share in zip(force.T, shares.T, strict=True):
+        column += np.bincount(at, share, len(force))
 
 
 def solve_linear(
