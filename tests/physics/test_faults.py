@@ -17,6 +17,7 @@ from tribodyn.faults import (
     Crack,
     Fault,
     FlankDeviations,
+    Misalignment,
     PitchDeviations,
     Spall,
     TurningMesh,
@@ -145,6 +146,20 @@ def helical(pair: SpurPair, degrees: float) -> SpurPair:
         wheel_bore_diameter=0.03, pinion_profile_shift_coefficient=0.18,
         wheel_profile_shift_coefficient=0.17, helix_angle=math.radians(degrees),
     )  # fmt: skip
+
+
+def test_a_misaligned_gear_is_a_misaligned_pair(pair: SpurPair) -> None:
+    def error(pair: SpurPair, *faults: Fault) -> np.ndarray:
+        return mesh_with(pair, *faults, phases=16).transmission_error[:-1]
+
+    aligned, expected = error(pair), error(replace(pair, misalignment=40e-6))
+    inclined = error(pair, Misalignment(gear="wheel", amplitude=40e-6))
+    assert abs(inclined.mean() - aligned.mean()) > 1e-6
+    np.testing.assert_allclose(inclined, np.resize(expected, inclined.size), rtol=5e-3)
+    turning = mesh_with(pair, Misalignment(gear="wheel", amplitude=40e-6, order=1), phases=16)
+    once, twice = lines(turning)[1:3]
+    assert once < 1e-3 * twice  # both ends of the face are alike
+    assert twice > 1e-8
 
 
 def test_faults_of_helical_teeth(pair: SpurPair) -> None:

@@ -17,7 +17,13 @@ from tribodyn.arguments import guard
 from tribodyn.faults.bearing_defect import BearingDefect, BearingForce, BearingImpacts
 from tribodyn.faults.cracked_tooth import crack_compliance
 from tribodyn.faults.damage import BrokenTooth, Crack, Spall
-from tribodyn.faults.deviations import PitchDeviations, Waviness, eccentricity, pitch_tolerances
+from tribodyn.faults.deviations import (
+    Misalignment,
+    PitchDeviations,
+    Waviness,
+    eccentricity,
+    pitch_tolerances,
+)
 from tribodyn.faults.driven import DrivenSystem, clock_cycles, drive
 from tribodyn.faults.excitation import (
     RandomLoad,
@@ -38,6 +44,7 @@ __all__ = [
     "DrivenSystem",
     "Fault",
     "FlankDeviations",
+    "Misalignment",
     "PitchDeviations",
     "RandomLoad",
     "ShaftExcitation",

@@ -79,6 +79,51 @@ class Waviness(Fault):
         return np.asarray(-self.amplitude * np.cos(angle))
 
 
+@dataclass(frozen=True, kw_only=True)
+class Misalignment(Fault):
+    """Inclination of the flanks of a gear in the plane of action, constant or turning with it.
+
+    Parameters
+    ----------
+    gear : "pinion" or "wheel"
+        Gear that has it.
+    amplitude : float
+        Gap at one end of the common face width less that at the other [m].
+    order : int
+        Changes in a turn of the gear: 0 of a shaft inclined in its bearings, 1 of a bent shaft or a
+        gear that wobbles, 2 of a shaft whose stiffness or coupling has two axes.
+    phase : float
+        Phase where tooth 1 comes into contact [rad].
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> Misalignment(gear="wheel", amplitude=20e-6, order=1).order
+    1
+    """
+
+    amplitude: float
+    order: int = 0
+    phase: float = 0.0
+    _varies_over_face = True
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_between("amplitude", self.amplitude, 0.0, _MOST, "m")
+        object.__setattr__(self, "order", require_whole("order", self.order, 0))
+        require_between("phase", self.phase, -2.0 * math.pi, 2.0 * math.pi, "rad")
+
+    def _gap(self, places: ContactPlaces, face: Array) -> Array:
+        """Gap (p, s, 1), zero in the middle of the face."""
+        turned = np.cos(self.order * self._rotation(places) + self.phase)
+        share = face / places.contact.pair.common_face_width
+        return np.asarray(self.amplitude * turned[:, None, None] * share)
+
+
 def eccentricity(gear: GearName, amount: float, phase: float = 0.0) -> Waviness:
     """Distance of the axis of the toothing from the axis of rotation: a wave a turn.
 

@@ -22,6 +22,7 @@ _PART = "a share"
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "eccentricity": (("gear", "amplitude"), ("phase",)),
     "waviness": (("gear", "amplitude", "order"), ("phase", "lead_angle")),
+    "misalignment": (("gear", "amplitude"), ("order", "phase")),
     "pitch-deviations": (("gear", "accuracy_class"), ("seed",)),
     "flank-deviations": (("gear",), ("profile_slopes", "helix_slopes", "accuracy_class", "seed")),
     "spall": (("gear", "tooth", "depth", "start", "end"), ("face_share",)),
@@ -48,6 +49,7 @@ _EITHER = {"random-load": ("torque", "densities")}
 MEANINGS = {
     "eccentricity": "axis of the toothing beside the axis of rotation",
     "waviness": "waves that run on from tooth to tooth, a ghost order",
+    "misalignment": "flanks inclined over the face, constant or turning with the shaft",
     "pitch-deviations": "pitch deviations drawn from an accuracy class",
     "flank-deviations": "slopes of profile and helix that differ from tooth to tooth",
     "spall": "material missing on a part of one flank",
@@ -242,6 +244,7 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
         return faults.RandomLoad.of_rms(values.pop("torque"), values.pop("frequencies"), **values)
     kinds: dict[str, Any] = {
         "waviness": faults.Waviness,
+        "misalignment": faults.Misalignment,
         "pitch-deviations": faults.PitchDeviations,
         "flank-deviations": faults.FlankDeviations,
         "spall": faults.Spall,
