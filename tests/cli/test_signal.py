@@ -62,6 +62,8 @@ def test_figures_are_in_si_and_the_report_is_self_contained(
     page = (tmp_path / "r" / "report.html").read_text("utf-8")
     assert "acc of rig.csv" in page
     assert "Mean revolution of the mate, 24 teeth" in page
+    for figure in ("distance of the mate", "over a turn of the shaft", "Cepstrum", "Kurtogram"):
+        assert figure in page
     assert 'src="http' not in page
     assert call(["signal", *map(str, arguments)]) == 2
     assert "exists" in capsys.readouterr().err

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +13,14 @@ import numpy as np
 
 from tribodyn import plot
 from tribodyn.drawing import report_of
+from tribodyn.errors import ComputationError, InputError
+from tribodyn.measurement.sideband_cursors import sideband_cursors
 from tribodyn.measurement.signal_analysis import MATE, SHAFT
 from tribodyn.plot.signals.analysed import visible_frequency
 from tribodyn.plot.theme.labels import readable, significant
 from tribodyn.report.study import write_study_report
 from tribodyn.report.study_report_data import Picture, StudyReportData
+from tribodyn.signals import cepstrum, kurtogram, narrowband_demodulation
 
 if TYPE_CHECKING:
     from tribodyn.drawing import Drawing
@@ -26,6 +31,8 @@ HEAD = ("Figure", "Value", "Unit", "Meaning")
 _RPM = 30.0 / np.pi
 #: Digits of a number in the table, and number of marked mesh harmonics.
 _DIGITS, _MARKED = 5, 5
+#: Sidebands on both sides of the mesh.
+_CURSORS = 5
 _LEVELS = {
     "mean": ("Mean", "of all samples"),
     "rms": ("Rms", "root mean square, the mean included"),
@@ -259,4 +266,25 @@ def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
         heading, sketch, caption = _sketched(plot.synchronous_average, average)
         of = "" if len(analysis.averages) == 1 else f" of the {shaft}, {average.teeth} teeth"
         pictures.append((f"{heading}{of}", sketch, caption))
+    return [*pictures, *_diagnosis(analysis)]
+
+
+def _diagnosis(analysis: SignalAnalysis) -> list[Picture]:
+    """Figures of diagnosis that the recording is long enough for."""
+    teeth = analysis.teeth.get(SHAFT)
+    parts: list[tuple[Drawing, str, Callable[[], Any]]] = []
+    for name, count in analysis.teeth.items() if analysis.orders is not None and teeth else ():
+        spacing = teeth / count if teeth else 1.0
+        cursors = partial(sideband_cursors, analysis.orders, teeth, spacing, count=_CURSORS)
+        parts.append((plot.sideband_cursors, f", distance of the {name}", cursors))
+    for name, average in analysis.averages.items():
+        demodulated = partial(narrowband_demodulation, average)
+        parts.append((plot.narrowband_demodulation, f" over a turn of the {name}", demodulated))
+    for figure, method in ((plot.cepstrum, cepstrum), (plot.kurtogram, kurtogram)):
+        parts.append((figure, "", partial(method, analysis.signal, analysis.sample_rate)))
+    pictures = []
+    for figure, of, compute in parts:
+        with suppress(InputError, ComputationError):  # too short, or too few lines
+            heading, sketch, caption = _sketched(figure, compute())
+            pictures.append((f"{heading}{of}", sketch, caption))
     return pictures
