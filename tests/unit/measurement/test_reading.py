@@ -133,6 +133,8 @@ def test_mat_of_every_version_cells_and_lists_of_structures(tmp_path: Path) -> N
     items["data"] = [ACC, SOUND]
     cells = np.empty(2, dtype=object)
     cells[:] = [ACC, SOUND]
+    savemat(tmp_path / "unit.mat", {"acc": ACC, "acc_unit": "m/s^2", "note": "rig", "fs": RATE})
+    assert dict(read(tmp_path / "unit.mat").units) == {"acc": "m/s^2"}
     savemat(tmp_path / "four.mat", {"acc": ACC, "fs": RATE}, format="4")
     savemat(tmp_path / "five.mat", {"s": items, "c": cells, "fs": RATE})
     np.testing.assert_array_equal(read(tmp_path / "four.mat")["acc"], ACC)

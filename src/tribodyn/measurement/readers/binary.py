@@ -231,6 +231,8 @@ def mat(path: Path) -> RecordingData:
         if isinstance(value, MatlabOpaque) or name == "None":
             kinds = value["s2"].reshape(-1).tolist() if value.dtype.names else [""]
             refuse_table(kinds[0], path)
+        elif name.endswith("_unit") and name[:-5] in variables:  # as Recording.save writes it
+            named[f"{name[:-5]}.unit"] = value
         elif not name.startswith("__"):
             named |= dict(_fields(name, value))
     return from_arrays(named, path)
