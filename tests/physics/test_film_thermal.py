@@ -235,6 +235,36 @@ def test_case_with_heated_film_has_less_film_and_friction(short_case):
     assert hot.mean() < 0.7 * before.mean()
 
 
+@pytest.mark.filterwarnings("ignore:.*mixed-lubrication")
+@pytest.mark.slow
+def test_heated_slices_of_helical_gears_are_those_of_single_contacts(short_case):
+    case = short_case("thermal").replace(
+        {"gears.helix_angle": "10deg", "gears.center_distance": "92.95 mm"}
+    )
+    mesh = run(case).mesh
+    touching = mesh.in_contact
+    names = "load_per_width", "equivalent_radius", "entrainment_speed", "sliding_speed"
+    load, *motion, film, friction = (
+        getattr(mesh, name)[touching] for name in (*names, "central_film", "friction_coefficient")
+    )
+    order = np.argsort(mesh.sliding_speed[touching])
+    chosen = order[np.linspace(0, order.size - 1, 400).astype(int)]
+    chosen = chosen[load[chosen] > 0.3 * load.max()][::30]
+    radius, speed, sliding = (values[chosen] for values in motion)
+    direct = FILM_MODELS["thermal"].films(
+        load[chosen], radius, speed, case.lubricant_properties, MODULUS, nodes=129,
+        sliding_speed=sliding,
+    )  # fmt: skip
+    assert chosen.size > 8
+    assert np.ptp(sliding / speed) > 1.5
+    deviation = np.abs(film[chosen] / direct.central_film - 1.0)
+    assert deviation.max() < 0.02
+    assert np.median(deviation) < 3e-3
+    # The law takes the mean viscosity across the film, the solution its distribution.
+    expected = [each.friction_coefficient for each in direct.solutions]
+    np.testing.assert_allclose(friction[chosen], expected, rtol=0.05)
+
+
 HEAT = {
     "lubricant.temperature_viscosity_coefficient": 0.05,
     "lubricant.thermal_conductivity": 0.13,

@@ -34,7 +34,7 @@ from tribodyn.mesh.film.film_refinement import (
     places_of,
 )
 from tribodyn.mesh.film.film_table import FilmTable
-from tribodyn.mesh.film.path_film import LoadedFilms
+from tribodyn.mesh.film.path_film import LoadedFilms, cold_film
 from tribodyn.mesh.film.sheared_film import ShearedFilms
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import SILENT
@@ -120,22 +120,23 @@ def table_for(
 ) -> FilmTable | None:
     """Shared table of solved films; None where the settings need what no table has."""
     shared, model = _shared.get(), FILM_MODELS[settings.film_model]
-    # A table knows load and speed, and not the sliding that heats a film.
-    if shared is None or not model.method or model.heated:
+    if shared is None or not model.method:
         return None
     # A law that shears the film needs its pressure at all nodes: whole pairs solve their path.
     sheared = LAWS[settings.friction_law].needs_film or settings.film["stiffness"] == "seed"
-    if sheared and not of_slices:
+    # The table of a heated film is that of the cold one: it does not know the sliding.
+    if (sheared or model.heated) and not of_slices:
         return None
-    options = {name: value for name, value in settings.film.items() if name != "positions"}
+    model_name, options = cold_film(settings)
+    del options["positions"]
     oil, modulus = pairs.lubricant, pairs.effective_modulus
-    key = (settings.film_model, oil, modulus, repr(sorted(options.items())))
+    key = (model_name, oil, modulus, repr(sorted(options.items())))
 
     def table() -> FilmTable:
         """Table of solved contacts of any load and speed."""
         slope = _YIELDING if options["stiffness"] == "tangent" else np.inf
         tolerance = np.array([_EXACT, _EXACT, np.inf, slope, _EXACT, np.inf, np.inf, np.inf])
-        solver = _Contacts(settings.film_model, options, oil, modulus)
+        solver = _Contacts(model_name, options, oil, modulus)
         return FilmTable(solver, tolerance, tolerance < _YIELDING)
 
     return _cached_table(shared, key, table)
@@ -149,6 +150,11 @@ def _cached_table(shared: _Shared, key: Any, make: Callable[[], FilmTable]) -> F
             if len(shared.tables) > _MOST_TABLES:
                 shared.tables.popitem(last=False)
         return shared.tables[key]
+
+
+def _sheared_table(films: ShearedFilms) -> FilmTable:
+    """Table of sheared or heated films, shared like that of films."""
+    return _cached_table(_shared.get() or _persistent, films.key, films.table)
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,6 +236,11 @@ class FilmLookup:
         # pitch point, which is solved.
         doubtful[PRESSURE] = not self.of_slices
         yielding = values[STIFFNESS]
+        sliding = pairs.sliding_speed
+        if PRESSURE in checked and FILM_MODELS[self.settings.film_model].heated:
+            assert sliding is not None  # a heated film has it
+            heated = ShearedFilms(self.settings, pairs, sliding)
+            values[:STIFFNESS] += heated.film_ratios(_sheared_table(heated), loads)
         if self.settings.film["stiffness"] == "seed":
             yielding = yielding * pairs.scales(loads)["film_pressure"]
         return FilmsFromTable(
@@ -247,7 +258,7 @@ class FilmLookup:
         """Quantities of contacts that lie where the table has no films."""
         settings, some = self.settings, self.pairs.some(contacts)
         with film_places(lambda index: f"{some.age[index]:.3f} base pitches after its entry"):
-            return _quantities(some, loads[contacts], settings.film_model, settings.film)
+            return _quantities(some, loads[contacts], *cold_film(settings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,8 +284,7 @@ class FilmsFromTable(LoadedFilms):
         if not LAWS[settings.friction_law].needs_film:
             return friction_by_law(settings.friction_law, contact, settings.friction_options)
         sheared = ShearedFilms(settings, self.pairs, motion.sliding_speed)
-        table = _cached_table(_shared.get() or _persistent, sheared.key, sheared.table)
-        return sheared.friction(table, contact.load_per_width)
+        return sheared.friction(_sheared_table(sheared), contact.load_per_width)
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
         """Solve the contacts that results report; also return a mask of the certain quantities."""

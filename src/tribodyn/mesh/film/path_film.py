@@ -12,7 +12,7 @@ from abc import abstractmethod
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import product
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -35,7 +35,6 @@ from tribodyn.mesh.film.film_columns import (
     film_places,
     friction_by_law,
     judged,
-    refuse_heated,
     warn_of_loaded,
 )
 from tribodyn.mesh.film.film_refinement import (
@@ -73,6 +72,13 @@ _MOST_SLIDING = 1.99
 
 #: The film model under whose loads a heated film is solved.
 COLD = "newton"
+
+
+def cold_film(settings: ToothContact) -> tuple[str, dict[str, Any]]:
+    """Model and options of the film without its heat, which shares the loads."""
+    options = dict(settings.film)
+    heated = options.pop("thermal", None) is not None
+    return COLD if heated else settings.film_model, options
 
 
 class FilmAt(Protocol):
@@ -226,9 +232,8 @@ class PathFilm:
             return self._solve(pairs, zone, loads.of_contacts[contacts])
 
     def _solve(self, pairs: PairsInContact, zone: Index, loads: Array) -> Places:
-        model, options = self.settings.film_model, dict(self.settings.film)
-        if options.pop("thermal", None) is not None:
-            model = COLD  # the heat comes in at the positions, under the loads of the cold films
+        # The heat comes in at the positions, under the loads of the cold films.
+        model, options = cold_film(self.settings)
 
         def solve(new: Index) -> Places:
             some, load = pairs.some(new), loads[new]
@@ -353,8 +358,6 @@ def film_of(
     model = FILM_MODELS[settings.film_model]
     if not model.method:
         return FormulaFilm(settings, pairs, teeth.least_load)
-    if model.heated and cycle.slices is not None:
-        refuse_heated("helical teeth")
     contact, side = cycle.contact, cycle.side
     places = path_positions(contact, settings.film["positions"], teeth.bends)
     path = contact.A + contact.direction * places.age * contact.pair.base_pitch

@@ -12,13 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import ComputationError, quiet
 from tribodyn.friction import LAWS, FrictionParts
 from tribodyn.mesh.cycle import PairsInContact
 from tribodyn.mesh.film.film_columns import judged
-from tribodyn.mesh.film.film_refinement import places_of
+from tribodyn.mesh.film.film_refinement import STIFFNESS, Places, places_of
 from tribodyn.mesh.film.film_table import FilmTable
 from tribodyn.mesh.film.path_film import (
+    COLD,
     Friction,
     parts_of,
     sampled_speeds,
@@ -35,6 +37,10 @@ _CELLS = 4.0
 _TOLERANCE = 1e-4
 #: Side of the smallest cells in steps of the table.
 _SMALLEST = 64
+#: The same of a heated film, whose friction settles to 0.2 %: error of the coefficient and of the
+#: logarithm of the films over the cold ones; cells along the path and over the logarithm of the
+#: load; and the load over the greatest from which on a film is heated.
+_HEATED, _HEATED_CELLS, _OF_LOAD, _LEAST_HEATED = (5e-4, 4e-3), 2.0, 0.5, 0.05
 #: The last contact is in the last of these cells.
 _END = 1.0 - 1e-9
 
@@ -58,9 +64,55 @@ class ShearedFilms:
         bodies = settings.bodies, settings.composite_roughness
         return (*law, *film, *bodies, pairs.lubricant, pairs.effective_modulus, ends)
 
+    @property
+    def heated(self) -> bool:
+        """Whether the films are heated, so that they depend on the sliding."""
+        return FILM_MODELS[self.settings.film_model].heated
+
+    @property
+    def columns(self) -> int:
+        """Rows of friction in a table, at all sliding speeds; those of heated films follow."""
+        law = LAWS[self.settings.friction_law]
+        return (3 if law.asperities else 1) * self.sliding_grid.size if law.needs_film else 0
+
     def table(self) -> FilmTable:
         """Table over the logarithm of the load and the place on the path of contact."""
-        return FilmTable(_Sheared(self), np.array(_TOLERANCE), np.array(False), _SMALLEST)
+        tolerance = np.array(_TOLERANCE)
+        if self.heated:
+            tolerance = np.repeat(_HEATED, [self.columns, STIFFNESS])
+        return FilmTable(_Sheared(self), tolerance, np.array(False), _SMALLEST)
+
+    def place(self, age: Array) -> Array:
+        """Place on the path of contact, in cells."""
+        cells = _HEATED_CELLS if self.heated else _CELLS
+        return np.asarray(age / self.pairs.age.max() * (cells * _END))
+
+    def values(self, table: FilmTable, load: Array) -> Array:
+        """Rows of the table (rows, n) of every contact under its load."""
+        scale = _OF_LOAD if self.heated else 1.0
+        least = _LEAST_HEATED * load.max() if self.heated else 0.0
+        return table(scale * np.log(np.maximum(load, least)), self.place(self.pairs.age))
+
+    def film_ratios(self, table: FilmTable, load: Array) -> Array:
+        """Logarithms of heated films and pressure over the cold ones (3, n)."""
+        ratios = self.values(table, load)[self.columns :]
+        for contact in np.flatnonzero(np.isnan(ratios).any(axis=0)):
+            some = np.array([contact])
+            ratios[:, some] = self.heat(self.pairs.some(some), load[some])[1]
+        return ratios
+
+    def heat(self, contacts: PairsInContact, load: Array) -> tuple[Places, Array]:
+        """Films of some contacts, and logarithms of films and pressure over the cold ones."""
+        settings, index = self.settings, np.zeros(load.size, dtype=np.int64)
+        cold, every = dict(settings.film), np.ones(load.size, dtype=bool)
+        with quiet():
+            films = contacts.films(settings.film_model, load, **cold, progress=SILENT)
+            places = places_of(contacts, index, load, films, every)
+            if cold.pop("thermal", None) is None:
+                return places, np.zeros((0, load.size))
+            films = contacts.films(COLD, load, **cold, progress=SILENT)
+        before = places_of(contacts, index, load, films, every)
+        return places, places.values[:STIFFNESS] - before.values[:STIFFNESS]
 
     @property
     def speeds(self) -> Array:
@@ -80,8 +132,7 @@ class ShearedFilms:
 
     def friction(self, table: FilmTable, load: Array) -> Friction:
         """Friction of every contact under its load."""
-        place = self.pairs.age / self.pairs.age.max() * (_CELLS * _END)
-        values, count = table(np.log(load), place), np.arange(load.size)
+        values, count = self.values(table, load)[: self.columns], np.arange(load.size)
         rows = values.reshape(-1, self.signs.size, self.speeds.size, load.size)
         side = ((self.sliding < 0.0) & (self.signs.size > 1)).astype(int)
         over_speed = speed_weights(self.speeds, np.abs(self.sliding))
@@ -100,20 +151,10 @@ class ShearedFilms:
     def _replace(self, parts: Array, chosen: Index, load: Array) -> None:
         if chosen.size:
             contacts = self.pairs.some(chosen)
-            friction = self.solve(
-                contacts, load[chosen], np.arange(chosen.size), self.sliding[chosen]
-            )
+            index, sliding = np.arange(chosen.size), self.sliding[chosen]
+            places, _ = self.heat(contacts, load[chosen])
+            friction = sheared_friction(places, contacts, self.settings, index, sliding)
             parts[:, chosen] = parts_of(friction)
-
-    def solve(
-        self, contacts: PairsInContact, load: Array, index: Index, sliding: Array
-    ) -> Friction:
-        """Friction of solved contacts, each at some sliding speeds."""
-        settings, every = self.settings, np.ones(load.size, dtype=bool)
-        with quiet():
-            films = contacts.films(settings.film_model, load, **settings.film, progress=SILENT)
-        places = places_of(contacts, np.zeros(load.size, dtype=np.int64), load, films, every)
-        return sheared_friction(places, contacts, settings, index, sliding)
 
 
 class _Sheared:
@@ -121,19 +162,20 @@ class _Sheared:
 
     def __init__(self, films: ShearedFilms) -> None:
         self.films = films
-        pairs, place = films.pairs, films.pairs.age / films.pairs.age.max() * _CELLS
+        pairs, place = films.pairs, films.place(films.pairs.age)
         # Along the path of involutes the radius is quadratic, and the speeds are linear.
         self._radius = Polynomial.fit(place, pairs.equivalent_radius, 2)
         self._speed = Polynomial.fit(place, pairs.entrainment_speed, 1)
+        self._sliding = Polynomial.fit(place, films.sliding, 1)
 
     def __call__(self, log_load: Array, place: Array) -> Array:
-        """Friction (parts * signs * speeds, n); NaN where a contact has no solution."""
+        """Rows of the table (rows, n); NaN where a contact has no solution."""
+        films = self.films
         try:
-            return self._solved(np.exp(log_load), place)
+            return self._solved(np.exp(log_load / (_OF_LOAD if films.heated else 1.0)), place)
         except ComputationError:
             if log_load.size == 1:
-                parts = 3 if LAWS[self.films.settings.friction_law].asperities else 1
-                return np.full((parts * self.films.sliding_grid.size, 1), np.nan)
+                return np.full((films.columns + (STIFFNESS if films.heated else 0), 1), np.nan)
         halves = zip(np.array_split(log_load, 2), np.array_split(place, 2), strict=True)
         return np.concatenate([self(*half) for half in halves], axis=1)
 
@@ -146,9 +188,16 @@ class _Sheared:
             films.pairs.lubricant,
             films.pairs.effective_modulus,
             1.0,
+            self._sliding(place),
         )
+        places, ratios = films.heat(contacts, load)
+        if not films.columns:
+            return ratios
         sliding = films.sliding_grid
         index = np.repeat(np.arange(load.size), sliding.size)
         with quiet():
-            friction = films.solve(contacts, load, index, np.tile(sliding, load.size))
-        return np.concatenate([part.reshape(load.size, -1).T for part in parts_of(friction)])
+            friction = sheared_friction(
+                places, contacts, films.settings, index, np.tile(sliding, load.size)
+            )
+        parts = [part.reshape(load.size, -1).T for part in parts_of(friction)]
+        return np.concatenate([*parts, ratios])
