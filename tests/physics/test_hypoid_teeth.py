@@ -8,7 +8,7 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
 
-from known_hypoids import eased
+from known_hypoids import eased, h1043
 from tribodyn.gear import Material, SpurGear, hypoid_blank, hypoid_flanks
 from tribodyn.stiffness import load_point
 from tribodyn.stiffness.fe3d import BevelSize, fe3d_influence, hypoid_influence
@@ -147,6 +147,7 @@ def test_compliance_is_that_of_tetrahedra_under_a_strip_of_pressure(flanks, gear
     assert np.interp(share, shares, values) == pytest.approx(expected, rel=0.05)
 
 
+@pytest.mark.slow
 def test_compliance_is_symmetric_and_converges(flanks):
     sector = sector_of(flanks)
     stiffness = sector.condensed()[:, 0, :, 0]
@@ -208,6 +209,13 @@ def test_teeth_are_those_of_the_blank(flanks):
         fit = tooth.points(*places, tooth.fits[0](*places)) * unit
         gaps, steps = (np.linalg.norm(np.diff(each, axis=0), axis=-1) for each in (fit, position))
         assert gaps == pytest.approx(steps, rel=2e-4)
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_the_other_hand_is_the_mirror_image(flanks, gear):
+    left, right = (sector_of(each, gear) for each in (flanks, eased(h1043(hand_pinion="right"))))
+    assert right.mesh[1] == pytest.approx(left.mesh[1], abs=1e-9)
+    assert right.tooth.sense == -left.tooth.sense
 
 
 @pytest.mark.slow
