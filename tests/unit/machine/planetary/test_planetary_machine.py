@@ -277,3 +277,20 @@ def test_a_stage_that_does_not_work_is_refused_by_the_part() -> None:
     broken = {**machine.bearings, "low_pin1": replace(machine.bearings["low_pin1"], carrier="x")}
     with pytest.raises(InputError, match=r"bearings\.low_pin1\.carrier"):
         replace(machine, bearings=broken)
+
+
+def test_a_negative_torque_loads_the_other_flanks() -> None:
+    drive, brake = helical_stage(), helical_stage(torque=-200.0)
+    for mesh in drive.meshes:
+        loads = [machine.kinematics.meshes[mesh] for machine in (drive, brake)]
+        assert loads[0].driver == loads[1].driven
+        assert loads[0].force == pytest.approx(loads[1].force, rel=1e-12)
+        normals = [machine.directions[mesh].normal for machine in (drive, brake)]
+        along = np.array([0.0, *drive.placement.gears["low_planet" + mesh[-1]][1:]])
+        # Radial parts stay, tangential and axial ones change their signs.
+        assert normals[0] @ along == pytest.approx(normals[1] @ along, rel=1e-9)
+        assert normals[0][0] == pytest.approx(-normals[1][0], rel=1e-12)
+        assert drive.meshes[mesh].offset == brake.meshes[mesh].offset
+    balance = static_balance(brake)
+    assert balance.output_torque == pytest.approx(200.0 * 78 / 17, rel=1e-9)
+    assert all(mesh.force > 0.0 for mesh in balance.meshes.values())
