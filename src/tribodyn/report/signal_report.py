@@ -271,12 +271,12 @@ def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
 
 def _diagnosis(analysis: SignalAnalysis) -> list[Picture]:
     """Figures of diagnosis that the recording is long enough for."""
-    teeth = analysis.teeth.get(SHAFT)
+    teeth, orders = analysis.teeth.get(SHAFT), analysis.orders
     parts: list[tuple[Drawing, str, Callable[[], Any]]] = []
-    for name, count in analysis.teeth.items() if analysis.orders is not None and teeth else ():
-        spacing = teeth / count if teeth else 1.0
-        cursors = partial(sideband_cursors, analysis.orders, teeth, spacing, count=_CURSORS)
-        parts.append((plot.sideband_cursors, f", distance of the {name}", cursors))
+    if orders is not None and teeth is not None:
+        for name, count in analysis.teeth.items():
+            cursors = partial(sideband_cursors, orders, teeth, teeth / count, count=_CURSORS)
+            parts.append((plot.sideband_cursors, f", distance of the {name}", cursors))
     for name, average in analysis.averages.items():
         demodulated = partial(narrowband_demodulation, average)
         parts.append((plot.narrowband_demodulation, f" over a turn of the {name}", demodulated))
