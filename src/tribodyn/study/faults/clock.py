@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from tribodyn.errors import InputError
@@ -12,8 +13,9 @@ if TYPE_CHECKING:
 #: Mesh cycles of the longest motion: beyond it the samples need more memory than a notebook has.
 MOST_CYCLES = 6000
 #: Seconds of one core: at least, for each mesh cycle of the motion, and of the teeth whose contacts
-#: are lines, slices of the face, or slices of helical teeth.
-_LEAST, _MOTION, _TEETH = 0.2, 1.2e-2, (5e-3, 0.05, 0.6)
+#: are lines, slices of the face, or slices of helical teeth. Each jump of the force is felt at each
+#: sample of the motion, so that its time has a part that grows with the square.
+_LEAST, _MOTION, _JUMPS, _TEETH = 0.2, 1.2e-2, 8e-5, (5e-3, 0.05, 0.6)
 
 
 class TurningClock(NamedTuple):
@@ -88,7 +90,7 @@ def turning_clock(case: Case) -> TurningClock:
         raise InputError(what, "gears.kind", why, "Give a cylindrical pair")
     pair = case.gear_pair
     teeth = {name: abs(gear.teeth) for name, gear in pair.gears.items()}
-    frequency = case.pinion_speed * teeth["pinion"] / 6.283185307179586
+    frequency = case.pinion_speed * teeth["pinion"] / (2.0 * math.pi)
     faults = tuple(gear_faults(case).values())
     of_teeth = turns_of(pair, faults)
     cycles = clock_cycles(of_teeth, tuple(excitations(case).values()), teeth, frequency)
@@ -102,6 +104,6 @@ def turning_clock(case: Case) -> TurningClock:
         )
     over_face = pair.has_lead_modification or any(fault._varies_over_face for fault in faults)
     cost_of_teeth = _TEETH[2 if pair.helix_angle else 1 if over_face else 0]
-    cost = _LEAST + of_teeth * cost_of_teeth + cycles * _MOTION
+    cost = _LEAST + of_teeth * cost_of_teeth + cycles * (_MOTION + cycles * _JUMPS)
     turns_pinion, turns_wheel = (cycles / teeth[gear] for gear in ("pinion", "wheel"))
     return TurningClock(cycles, cycles / frequency, turns_pinion, turns_wheel, cost)
