@@ -74,7 +74,17 @@ class FlankInfluence:
     youngs_modulus: float
 
     def weights(self, along: Array, up: Array) -> Array:
-        """Weights (n, nodes) of the nodes at places [m] along and up the pitch cone of the gear."""
+        """Weights of the nodes at places of the pitch cone of the gear.
+
+        Parameters
+        ----------
+        along, up : (n,) array [m]
+            Places along the cone and up from it.
+
+        Returns
+        -------
+        (n, nodes) array
+        """
         unit, along, up = self.unit, along / self.module, up / self.module
         shape, stations = unit.up.shape, np.arange(unit.along.size, dtype=float)
         place = np.interp(along, unit.along, stations)
@@ -83,7 +93,17 @@ class FlankInfluence:
         return _grid_weights(place, (tip - up) / (tip - low) * (shape[1] - 1), shape)
 
     def compliance(self, neighbour: int) -> Array:
-        """Displacement [m/N] of the nodes of a neighbour, ahead in the sense, per load on nodes."""
+        """Displacement of the nodes of a tooth per load on those of another.
+
+        Parameters
+        ----------
+        neighbour : int
+            Teeth by which the displaced one is ahead in the sense.
+
+        Returns
+        -------
+        (nodes, nodes) array [m/N]
+        """
         steps = self.unit.compliance
         if abs(neighbour) >= len(steps):
             return np.zeros(steps.shape[1:])
@@ -160,6 +180,10 @@ def hypoid_influence(
     progress : Progress
         Receiver of the progress.
 
+    Returns
+    -------
+    FlankInfluence
+
     Raises
     ------
     ComputationError
@@ -174,6 +198,13 @@ def hypoid_influence(
     to the contact: across a line ``2 (1 - nu^2)/(pi E) [ln(2h/a) - nu/(2(1 - nu))]`` per load per
     length, with the depth ``h`` and the half width ``a``. Source: Weber and Banaschek (1953);
     Vijayakar (1991), the split at a depth below the surface.
+
+    Examples
+    --------
+    >>> import tribodyn as td
+    >>> flanks = td.load_case("hypoid-mixed-ehl").hypoid_flanks
+    >>> hypoid_influence(flanks, "pinion", Material()).compliance(0).shape  # doctest: +SKIP
+    (153, 153)
     """
     blank, size = flanks.blank, size or BevelSize()
     tooth = BevelTooth(flanks, gear)

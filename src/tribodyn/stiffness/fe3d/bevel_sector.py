@@ -237,7 +237,7 @@ class BevelSector:
 
     def ring_stiffness(self, order: int) -> Array:
         """Stiffness of a ring below, which does not exist."""
-        raise NotImplementedError
+        raise ValueError(f"no ring lies below the teeth of a hypoid gear (order {order})")
 
     @cached_property
     def elements(self) -> Index:
