@@ -254,7 +254,7 @@ def _distinct(problem: ContactProblem, cycles: int) -> tuple[Array, ContactProbl
     gaps = np.where(problem.gaps >= FAR, FAR, problem.gaps - shift)
     structure, phases = problem.compliance.structure, len(gaps) // cycles
     groups: dict[bytes, int] = {}
-    number, first = np.empty(cycles, dtype=np.int64), []
+    number, first = np.empty(cycles, dtype=np.int64), list[int]()
     for cycle in range(cycles):
         part = slice(cycle * phases, (cycle + 1) * phases)
         key = np.rint(gaps[part] * _SAME).tobytes() + structure[part].tobytes()
@@ -319,7 +319,7 @@ def _repeated(problem: ContactProblem, phase: Array, face: Array) -> ContactProb
         return np.tile(values, (cycles, *(1,) * (values.ndim - 1)))
 
     names = ("path", "separation", "pinion_curvature_radius", "wheel_curvature_radius")
-    rows = {name: tiled(getattr(problem.places, name)) for name in names}
+    rows: dict[str, Any] = {name: tiled(getattr(problem.places, name)) for name in names}
     places = replace(problem.places, phase=phase, **rows)
     parts, widths = problem.compliance, problem.widths
     compliance = Compliance(tiled(parts.structure), tiled(parts.local), parts.logarithm)
