@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -10,50 +11,64 @@ import numpy as np
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.harmonic.newton import Residual, State, uncorrected
 from tribodyn.dynamics.time.response import Response, build_response
-from tribodyn.types import Array, ComplexArray
+from tribodyn.types import Array, ComplexArray, Index
 
 #: Refinement of the samples between which the motion is interpolated, and points of a polynomial.
 _REFINED, _POINTS = 4, 8
-#: Jumps whose polynomials are evaluated together.
-_CHUNK = 16
+#: Terms of the exponential series of a pulse within its step, of which the last is below 1e-15.
+_TERMS = 22
 
 
 class _Jumps(NamedTuple):
     """Jumps of the force in a period."""
 
-    phase: Array  #: (b,) [-]
+    steps: int  #: samples of the period
+    step: Index  #: step of each jump (b,)
+    fraction: Array  #: of that step, where it jumps (b,)
     force: Array  #: changes of the force on the closed structure (b, s)
 
     @classmethod
     def of(cls, state: State) -> _Jumps:
         """Jumps of a motion."""
-        breaks = state.breaks
-        phase = (breaks.step + breaks.fraction) / len(state.y) % 1.0
+        breaks, steps = state.breaks, len(state.y)
         moved = np.any(breaks.jump != 0.0, axis=1)
-        return cls(phase[moved], breaks.jump[moved])
+        step = breaks.step[moved].astype(np.int64) % steps
+        return cls(steps, step, breaks.fraction[moved], breaks.jump[moved])
 
     def turns(self, count: int) -> ComplexArray:
         """Fourier coefficients 1, 2, ... of pulses at the jumps (count, s)."""
-        order = 2j * np.pi * np.arange(1, count + 1)
+        # exp(-i angle fraction) about the middle of the step, as a series: one transform a term.
+        angle = 2.0 * np.pi * np.arange(1, count + 1)[:, None] / self.steps
         total = np.zeros((count, self.force.shape[1]), dtype=complex)
-        for first in range(0, self.phase.size, _CHUNK):
-            part = slice(first, first + _CHUNK)
-            total += np.exp(-np.multiply.outer(order, self.phase[part])) @ self.force[part]
+        factor = np.exp(-0.5j * angle)
+        values = self.force.copy()
+        pulses = np.zeros((self.steps, self.force.shape[1]))
+        for term in range(_TERMS):
+            pulses[self.step] = 0.0
+            np.add.at(pulses, self.step, values)
+            total += factor * np.fft.rfft(pulses, axis=0)[1 : count + 1]
+            factor = factor * (-1j * angle / (term + 1))
+            values *= self.fraction[:, None] - 0.5
         return total
 
     def polynomials(self, phase: Array, power: int) -> Array:
         """Values at phases (p, s) of what follows the jumps: pulses integrated ``power`` times."""
+        # Bernoulli polynomials of the phase since each jump, summed by the moments of the jumps;
+        # those after the phase follow their jump of the last period: B(x + 1) - B(x) = n x^(n - 1).
+        place = ((self.step + self.fraction) / self.steps - 1e-12) % 1.0
+        order = np.argsort(place, kind="stable")
+        place, force, x = place[order, None], self.force[order], phase[:, None] % 1.0
+        passed = np.searchsorted(place[:, 0], x[:, 0], side="right")
+        bernoulli = (1.0, x - 0.5, x * (x - 1.0) + 1.0 / 6.0, x * (x - 0.5) * (x - 1.0))
         total = np.zeros((phase.size, self.force.shape[1]))
-        for first in range(0, self.phase.size, _CHUNK):
-            part = slice(first, first + _CHUNK)
-            x = np.subtract.outer(phase, self.phase[part] - 1e-12) % 1.0
-            if power == 1:  # polynomials of Bernoulli
-                values = 0.5 - x
-            elif power == 2:
-                values = -(x * (x - 1.0) + 1.0 / 6.0) / 2.0
-            else:
-                values = -x * (x - 0.5) * (x - 1.0) / 6.0
-            total += values @ self.force[part]
+        for degree in range(power + 1):
+            moment = np.zeros((place.size + 1, force.shape[1]))
+            np.cumsum((-place) ** degree / math.factorial(degree) * force, axis=0, out=moment[1:])
+            rest = power - degree
+            total -= bernoulli[rest] / math.factorial(rest) * moment[-1]
+            if rest:
+                ahead = moment[-1] - moment[passed]
+                total -= x ** (rest - 1) / math.factorial(rest - 1) * ahead
         return total
 
 
