@@ -200,7 +200,7 @@ class Mesh:
         check_number(self, "pressure_angle", "rad", math.radians(5.0), math.radians(45.0))
         if self.damping_ratio is not None:
             check_number(self, "damping_ratio", "", 0.0, 10.0)
-        object.__setattr__(self, "period", require_whole("period", self.period))
+        object.__setattr__(self, "period", require_whole("Mesh.period", self.period))
         check_number(self, "offset", "", 0.0, float(self.period))
         object.__setattr__(self, "offset", self.offset % self.period)
         object.__setattr__(self, "events", read_events(self.events, "Mesh.events"))

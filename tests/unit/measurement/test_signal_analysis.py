@@ -264,6 +264,12 @@ def test_result_has_export_plot_and_report(tmp_path: Any) -> None:
         "Orders",
         "Mean revolution of the shaft, 20 teeth",
         "Mean revolution of the mate, 31 teeth",
+        "Sidebands in the orders, distance of the shaft",
+        "Sidebands in the orders, distance of the mate",
+        "Demodulated mesh harmonic over a turn of the shaft",
+        "Demodulated mesh harmonic over a turn of the mate",
+        "Cepstrum",
+        "Kurtogram",
     ]
     assert all(np.isfinite(value) for value in analysis.figures().values())
     assert {len(row) for row in answer.rows} == {4}
