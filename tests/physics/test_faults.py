@@ -17,7 +17,7 @@ from tribodyn.faults import (
     Crack,
     Fault,
     FlankDeviations,
-    Misalignment,
+    InclinedFlanks,
     PitchDeviations,
     Spall,
     TurningMesh,
@@ -153,10 +153,10 @@ def test_a_misaligned_gear_is_a_misaligned_pair(pair: SpurPair) -> None:
         return mesh_with(pair, *faults, phases=16).transmission_error[:-1]
 
     aligned, expected = error(pair), error(replace(pair, misalignment=40e-6))
-    inclined = error(pair, Misalignment(gear="wheel", amplitude=40e-6))
+    inclined = error(pair, InclinedFlanks(gear="wheel", amplitude=40e-6))
     assert abs(inclined.mean() - aligned.mean()) > 1e-6
     np.testing.assert_allclose(inclined, np.resize(expected, inclined.size), rtol=5e-3)
-    turning = mesh_with(pair, Misalignment(gear="wheel", amplitude=40e-6, order=1), phases=16)
+    turning = mesh_with(pair, InclinedFlanks(gear="wheel", amplitude=40e-6, order=1), phases=16)
     once, twice = lines(turning)[1:3]
     assert once < 1e-3 * twice  # both ends of the face are alike
     assert twice > 1e-8

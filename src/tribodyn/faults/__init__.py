@@ -18,7 +18,7 @@ from tribodyn.faults.bearing_defect import BearingDefect, BearingForce, BearingI
 from tribodyn.faults.cracked_tooth import crack_compliance
 from tribodyn.faults.damage import BrokenTooth, Crack, Spall
 from tribodyn.faults.deviations import (
-    Misalignment,
+    InclinedFlanks,
     PitchDeviations,
     Waviness,
     eccentricity,
@@ -44,7 +44,7 @@ __all__ = [
     "DrivenSystem",
     "Fault",
     "FlankDeviations",
-    "Misalignment",
+    "InclinedFlanks",
     "PitchDeviations",
     "RandomLoad",
     "ShaftExcitation",

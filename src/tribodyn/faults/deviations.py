@@ -80,7 +80,7 @@ class Waviness(Fault):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Misalignment(Fault):
+class InclinedFlanks(Fault):
     """Inclination of the flanks of a gear in the plane of action, constant or turning with it.
 
     Parameters
@@ -102,7 +102,7 @@ class Misalignment(Fault):
 
     Examples
     --------
-    >>> Misalignment(gear="wheel", amplitude=20e-6, order=1).order
+    >>> InclinedFlanks(gear="wheel", amplitude=20e-6, order=1).order
     1
     """
 

@@ -244,7 +244,7 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
         return faults.RandomLoad.of_rms(values.pop("torque"), values.pop("frequencies"), **values)
     kinds: dict[str, Any] = {
         "waviness": faults.Waviness,
-        "misalignment": faults.Misalignment,
+        "misalignment": faults.InclinedFlanks,
         "pitch-deviations": faults.PitchDeviations,
         "flank-deviations": faults.FlankDeviations,
         "spall": faults.Spall,
