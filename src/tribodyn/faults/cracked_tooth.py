@@ -20,7 +20,7 @@ from tribodyn.types import Array, Index
 
 #: Places along the flank.
 _PLACES = 13
-#: Part of the tooth thickness beyond which the rest would bend plastically.
+#: Part of the tooth thickness beyond which what is left would bend plastically.
 _DEEPEST = 0.8
 #: Part of the depth from the root to the bore, or its substitute, that a crack may reach.
 _LOWEST = 0.5
@@ -146,7 +146,7 @@ def crack_compliance(
 def _unit_compliance(
     gear: SpurGear, poissons_ratio: float, line: CrackLine, refined: float
 ) -> tuple[Array, Array]:
-    mesh, rest = _sound_ring(gear, poissons_ratio, refined)
+    mesh, others = _sound_ring(gear, poissons_ratio, refined)
     base = gear.base_radius
     low = gear.roll_angle(max(gear.form_radius, base)) * base
     radius = np.linspace(
@@ -157,7 +157,7 @@ def _unit_compliance(
     for row, weight in crack_rows(gear, mesh, line):
         tooth = open_seam(mesh, row, line.depth / gear.normal_module, line.angle)
         sound, cracked = (
-            _self_compliance(part, forces, poissons_ratio, rest)
+            _self_compliance(part, forces, poissons_ratio, others)
             for part in (tooth.sound, tooth.cracked)
         )
         added += weight * tooth.part * (cracked - sound)
@@ -229,14 +229,16 @@ def _stiffness(mesh: SectorMesh, poissons_ratio: float) -> Any:
     return coo_array(entries, shape=(2 * len(mesh.nodes), 2 * len(mesh.nodes))).tocsr()
 
 
-def _self_compliance(mesh: SectorMesh, forces: Array, poissons_ratio: float, rest: Array) -> Array:
+def _self_compliance(
+    mesh: SectorMesh, forces: Array, poissons_ratio: float, others: Array
+) -> Array:
     """Work of each load on its own displacement in the ring, for a Young's modulus of one."""
     from scipy.sparse import coo_array
     from scipy.sparse.linalg import splu
 
     matrix = _stiffness(mesh, poissons_ratio)
     cuts, turn = _cut_freedoms(mesh)
-    block = (turn.T @ rest @ turn).ravel()
+    block = (turn.T @ others @ turn).ravel()
     places: Any = (np.repeat(cuts, cuts.size), np.tile(cuts, cuts.size))
     matrix = matrix + coo_array((block, places), shape=matrix.shape).tocsr()
     free = np.setdiff1d(np.arange(matrix.shape[0]), _freedoms(mesh.fixed))

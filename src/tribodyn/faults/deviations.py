@@ -144,6 +144,13 @@ def eccentricity(gear: GearName, amount: float, phase: float = 0.0) -> Waviness:
     return Waviness(gear=gear, amplitude=amount, order=1, phase=phase)
 
 
+def class_sizes(gear: SpurGear, accuracy_class: int) -> tuple[float, float, float]:
+    """Reference diameter and module [mm], and factor of a tolerance [m] of ISO 1328-1."""
+    require_between("accuracy_class", accuracy_class, 1, 11, "")
+    scale = 1e-6 * math.sqrt(2.0) ** (accuracy_class - 5)
+    return 2e3 * abs(gear.reference_radius), 1e3 * gear.normal_module, scale
+
+
 def pitch_tolerances(gear: SpurGear, accuracy_class: int) -> tuple[float, float]:
     """Tolerances of single and of total cumulative pitch deviation.
 
@@ -177,9 +184,7 @@ def pitch_tolerances(gear: SpurGear, accuracy_class: int) -> tuple[float, float]
     >>> [round(1e6 * value, 3) for value in pitch_tolerances(pair.pinion, 5)]
     [7.1, 21.2]
     """
-    require_between("accuracy_class", accuracy_class, 1, 11, "")
-    diameter, module = 2e3 * abs(gear.reference_radius), 1e3 * gear.normal_module
-    scale = 1e-6 * math.sqrt(2.0) ** (accuracy_class - 5)
+    diameter, module, scale = class_sizes(gear, accuracy_class)
     single = 0.001 * diameter + 0.4 * module + 5.0
     total = 0.002 * diameter + 0.55 * math.sqrt(diameter) + 0.7 * module + 12.0
     return single * scale, total * scale

@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, require_between
+from tribodyn.faults.deviations import class_sizes
 from tribodyn.faults.fault import Fault
 from tribodyn.gear import SpurGear, SpurPair
 from tribodyn.stiffness.loaded.problem import ContactPlaces
@@ -51,9 +52,7 @@ def slope_tolerances(gear: SpurGear, accuracy_class: int) -> tuple[float, float]
     >>> [round(1e6 * value, 3) for value in slope_tolerances(pair.pinion, 5)]
     [6.1, 6.25]
     """
-    require_between("accuracy_class", accuracy_class, 1, 11, "")
-    diameter, module = 2e3 * abs(gear.reference_radius), 1e3 * gear.normal_module
-    scale = 1e-6 * math.sqrt(2.0) ** (accuracy_class - 5)
+    diameter, module, scale = class_sizes(gear, accuracy_class)
     profile = 0.4 * module + 0.001 * diameter + 4.0
     helix = 0.05 * math.sqrt(diameter) + 0.35 * math.sqrt(1e3 * gear.face_width) + 4.0
     return profile * scale, helix * scale

@@ -64,11 +64,11 @@ class _Jumps(NamedTuple):
         for degree in range(power + 1):
             moment = np.zeros((place.size + 1, force.shape[1]))
             np.cumsum((-place) ** degree / math.factorial(degree) * force, axis=0, out=moment[1:])
-            rest = power - degree
-            total -= bernoulli[rest] / math.factorial(rest) * moment[-1]
-            if rest:
+            remaining = power - degree
+            total -= bernoulli[remaining] / math.factorial(remaining) * moment[-1]
+            if remaining:
                 ahead = moment[-1] - moment[passed]
-                total -= x ** (rest - 1) / math.factorial(rest - 1) * ahead
+                total -= x ** (remaining - 1) / math.factorial(remaining - 1) * ahead
         return total
 
 

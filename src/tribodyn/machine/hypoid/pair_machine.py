@@ -104,18 +104,18 @@ def hypoid_machine(
     require_one_of("side", side, ("drive", "coast"))
     for name, value, unit in (("speed", speed, "rad/s"), ("torque", torque, "N*m")):
         require_positive(name, value, unit)
-    own, places = supports or HypoidSupports(), dict(positions or {})
+    springs, places = supports or HypoidSupports(), dict(positions or {})
     flexible, supported = dict(shafts or {}), dict(bearings or {})
     masses, polar = pair_of("mass", mass, "kg"), pair_of("moment_of_inertia", moment_of_inertia, "")
-    across = np.asarray(own.diametral_moment_of_inertia)
+    across = np.asarray(springs.diametral_moment_of_inertia)
     points: list[Reference] = ["calculation-point", "calculation-point"]
     for number, gear in enumerate(_GEARS):
         if gear not in {bearing.shaft for bearing in supported.values()}:
             points[number], body = "crossing-point", (masses[number], across[number])
-            supported[gear] = _springs(gear, number, places.get(gear, 0.0), own, body)
+            supported[gear] = _springs(gear, number, places.get(gear, 0.0), springs, body)
     crossed = CrossedAxes(blank, reference=(points[0], points[1]))
     sense = 1 if CrossedGeometry(crossed, 0.0).side(1) == side else -1
-    pair = hypoid14(mesh, mass=masses, moment_of_inertia=polar, supports=own,
+    pair = hypoid14(mesh, mass=masses, moment_of_inertia=polar, supports=springs,
                     torque=torque * np.array([1.0, 1.0 / blank.ratio]), **contact)  # fmt: skip
     teeth = Mesh(
         _GEARS,
@@ -129,9 +129,9 @@ def hypoid_machine(
     sizes = ((getattr(blank, f"{n}_{g}") for n in ("teeth", "face_width")) for g in _GEARS)
     return Machine(
         shafts={
-            "engine": Shaft(moment_of_inertia=own.engine_moment_of_inertia),
+            "engine": Shaft(moment_of_inertia=springs.engine_moment_of_inertia),
             **{gear: flexible.get(gear, Shaft()) for gear in _GEARS},
-            "load": Shaft(moment_of_inertia=own.load_moment_of_inertia),
+            "load": Shaft(moment_of_inertia=springs.load_moment_of_inertia),
         },
         gears={
             gear: Gear(gear, places.get(gear), *size, *body)
@@ -139,7 +139,7 @@ def hypoid_machine(
         },
         meshes={"hypoid": teeth},
         bearings=supported,
-        couplings=_couplings(own, polar),
+        couplings=_couplings(springs, polar),
         operation=Operation("engine", "load", sense * speed, torque),
     )
 

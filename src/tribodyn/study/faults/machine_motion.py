@@ -155,8 +155,8 @@ class SensorPlace:
 
 def read_sensor(motion: MachineTurningMotion, sensor: str) -> SensorPlace:
     """Place of a sensor by its name."""
-    group, _, rest = sensor.partition(".")
-    part, _, name = rest.rpartition(".")
+    group, _, inside = sensor.partition(".")
+    part, _, name = inside.rpartition(".")
     quantity, _, axis = name.rpartition("_")
     if sensor in motion.sensors and group == "meshes":
         return SensorPlace(name, part, np.zeros(3), "N" if name == "mesh_force" else "m")
@@ -215,8 +215,8 @@ def turning_machine(case: MachineCase, sound: LoadResult) -> Machine:
         faults = faults_of_mesh(case, machine, name)
         fields = _mesh_over_turns(case, sound, name, faults)
         if fields:
-            kept = {"stiffness": machine.meshes[name].stiffness, **fields}
-            changed[name] = case.machine(sound.load, **{name: kept}).meshes[name]
+            entries = {"stiffness": machine.meshes[name].stiffness, **fields}
+            changed[name] = case.machine(sound.load, **{name: entries}).meshes[name]
     return replace(machine, meshes={**machine.meshes, **changed})
 
 

@@ -70,7 +70,7 @@ class PeriodicMotion(Protocol):
 def recording_of(
     motion: PeriodicMotion,
     defects: Sequence[tuple[str, BearingImpacts]],
-    sensors: Sequence[str],
+    sensor: str | Sequence[str],
     duration: float,
     sample_rate: float,
     scatter: Scatter,
@@ -78,6 +78,7 @@ def recording_of(
     """Sample signals of a motion; arguments as those of ``Result.recording``."""
     from tribodyn.measurement import Recording
 
+    sensors = [sensor] if isinstance(sensor, str) else list(sensor)
     require_number("duration", duration)
     require_positive("duration", duration, "s")
     require_positive("sample_rate", sample_rate, "Hz")

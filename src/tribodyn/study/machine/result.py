@@ -242,7 +242,7 @@ class MachineResult:
         return recording_of(
             motion if tacho is None else replace(motion, tacho=tacho),
             defects_of(self.case),
-            [sensor] if isinstance(sensor, str) else list(sensor),
+            sensor,
             duration,
             sample_rate,
             Scatter(noise, speed_fluctuation, tacho_jitter, seed),

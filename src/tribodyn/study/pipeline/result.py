@@ -182,7 +182,7 @@ class Result(Computed):
         return recording_of(
             self.turning_motion,
             tuple(bearing_defects(self.case).values()),
-            [sensor] if isinstance(sensor, str) else list(sensor),
+            sensor,
             duration,
             sample_rate,
             Scatter(noise, speed_fluctuation, tacho_jitter, seed),

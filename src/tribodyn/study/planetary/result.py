@@ -281,7 +281,7 @@ class PlanetaryResult:
         return recording_of(
             motion,
             (),
-            [sensor] if isinstance(sensor, str) else list(sensor),
+            sensor,
             duration,
             sample_rate,
             Scatter(noise, speed_fluctuation, tacho_jitter, seed),
