@@ -136,7 +136,9 @@ class TurningMesh(Record):
         """Mesh phase in [0, 1), exact at the events."""
         turned = np.asarray(phase, dtype=float) * self.cycles
         nearest = np.round(turned)
-        turned = np.where(np.abs(turned - nearest) < 1e-9, nearest, turned)
+        # Far below the distance at which systems compare both sides of an event.
+        rounding = min(1e-11 * self.cycles, 1e-9)
+        turned = np.where(np.abs(turned - nearest) < rounding, nearest, turned)
         return np.asarray(turned % 1.0)
 
     @cached_property

@@ -200,3 +200,13 @@ def test_the_report_has_the_turns_of_a_case_with_faults(result: Result) -> None:
 
     names = [block.name for block in figure_blocks(result)]
     assert names.index("turning_motion") == names.index("spectrum") + 1
+
+
+def test_a_sound_pair_with_jumps_of_the_friction_records_its_mesh_harmonics_alone() -> None:
+    with pytest.warns(tribodyn.ModelWarning):
+        sound = tribodyn.run(tribodyn.load_case("fzg-roughness"))
+    signal = sound.recording("pinion_y", 1.0)["pinion_y"]
+    power = np.abs(np.fft.rfft(signal * np.hanning(signal.size))) ** 2
+    harmonic = round(sound.mesh.mesh_frequency)
+    distance = np.abs((np.arange(power.size) + harmonic // 2) % harmonic - harmonic // 2)
+    assert power[distance > 6].sum() < 1e-6 * power.sum()
