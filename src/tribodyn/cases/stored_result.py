@@ -15,11 +15,7 @@ from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
 from tribodyn.record import labels_of
 from tribodyn.study.case.to_models import locate_errors
-from tribodyn.study.machine.stored import MOTION, read_machine
-from tribodyn.study.pipeline.assembly import damping_of, system_of
-from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.save import MACHINE_FILES, RESULT_FILES
-from tribodyn.study.pipeline.summary_figures import in_order, is_figure
 
 if TYPE_CHECKING:
     import xarray
@@ -29,6 +25,8 @@ if TYPE_CHECKING:
     from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.pipeline.computed import Coupling
 
+#: File of a machine or a planetary stage.
+_MOTION = "motion.nc"
 _REMEDY = "Give the directory that tribodyn run or Result.save wrote"
 #: Series without which a motion cannot be built again.
 _NEEDED = ("position", "velocity", "end_position", "end_velocity", "phase", "time")
@@ -68,10 +66,13 @@ def load_result(directory: str | os.PathLike[str]) -> Any:
 Give the directory that tribodyn run or Result.save wrote.
     """
     from tribodyn.mesh import MeshTable
+    from tribodyn.study.machine.stored import read_machine
+    from tribodyn.study.pipeline.assembly import damping_of, system_of
+    from tribodyn.study.pipeline.result import Result
     from tribodyn.validated_files import read_dataset
 
     folder = Path(directory)
-    if (folder / MOTION).is_file():
+    if (folder / _MOTION).is_file():
         if (stage := _stage(folder)) is not None:
             return stage
         return read_machine(folder, load_case, read_summary)
@@ -141,11 +142,12 @@ def _compare(folder: Path, summary: Mapping[str, float], data: xarray.Dataset) -
 
 def read_summary(folder: Path) -> dict[str, float]:
     """Figures of a saved result, from a directory that holds all of its files."""
-    files = MACHINE_FILES if (folder / MOTION).is_file() else RESULT_FILES
+    files = MACHINE_FILES if (folder / _MOTION).is_file() else RESULT_FILES
     lacking = [name for name in files[:-1] if not (folder / name).is_file()]
     if lacking:
         why = f"It holds no {lacking[0]}" if folder.is_dir() else "There is no such directory"
         raise InputError("this is no result", str(folder), why, _REMEDY)
+    from tribodyn.study.pipeline.summary_figures import in_order, is_figure
     from tribodyn.validated_files import read_bytes
 
     place = folder / "summary.json"
