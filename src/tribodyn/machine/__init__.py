@@ -33,6 +33,7 @@ from tribodyn.machine.hypoid.pair_machine import hypoid_machine
 from tribodyn.machine.machine import Machine, Operation
 from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.modes import MachineModes, machine_modes
+from tribodyn.machine.planetary.double_planets import MeshedPlanets, SteppedPlanets
 from tribodyn.machine.planetary.kinematics import PlanetaryKinematics, planetary_kinematics
 from tribodyn.machine.planetary.load_sharing import LoadShares, load_shares
 from tribodyn.machine.planetary.mesh_laws import sun_to_ring_lag
@@ -87,6 +88,7 @@ __all__ = [
     "MeshDirection",
     "MeshLoad",
     "MeshPhases",
+    "MeshedPlanets",
     "Operation",
     "Placement",
     "PlanetaryKinematics",
@@ -102,6 +104,7 @@ __all__ = [
     "ShaftLoad",
     "ShaftMatrices",
     "StaticBalance",
+    "SteppedPlanets",
     "TaperedRollerBearing",
     "face_laws",
     "hypoid_machine",

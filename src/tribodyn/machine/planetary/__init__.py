@@ -6,6 +6,7 @@
 | ``positions`` | where planets can be assembled, and how close neighbours are |
 | ``phases`` | phases of all meshes, and which modes their harmonics excite |
 | ``plane_model`` | equations of motion in the plane, after Lin and Parker |
+| ``double_planets`` | stepped planets and pairs of planets of the plane model |
 | ``modes`` | which modes are rotational, translational or modes of the planets |
 | ``mesh_laws`` | computed teeth in the plane model, lag of the ring meshes |
 | ``ring_sensor`` | signal of a sensor on the ring, with the sidebands of passing planets |

@@ -11,6 +11,7 @@ import numpy as np
 from tribodyn.dynamics.equations.entry import entry_values
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import Argument, ComputationError, InputError, Problem, did_you_mean
+from tribodyn.machine.planetary.double_planets import force_ratios
 from tribodyn.machine.planetary.plane_model import CENTRAL, planetary_plane_model
 from tribodyn.types import Array, Mask
 
@@ -28,8 +29,9 @@ class LoadShares:
     Parameters
     ----------
     force : (N,) array
-        Force of the sun mesh of every planet, which its ring mesh transmits too, along the line of
-        action; negative while the stage is driven backwards [N].
+        Force of the sun mesh of every planet along the line of action, which its ring mesh
+        transmits too, that of stepped planets over ``radius_ratio``; negative while the stage is
+        driven backwards [N].
     share : (N,) array
         Force over the mean of all planets.
     displacement : mapping of str to (float, float)
@@ -70,8 +72,8 @@ def load_shares(**stage: Any) -> LoadShares:
 
     Notes
     -----
-    The rotation of a planet, on which nothing acts but its two meshes, makes both forces equal: a
-    planet is one spring between sun, ring and pin that only presses. Weights and
+    The rotation of a planet, on which nothing acts but its meshes, gives the ratio of their forces:
+    a planet, or a pair of planets, is one spring between the members that only presses. Weights and
     centrifugal forces are not included.
 
     Examples
@@ -94,7 +96,7 @@ def load_shares(**stage: Any) -> LoadShares:
         what, why = "force_per_planet is 0", "Shares are those of a load"
         remedy = "Give the mean force of a mesh along its line of action in N"
         raise InputError(what, Argument("force_per_planet"), why, remedy)
-    spring, along, error = _planet_springs(system)
+    spring, along, error = _planet_springs(system, stage)
     # Backwards the opposite flanks press.
     sense = 1.0 if load > 0.0 else -1.0
     parts = spring, sense * along, sense * error
@@ -109,7 +111,8 @@ def load_shares(**stage: Any) -> LoadShares:
 def sampled_shares(pin_errors: Array, thickness_errors: Array, **stage: Any) -> Array:
     """Shares of the planets of many stages (m, N) that differ in their errors (m, N) [m]."""
     system = planetary_plane_model(**stage)
-    spring, along, error = _planet_springs(system)
+    spring, along, error = _planet_springs(system, stage)
+    thick = 0.5 + 0.5 * [*force_ratios(stage.get("double_planets")).values()][-1]
     sense = 1.0 if stage["force_per_planet"] > 0.0 else -1.0
     stiffness, rest = np.asarray(system.stiffness), np.asarray(system.force)
     units = np.eye(spring.size)  # what a pin that is 1 m ahead adds to the forces
@@ -117,7 +120,7 @@ def sampled_shares(pin_errors: Array, thickness_errors: Array, **stage: Any) -> 
     ahead = 10.0 * (np.array(pushed) - rest)
     forces = [
         _equilibrium(
-            stiffness, rest + pins @ ahead, spring, sense * along, sense * (error - excess)
+            stiffness, rest + pins @ ahead, spring, sense * along, sense * (error - thick * excess)
         )
         for pins, excess in zip(pin_errors, thickness_errors, strict=True)
     ]
@@ -144,21 +147,22 @@ def _check_names(stage: dict[str, Any]) -> None:
         raise InputError(problems)
 
 
-def _planet_springs(system: System) -> tuple[Array, Array, Array]:
-    """Stiffness, direction and error of every planet between sun, ring and pin."""
-    count = len(system.contacts) // 2
-    meshes = ["sun_mesh"] * count + ["ring_mesh"] * count
-    stiffness, error = (
-        np.array([
+def _planet_springs(system: System, stage: dict[str, Any]) -> tuple[Array, Array, Array]:
+    """Stiffness, direction and error of every planet between its members."""
+    ratios = force_ratios(stage.get("double_planets"))
+    count = len(system.contacts) // len(ratios)
+    meshes = [f"{mesh}_mesh" for mesh in ratios for _ in range(count)]
+    compliance, along, error = np.zeros(count), np.zeros((count, system.size)), np.zeros(count)
+    for i, (mesh, contact) in enumerate(zip(meshes, system.contacts, strict=True)):
+        stiffness, shift = (
             entry_values(f"{mesh}_{name}", getattr(contact, name), _PHASES, 1).mean()
-            for mesh, contact in zip(meshes, system.contacts, strict=True)
-        ])
-        for name in ("stiffness", "error")
-    )  # fmt: skip
-    direction = np.array([np.asarray(contact.direction) for contact in system.contacts])
-    sun, ring = slice(0, count), slice(count, None)
-    spring = 1.0 / (1.0 / stiffness[sun] + 1.0 / stiffness[ring])
-    return spring, direction[sun] + direction[ring], error[sun] + error[ring]
+            for name in ("stiffness", "error")
+        )
+        planet, ratio = i % count, [*ratios.values()][i // count]
+        compliance[planet] += ratio**2 / stiffness
+        along[planet] += ratio * np.asarray(contact.direction)
+        error[planet] += ratio * shift
+    return 1.0 / compliance, along, error
 
 
 def _equilibrium(
@@ -167,7 +171,8 @@ def _equilibrium(
     """Forces of the planets and the position at rest."""
     # The energy is convex. Weak springs to the last position hold what is free to move; their
     # forces vanish as the position settles.
-    # The rotation of a planet does nothing in the sum of its two meshes.
+    # The rotation of a planet does nothing in the sum of its meshes.
+    size = load.size
     free = [i for i in range(load.size) if i < 9 or i % 3 != 2]
     matrix, load, along = matrix[np.ix_(free, free)], load[free], along[:, free]
     weak = _WEAK * float(np.diag(matrix).max()) * np.eye(len(free))
@@ -182,7 +187,7 @@ def _equilibrium(
     else:
         what, why = "the loads of the planets do not settle", f"{_ROUNDS} iterations were made"
         raise ComputationError(what, "load_shares", why, "Check the supports and the errors")
-    full = np.zeros(3 * len(spring) + 9)
+    full = np.zeros(size)
     full[free] = position
     return force, full
 

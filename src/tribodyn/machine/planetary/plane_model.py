@@ -21,6 +21,12 @@ from tribodyn.errors import (
     require_positive,
     shortened,
 )
+from tribodyn.machine.planetary.double_planets import (
+    Directions,
+    DoublePlanets,
+    MeshedPlanets,
+    force_ratios,
+)
 from tribodyn.machine.planetary.phases import MeshPhases
 from tribodyn.machine.planetary.positions import read_angles
 from tribodyn.types import Array
@@ -67,14 +73,15 @@ def planetary_plane_model(
     mesh_gap: float = 0.0,
     damping_ratio: float = 0.0,
     carrier_speed: float = 0.0,
+    double_planets: DoublePlanets | None = None,
 ) -> System:
     """Build the plane model of a spur planetary stage in the frame of its carrier.
 
     Coordinates are x, y and u of carrier, ring, sun and every planet: u is the rotation times the
     base radius, of the carrier times the radius of the pins. The first planet is on the x axis
     where its angle is 0; rotations and angles are positive from x to y. Contacts are the sun
-    meshes of all planets, then their ring meshes. Arguments of the planets are one
-    value for all of them, or a list with one for each.
+    meshes of all planets, then their ring meshes, then the meshes between the planets of pairs.
+    Arguments of the planets are one value for all of them, or a list with one for each.
 
     Parameters
     ----------
@@ -100,7 +107,7 @@ def planetary_plane_model(
     phases : MeshPhases, optional
         Phases of the meshes, from :func:`mesh_phases`; needed where an entry is a function.
     force_per_planet : float
-        Mean force of every mesh along its line of action [N]. Positive while the sun drives
+        Mean force of every sun mesh along its line of action [N]. Positive while the sun drives
         towards greater angles or brakes the other way. The torque acts on members without torsional
         support; the supports react on the others.
     pin_errors : float or (N,) array
@@ -115,11 +122,16 @@ def planetary_plane_model(
         Damping of every mode over its critical value [1].
     carrier_speed : float
         Speed of the carrier, for the Coriolis and centripetal terms of its frame [rad/s].
+    double_planets : SteppedPlanets or MeshedPlanets, optional
+        Second gears of the planets, or second planets of pairs; then the other data of planets are
+        those of the gear at the sun.
 
     Returns
     -------
     System
-        Names are ``carrier_x, carrier_y, carrier_u, ring_x, ..., planet1_x, ...``.
+        Names are ``carrier_x, carrier_y, carrier_u, ring_x, ..., planet1_x, ...``, with
+        ``ring_planet1_x, ...`` of pairs. With phases of stepped planets the clock has
+        ``phases.cycles`` mesh cycles in its period.
 
     Raises
     ------
@@ -153,26 +165,27 @@ def planetary_plane_model(
     ring = (ring_mass, ring_inertia, ring_support, ring_torsional_support)
     sun = (sun_mass, sun_inertia, sun_support, sun_torsional_support)
     central = np.array([_member(*each) for each in zip(CENTRAL, (carrier, ring, sun), strict=True)])
-    masses = _masses(central[:, [0, 0, 1]], planet_mass, planet_inertia, count)
     alpha = _pressure_angles(sun_pressure_angle, ring_pressure_angle)
-    axes = _Directions(_angles(count, angles, phases), *alpha)
+    axes = Directions(_angles(count, angles, phases), *alpha, double_planets)
+    meshes = {"sun": (sun_mesh_stiffness, sun_mesh_error)}
+    meshes["ring"] = ring_mesh_stiffness, ring_mesh_error
+    bodies = [(planet_mass, planet_inertia)]
+    if isinstance(double_planets, MeshedPlanets):
+        bodies.append((double_planets.mass, double_planets.inertia))
+        meshes["planet"] = double_planets.mesh_stiffness, double_planets.mesh_error
+    masses = _masses(central[:, [0, 0, 1]], bodies, count)
     pins = _of_planets("pin_stiffness", pin_stiffness, count, "N/m", positive=True)
-    stiffness = np.diag(np.append(central[:, [2, 2, 3]], np.zeros(3 * count)))
-    for along in (axes.radial, axes.tangential):
-        stiffness += (along.T * pins) @ along
-    load = _load(require_number("force_per_planet", force_per_planet), count, alpha, central[:, 3])
-    load += (pins * _of_planets("pin_errors", pin_errors, count, "m")) @ axes.tangential
+    stiffness = axes.carried(pins, central[:, [2, 2, 3]])
+    force = require_number("force_per_planet", force_per_planet)
+    load = _load(axes, force_ratios(double_planets), force, central[:, 3])
+    ahead = pins * _of_planets("pin_errors", pin_errors, count, "m")
+    load += ahead @ axes.tangential[:count]
     thick = _of_planets("thickness_errors", thickness_errors, count, "m")
     require_between("mesh_gap", require_number("mesh_gap", mesh_gap), 0.0, 1.0, "m")
-    of_sun, of_ring = (sun_mesh_stiffness, sun_mesh_error), (ring_mesh_stiffness, ring_mesh_error)
-    contacts = _contacts("sun", axes.sun, of_sun, thick, mesh_gap, phases)
-    contacts += _contacts("ring", axes.ring, of_ring, thick, mesh_gap, phases)
+    contacts = _contacts(axes, meshes, thick, mesh_gap, phases)
     speed = require_number("carrier_speed", carrier_speed)
-    system = _system(masses, stiffness, load, contacts, (axes.angles, speed))
-    require_between("damping_ratio", require_number("damping_ratio", damping_ratio), 0.0, 2.0)
-    return (
-        replace(system, damping=modal_damping(system, damping_ratio)) if damping_ratio else system
-    )
+    system = _system(masses, stiffness, load, contacts, (axes, speed))
+    return with_modal_damping(system, damping_ratio)
 
 
 def _pressure_angles(sun: float, ring: float) -> tuple[float, float]:
@@ -183,10 +196,15 @@ def _pressure_angles(sun: float, ring: float) -> tuple[float, float]:
     return float(sun), float(ring)
 
 
-def _masses(central: Array, planet_mass: ArrayLike, planet_inertia: ArrayLike, count: int) -> Array:
-    mass = _of_planets("planet_mass", planet_mass, count, "kg", positive=True)
-    inertia = _of_planets("planet_inertia", planet_inertia, count, "kg", positive=True)
-    return np.concatenate([central.reshape(-1), np.stack([mass, mass, inertia], 1).reshape(-1)])
+def _masses(central: Array, planets: list[tuple[ArrayLike, ArrayLike]], count: int) -> Array:
+    masses = [central.reshape(-1)]
+    for body in planets:
+        mass, inertia = (
+            _of_planets(f"planet_{name}", value, count, "kg", positive=True)
+            for name, value in zip(("mass", "inertia"), body, strict=True)
+        )
+        masses.append(np.stack([mass, mass, inertia], 1).reshape(-1))
+    return np.concatenate(masses)
 
 
 def _member(name: str, values: tuple[float, float, float, float]) -> tuple[float, ...]:
@@ -201,56 +219,32 @@ def _member(name: str, values: tuple[float, float, float, float]) -> tuple[float
 
 
 def _contacts(
-    member: str,
-    along: Array,
-    entries: tuple[MeshEntry, MeshEntry],
+    axes: Directions,
+    meshes: dict[str, tuple[MeshEntry, MeshEntry]],
     thickness: Array,
     gap: float,
     phases: MeshPhases | None,
 ) -> list[Contact]:
-    """Meshes of the sun or the ring with every planet."""
-    count = thickness.size
-    stiffness = _entries(f"{member}_mesh_stiffness", entries[0], count, phases, positive=True)
-    error = _entries(f"{member}_mesh_error", entries[1], count, phases)
-    offset = np.zeros(count) if phases is None else getattr(phases, f"{member}_offset")
-    return [
-        Contact(
-            direction=along[i],
-            stiffness=stiffness[i],
-            error=without_excess(error[i], 0.5 * float(thickness[i])),
-            gap=float(gap),
-            offset=float(offset[i]),
-        )
-        for i in range(count)
-    ]
-
-
-class _Directions:
-    """Derivatives of the compressions and of the pin displacements, (N, n) each."""
-
-    def __init__(self, angles: Array, sun: float, ring: float) -> None:
-        count, self.angles = angles.size, angles
-        shape = count, 9 + 3 * count
-        self.radial, self.tangential, self.sun, self.ring = (np.zeros(shape) for _ in range(4))
-        rows = np.arange(count)
-        carrier, ring_x, sun_x = 0, 3, 6
-
-        def relative(to: Array, member: int, angle: Array, sign: float) -> None:
-            """Displacement of a member along ``angle``, less that of the planet."""
-            for axis, part in enumerate((np.cos(angle), np.sin(angle))):
-                to[:, member + axis] = sign * part
-                to[rows, 9 + 3 * rows + axis] = -sign * part
-
-        relative(self.radial, carrier, angles, -1.0)
-        relative(self.tangential, carrier, angles + 0.5 * np.pi, -1.0)
-        self.tangential[:, carrier + 2] = -1.0
-        for to, member, angle, turn in (
-            (self.sun, sun_x, angles - sun, 1.0),
-            (self.ring, ring_x, angles + ring, -1.0),
-        ):
-            relative(to, member, angle + 0.5 * np.pi, 1.0)
-            to[:, member + 2] = 1.0
-            to[rows, 11 + 3 * rows] = turn
+    """Meshes of all planets by kind."""
+    count, contacts = thickness.size, []
+    for mesh, entries in meshes.items():
+        stiffness = _entries(f"{mesh}_mesh_stiffness", entries[0], count, phases, positive=True)
+        error = _entries(f"{mesh}_mesh_error", entries[1], count, phases)
+        offset = np.zeros(count) if phases is None else phases.offset(mesh)
+        # Of a pair the planet at the sun meshes with the sun and with the other planet.
+        flank = 0.0 if mesh == "ring" and "planet" in meshes else 0.5
+        contacts += [
+            Contact(
+                direction=axes.meshes[mesh][i],
+                stiffness=stiffness[i],
+                error=without_excess(error[i], flank * float(thickness[i])),
+                gap=float(gap),
+                cycles=1 if phases is None else phases.cycles[mesh],
+                offset=float(offset[i]),
+            )
+            for i in range(count)
+        ]
+    return contacts
 
 
 def _angles(count: int, angles: ArrayLike | None, phases: MeshPhases | None) -> Array:
@@ -317,16 +311,16 @@ def without_excess(error: Any, thickness: float) -> Entry:
     return lambda phase: function(phase) - thickness
 
 
-def _load(force: float, count: int, alpha: tuple[float, float], supports: Array) -> Array:
+def _load(axes: Directions, ratios: dict[str, float], force: float, supports: Array) -> Array:
     """Forces on the members that are free to turn; supports react on the others."""
     if force and supports.all():
         what = f"force_per_planet = {force:.6g} N, and no member is free to turn"
         why = "Carrier, ring and sun have torsional supports, so that no torque can act"
         remedy = "Set the torsional support of the driving member to 0"
         raise InputError(what, Argument("force_per_planet"), why, remedy)
-    load = np.zeros(9 + 3 * count)
-    turning = np.array([-np.cos(alpha).sum(), 1.0, 1.0])
-    load[[2, 5, 8]] = count * force * turning * (supports == 0.0)
+    load = np.zeros(axes.size)
+    forces = {mesh: force * ratio for mesh, ratio in ratios.items()}
+    load[[2, 5, 8]] = axes.load(forces) * (supports == 0.0)
     return load
 
 
@@ -335,10 +329,10 @@ def _system(
     stiffness: Array,
     load: Array,
     contacts: list[Contact],
-    frame: tuple[Array, float],
+    frame: tuple[Directions, float],
 ) -> System:
     """System in a frame that turns at a speed, with Coriolis and centripetal terms."""
-    angles, speed = frame
+    axes, speed = frame
     x = np.arange(0, masses.size, 3)
     gyroscopic = np.zeros_like(stiffness)
     gyroscopic[x, x + 1] = -2.0 * speed * masses[x]
@@ -346,13 +340,15 @@ def _system(
     stiffness[x, x] -= speed**2 * masses[x]
     stiffness[x + 1, x + 1] -= speed**2 * masses[x]
     # Pulled outwards, the planets hold the carrier: what is free to turn turns without force.
-    for planet, angle in enumerate(angles):
-        turning = speed**2 * masses[9 + 3 * planet]
+    for planet, (angle, radius) in enumerate(zip(axes.at, axes.radius, strict=True)):
+        turning = radius * speed**2 * masses[9 + 3 * planet]
         tangent = np.array([-np.sin(angle), np.cos(angle)])
         stiffness[2, 9 + 3 * planet : 11 + 3 * planet] += turning * tangent
         stiffness[9 + 3 * planet : 11 + 3 * planet, 2] += turning * tangent
-        stiffness[2, 2] -= turning
-    members = [*CENTRAL, *(f"planet{i + 1}" for i in range(x.size - 3))]
+        stiffness[2, 2] -= radius * turning
+    count = axes.angles.size
+    members = [*CENTRAL, *(f"planet{i + 1}" for i in range(count))]
+    members += [f"ring_planet{i + 1}" for i in range(axes.bodies - count)]
     return System(
         mass=np.diag(masses),
         damping=np.zeros_like(stiffness),
@@ -372,6 +368,12 @@ def without_free_rotation(system: System) -> System:
     rigid = modes.shape[:1]
     keep = np.eye(system.size) - rigid.T @ (rigid @ np.asarray(system.mass))
     return replace(system, gyroscopic=keep.T @ np.asarray(system.gyroscopic) @ keep)
+
+
+def with_modal_damping(system: System, ratio: float) -> System:
+    """System whose modes at rest have one damping ratio."""
+    require_between("damping_ratio", require_number("damping_ratio", ratio), 0.0, 2.0)
+    return replace(system, damping=modal_damping(system, ratio)) if ratio else system
 
 
 def modal_damping(system: System, ratio: float) -> Array:
