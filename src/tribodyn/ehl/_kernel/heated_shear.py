@@ -26,6 +26,8 @@ _EXCESS, _SPARE = 1.0, 0.002
 #: Part of the flow that it drives above which the flow alone counts, part that does not matter, and
 #: how often the gradient is corrected.
 _DRIVEN, _NEGLIGIBLE, _BOUNDED = 0.2, 1e-6, 12
+#: Flow by pressure over all flow that is lost in rounding.
+_NEGLIGIBLE_FLOW = 1e-6
 #: Factors on density and flow beyond which the film is nonsense.
 _LEAST_FLOW, _LEAST_DENSITY = 1e-3, 0.3
 
@@ -201,7 +203,11 @@ def shear_column(
             b.follows[i] = part
     b.slope[i] = part * needed + (1.0 - part) * better
     slips = _stresses(i, h, b.slope[i], pressure, o, a, b, fluidity)
-    secant, total = _flow(i, h, density, o, a, b, fluidity)
+    _, total = _flow(i, h, density, o, a, b, fluidity)
+    # Flow by pressure is what the flow without a gradient has more, in the limit that it grows by.
+    secant = b.growth[i]
+    if abs(idle - total) > _NEGLIGIBLE_FLOW * flux:
+        secant = min(max((idle - total) / b.slope[i], _LEAST_FLOW * secant), secant)
     moved = total + secant * b.slope[i]
     b.factors[1, i] = max(moved / (density * h * 0.5 * (o.speed_1 + o.speed_2)), _LEAST_FLOW)
     # The sum over the nodes has this part of the integral for a cold film.
