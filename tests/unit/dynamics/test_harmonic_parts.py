@@ -80,6 +80,37 @@ def test_derivative_of_the_residual_is_that_by_differences(gap):
     assert np.linalg.norm(slope - exact) < (1e-7 if gap is None else 2e-2) * np.linalg.norm(slope)
 
 
+@pytest.mark.parametrize("gap", [None, 0.2])
+def test_few_products_solve_the_linear_equations_of_a_long_period(gap):
+    parts = dict.fromkeys(("friction", "turning", "load_friction", "gyroscopic"), True)
+    machine = random_machine(18, gap=gap, depth=0.3, **parts)
+    frequency = 0.1 / machine.cycles
+    residual = prepare(machine, frequency).residual(128 * machine.cycles, frequency)
+    generator = np.random.default_rng(0)
+    shape = residual.contacts.steps, residual.structure.push.shape[1]
+    state = residual.at(0.5 * residual.response(0.5 + 0.2 * generator.normal(size=shape)))
+    step, count = residual.correction(state, 1e-9)
+    size = np.abs(state.residual).max()
+    assert residual.derivative(state)(step) == pytest.approx(-state.residual, abs=1e-7 * size)
+    assert count <= 8  # more than 120 without time integration
+
+
+def test_a_spring_begins_to_touch_without_a_jump():
+    contact = Contact([1.0], 9.0, gap=0.1, error=lambda x: 0.2 * np.cos(2.0 * np.pi * x))
+    system = System([[1.0]], [[0.1]], [[1.0]], [0.0], [contact])
+    residual = prepare(system, 0.2).residual(64, 0.2)
+
+    def corrections(highest: float) -> float:
+        # compression -error + y, whose single crest is at the sample in the middle
+        breaks = residual.at(np.full((64, 1), highest - 0.1)).breaks
+        at_crest = (breaks.step == 31) | (breaks.step == 32)
+        return float(np.abs(breaks.correction[at_crest]).sum())
+
+    crest = 0.2 * (1.0 - np.cos(2.0 * np.pi / 64))
+    small, large = corrections(1e-6 * crest), corrections(0.5 * crest)
+    assert 0.0 < small < 1e-4 * large
+
+
 def test_entries_at_an_event_are_those_of_its_sides():
     contact = Contact([1.0], lambda x: np.where(x < 0.5, 1.0, 3.0), events=(0.5,), cycles=2)
     system = System([[1.0]], [[0.1]], [[1.0]], [1.0], [contact])

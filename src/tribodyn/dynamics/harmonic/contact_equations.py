@@ -8,6 +8,7 @@ continuously with the place of the jump.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -32,6 +33,8 @@ from tribodyn.types import Array, Index, Mask
 
 #: Part of a singular value below which a direction depends on others; of an entry that is no jump.
 _RANK, _JUMP = 1e-10, 1e-5
+#: Power of the correction of a spring that just touches: larger than 1, only near this.
+_TOUCH = 4
 #: Of so many directions one is taken for a first basis; random directions that test all others.
 _SAMPLED, _PROBES = 31, 8
 
@@ -175,6 +178,7 @@ class ContactEquations:
         after = (step + 1) % self.steps
         begin, end = clearance[step, contact, spring], clearance[after, contact, spring]
         fraction = begin / (begin - end)
+        lasting = _lasting((step, contact, spring), fraction, inside.shape)
         rows = self.rows.at(step)
         each = np.arange(step.size)
 
@@ -193,12 +197,23 @@ class ContactEquations:
         damped = np.where(steady, 0.0, of_contact(rows.nodes.damping))
         jump = opening * damped * speed
         bend = opening * edge * rows.stiffness[each, contact, spring] * (end - begin)
-        bernoulli = fraction * (fraction - 1.0) + 1.0 / 6.0
+        bernoulli = fraction * (fraction - 1.0) + lasting / 6.0
         total = (0.5 - fraction) * jump + 0.5 * bernoulli * bend
         slope = edge * (jump - (fraction - 0.5) * bend) / (end - begin)
         push = -law.push[step if len(law.push) > 1 else 0 * step, contact]
         tangent = slope[:, None, None] * push[:, :, None] * along[:, None, :]
         return Breaks(step, fraction, jump[:, None] * push, total[:, None] * push, tangent)
+
+
+def _lasting(crossing: tuple[Index, Index, Index], fraction: Array, shape: Sequence[int]) -> Array:
+    """Factor of each crossing that vanishes with a side that lasts for a single sample."""
+    # Without it the correction of a spring that just touches would begin with a jump.
+    step, *spring = crossing
+    before, after = np.zeros(shape), np.ones(shape)
+    before[step, *spring], after[step, *spring] = fraction, fraction
+    ahead = fraction * (1.0 - after[(step + 1) % shape[0], *spring])
+    behind = before[step - 1, *spring] * (1.0 - fraction)
+    return np.asarray((1.0 - ahead**_TOUCH) * (1.0 - behind**_TOUCH))
 
 
 def close_contacts(

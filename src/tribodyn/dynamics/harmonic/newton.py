@@ -1,8 +1,8 @@
 """Newton's method for the motion at the contacts over one period of the clock.
 
 The residual is the motion less the response of the closed structure to the forces that this motion
-causes: forces in time, responses in frequency. The derivative is near the unit matrix because the
-structure includes the mean contact stiffness, and generalized minimal residuals solve for a step.
+causes: forces in time, responses in frequency. Generalized minimal residuals solve for a step; a
+time integration of the linearized equations preconditions them, so that a few products suffice.
 """
 
 from __future__ import annotations
@@ -103,7 +103,14 @@ class Residual:
 
     def correction(self, state: State, accuracy: float = _LINEAR) -> tuple[Array, int]:
         """Newton step of a motion, and the number of products that it took."""
-        return solve_linear(self.derivative(state), -state.residual, accuracy)
+        product = self.derivative(state)
+        if self.structure.modes is None:
+            return solve_linear(product, -state.residual, accuracy)
+        from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
+
+        nearly = TangentMarch(self, state)
+        solution, count = solve_linear(lambda x: product(nearly(x)), -state.residual, accuracy)
+        return nearly(solution), count
 
 
 def _scatter(force: Array, breaks: Breaks, values: Array) -> None:

@@ -1,0 +1,132 @@
+"""Periodic response of the linearized contacts by time integration, as a preconditioner.
+
+Each mode obeys ``z' = lambda z + b u`` with forces ``u`` that are linear between two samples and
+follow from the motion at the contacts there. One pass over the period costs a time that is
+proportional to the samples. A pass over the last part of the period settles the start before.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled.cache import cached_njit
+from tribodyn.types import Array
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics.harmonic.newton import Residual, State
+
+#: Part of the start that is left when the motion is recorded, and rows that are solved together.
+_LEFT, _CHUNK = 1e-4, 4096
+_OPTIONS: dict[str, Any] = {
+    "nogil": True, "fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy",
+}  # fmt: skip
+
+
+class TangentMarch:
+    """Integrate the linearized equations of a motion over one period of the clock."""
+
+    def __init__(self, residual: Residual, state: State) -> None:
+        structure, self.rate = residual.structure, residual.rate
+        assert structure.modes is not None
+        values, right, left = structure.modes
+        chosen = values.imag >= 0.0
+        values, into = values[chosen], left[chosen] @ structure.input
+        output = structure.output @ (right[:, chosen] * np.where(values.imag > 0.0, 2.0, 1.0))
+        steps = len(state.y)
+        h = 1.0 / (residual.frequency * steps)
+        x = values * h
+        decay = np.exp(x)
+        small = np.abs(x) < 1e-3
+        divisor = np.where(small, 1.0, x)
+        first = np.where(small, 1.0 + x / 2.0 + x * x / 6.0, (decay - 1.0) / divisor)
+        second = np.where(small, 0.5 + x / 6.0 + x * x / 24.0, (first - 1.0) / divisor)
+        before, after = ((h * part)[:, None] * into for part in (first - second, second))
+        signals = np.concatenate((output, output * values))
+        self._output = np.ascontiguousarray(np.concatenate((signals.real, -signals.imag), axis=1))
+        pushed = decay[:, None] * after + before
+        self._push = np.ascontiguousarray(np.concatenate((pushed.real, pushed.imag)).T)
+        self._decay = np.stack((decay.real, decay.imag))
+        self._direct = np.ascontiguousarray((signals @ after).real)
+        settling = math.log(1.0 / _LEFT) / max(float(-values.real.max()), 1e-300)
+        self._lead = int(min(settling / h, steps))
+        self._gain = _gains(residual, state, self._direct)
+
+    def __call__(self, motion: Array) -> Array:
+        """Motion whose product with the derivative of the residual is nearly this one."""
+        right = np.concatenate((motion, self.rate(motion)), axis=1)
+        parts = self._decay, self._output, self._push, self._direct, self._gain
+        return np.asarray(motion + march_tangent(*parts, right, self._lead))
+
+
+def _gains(residual: Residual, state: State, direct: Array) -> Array:
+    """Forces per free motion and rate at the contacts, at each sample (steps, s, 2 r)."""
+    structure, breaks = residual.structure, state.breaks
+    stiffness = np.broadcast_to(
+        structure.contact_stiffness - state.law.stiffness,
+        (len(state.y), *structure.contact_stiffness.shape),
+    )
+    damping = np.broadcast_to(structure.contact_damping - state.law.damping, stiffness.shape)
+    if breaks.step.size:
+        stiffness = stiffness.copy()
+        part = breaks.fraction[:, None, None]
+        np.add.at(stiffness, breaks.step, (1.0 - part) * breaks.tangent)
+        np.add.at(stiffness, (breaks.step + 1) % len(stiffness), part * breaks.tangent)
+    s, r = structure.contact_stiffness.shape
+    gain, eye = np.empty((len(stiffness), s, 2 * r)), np.eye(s)
+    for begin in range(0, len(gain), _CHUNK):
+        rows = slice(begin, begin + _CHUNK)
+        both = np.concatenate((stiffness[rows], damping[rows]), axis=2)
+        gain[rows] = np.linalg.solve(eye - both @ direct, both)
+    return gain
+
+
+def _build(digest: str) -> Any:
+    @cached_njit(**_OPTIONS)
+    def march_tangent(
+        decay: Array, output: Array, push: Array, direct: Array, gain: Array, right: Array,
+        lead: int,
+    ) -> Array:  # fmt: skip
+        """Motion at the contacts (steps, r), after ``lead`` samples before the first."""
+        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
+        steps, wide = right.shape
+        m, s, r = decay.shape[1], push.shape[0], wide // 2
+        motion, z = np.zeros((steps, r)), np.zeros(2 * m)
+        signal, force = np.empty(wide), np.empty(s)
+        for step in range(steps - lead, 2 * steps):
+            row = step % steps
+            for o in range(wide):
+                total = 0.0
+                for i in range(2 * m):
+                    total += output[o, i] * z[i]
+                signal[o] = total
+            for j in range(s):
+                total = 0.0
+                for o in range(wide):
+                    total += gain[row, j, o] * (signal[o] + right[row, o])
+                force[j] = total
+            for o in range(r):
+                total = signal[o]
+                for j in range(s):
+                    total += direct[o, j] * force[j]
+                motion[row, o] = total
+            for i in range(m):
+                real, imaginary = z[i], z[m + i]
+                z[i] = decay[0, i] * real - decay[1, i] * imaginary
+                z[m + i] = decay[0, i] * imaginary + decay[1, i] * real
+            for j in range(s):
+                for i in range(2 * m):
+                    z[i] += push[j, i] * force[j]
+        return motion
+
+    return march_tangent
+
+
+march_tangent = announced(
+    _build(source_digest(__file__.rpartition("/")[0], ["tangent_march"])),
+    "the linearized equations of long periods",
+    "ten seconds",
+)
