@@ -5,6 +5,7 @@
 | ``recording`` | recordings of test rigs and :func:`read`; ``readers`` holds the file formats |
 | ``tacho`` | shaft angle at each sample from a tachometer |
 | ``mesh_speed`` | mesh speed and angle from the mesh lines, without a tachometer |
+| ``modulating_shaft`` | which of two meshing gears modulates the mesh |
 | ``orders`` | order spectrum of a recording, and order map over the speed |
 | ``vold_kalman`` | amplitude and phase of single orders over time |
 | ``comparison`` | comparison of a computed with a measured response |
@@ -17,6 +18,7 @@
 from tribodyn.arguments import guard
 from tribodyn.measurement.comparison import Comparison, compare
 from tribodyn.measurement.mesh_speed import MeshSpeed, mesh_speed
+from tribodyn.measurement.modulating_shaft import ShaftLines, modulating_shaft
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, read
 from tribodyn.measurement.shaft_speed import ShaftSpeed
@@ -31,6 +33,7 @@ __all__ = [
     "MeshSpeed",
     "OrderSpectrum",
     "Recording",
+    "ShaftLines",
     "ShaftSpeed",
     "SidebandCursors",
     "SignalAnalysis",
@@ -38,6 +41,7 @@ __all__ = [
     "analyse_signal",
     "compare",
     "mesh_speed",
+    "modulating_shaft",
     "order_map",
     "order_spectrum",
     "read",

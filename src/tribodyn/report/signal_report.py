@@ -14,6 +14,7 @@ import numpy as np
 from tribodyn import plot
 from tribodyn.drawing import report_of
 from tribodyn.errors import ComputationError, InputError
+from tribodyn.measurement.modulating_shaft import explain_modulation, modulating_shaft
 from tribodyn.measurement.sideband_cursors import sideband_cursors
 from tribodyn.measurement.signal_analysis import MATE, SHAFT
 from tribodyn.plot.signals.analysed import visible_frequency
@@ -31,6 +32,8 @@ HEAD = ("Figure", "Value", "Unit", "Meaning")
 _RPM = 30.0 / np.pi
 #: Digits of a number in the table, and number of marked mesh harmonics.
 _DIGITS, _MARKED = 5, 5
+#: FM4 from which a fault is local: noise alone stays below it.
+_LOCAL = 5.0
 #: Sidebands on both sides of the mesh.
 _CURSORS = 5
 _LEVELS = {
@@ -78,7 +81,7 @@ def signal_report_data(analysis: SignalAnalysis) -> StudyReportData:
     return StudyReportData(
         analysis,
         _pictures(analysis),
-        [_lead(analysis), *facts["notes"]],
+        [_lead(analysis), *_verdicts(analysis), *facts["notes"]],
         HEAD,
         _rows(analysis, numbers),
         facts,
@@ -137,6 +140,25 @@ def _lead(analysis: SignalAnalysis) -> str:
     if speed.varies:
         rpm += f" ({speed.lowest * _RPM:.5g} to {speed.highest * _RPM:.5g})"
     return f"{lead}; shaft at {rpm} rpm, by {speed.source}."
+
+
+def _verdicts(analysis: SignalAnalysis) -> list[str]:
+    """Which gear modulates the mesh, and whether at one tooth."""
+    teeth, mate, orders = analysis.teeth.get(SHAFT), analysis.teeth.get(MATE), analysis.orders
+    verdicts, suspects = [], list(analysis.indicators)
+    if orders is not None and teeth and mate and teeth != mate:
+        verdicts.append(explain_modulation(orders, teeth, mate, readable(analysis.unit)))
+        lines = dict(zip((SHAFT, MATE), modulating_shaft(orders, teeth, mate), strict=True))
+        suspects = [name for name in suspects if lines[name].stands_out]
+    for name in suspects:
+        average, fm4 = analysis.averages[name], analysis.indicators[name].fm4
+        if fm4 > _LOCAL:
+            place = np.degrees(average.angle[np.argmax(np.abs(average.difference()))])
+            verdicts.append(
+                f"FM4 of the {name} is {fm4:.3g}, 3 or less for sound teeth: its difference "
+                f"signal is local, as of one tooth, and largest at {place:.0f}\N{DEGREE SIGN}."
+            )
+    return [text for text in verdicts if text]
 
 
 def _cards(analysis: SignalAnalysis) -> list[tuple[str, str]]:
