@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import InputError, require_positive
+from tribodyn.errors import InputError, require_one_of, require_positive
 from tribodyn.faults.excitation import Shaft, ShaftExcitation, SpeedFluctuation
 from tribodyn.types import Array, ComplexArray
 
@@ -123,7 +123,7 @@ class DrivenSystem(NamedTuple):
 def clock_cycles(
     cycles: int,
     excitations: Sequence[ShaftExcitation],
-    teeth: Mapping[str, int],
+    teeth: Mapping[str, int | Fraction],
     mesh_frequency: float,
 ) -> int:
     """Mesh cycles until gears and excitations repeat.
@@ -134,14 +134,20 @@ def clock_cycles(
         Mesh cycles after which the gears repeat.
     excitations : sequence of ShaftExcitation
         What varies over the shafts.
-    teeth : mapping of str to int
-        Numbers of teeth of ``"pinion"`` and ``"wheel"``.
+    teeth : mapping of str to int or Fraction
+        Mesh cycles in a turn of each shaft: of a pair the numbers of teeth of ``"pinion"`` and
+        ``"wheel"``.
     mesh_frequency : float
         Mesh cycles per second [Hz].
 
     Returns
     -------
     int
+
+    Raises
+    ------
+    InputError
+        If an excitation acts on another shaft.
 
     Examples
     --------
@@ -153,8 +159,9 @@ def clock_cycles(
     96
     """
     for each in excitations:
+        require_one_of("gear", each.gear, tuple(teeth))
         if each._turns:
-            cycles = math.lcm(cycles, (teeth[each.gear] * each._turns).numerator)
+            cycles = math.lcm(cycles, Fraction(teeth[each.gear] * each._turns).numerator)
     duration = max((each._duration for each in excitations), default=0.0)
     return cycles * max(math.ceil(duration * mesh_frequency / cycles - 1e-9), 1)
 
@@ -165,8 +172,8 @@ def drive(
     excitations: Sequence[ShaftExcitation],
     *,
     mesh_frequency: float,
-    teeth: Mapping[str, int],
-    coordinates: Mapping[str, int],
+    teeth: Mapping[str, int | Fraction],
+    coordinates: Mapping[str, int | Array],
     rotation: ArrayLike | None,
     fixed_phase: bool = False,
 ) -> DrivenSystem:
@@ -182,10 +189,12 @@ def drive(
         What varies over the shafts.
     mesh_frequency : float
         Mean mesh cycles per second [Hz].
-    teeth : mapping of str to int
-        Numbers of teeth of ``"pinion"`` and ``"wheel"``.
-    coordinates : mapping of str to int
-        Number of the coordinate on which the torque of each shaft acts.
+    teeth : mapping of str to int or Fraction
+        Mesh cycles in a turn of each shaft: of a pair the numbers of teeth of ``"pinion"`` and
+        ``"wheel"``.
+    coordinates : mapping of str to int or (n,) array
+        Number of the coordinate on which the torque of each shaft acts, or its force on all
+        coordinates per unit of torque.
     rotation : (n,) array, optional
         Change of the coordinates in a mesh cycle [rad].
     fixed_phase : bool
@@ -229,11 +238,13 @@ def drive(
     lead = moving = np.zeros(1, dtype=complex)  # of the drive, and of its mesh
     force = np.zeros((1, system.size), dtype=complex)
     for each in excitations:
-        at, turns = coordinates[each.gear], Fraction(total, teeth[each.gear])
-        reduced = inertia / turning[at] ** 2 if inertia else 0.0
+        at, turns = coordinates[each.gear], Fraction(total) / teeth[each.gear]
+        row = np.eye(system.size)[at] if isinstance(at, int) else at
+        turned = float(turning @ row)
+        reduced = inertia / turned**2 if inertia else 0.0
         torque = each._torque(Shaft(turns, period, reduced))
-        acceleration = torque * (turning[at] / inertia if inertia else 0.0)
-        push = np.multiply.outer(torque, np.eye(system.size)[at])
+        acceleration = torque * (turned / inertia if inertia else 0.0)
+        push = np.multiply.outer(torque, row)
         force = _sum(force, push - np.multiply.outer(acceleration, mass @ turning))
         rate = 2.0 * np.pi * np.maximum(np.arange(torque.size), 1) / period
         lead = _sum(lead, -acceleration / rate**2)

@@ -15,11 +15,8 @@ from tribodyn.errors import (
     Argument,
     InputError,
     require_between,
-    require_one_of,
     require_positive,
 )
-from tribodyn.faults.fault import GearName
-from tribodyn.nomenclature import GEARS
 from tribodyn.types import Array, ComplexArray
 
 #: Most turns of a shaft after which its orders repeat.
@@ -41,13 +38,10 @@ class ShaftExcitation:
     Parameters
     ----------
     gear : "pinion" or "wheel"
-        Gear whose shaft it acts on.
+        Gear whose shaft it acts on; in a machine the name of the shaft.
     """
 
-    gear: GearName = "pinion"
-
-    def __post_init__(self) -> None:
-        require_one_of("gear", self.gear, GEARS)
+    gear: str = "pinion"
 
     @property
     def _turns(self) -> Fraction:
@@ -76,7 +70,6 @@ class _Orders(ShaftExcitation):
     _most = math.inf
 
     def __post_init__(self) -> None:
-        super().__post_init__()
         for name in ("orders", self._sizes, "phases"):
             object.__setattr__(self, name, _numbers(getattr(self, name)))
         if not self.phases:
@@ -246,7 +239,6 @@ class RandomLoad(ShaftExcitation):
     seed: int = 0
 
     def __post_init__(self) -> None:
-        super().__post_init__()
         for name in ("frequencies", "densities"):
             object.__setattr__(self, name, _numbers(getattr(self, name)))
         require_positive("duration", self.duration, "s")
@@ -269,7 +261,7 @@ class RandomLoad(ShaftExcitation):
         torque: float,
         band: Iterable[float],
         *,
-        gear: GearName = "pinion",
+        gear: str = "pinion",
         duration: float = 1.0,
         seed: int = 0,
     ) -> RandomLoad:

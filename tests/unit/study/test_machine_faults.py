@@ -29,6 +29,7 @@ DEFECT = {
     "kind": "bearing-defect", "bearing": "A", "place": "outer", "impact_force": "200 N",
     "rolling_elements": 9, "element_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "slip": 0.0,
 }  # fmt: skip
+RIPPLE = {"kind": "torque-ripple", "shaft": "input", "orders": [1.0], "torques": ["5 N*m"]}
 #: A spur stage with computed teeth on the same shafts.
 TEETH = {
     "gears.z1.teeth": 17, "gears.z2.teeth": 24, "meshes.first.helix_angle": "0 deg",
@@ -152,6 +153,15 @@ def test_a_recording_has_the_frequency_of_the_bearing(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("faults", "expected"),
     [
+        (
+            {"f": {**RIPPLE, "shaft": "middle"}},
+            r"faults\.f\.shaft.*no shaft \"middle\".*input, output",
+        ),
+        (
+            {"f": {**RIPPLE, "orders": [0.33333]}},
+            r"faults\.f\.orders.*nearest order that does is 1/3",
+        ),
+        ({"f": {**RIPPLE, "gear": "z1"}}, r"faults\.f\.gear.*has: shaft, orders"),
         ({"f": {**AXIS, "gear": "z9"}}, r"faults\.f\.gear.*no gear \"z9\".*z1, z2"),
         ({"f": {**AXIS, "tooth": 1}}, r"faults\.f\.tooth.*has: gear, amplitude"),
         (
@@ -231,3 +241,62 @@ def test_a_cracked_tooth_shows_on_its_shaft_alone() -> None:
         )  # fmt: skip
         fm4[gear] = condition_indicators(average).fm4
     assert fm4["z1"] > 9.0 > 6.5 > fm4["z2"]
+
+
+def test_a_ripple_on_a_shaft_forces_the_machine_at_its_order() -> None:
+    from tribodyn.dynamics.linear.natural_modes import linear_system
+
+    engine = {
+        "kind": "torque-ripple", "shaft": "input", "orders": [1.0, 3.0],
+        "torques": ["20 N*m", "8 N*m"], "phases": ["0 deg", "40 deg"],
+    }  # fmt: skip
+    motion, system = motion_with(engine=engine), result().operation.system
+    frequency, lines = motion.harmonics("meshes.first.mesh_force")
+    assert frequency[1] == pytest.approx(50.0)
+    linear, contact = linear_system(system), system.contacts[0]
+    place = result().structure.at("input", 0.0)[3]
+    for order, torque in ((1, 20.0), (3, 8.0 * np.exp(1j * np.radians(40.0)))):
+        omega = 2.0 * np.pi * 50.0 * order
+        dynamic = linear.stiffness - omega**2 * linear.mass
+        dynamic = dynamic + 1j * omega * (linear.damping + linear.gyroscopic)
+        moved = contact.direction @ np.linalg.solve(dynamic, torque * place)
+        force = (contact.stiffness + 1j * omega * contact.damping) * moved
+        assert lines[order] == pytest.approx(force, rel=1e-4)
+    # the clock of half an order is twice as long, and a fault of no size changes nothing
+    none = motion_with(engine={**engine, "orders": [0.5, 1.0], "torques": ["0 N*m", "0 N*m"]})
+    assert (none.cycles, none.rotation_frequency("input")) == (54, pytest.approx(50.0))
+    sound = motion_with().signal("meshes.first.mesh_force")[0]
+    values = none.signal("meshes.first.mesh_force")[0]
+    np.testing.assert_allclose(values, np.tile(sound, 54), atol=1e-5 * np.ptp(sound))
+
+
+def test_a_fluctuating_shaft_modulates_the_mesh_and_shows_in_the_tacho() -> None:
+    from scipy.special import jv
+
+    from tribodyn.dynamics import forced_response
+    from tribodyn.study.faults.recording import Scatter, recording_of
+
+    joint = {
+        "kind": "speed-fluctuation",
+        "shaft": "output",
+        "orders": [2.0],
+        "fluctuations": [0.02],
+    }
+    motion = motion_with(joint=joint)
+    frequency, lines = motion.harmonics("meshes.first.mesh_force")
+    assert (motion.cycles, frequency[102 // 4]) == (51, pytest.approx(25 * 1350.0 / 51))
+    sound = motion_with().harmonics("meshes.first.mesh_force")[1][1]
+    index = 51 * 0.02 / 2.0
+    at = np.array([47.0, 49.0, 51.0, 53.0]) * 1350.0 / 51
+    system = result().operation.system
+    receptance = forced_response(system, at, error=1e-6).mesh_force
+    sides = np.abs(receptance / receptance[2]) * jv([2, 1, 0, 1], index) * abs(sound)
+    np.testing.assert_allclose(np.abs(lines[[47, 49, 51, 53]]), sides, rtol=2e-3)
+    ahead = 0.02 * 51 / 2.0 / (2.0 * np.pi)  # cycles, so that a quarter of a turn differs most
+    clock = np.arange(8) / 8 / 2
+    np.testing.assert_allclose(motion.lead(clock), ahead * np.sin(4 * np.pi * clock), atol=1e-12)
+    # a turn of the input is 27 of the 51 cycles in which the speed changes twice
+    tacho = recording_of(motion, [], "meshes.first.mesh_force", 1.0, 409_600.0, Scatter(0, 0, 0, 1))
+    edges = np.flatnonzero(np.diff(tacho["tacho"]) > 0.0) / 409_600.0
+    step = 2.0 * ahead / 27 * abs(np.sin(2.0 * np.pi * 27 / 51))
+    assert np.ptp(np.diff(edges)) * 50.0 == pytest.approx(2.0 * step, rel=0.1)

@@ -122,3 +122,27 @@ def test_a_wrong_fault_names_its_key(result: Any, fault: dict[str, Any], expecte
     stated = {"kind": "eccentricity", "gear": "planet", "amplitude": "1 um", **fault}
     with pytest.raises(InputError, match=expected):
         with_fault(result, **stated)
+
+
+def test_a_ripple_on_the_carrier_accelerates_the_stage(result: Any) -> None:
+    ripple = {"kind": "torque-ripple", "shaft": "carrier", "orders": [15.25], "torques": ["20 N*m"]}
+    case = with_fault(result, **ripple)
+    motion = planetary_turning_motion(case, result.operation)
+    assert motion.repeat == 4  # mesh cycles of a quarter of the 61 teeth
+    data, stage = result.operation.data, result.operation.kinematics
+    assert motion.harmonics("ring.force")[0][61] * 2 * np.pi == pytest.approx(
+        15.25 * abs(stage.speeds["carrier"])
+    )
+    # all turns as one below the natural frequencies: a sun mesh carries what turns the sun
+    radius = result.case.center_distance
+    sun = abs(stage.torques["sun"]) / (3.0 * data["force_per_planet"])
+    inertia = data["carrier_inertia"] * radius**2 + 3.0 * data["planet_mass"] * radius**2
+    inertia += data["sun_inertia"] * sun**2 * (78.0 / 17.0) ** 2
+    inertia += 3.0 * data["planet_inertia"] * (39.0 / 17.0 * sun) ** 2  # 1 - 61/22 turns
+    expected = data["sun_inertia"] * sun * (78.0 / 17.0) * 20.0 / inertia / 3.0
+    lines = [motion.harmonics(f"planet_{i}.sun_mesh_force")[1][61] for i in (1, 2, 3)]
+    assert np.mean(lines) == pytest.approx(-expected, rel=0.05)
+    with pytest.raises(
+        InputError, match=r"faults\.f\.shaft.*members that turn are sun and carrier"
+    ):
+        with_fault(result, **{**ripple, "shaft": "ring"})

@@ -16,10 +16,11 @@ from tribodyn.faults import BearingForce, BearingImpacts, Fault, Waviness
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.faults.clock import MOST_CYCLES
+from tribodyn.study.faults.driven_shafts import drive_machine
 from tribodyn.study.faults.impact_transfer import FreeStructure, ImpactResponse, impact_response
 from tribodyn.study.faults.machine_section import faults_of_mesh
 from tribodyn.study.faults.motion import SAMPLES, signal_lines
-from tribodyn.study.machine.first_look import warn_of_period
+from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
@@ -48,6 +49,8 @@ class MachineTurningMotion:
     motion: MachineMotion
     seat: Callable[[Array], ComplexArray] | None  #: accelerance of a seat [1/kg] over [Hz]
     tacho: str  #: shaft with the tacho
+    #: Cycles of the fastest mesh by which the rotation is ahead of its mean, over the period.
+    lead: Callable[[Array], Array]
 
     @cached_property
     def splines(self) -> dict[Any, Any]:
@@ -76,11 +79,11 @@ class MachineTurningMotion:
 
     def rotation_frequency(self, shaft: str) -> float:
         """Turns of a shaft per second [Hz]."""
-        turns = self.machine.clock.turns
-        if shaft not in turns:
-            why = f"The shafts are {', '.join(turns)}"
+        clock = self.machine.clock
+        if shaft not in clock.turns:
+            why = f"The shafts are {', '.join(clock.turns)}"
             raise InputError(f'there is no shaft "{shaft}"', "argument tacho", why, "Name one")
-        return float(turns[shaft]) * self.motion.frequency
+        return float(clock.turns[shaft]) * clock.frequency
 
     @property
     def sensors(self) -> tuple[str, ...]:
@@ -138,7 +141,9 @@ class MachineTurningMotion:
 
     def __repr__(self) -> str:
         """One line."""
-        turns = ", ".join(f"{shaft} {turns}" for shaft, turns in self.machine.clock.turns.items())
+        clock = self.machine.clock
+        periods = round(clock.frequency / self.motion.frequency)
+        turns = ", ".join(f"{shaft} {periods * turns}" for shaft, turns in clock.turns.items())
         return f"MachineTurningMotion({self.period:.5g} s, turns of the shafts: {turns})"
 
 
@@ -264,14 +269,15 @@ def _error_over_turns(
     return {"error": error, "period": period}
 
 
-def _refuse_long_period(machine: Machine) -> None:
+def _refuse_long_period(cycles: int, seconds: float) -> None:
     """Refuse a motion that would need more memory than a notebook has."""
-    cycles = max(machine.clock.cycles.values())
     if cycles > MOST_CYCLES:
-        seconds = 1.0 / machine.clock.frequency
         what = f"the machine repeats only after {cycles} mesh cycles, {seconds:.4g} s"
         why = f"At most {MOST_CYCLES} mesh cycles are computed"
-        remedy = "Give faults of one gear only, or numbers of teeth with common factors"
+        remedy = (
+            "Give faults of one gear only, numbers of teeth with common factors, or orders that "
+            "repeat after fewer turns"
+        )
         raise InputError(what, "faults", why, remedy)
 
 
@@ -296,16 +302,21 @@ def machine_turning_motion(
         progress.start("Teeth over whole turns")
         machine = turning_machine(case, sound)
         warn_of_period(machine)
-        _refuse_long_period(machine)
+        clock = machine.clock
+        mesh_frequency = max(clock.cycles.values()) * clock.frequency
+        _refuse_long_period(max(clock.cycles.values()), 1.0 / clock.frequency)
         structure = replace(sound.structure, machine=machine)
-        system = system_of(structure)
-        cycles = max(machine.clock.cycles.values())
-        response = repeated(sound.response, sound.motion.frequency, machine.clock.frequency)
+        driven = drive_machine(structure, system_of(structure), case.faults)
+        frequency = mesh_frequency / driven.cycles
+        _refuse_long_period(driven.cycles, 1.0 / frequency)
+        if frequency < clock.frequency:
+            warn_of_orders(driven.cycles, 1.0 / frequency)
+        response = repeated(sound.response, sound.motion.frequency, frequency)
         for steps in _STEPS:
-            per_period = math.ceil(steps * cycles / system.cycles)
+            per_period = math.ceil(steps * driven.cycles / driven.system.cycles)
             with collected() as model_warnings:
                 response = harmonic_balance(
-                    system, machine.clock.frequency, steps=per_period, start=response,
+                    driven.system, frequency, steps=per_period, start=response,
                     tolerance=_CERTIFIED, progress=progress,
                 )  # fmt: skip
             if not response.step_error > _ACCURATE:
@@ -313,5 +324,7 @@ def machine_turning_motion(
         for warning in model_warnings:
             warn(warning.code, warning.message)
         motion = machine_motion(structure, response)
-    tacho = machine.operation.input
-    return MachineTurningMotion(sound, structure, motion, seat_accelerance(case), tacho)
+        periods = round(clock.frequency / frequency)
+        motion = replace(motion, cycles=periods * motion.cycles, frequency=frequency)
+    tacho, seat = machine.operation.input, seat_accelerance(case)
+    return MachineTurningMotion(sound, structure, motion, seat, tacho, driven.lead)

@@ -8,16 +8,20 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean
-from tribodyn.model import REQUIRED, choice, number, text
-from tribodyn.study.faults.section import KINDS, MEANINGS, FaultTable, fault_problems, read_fault
+from tribodyn.model import number, text
+from tribodyn.study.faults.section import KINDS, FaultTable, fault_problems, read_fault
 
 if TYPE_CHECKING:
-    from tribodyn.faults import BearingForce, Fault
+    from tribodyn.faults import BearingForce, Fault, ShaftExcitation
     from tribodyn.machine import Machine
     from tribodyn.study.machine.case import MachineCase
 
-#: Kinds that act on the shafts of a pair.
-_OF_PAIRS = ("torque-ripple", "speed-fluctuation", "random-load")
+#: Kinds that act on a shaft, and their keys where the shaft has a name.
+OF_SHAFTS = {
+    kind: (("shaft", *KINDS[kind][0][1:]), KINDS[kind][1])
+    for kind in ("torque-ripple", "speed-fluctuation", "random-load")
+}
+SHAFT = text(None, meaning="shaft that is driven or loaded so", example='"input"')
 _GEOMETRY = ("rolling_elements", "element_diameter", "pitch_diameter")
 _FORCE = number(
     None, 0.0, 1e7, "guards against a wrong unit", unit="N", example='"200 N"',
@@ -33,16 +37,15 @@ class MachineFaultTable(FaultTable):
     """A ``[faults.NAME]`` table of a machine: a fault of any of its gears and bearings."""
 
     kinds: ClassVar = {
-        **{kind: keys for kind, keys in KINDS.items() if kind not in _OF_PAIRS},
+        **KINDS,
+        **OF_SHAFTS,
         "bearing-defect": (
             ("bearing", "place", "impact_force"),
             (*_GEOMETRY, "contact_angle", "impact_duration", "slip"),
         ),
     }
-    kind: str = choice(
-        REQUIRED, {k: v for k, v in MEANINGS.items() if k not in _OF_PAIRS}, meaning="what it is"
-    )
     gear: str | None = text(None, meaning="gear that has it", example='"z1"')  # type: ignore[assignment]
+    shaft: str | None = SHAFT
     bearing: str | None = text(None, meaning="bearing that has it", example='"A"')
     impact_force: float | None = _FORCE
     impact_duration: float | None = _DURATION
@@ -62,6 +65,7 @@ def machine_fault_problems(
         for key, group, parts in (
             ("gear", "gears", case.gears),
             ("bearing", "bearings", case.bearings),
+            ("shaft", "shafts", case.shafts),
         ):
             reference = getattr(fault, key)
             if reference is not None and name_of(reference, group) not in parts:
@@ -81,7 +85,12 @@ def impossible_faults(case: MachineCase) -> list[tuple[str, Problem]]:
             for mesh in case.meshes
             if fault.gear is not None and name_of(fault.gear, "gears") in case._names(mesh)
         ]
-        for check in [partial(bearing_impacts, case, fault)] if fault.bearing else checks:
+        if fault.bearing:
+            checks = [partial(bearing_impacts, case, fault)]
+        elif fault.shaft:
+            speed = case.machine().kinematics.shafts[name_of(fault.shaft, "shafts")].speed
+            checks = [partial(check_shaft, fault, speed)]
+        for check in checks:
             try:
                 check()
             except InputError as error:
@@ -91,6 +100,20 @@ def impossible_faults(case: MachineCase) -> list[tuple[str, Problem]]:
                     problems.append((f"faults.{name}{key}", problem))
                 break
     return problems
+
+
+def check_shaft(fault: FaultTable, speed: float) -> None:
+    """Raise InputError if a shaft of this speed cannot be driven so."""
+    if speed == 0.0:
+        what, why = f"{shaft_excitation(fault).gear} stands", "The torque varies over its turns"
+        raise InputError(what, Argument("shaft"), why, "Name a shaft that turns")
+    shaft_excitation(fault)
+
+
+def shaft_excitation(fault: Any) -> ShaftExcitation:
+    """The torque or the speed of a named shaft."""
+    excitation: Any = read_fault(fault, gear=name_of(fault.shaft, "shafts"))
+    return excitation  # type: ignore[no-any-return]
 
 
 def _check_gear_fault(case: MachineCase, fault: MachineFaultTable, mesh: str) -> None:

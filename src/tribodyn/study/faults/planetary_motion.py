@@ -16,9 +16,11 @@ from tribodyn.dynamics.equations.system import CONTACT_ENTRIES, FRICTION_ENTRIES
 from tribodyn.errors import InputError, collected, warn
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.planetary.ring_sensor import passing_weights
+from tribodyn.study.faults.driven_shafts import drive_stage
 from tribodyn.study.faults.machine_motion import repeated, seat_accelerance
-from tribodyn.study.faults.machine_section import name_of
+from tribodyn.study.faults.machine_section import OF_SHAFTS, name_of
 from tribodyn.study.faults.motion import SAMPLES, signal_lines
+from tribodyn.study.machine.first_look import warn_of_orders
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
@@ -51,6 +53,8 @@ class PlanetaryTurningMotion:
     repeat: int  #: these mesh cycles
     sensor: RingSensor
     tacho: str  #: member with the tacho
+    #: Mesh cycles by which the rotation is ahead of its mean, over the cycles of the motion.
+    lead: Callable[[Array], Array]
 
     @cached_property
     def splines(self) -> dict[Any, Any]:
@@ -131,7 +135,8 @@ class PlanetaryTurningMotion:
         """Weight of each planet at the sensor on the samples (count, N)."""
         stage, load = self.sound.kinematics, self.sound
         turn = 1.0 if stage.torques["sun"] > 0.0 else -1.0
-        turns = np.arange(count) / SAMPLES / self._teeth("ring")
+        at = np.arange(count) / SAMPLES
+        turns = (at + self.lead(at / self.repeat % 1.0)) / self._teeth("ring")
         carrier = -np.sign(stage.relative_speeds["ring"]) * turns  # relative to the ring
         return passing_weights(turn * load.phases.angles, carrier, *self.sensor)
 
@@ -174,6 +179,8 @@ def mesh_waves(case: PlanetaryCase, sound: PlanetaryLoadResult) -> dict[int, lis
     sense = 1.0 if case.sun_drives(sound.load) else -1.0  # of the sun relative to the carrier
     between = sum(pair.gear_pair.operating_pressure_angle for pair in case.pairs.values())
     for fault in case.faults.values():
+        if fault.kind in OF_SHAFTS:
+            continue
         gear, order = name_of(fault.gear, "gears"), fault.order or 1
         teeth = abs(case.gears[gear].teeth)
         if gear == table.planet:
@@ -226,15 +233,19 @@ def planetary_turning_motion(
 
     waves = mesh_waves(case, sound)
     cycles = math.lcm(*(wave.teeth for each in waves.values() for wave in each))
+    driven = drive_stage(case, sound, with_waves(sound.system, waves, cycles), cycles)
+    cycles = driven.cycles
     ring = abs(case.gears[case.table.ring].teeth)
     if cycles > _MOST or math.lcm(cycles, ring) > _MOST_OF_RING:
         what = f"the stage repeats only after {math.lcm(cycles, ring)} mesh cycles"
         why = f"At most {_MOST} of the motion and {_MOST_OF_RING} of the ring are computed"
-        raise InputError(what, "faults", why, "Give faults of one gear only")
+        remedy = "Give faults of one gear only, and orders that repeat after few turns"
+        raise InputError(what, "faults", why, remedy)
     motion = sound.motion
-    if waves:
-        frequency = sound.kinematics.mesh_frequency
-        system = with_waves(sound.system, waves, cycles)
+    if driven.lead.lines.any():
+        warn_of_orders(cycles, cycles / sound.kinematics.mesh_frequency)
+    if case.faults:
+        frequency, system = sound.kinematics.mesh_frequency, driven.system
         start = repeated(sound.response, frequency, frequency / cycles)
         with single_blas_thread(), collected() as model_warnings:
             response = harmonic_balance(
@@ -245,5 +256,5 @@ def planetary_turning_motion(
             warn(warning.code, warning.message)
         motion = planetary_motion(response, sound.data, case.turn(sound.load))
         motion = replace(motion, phase=motion.phase * cycles, mesh_frequency=frequency)
-    sensor = RingSensor(0.0, None)
-    return PlanetaryTurningMotion(case, sound, motion, cycles, sensor, case.ends[0])
+    sensor, tacho = RingSensor(0.0, None), case.ends[0]
+    return PlanetaryTurningMotion(case, sound, motion, cycles, sensor, tacho, driven.lead)

@@ -58,6 +58,10 @@ class PeriodicMotion(Protocol):
     def signal(self, sensor: str) -> tuple[Array, str]:
         """Even samples of a period, and their unit."""
 
+    @property
+    def lead(self) -> Any:
+        """Mesh cycles by which the rotation is ahead of its mean: even samples, or a function."""
+
     def rotation_frequency(self, shaft: str, /) -> float:
         """Turns of a shaft per second [Hz]."""
 
@@ -108,7 +112,8 @@ def recording_of(
         channels[sensor] = samples + scatter.noise * rng.standard_normal(count)
         units[sensor] = unit
     cycles_of_turn = motion.mesh_frequency / motion.rotation_frequency(motion.tacho)
-    channels["tacho"] = _tacho(turned / cycles_of_turn, scatter.tacho_jitter, rng)
+    ahead = _lead_at(motion, (turned / motion.cycles) % 1.0)
+    channels["tacho"] = _tacho((turned + ahead) / cycles_of_turn, scatter.tacho_jitter, rng)
     units["tacho"] = "V"
     return Recording(channels, sample_rate, units)
 
@@ -130,6 +135,14 @@ def _mesh_cycles(
             np.sin(omega * time + phase) - np.sin(phase)
         )
     return np.asarray(cycles)
+
+
+def _lead_at(motion: PeriodicMotion, clock: Array) -> Array:
+    """Mesh cycles by which the rotation is ahead of its mean."""
+    if callable(motion.lead):
+        return np.asarray(motion.lead(clock))
+    count = len(motion.lead)
+    return np.interp(clock, np.arange(count) / count, motion.lead, period=1.0)
 
 
 def _band_limited(motion: PeriodicMotion, values: Array, sample_rate: float) -> Any:

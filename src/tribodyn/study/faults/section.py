@@ -236,6 +236,7 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
     from tribodyn import faults
 
     values = {**_stated(fault), **changes}
+    values.pop("shaft", None)
     if fault.kind == "eccentricity":
         return faults.Waviness(order=1, **values)
     if fault.kind == "bearing-defect":

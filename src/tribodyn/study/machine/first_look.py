@@ -39,14 +39,31 @@ def warn_of_period(machine: Machine) -> None:
     if turning:
         reason = "unequal teeth repeat with whole turns of their gears"
         remedy = "Faults of one gear only shorten the period"
-    gigabytes = 1e-9 * _BYTES * _STEPS * cycles * 100
-    warn(
-        "long-period",
+    warn_of_steps(
+        cycles,
         f"the meshes repeat together only after {cycles} cycles of mesh {fastest} "
-        f"({1.0 / clock.frequency:.4g} s), because {reason} ({', '.join(pairs)}). "
-        f"Each motion takes {_STEPS * cycles} steps and about "
-        f"{gigabytes:.2g} GB for 100 coordinates. {remedy}",
+        f"({1.0 / clock.frequency:.4g} s), because {reason} ({', '.join(pairs)})",
+        remedy,
     )
+
+
+def warn_of_orders(cycles: int, seconds: float) -> None:
+    """Warn of orders of torques and speeds that repeat with the meshes after many cycles."""
+    if cycles > _LONG_PERIOD:
+        warn_of_steps(
+            cycles,
+            f"meshes, torques and speeds repeat together only after {cycles} mesh cycles "
+            f"({seconds:.4g} s), because shafts with varying torques or speeds make whole turns",
+            "Excitations of one shaft only, or orders that repeat after a part of a turn, shorten "
+            "the period",
+        )
+
+
+def warn_of_steps(cycles: int, period: str, remedy: str) -> None:
+    """Warn of what a long period costs."""
+    gigabytes = 1e-9 * _BYTES * _STEPS * cycles * 100
+    cost = f"{_STEPS * cycles} steps and about {gigabytes:.2g} GB for 100 coordinates"
+    warn("long-period", f"{period}. Each motion takes {cost}. {remedy}")
 
 
 def rehearse_machine(case: MachineCase) -> None:

@@ -117,11 +117,11 @@ class PlanetaryCase(PartsCase):
             for name, body in tables_of(self.data, "faults", problems).items()
         }
         self.faults = {name: table for name, table in faults.items() if table is not None}
-        problems += planetary_fault_problems(self, self.faults)
         loads = read_loads(self.data, problems)
         if loads is not None and self.table is not None:
             self.ends, self.operating_point, self.load_cases = loads
             self._check_members(bodies, problems)
+            problems += planetary_fault_problems(self, self.faults)
         if problems:
             raise InputError(origin.place(problems))
         try:
