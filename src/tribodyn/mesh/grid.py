@@ -280,10 +280,6 @@ class MonotonePhaseFunction:
         """Phases at which it may jump."""
         return self.grid.event_phases
 
-    def _of_columns(self, columns: Array) -> MonotonePhaseFunction:
-        """Several such functions on the same knots as one function with columns."""
-        return MonotonePhaseFunction(self.grid, columns)
-
     @cached_property
     def _pieces(self) -> list[Callable[[Array], Array]]:
         return [

@@ -210,7 +210,13 @@ class Teeth:
 
     def ramps_about_load(self, shared: SharedLoad, film: FilmSprings | None) -> tuple[Array, Array]:
         """Few ramps that are exact at the load: where each begins [m], and its stiffness [N/m]."""
+        if film is None:
+            return self._dry_ramps_about_load
         return ramps_about(self.with_film(film), shared.transmission_error)
+
+    @cached_property
+    def _dry_ramps_about_load(self) -> tuple[Array, Array]:
+        return ramps_about(self.problem, self._dry.transmission_error)
 
     def with_film(self, film: FilmSprings | None) -> ContactProblem:
         """Put the films in series with the teeth."""

@@ -141,8 +141,10 @@ class Helpers:
         pickled: bytes,
         items: Sequence[Item],
         keep: Callable[[int, Value], None],
+        first_call: Item | None = None,
     ) -> None:
         """Pass the function of every item to ``keep`` by number; helpers call ``pickled``."""
+        # first_call: item with which helpers load what the function needs; the first by default.
         remaining = list(reversed(range(len(items))))
 
         def next_numbers() -> Iterator[int]:
@@ -157,7 +159,8 @@ class Helpers:
 
         def compute_remotely(helper: _Helper) -> None:
             try:
-                helper.warm_up(pickled, items[0], lambda: bool(remaining))
+                warm_up = items[0] if first_call is None else first_call
+                helper.warm_up(pickled, warm_up, lambda: bool(remaining))
             except _LostError:
                 return compute_locally()
             for number in next_numbers():

@@ -6,7 +6,7 @@ import pytest
 from known_machines import CLOCK, two_mesh_system
 from known_random_machines import random_machine
 from tribodyn.dynamics import Contact, System, harmonic_balance
-from tribodyn.dynamics.equations.grid import PointEvaluator
+from tribodyn.dynamics.equations.grid import PointEvaluator, system_events
 from tribodyn.dynamics.equations.nodes import evaluate_rows
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
 from tribodyn.dynamics.harmonic.contact_equations import _basis
@@ -14,6 +14,8 @@ from tribodyn.dynamics.harmonic.harmonic_balance import prepare
 from tribodyn.dynamics.harmonic.newton import solve_linear
 from tribodyn.dynamics.harmonic.orbit_response import series
 from tribodyn.errors import quiet
+from tribodyn.mesh import phase_grid
+from tribodyn.mesh.grid import MonotonePhaseFunction, PhaseFunction
 
 
 def test_krylov_solution_is_that_of_the_matrix():
@@ -121,6 +123,50 @@ def test_entries_at_an_event_are_those_of_its_sides():
     ]
     assert sides[0].tolist() == [3.0, 1.0, 3.0]
     assert sides[1].tolist() == [1.0, 3.0, 1.0]
+
+
+def test_tables_of_several_contacts_are_looked_up_at_once(monkeypatch):
+    generator, grid = np.random.default_rng(5), phase_grid((0.0, 0.4), 16)
+    ramps, gaps, stiffness = (
+        MonotonePhaseFunction(grid, generator.random((grid.phase.size, *shape)))
+        for shape in ((2,), (2,), ())
+    )
+    along = PhaseFunction(grid, generator.random((grid.phase.size, 3)))
+    turns = [np.eye(3)[:, [1, 2, 0]], generator.random((3, 3)), np.eye(3)]
+    clocks = [(1, 0.0), (1, 0.3), (2, 0.7)]
+    contacts = [
+        Contact(
+            PhaseFunction(grid, along.values, turn), stiffness, cycles=cycles, offset=offset,
+            ramp_stiffness=ramps, ramp_gap=gaps, events=grid.event_phases,
+        )
+        for turn, (cycles, offset) in zip(turns, clocks, strict=True)
+    ]  # fmt: skip
+    system = System(np.eye(3), np.eye(3), np.eye(3), np.zeros(3), contacts)
+    clock, calls, call = np.array([0.05, 0.33, 0.8]), [], MonotonePhaseFunction.__call__
+    monkeypatch.setattr(
+        MonotonePhaseFunction, "__call__", lambda *inputs: calls.append(inputs) or call(*inputs)
+    )
+    nodes = evaluate_rows(system, PointEvaluator(clock, system_events(system)))
+    assert len(calls) == 1
+    for j, (turn, (cycles, offset)) in enumerate(zip(turns, clocks, strict=True)):
+        phase = (cycles * clock + offset) % 1.0
+        np.testing.assert_array_equal(nodes.stiffness[:, 0, j], stiffness(phase))
+        np.testing.assert_array_equal(nodes.ramp_gap[:, 0, j], gaps(phase))
+        np.testing.assert_array_equal(nodes.ramp_stiffness[:, 0, j], ramps(phase))
+        np.testing.assert_allclose(nodes.direction[:, 0, j], along(phase) @ turn, rtol=1e-13)
+
+
+def test_every_other_row_of_finer_steps_is_that_of_the_steps():
+    machine = random_machine(18, gap=0.2, depth=0.3, friction=True, turning=True)
+    steps = 64 * machine.cycles
+    alone = prepare(machine, 0.1).residual(steps, 0.1).contacts
+    again = prepare(random_machine(18, gap=0.2, depth=0.3, friction=True, turning=True), 0.1)
+    finer = again.residual(2 * steps, 0.1).contacts
+    halved = again.residual(steps, 0.1).contacts
+    assert finer.steps == 2 * halved.steps == 2 * alone.steps
+    assert halved.before is finer.before
+    for part, same in zip(alone.rows.nodes, halved.rows.nodes, strict=True):
+        np.testing.assert_allclose(*np.broadcast_arrays(part, same), rtol=1e-12, atol=1e-12)
 
 
 def test_series_is_exact_between_the_samples():

@@ -1,6 +1,7 @@
 """Studies of planetary stages: modes, sweeps, run-ups, and values with a spread."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ from tests.unit.study.test_planetary_case import QUICK
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.machine import load_shares
+from tribodyn.mesh import sharing
+from tribodyn.study.machine import pair_cases
 from tribodyn.study.machine.read import read_any_case
+from tribodyn.study.machine_studies.points import results_under
 
 #: Constant stiffness of a pair of teeth, so that the tooth contact takes no time.
 FAST = QUICK | {"film.model": "none", "stiffness.model": "rectangular",
@@ -65,6 +69,20 @@ def test_levels_and_sweeps_have_the_figures_of_single_runs(case, result):
         assert sweep[name][0] == pytest.approx(value, rel=1e-6, abs=1e-9), name
     assert sweep.axes[0].name == "pin_errors_2"
     assert "Load factor" in sweep.plot().to_json()
+
+
+def test_speeds_share_the_teeth_that_do_not_depend_on_them(case, monkeypatch):
+    computed, compute = [], sharing.ramps_about
+    monkeypatch.setattr(sharing, "ramps_about", lambda *a: computed.append(a) or compute(*a))
+    stage = case.replace({"stiffness.model": "iso6336", "stiffness.pair_stiffness": None})
+    changes = [{"operation.speed": speed} for speed in (150.0, 160.0, 170.0)]
+    results = [result for result, _ in results_under(stage, changes)]
+    assert len(computed) == 2  # of the sun meshes and of the ring meshes
+    sys.modules["tribodyn.mesh.build"]._cached_teeth.cache_clear()
+    pair_cases._pairs.clear()
+    alone = td.run(stage.replace(changes[2])).summary()
+    for name, value in results[2].figures.items():
+        assert alone[name] == pytest.approx(value, rel=1e-8, abs=1e-9), name
 
 
 def test_a_slow_run_up_has_the_levels_of_steady_motions(case, result):

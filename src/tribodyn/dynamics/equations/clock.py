@@ -36,9 +36,19 @@ class ClockEntry:
     def __getattr__(self, name: str) -> Any:
         # Only a table knows where it jumps; any other function is examined for jumps.
         if name == "event_phases":
-            events = self.function.event_phases
-            return events_on_clock((0.0, *events), self.cycles, self.offset)
+            events = (0.0, *self.function.event_phases)
+            self.event_phases = events_on_clock(events, self.cycles, self.offset)
+            return self.event_phases
         raise AttributeError(name)
+
+
+def table_of(entry: Any) -> tuple[Any, int, float] | None:
+    """Table that an entry looks up, and the clock at whose phases; None for other entries."""
+    clocked = isinstance(entry, ClockEntry)
+    table = entry.function if clocked else entry
+    if not (hasattr(table, "grid") and isinstance(getattr(table, "values", None), np.ndarray)):
+        return None
+    return (table, entry.cycles, entry.offset) if clocked else (table, 1, 0.0)
 
 
 def same_entry(first: Any, second: Any) -> bool:

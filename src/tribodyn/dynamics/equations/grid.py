@@ -7,13 +7,16 @@ the fourth order of the integrator survives, and nothing is interpolated in the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
+from tribodyn.arrays.memo import Memo
+from tribodyn.arrays.products import times
+from tribodyn.dynamics.equations.clock import table_of
 from tribodyn.dynamics.equations.entry import (
     Entry,
     entry_values,
@@ -29,6 +32,12 @@ from tribodyn.types import Array, Index, Mask
 _MERGE = 1e-10
 #: Distance from an event at which a one-sided value is taken.
 _SIDE = 2e-10
+#: Most values of tables that are looked up at once.
+_TOGETHER = 2**22
+#: Tables that were looked up together by their values at the knots, each with the last values at
+#: phases, if these are no more than so many: those of a study are often the same.
+_tables: Memo[tuple[Any, Memo[Array]]] = Memo(8)
+_CACHED = 2**18
 #: Widest stencil of the numerical derivative in phase.
 _STENCIL = 1e-4
 
@@ -122,7 +131,7 @@ class RowEvaluator:
     """Evaluate entries on the three nodes of every step, one-sidedly at events."""
 
     def __init__(self, grid: Grid, *, checks: bool = True) -> None:
-        self.grid, self.checks = grid, checks
+        self.grid, self.checks, self._values = grid, checks, dict[Any, Array]()
         nodes = np.stack((grid.left, grid.left + 0.5 * grid.width, grid.left + grid.width), axis=1)
         self._low = grid.segment_left[:, None] + _SIDE
         self._high = grid.segment_right[:, None] - _SIDE
@@ -133,6 +142,8 @@ class RowEvaluator:
         if not varies(entry):
             constant = entry_values(where, entry, self.nodes[:1, 0], size)[0]
             return np.broadcast_to(constant, (*self.nodes.shape, size))
+        if (values := self._looked_up(entry, size)) is not None:
+            return values.reshape(*self.nodes.shape, size)
         flat = entry_values(where, entry, self.nodes.reshape(-1), size)
         values = flat.reshape(*self.nodes.shape, size)
         if self.checks and not self.is_smooth(entry):
@@ -140,23 +151,51 @@ class RowEvaluator:
             refuse_jumps(where, entry, self.nodes, values)
         return values
 
-    def joined(self, entries: Sequence[Any], into: Array) -> frozenset[int]:
-        """Look up tables with the same grid together; return the numbers of the entries filled."""
-        tables = {j: each for j, each in enumerate(entries) if hasattr(each, "_of_columns")}
-        grids = {each.grid for each in tables.values()}
-        scalar_tables = all(each.values.ndim == 1 for each in tables.values())
-        if (
-            len(tables) < 2
-            or len(grids) > 1
-            or not (scalar_tables and self.is_smooth(entries[min(tables)]))
-        ):
-            return frozenset()
-        columns = np.stack([each.values for each in tables.values()], axis=1)
+    def look_up(self, entries: Iterable[Any]) -> None:
+        """Look up all entries that are tables on the nodes, those with the same grid at once."""
+        groups: dict[Any, tuple[dict[int, Any], dict[tuple[int, float], None]]] = {}
+        for entry in entries:
+            if (looked_up := table_of(entry)) is not None and self.is_smooth(entry):
+                table, *clock = looked_up
+                tables, clocks = groups.setdefault((type(table), id(table.grid)), ({}, {}))
+                tables[id(table.values)] = table
+                clocks[clock[0], clock[1]] = None
+        for (kind, _), (tables, clocks) in groups.items():
+            if len(tables) * len(clocks) > 1:
+                self._look_up(kind, list(tables.values()), np.array(list(clocks)))
+
+    def _look_up(self, kind: Any, tables: list[Any], clocks: Array) -> None:
+        flat = [table.values.reshape(len(table.values), -1) for table in tables]
+        columns, nodes = np.concatenate(flat, axis=1), self.nodes.reshape(-1)
         if not np.isfinite(columns).all():  # reported when each entry is evaluated alone
-            return frozenset()
-        table: Any = next(iter(tables.values()))._of_columns(columns)
-        into[..., list(tables)] = table(self.nodes.reshape(-1)).reshape(*self.nodes.shape, -1)
-        return frozenset(tables)
+            return
+        grid, ends = tables[0].grid, np.cumsum([each.shape[1] for each in flat])
+        table, cached = _tables.get((columns, grid.phase), lambda: (kind(grid, columns), Memo(4)))
+        together = max(1, _TOGETHER // (nodes.size * columns.shape[1]))
+        for first in range(0, len(clocks), together):
+            some = clocks[first : first + together]
+            phase = (some[:, :1] * nodes + some[:, 1:]) % 1.0
+            if phase.size * columns.shape[1] > _CACHED:
+                values = table(phase)
+            else:
+                values = cached.get((phase,), partial(table, phase))
+            for (cycles, offset), rows in zip(some.tolist(), values, strict=True):
+                parts = zip(tables, np.split(rows, ends[:-1], axis=1), strict=True)
+                for each, part in parts:
+                    self._values[id(each.values), cycles, offset] = part
+
+    def _looked_up(self, entry: Any, size: int) -> Array | None:
+        """Values (p, size) of an entry that was looked up."""
+        looked_up = table_of(entry)
+        if looked_up is None:
+            return None
+        table, cycles, offset = looked_up
+        values = self._values.get((id(table.values), cycles, offset))
+        if values is None:
+            return None
+        onto = getattr(table, "onto", None)
+        values = values if onto is None else times(values, onto.T)
+        return values if values.shape[1] == size else None
 
     def is_smooth(self, entry: Entry) -> bool:
         """Whether the entry is a table that jumps only at events of this grid."""
@@ -185,7 +224,7 @@ class PointEvaluator(RowEvaluator):
         edges = np.array([*events, 1.0])
         shift = -_MERGE if before else _MERGE
         segment = np.searchsorted(edges, (phase + shift) % 1.0, side="right") - 1
-        self.checks = False
+        self.checks, self._values = False, dict[Any, Array]()
         self._low = edges[segment][:, None] + _SIDE
         self._high = edges[segment + 1][:, None] - _SIDE
         at = np.where((phase == 0.0) & before, 1.0, phase)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.clock import same_entry
+from tribodyn.dynamics.equations.clock import same_entry, table_of
 from tribodyn.dynamics.equations.entry import varies
 from tribodyn.dynamics.equations.grid import (
     Grid,
@@ -22,7 +22,14 @@ from tribodyn.dynamics.equations.grid import (
     system_events,
     unrepeated,
 )
-from tribodyn.dynamics.equations.system import Contact, LoadFriction, System, no_direction
+from tribodyn.dynamics.equations.system import (
+    CONTACT_ENTRIES,
+    FRICTION_ENTRIES,
+    Contact,
+    LoadFriction,
+    System,
+    no_direction,
+)
 from tribodyn.errors import InputError, real_numbers
 from tribodyn.types import Array, Index, Mask
 
@@ -37,6 +44,9 @@ def coefficient_count(where: str, friction: LoadFriction) -> int:
 
 def _row_length(where: str, entry: Any, least: int = 1) -> int:
     """Number of values of an entry at one phase."""
+    looked_up = table_of(entry)
+    if looked_up is not None and (values := looked_up[0].values).ndim == 2:
+        return int(values.shape[1])
     probe = (np.arange(_PROBE) + 0.5) / _PROBE
     values = real_numbers(where, entry(probe) if callable(entry) else entry, "rows of numbers")
     shape = values.shape
@@ -189,6 +199,8 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
     """Evaluate every entry at the nodes of an evaluator; equal weights."""
     size, shape = system.size, rows.nodes.shape
     contacts = system.clocked_contacts
+    parts = ((contacts, CONTACT_ENTRIES), (system.clocked_frictions, FRICTION_ENTRIES))
+    rows.look_up(getattr(part, name) for each, names in parts for part in each for name in names)
 
     def scalar(name: str, take: Callable[..., Array]) -> Array:
         entries = [getattr(contact, name) for contact in contacts]
@@ -196,8 +208,7 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
             return take(f"contacts[0].{name}", entries[0])
         still = not any(map(varies, entries))
         table = np.empty((1 if still else shape[0], shape[1], len(entries)))
-        together = rows.joined(entries, table) if take == rows.values else frozenset[int]()
-        for j in (j for j in range(len(entries)) if j not in together):
+        for j in range(len(entries)):
             if (same := _evaluated_before(entries, j)) is not None:
                 table[..., j] = table[..., same]
             else:

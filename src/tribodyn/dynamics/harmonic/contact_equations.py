@@ -9,7 +9,7 @@ continuously with the place of the jump.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -51,7 +51,7 @@ class Rows(NamedTuple):
     stiffness: Array  #: of the first spring and the ramps of each contact, (p, contacts, m)
     gap: Array  #: half dead zones of the same
 
-    def at(self, index: Index) -> Rows:
+    def at(self, index: Index | slice) -> Rows:
         """Some of the rows."""
 
         def some(values: Array) -> Array:
@@ -97,6 +97,12 @@ class ContactEquations:
     dead: Mask  #: springs with a dead zone (contacts, m)
     damped_in_gap: Mask
     steps: int
+
+    def coarser(self) -> ContactEquations:
+        """The same on half as many steps."""
+        rows = self.rows.at(slice(None, None, 2))
+        rows = rows._replace(nodes=rows.nodes._replace(weight=2.0 * rows.nodes.weight))
+        return replace(self, rows=rows, steps=self.steps // 2)
 
     def law(
         self,
@@ -242,15 +248,16 @@ def close_contacts(
     return ClosedStructure(system, coordinates, push, along, *shifts), closed
 
 
-def contact_equations(system: System, structure: ClosedStructure, steps: int) -> ContactEquations:
+def contact_equations(
+    system: System,
+    structure: ClosedStructure,
+    steps: int,
+    known: ContactEquations | None = None,
+) -> ContactEquations:
     """Sample the contacts of a system at ``steps`` equal steps of the clock."""
+    # known: on other steps, with the same events.
     every = system_events(system)
     nodes = evaluate_rows(system, PointEvaluator(np.arange(steps) / steps, every))
-    points = np.array(every)
-    before, after = (
-        evaluate_rows(system, PointEvaluator(points, every, before=side)) for side in (True, False)
-    )
-    jumping = _jumping(before, after)
     inverse, bases = structure.coordinates.inverse, (structure.along, structure.push)
     into_along, into_push = (inverse.T @ basis for basis in bases)
 
@@ -265,6 +272,13 @@ def contact_equations(system: System, structure: ClosedStructure, steps: int) ->
             *(values[:, 0] for values in springs(part)),
         )
 
+    if known is not None:
+        return replace(known, rows=rows(nodes), steps=steps)
+    points = np.array(every)
+    before, after = (
+        evaluate_rows(system, PointEvaluator(points, every, before=side)) for side in (True, False)
+    )
+    jumping = _jumping(before, after)
     in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
     left, right = (rows(Nodes(*(values[jumping] for values in part))) for part in (before, after))
     at = rows(nodes)

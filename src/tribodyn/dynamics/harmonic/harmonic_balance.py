@@ -67,7 +67,13 @@ class Prepared:
     def residual(self, steps: int, frequency: float) -> Residual:
         """Residual on a number of equal steps."""
         if steps not in self.samples:
-            self.samples[steps] = contact_equations(self.system, self.structure, steps)
+            finer = self.samples.get(2 * steps)
+            known = next(iter(self.samples.values()), None)
+            self.samples[steps] = (
+                contact_equations(self.system, self.structure, steps, known)
+                if finer is None
+                else finer.coarser()
+            )
         return Residual(self.structure, self.samples[steps], frequency)
 
     def grid(self, steps: int) -> Compiled:
@@ -77,12 +83,12 @@ class Prepared:
         return self.grids[steps]
 
 
-def prepare(system: System, frequency: float) -> Prepared:
-    """Evaluate a system once for all frequencies."""
+def prepare(system: System, frequency: float, steps: int = 0) -> Prepared:
+    """Evaluate a system once for all frequencies, with at least these steps per mesh cycle."""
     for reference, prepared in _cache:
         if reference() is system:
             return prepared
-    steps = max(2 * _FIRST, -(-2 * len(system_events(system)) // system.cycles))
+    steps = max(2 * _FIRST, steps, -(-2 * len(system_events(system)) // system.cycles))
     compiled = sample_system(system, steps)
     refuse_disconnected(compiled)
     orbit_coordinates(compiled, frequency)  # warns of forces that do not balance
@@ -167,13 +173,14 @@ def harmonic_balance(
     require_flag("stability", stability)
     count = _FIRST if steps is None else require_whole("steps", steps, 8)
     progress.start("Steady motion", None)
-    prepared = prepare(system, frequency)
+    prepared = prepare(system, frequency, 0 if steps is None else count)
     if prepared.structure.coordinates.moving.shape[1] == 0 or not system.contacts:
         what = "no coordinate is moved by a contact"
         remedy = "Add a contact, or use forced_response for a structure alone"
         raise InputError(what, "System.contacts", "Harmonic balance acts at contacts", remedy)
     samples = _fft_length(count * system.cycles)
-    residual = prepared.residual(samples, frequency)
+    finer = prepared.residual(2 * samples, frequency)
+    residual = prepared.residual(samples, frequency)  # every other row of the finer one
     solution = _solve(prepared, residual, _start(prepared, residual, start), tolerance)
     while True:
         finer = prepared.residual(2 * samples, frequency)

@@ -325,7 +325,7 @@ def natural_modes(
     """
     linear = linear_system(system, phase)
     springs = structure_elements(system, elements)
-    frequency, shape = _undamped(linear.mass, linear.stiffness)
+    frequency, shape = undamped_modes(linear.mass, linear.stiffness)
     names = (*springs, *(f"contact {j}" for j in range(len(linear.contact_stiffness))))
     matrices = np.array([*springs.values(), *linear.contact_stiffness]).reshape(
         -1, system.size, system.size
@@ -351,14 +351,15 @@ def natural_modes(
 
 def frequencies_at(linear: LinearSystem, gyroscopic: Sequence[Array | None]) -> list[Array]:
     """Natural frequencies [Hz] of a system with each of several gyroscopic matrices."""
-    frequency, shape = _undamped(linear.mass, linear.stiffness)
+    frequency, shape = undamped_modes(linear.mass, linear.stiffness)
     return [
         frequency if matrix is None else _whirling(matrix, frequency, shape)[0]
         for matrix in gyroscopic
     ]
 
 
-def _undamped(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+def undamped_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Natural frequencies [Hz] and shapes of two matrices, sorted by frequency."""
     inverse = np.linalg.inv(np.linalg.cholesky(mass))
     matrix = inverse @ stiffness @ inverse.T
     squares, columns = np.linalg.eigh(0.5 * (matrix + matrix.T))

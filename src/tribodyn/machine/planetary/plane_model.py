@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, varies
 from tribodyn.dynamics.equations.system import Contact, System
-from tribodyn.dynamics.linear.natural_modes import natural_modes
+from tribodyn.dynamics.linear.natural_modes import linear_system, undamped_modes
 from tribodyn.errors import (
     Argument,
     InputError,
@@ -362,10 +362,12 @@ def _system(
 
 def without_free_rotation(system: System) -> System:
     """System without the Coriolis forces of a free rotation of the whole stage, whose mean is 0."""
-    modes = natural_modes(replace(system, gyroscopic=None))
-    if system.gyroscopic is None or modes.frequency[0] > 0.0:
+    if system.gyroscopic is None:
         return system
-    rigid = modes.shape[:1]
+    frequency, shape = undamped_modes(np.asarray(system.mass), linear_system(system).stiffness)
+    if frequency[0] > 0.0:
+        return system
+    rigid = shape[:1]
     keep = np.eye(system.size) - rigid.T @ (rigid @ np.asarray(system.mass))
     return replace(system, gyroscopic=keep.T @ np.asarray(system.gyroscopic) @ keep)
 
@@ -378,6 +380,6 @@ def with_modal_damping(system: System, ratio: float) -> System:
 
 def modal_damping(system: System, ratio: float) -> Array:
     """Damping matrix that gives every mode at rest the same damping ratio."""
-    modes = natural_modes(replace(system, gyroscopic=None))
-    momentum = np.asarray(system.mass) @ modes.shape.T
-    return np.asarray((momentum * (4.0 * np.pi * ratio * modes.frequency)) @ momentum.T)
+    frequency, shape = undamped_modes(np.asarray(system.mass), linear_system(system).stiffness)
+    momentum = np.asarray(system.mass) @ shape.T
+    return np.asarray((momentum * (4.0 * np.pi * ratio * frequency)) @ momentum.T)

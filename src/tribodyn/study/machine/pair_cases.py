@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -124,21 +126,41 @@ def pair_case(
     model_keys = (f"{model}.{key}" for model, values in inner.items() for key in values)
     mesh_keys = {*mesh_dynamics, *model_keys, *inner}
     origin = source or Source()
-    return Case(
+    dynamics = _STRUCTURES["hypoid" if crossed else "helical" if hand else "spur"]
+    tables |= {
+        "title": f"{data.get('title', 'Machine')}: {mesh}",
+        "gears": pair,
+        "dynamics": {**dynamics, **shared_dynamics, **mesh_dynamics},
+    }
+    return _under(
         PairSource(
             *(origin.name, origin.find, origin.replaced, mesh, names),
             *(frozenset(mesh_keys), group),
         ),
-        title=f"{data.get('title', 'Machine')}: {mesh}",
-        gears=pair,
-        operation={"speed": Plain(speed), "torque": Plain(torque), "speed_of": "pinion"},
-        dynamics={
-            **_STRUCTURES["hypoid" if crossed else "helical" if hand else "spur"],
-            **shared_dynamics,
-            **mesh_dynamics,
-        },
-        **tables,
+        tables,
+        {"speed": speed, "torque": torque},
     )
+
+
+#: Pairs of gears by their tables: those of a study differ in speed and torque alone.
+_pairs: dict[bytes, Case] = {}
+_MOST_PAIRS = 64
+
+
+def _under(source: PairSource, tables: dict[str, Any], load: dict[str, float]) -> Case:
+    """Pair of gears under a load of its pinion; equal tables are read once."""
+    key = pickle.dumps(tables)
+    if key in _pairs and not _pairs[key]._named_files():  # files may change
+        with suppress(InputError):  # reported below, with the keys of the machine
+            pair = _pairs[key].replace({f"operation.{k}": value for k, value in load.items()})
+            pair._source = source
+            return pair
+    operation = {name: Plain(value) for name, value in load.items()}
+    pair = Case(source, operation={**operation, "speed_of": "pinion"}, **tables)
+    if len(_pairs) >= _MOST_PAIRS:
+        _pairs.clear()
+    _pairs[key] = pair
+    return pair
 
 
 def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) -> dict[str, Any]:

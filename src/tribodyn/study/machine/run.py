@@ -42,8 +42,6 @@ if TYPE_CHECKING:
 _PASSES, _SAME = 4, 0.1
 #: Difference of misalignments of equal teeth that is rounding [m].
 _EQUAL = 1e-8
-#: A single spring, which the ramps of a force law replace.
-_SPRING = {"dynamics.mesh_law": "stiffness"}
 
 
 class MeshWarning(NamedTuple):
@@ -208,7 +206,7 @@ def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
 def _law(pair: Case, table: MeshTable) -> dict[str, Any]:
     """Force law of a mesh whose teeth are computed."""
     functions, single = table.functions(), mesh_law_of(pair) == "force-law"
-    plane = whole_system(pair.replace(_SPRING) if single else pair, table)
+    plane = whole_system(pair, table, "stiffness" if single else None)  # one spring for the ramps
     law = functions.force_law
     contacts = [law_contact(c, law) for c in plane.contacts] if single and law else plane.contacts
     return {

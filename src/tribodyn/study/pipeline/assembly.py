@@ -245,18 +245,24 @@ def static_error(case: Case, phase: Array | float) -> Array:
 
 
 def system_of(
-    case: Case, mesh: MeshTable, damping: Damping, friction: MeshFriction | None = None
+    case: Case,
+    mesh: MeshTable,
+    damping: Damping,
+    friction: MeshFriction | None = None,
+    mesh_force: str | None = None,
 ) -> System:
-    """Build the structure of a case with its tooth contact."""
+    """Build the structure of a case with its tooth contact; ``mesh_force`` overrides its law."""
     from tribodyn.dynamics import follow_load
 
-    system = structure_of(case, mesh.functions(), damping, mesh_law_of(case))
+    law = mesh_law_of(case) if mesh_force is None else mesh_force
+    system = structure_of(case, mesh.functions(), damping, law)
     return system if friction is None else follow_load(system, friction)
 
 
-def whole_system(case: Case, mesh: MeshTable) -> System:
+def whole_system(case: Case, mesh: MeshTable, mesh_force: str | None = None) -> System:
     """Build the structure of a case with its tooth contact, its damping and its friction."""
-    return system_of(case, mesh, damping_of(case, mesh), load_friction_of(case, mesh))
+    parts = damping_of(case, mesh), load_friction_of(case, mesh)
+    return system_of(case, mesh, *parts, mesh_force)
 
 
 def structure_of(case: Case, mesh: MeshFunctions, damping: Damping, mesh_force: str) -> System:

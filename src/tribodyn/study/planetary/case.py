@@ -292,7 +292,7 @@ class PlanetaryCase(PartsCase):
     @cached_property
     def pairs(self) -> dict[str, Case]:
         """Sun mesh and ring mesh at the operating point."""
-        return self.pairs_under(self.operating_point)
+        return self._pairs_under(self.operating_point)
 
     def pairs_under(self, load: LoadCase) -> dict[str, Case]:
         """Sun mesh and ring mesh of one planet under a load, each as the case of a pair.
@@ -307,6 +307,9 @@ class PlanetaryCase(PartsCase):
         dict of str to Case
             ``sun`` and ``ring``, with the speeds relative to the carrier.
         """
+        return self.pairs if load == self.operating_point else self._pairs_under(load)
+
+    def _pairs_under(self, load: LoadCase) -> dict[str, Case]:
         sun = self._pair("sun", load, None)
         distance = self.table.center_distance or sun.gear_pair.center_distance
         return {"sun": sun, "ring": self._pair("ring", load, distance)}

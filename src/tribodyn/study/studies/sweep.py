@@ -232,7 +232,9 @@ def _over_points(
     pickled = _pickled(points_at)
     with helpers(len(remaining) // _POINTS_PER_PROCESS if pickled else 0) as workers:
         if pickled and workers.count:
-            workers.each(points_at, pickled, places, keep_group)
+            # The points of machines are computed one after the other: one loads all that they need.
+            first_call = places[0][:1] if case_at is None else None
+            workers.each(points_at, pickled, places, keep_group, first_call)
         else:
             numbers = range(len(groups))
             in_threads(lambda i: keep_group(i, points_at(places[i])), numbers, count)
