@@ -127,8 +127,8 @@ class Machine:
         ]:
             raise InputError(problems)
         for name, stage in self.planets.items():
-            names = stage.mesh_names(name)
-            if {*names["sun"], *names["ring"]} <= {*self.meshes}:
+            names = stage.mesh_names(name).values()
+            if {mesh for kind in names for mesh in kind} <= {*self.meshes}:
                 continue  # a copy, with its parts
             for group, parts in stage.parts(name, self.gears).items():
                 present = getattr(self, group)
@@ -269,9 +269,9 @@ class Machine:
         stage, meshes = self.planets[name], dict(self.meshes)
         phases, names = stage.phases(self.gears), stage.mesh_names(name)
         lags = self.directions[names["sun"][0]].senses[0] > 0
-        for mesh in ("sun", "ring"):
+        for mesh, each_mesh in names.items():
             lag = getattr(phases, mesh)
-            for each, offset in zip(names[mesh], (-lag if lags else lag) % 1.0, strict=True):
+            for each, offset in zip(each_mesh, (-lag if lags else lag) % 1.0, strict=True):
                 meshes[each] = replace(meshes[each], offset=float(offset) % 1.0)
         object.__setattr__(self, "meshes", MappingProxyType(meshes))
 

@@ -106,3 +106,109 @@ def test_a_stage_with_a_parallel_one_runs(tmp_path: Path) -> None:
     )
     lost = sum(v for k, v in figures.items() if k.endswith(".friction_power") and "meshes" in k)
     assert figures["machine.friction_power"] == pytest.approx(lost)
+
+
+DOUBLE = """
+[lubricant]
+name = "ISO VG 220"
+temperature = "70 degC"
+[film]
+model = "dowson-higginson"
+[friction]
+law = "constant"
+coefficient = 0.05
+[gears]
+s = { teeth = 24, face_width = "20 mm" }
+p = { teeth = 16, face_width = "20 mm" }
+q = { teeth = 18, face_width = "20 mm" }
+r = { teeth = -66, face_width = "20 mm", tip_diameter = "129 mm" }
+[planets.low]
+sun = "s"
+ring = "r"
+planet = "p"
+ring_planet = "q"
+planet_type = "meshed"
+carrier = "c"
+count = 3
+normal_module = "2 mm"
+[dynamics]
+backlash = "0.1 mm"
+[operation]
+input = "s"
+output = "c"
+speed = "1500 rpm"
+torque = "60 N*m"
+"""
+STEPPED = (
+    DOUBLE.replace("meshed", "stepped").replace("24", "18").replace("teeth = 16", "teeth = 30")
+)
+
+
+def test_pairs_of_planets_from_a_file(tmp_path: Path) -> None:
+    case = read(tmp_path, DOUBLE)
+    machine = case.machine()
+    flow = machine.kinematics
+    speed = 1500.0 * math.pi / 30.0
+    assert flow.shafts["c"].speed == pytest.approx(speed / (1.0 - 66 / 24), rel=1e-12)
+    assert flow.shafts["r"].torque == pytest.approx(60.0 * 66 / 24, rel=1e-12)
+    assert flow.meshes["low_pair1"].force == pytest.approx(flow.meshes["low_sun1"].force)
+    # 24 teeth of the sun and 3 pairs: all sun meshes are in phase, and so are the others.
+    for kind in ("sun", "pair", "ring"):
+        offsets = [machine.meshes[f"low_{kind}{i}"].offset for i in (1, 2, 3)]
+        assert [math.cos(math.tau * (o - offsets[0])) for o in offsets] == pytest.approx([1.0] * 3)
+    pair = case.pair("low_pair2", case.operating_point)
+    assert pair.gear_pair.center_distance == pytest.approx(0.034)
+    assert case.tooth_group("low_pair1") == case.tooth_group("low_pair3")
+    assert read(tmp_path, case.to_toml()).to_toml() == case.to_toml()
+
+
+def test_stepped_planets_from_a_file(tmp_path: Path) -> None:
+    machine = read(tmp_path, STEPPED).machine()
+    flow = machine.kinematics
+    assert flow.shafts["c"].torque == pytest.approx(60.0 * (1.0 + 66 * 30 / (18 * 18)), rel=1e-12)
+    assert machine.clock.cycles["low_sun1"] * 3 == machine.clock.cycles["low_ring1"] * 5
+    assert machine.gears["low_ring_planet2"].position == pytest.approx(0.02)
+    assert flow.meshes["low_ring1"].force / flow.meshes["low_sun1"].force == pytest.approx(30 / 18)
+    module = STEPPED.replace('"2 mm"', '"2 mm"\nring_normal_module = "2.5 mm"')
+    with pytest.raises(InputError, match="center"):
+        read(tmp_path, module)
+
+
+def test_faults_of_double_planets_name_the_key_of_the_file(tmp_path: Path) -> None:
+    for old, new, message in (
+        ('ring_planet = "q"\n', "", r"planets\.low\.ring_planet.*without ring_planet"),
+        ('planet_type = "meshed"', "", "single"),
+        ("count = 3", "count = 4", r"planets\.low.*\(66 - 24\)/4 = 10.5 is not whole"),
+        ('"meshed"', '"double"', r"planets\.low\.planet_type"),
+    ):
+        with pytest.raises(InputError, match=message):
+            read(tmp_path, DOUBLE.replace(old, new))
+
+
+def test_the_mirrored_stage_has_mirrored_phases(tmp_path: Path) -> None:
+    """A torque on the sun the other way round is the stage seen from behind."""
+    lags = {}
+    for text, speed, mesh in ((TEXT, "20 rpm", "main_ring1"), (DOUBLE, "1500 rpm", "low_pair1")):
+        meshes = [
+            read(tmp_path, each).machine().meshes
+            for each in (text, text.replace(f'"{speed}"', f'"-{speed}"'))
+        ]
+        lags[mesh] = [-m[mesh].offset % 1.0 for m in meshes]
+    assert lags["main_ring1"][0] == pytest.approx(lags["main_ring1"][1])
+    # Seen from behind the second planet of a pair is at the other side of the first, so that the
+    # first one turns by twice the angle from its outward direction to its mate.
+    to_sun, to_ring, between = 40.0, 48.0, 34.0
+    line = math.pi - math.acos((to_sun**2 + between**2 - to_ring**2) / (2.0 * to_sun * between))
+    forward, backward = lags["low_pair1"][0], lags["low_pair1"][1]
+    assert (forward + 16 * line / math.pi) % 1.0 == pytest.approx(backward, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_losses_of_stepped_planets(tmp_path: Path) -> None:
+    figures = td.run(read(tmp_path, STEPPED)).summary()
+    lost = sum(figures[f"meshes.low_{m}{i}.friction_power"] for m in ("sun", "ring") for i in "123")
+    assert figures["machine.friction_power"] == pytest.approx(lost)
+    power = 60.0 * 1500.0 * math.pi / 30.0
+    assert figures["machine.efficiency"] == pytest.approx(1.0 - lost / power, rel=1e-6)
+    assert 0.98 < figures["machine.efficiency"] < 1.0
+    assert figures["planets.low.load_factor"] == pytest.approx(1.0, abs=1e-6)

@@ -59,16 +59,31 @@ def sun_to_ring_lag(
     0.1235
     """
     planet = ring_pair.pinion
-    limits = sun_pair.path_limits
-    if sun_pair.pinion.teeth != planet.teeth or sun_pair.wheel.teeth == planet.teeth:
-        length = sun_pair.line_of_action_length
-        limits = length - limits[1], length - limits[0]
-    begin = (limits[1], ring_pair.path_limits[0])
-    if not sun_drives:
-        begin = (limits[0], ring_pair.path_limits[1])
-    arc = math.pi - sun_pair.operating_pressure_angle - ring_pair.operating_pressure_angle
-    distance = planet.base_radius * (arc - 2.0 * planet.base_half_angle) + sum(begin)
-    return (distance / planet.base_pitch) % 1.0
+    wheel = sun_pair.pinion.teeth != planet.teeth or sun_pair.wheel.teeth == planet.teeth
+    return gear_lag(sun_pair, ring_pair, wheel=(wheel, False), drives=sun_drives)
+
+
+def gear_lag(
+    first: CylindricalPair,
+    second: CylindricalPair,
+    *,
+    wheel: tuple[bool, bool],
+    turn: float = 0.0,
+    drives: bool = True,
+) -> float:
+    """Mesh cycles by which the second mesh of a gear lags behind the first [1]."""
+    # The gear is the wheel or the pinion of each pair; its second mate is opposite to the first
+    # one, but for an angle ``turn`` from y towards z while the first one turns this way.
+    gear = first.wheel if wheel[0] else first.pinion
+    begin, alpha = [], first.operating_pressure_angle + second.operating_pressure_angle
+    for pair, is_wheel, at_tip in ((first, wheel[0], drives), (second, wheel[1], not drives)):
+        radii = sorted(
+            pair.line_of_action_length - limit if is_wheel else limit for limit in pair.path_limits
+        )
+        begin.append(radii[at_tip])
+    arc = math.pi - alpha - turn
+    distance = gear.base_radius * (arc - 2.0 * gear.base_half_angle) + sum(begin)
+    return float((distance / gear.base_pitch) % 1.0)
 
 
 @dataclass(frozen=True, eq=False)

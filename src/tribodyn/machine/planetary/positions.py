@@ -245,3 +245,25 @@ def _clearance(
             "Take fewer or smaller planets, or a greater angle between them",
         )
     return axis_distance - tip
+
+
+def refuse_touching_pairs(axes: Array, tips: list[float], sun: float) -> None:
+    """Refuse planets of pairs (2, N) that touch the sun or planets of other pairs."""
+    names = [f"{side} {i + 1}" for side in ("planet", "ring planet") for i in range(axes.shape[1])]
+    points, radii = np.append(axes, 0.0), np.append(np.repeat(tips, axes.shape[1]), sun) * 0.5
+    names.append("sun")
+    count, last = axes.shape[1], points.size - 1
+    gaps = [
+        (float(abs(points[i] - points[j]) - radii[i] - radii[j]), names[j], names[i])
+        for i in range(points.size)
+        for j in range(count if i == last else 0, i)
+        if i == last or j + count != i  # mates of a pair, and the sun with the planets at it, mesh
+    ]
+    gap, first, second = min(gaps)
+    if gap <= 0.0:
+        raise InputError(
+            f"{first} and {second} overlap by {-gap * 1e3:.4g} mm",
+            Argument("planets"),
+            "Tip circles of gears that do not mesh must not overlap",
+            "Take fewer or smaller planets, or other centre distances",
+        )

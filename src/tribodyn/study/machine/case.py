@@ -19,7 +19,6 @@ from tribodyn.machine import (
     Machine,
     Mesh,
     Operation,
-    PlanetaryStage,
     Shaft,
 )
 from tribodyn.machine.graph.mesh_checks import gear_hand
@@ -141,7 +140,7 @@ class MachineCase(PartsCase):
         self._blanks = read_blanks(groups, problems)
         stages = read_stages(self.data, groups["gears"], problems, source)
         self.gears: dict[str, Gear] = _read(groups, "gears", read_gear, problems)
-        self._add_shafts(groups["shafts"], [table.carrier for table, _ in stages.values()])
+        self._add_shafts(groups["shafts"], [table.carrier for table, *_ in stages.values()])
         self._add_material(groups["shafts"])
         self.shafts: dict[str, Shaft] = _read(groups, "shafts", read_shaft, problems)
         self.bearings: dict[str, Bearing] = _read(groups, "bearings", read_bearing, problems)
@@ -180,11 +179,11 @@ class MachineCase(PartsCase):
             raise InputError(origin.place(problems))
         self._check_spreads(origin)
 
-    def _add_stages(self, stages: Mapping[str, tuple[Any, Gear]]) -> None:
+    def _add_stages(self, stages: Mapping[str, tuple[Any, ...]]) -> None:
         """Planetary stages, with supports of members that have none."""
         self.stages = {
-            name: CaseStage(name, table, self.data, planet, dict(self.gears), self.source)
-            for name, (table, planet) in stages.items()
+            name: CaseStage(name, table, self.data, planets, dict(self.gears), self.source)
+            for name, (table, *planets) in stages.items()
         }
         linked = [self.gears[g].shaft for mesh in self._mesh_tables for g in self._names(mesh)]
         linked += [shaft for coupling in self.couplings.values() for shaft in coupling.shafts]
@@ -322,21 +321,17 @@ class MachineCase(PartsCase):
         tables = [name for name in self._mesh_tables if name not in self._stage_of]
         objects = {n: self._mesh(n, meshes.get(n, {})) for n in tables}
         parts = self.shafts, self.gears, objects, self.bearings, self.housing, self.couplings
-        machine = Machine(*parts, planets=self._stages(True), operation=operation)
-        if not self.stages:
+        planets = {name: stage.stage() for name, stage in self.stages.items()}
+        machine = Machine(*parts, planets=planets, operation=operation)
+        if not planets:
             return machine
-        flow, planets = machine.kinematics.meshes, {}
-        for name, stage in self.stages.items():
-            drives = flow[f"{name}_sun1"].driver == stage.table.sun
-            planets[name] = self._stages(drives)[name]
+        flow = machine.kinematics.meshes
+        planets = {n: stage.stage(flow[f"{n}_sun1"]) for n, stage in self.stages.items()}
         objects |= {
             n: self._exchanged(stage_mesh(machine.meshes[n], meshes.get(n, {})))
             for n in self._stage_of
         }
         return replace(machine, meshes=objects, planets=planets)
-
-    def _stages(self, sun_drives: bool) -> dict[str, PlanetaryStage]:
-        return {name: stage.stage(sun_drives=sun_drives) for name, stage in self.stages.items()}
 
     def _mesh(self, name: str, fields: Mapping[str, Any]) -> Mesh:
         table = self._mesh_tables[name]
@@ -410,7 +405,7 @@ class MachineCase(PartsCase):
         data, key, driver = self.data, f"meshes.{mesh}", mesh_load.driver
         if mesh in self._stage_of:
             stage, role = self._stage_of[mesh]
-            data, key, names = stage.pair_data, stage.key, stage.names_of(role)
+            data, key, names = stage.pair_data(role), stage.key, stage.names_of(role)
             driver = stage.case_name(driver)
         return pair_case(
             data,

@@ -29,6 +29,11 @@ def machine_files(data: Mapping[str, Any]) -> list[str]:
     ]
 
 
+def is_double(stage: Any) -> bool:
+    """Whether a table of a stage has double planets."""
+    return isinstance(stage, Mapping) and stage.get("planet_type", "single") != "single"
+
+
 def read_any_case(
     text: str, name: str = "", folder: Path | None = None
 ) -> Case | MachineCase | PlanetaryCase:
@@ -36,7 +41,8 @@ def read_any_case(
     data = parse_toml(text, name)
     source = Source(name or "case", partial(key_lines, text))
     stages = data.get("planets")
-    several = isinstance(stages, Mapping) and len(stages) > 1
+    bodies = [*stages.values()] if isinstance(stages, Mapping) else []
+    several = len(bodies) > 1 or any(is_double(body) for body in bodies)
     if "planets" in data and not (is_machine(data) or several):
         return PlanetaryCase(source, **data)
     if not (is_machine(data) or several):

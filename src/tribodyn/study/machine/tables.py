@@ -344,6 +344,13 @@ def _errors(meaning: str) -> Any:
     return numbers(-1e-2, 1e-2, _GUARD, meaning=meaning, **length)
 
 
+_PLANET_TYPES = {
+    "single": "planets with one gear",
+    "stepped": "planets with two gears on one shaft, the second at the ring",
+    "meshed": "pairs of planets that mesh with each other, the second at the ring",
+}
+
+
 class PlanetsTable(Section):
     """A ``[planets.NAME]`` table."""
 
@@ -353,6 +360,27 @@ class PlanetsTable(Section):
     ring: str = text(REQUIRED, meaning="gear with internal teeth", example='"r"')
     planet: str = text(REQUIRED, meaning="gear between sun and ring", example='"p"')
     carrier: str = text(REQUIRED, meaning="name of the carrier", example='"c"')
+    planet_type: str = choice("single", _PLANET_TYPES, meaning="kind of planets")
+    ring_planet: str | None = text(
+        None, meaning="gear at the ring of double planets; planet is that at the sun", example='"q"'
+    )
+    ring_normal_module: float | None = number(
+        None,
+        0.05e-3,
+        0.1,
+        "ISO 54 modules run from 1 to 50 mm",
+        of="normal_module",
+        meaning="module of the ring and its gears of stepped planets",
+        basis="that of the sun",
+    )
+    ring_center_distance: float | None = _position(
+        "distance from the sun to the planets at the ring of pairs, from the profile shifts of the "
+        "ring mesh by default",
+        None,
+    )
+    pair_center_distance: float | None = _position(
+        "distance between the planets of a pair, from their profile shifts by default", None
+    )
     count: int = integer(REQUIRED, 1, 24, "more do not fit", meaning="number of planets")
     angles: tuple[float, ...] | None = numbers(
         -_TURN,

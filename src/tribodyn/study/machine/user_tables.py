@@ -224,6 +224,9 @@ def default_assumptions(case: MachineCase) -> Iterator[Assumption]:
                 yield Assumption(f"bearings.{name}_{role}", value, "default", reason)
         reason = "planets stay at their angles while all teeth turn: Coriolis forces are left out"
         yield Assumption(f"planets.{name}: carrier", "fixed position", "default", reason)
+        if stage.is_stepped:
+            reason = "ring meshes begin their cycle with the sun mesh of the first planet"
+            yield Assumption(f"planets.{name}: phase of both gears", "0", "default", reason)
     if case.housing is None:
         yield Assumption("housing", "rigid", "default", "without [housing]")
 

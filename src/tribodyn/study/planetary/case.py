@@ -147,6 +147,11 @@ class PlanetaryCase(PartsCase):
     def _check_members(self, bodies: Mapping[str, Any], problems: KeyedProblems) -> None:
         """Refuse gears and members that do not exist, and lists of another length."""
         key, table = f"planets.{self.name}", self.table
+        if table.planet_type != "single" or table.ring_planet is not None:
+            what = f'planet_type = "{table.planet_type}", ring_planet = "{table.ring_planet}"'
+            why = "A stage with double planets is a machine"
+            remedy = "Write both in the case file, or load the changed tables"
+            problems.append((f"{key}.planet_type", Problem(what, "", why, remedy)))
         for role in ("sun", "ring", "planet"):
             name = getattr(table, role)
             if name not in bodies:

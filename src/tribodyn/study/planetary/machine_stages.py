@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,8 @@ import numpy as np
 
 from tribodyn.errors import Problem
 from tribodyn.machine import Bearing, Gear, Mesh, PlanetaryStage, Shaft, sun_to_ring_lag
+from tribodyn.machine.planetary.mesh_laws import gear_lag
+from tribodyn.machine.planetary.stage_parts import mesh_kinds
 from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.machine.pair_cases import MESH_KEYS, mesh_tables, pair_case, pinion_and_wheel
 from tribodyn.study.machine.read_parts import read_gear, table_of, tables_of
@@ -19,7 +21,7 @@ from tribodyn.study.machine.tables import PlanetsTable
 
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalPair
-    from tribodyn.study.case.case import Case
+    from tribodyn.machine import MeshLoad
     from tribodyn.study.case.user_input import Source
 
 #: Members of a stage; sun and ring are gears, the carrier is a shaft.
@@ -33,7 +35,7 @@ class CaseStage:
     name: str
     table: Any  #: values of ``[planets.NAME]``
     data: Mapping[str, Any]  #: tables of the case
-    planet: Gear
+    planets: Sequence[Gear]  #: that at the sun, and of double planets that at the ring
     gears: Mapping[str, Gear]  #: of the case, without planets
     source: Source | None
 
@@ -42,14 +44,28 @@ class CaseStage:
         """Table of the case file."""
         return f"planets.{self.name}"
 
+    @property
+    def planet(self) -> Gear:
+        """Planet at the sun."""
+        return self.planets[0]
+
+    @property
+    def planet_names(self) -> tuple[str, ...]:
+        """Names of the gears of the planets in the case."""
+        names = self.table.planet, self.table.ring_planet
+        return tuple(name for name in names if name is not None)
+
     def names_of(self, mesh: str) -> tuple[str, str]:
-        """Pinion and wheel of the ``sun`` or ``ring`` mesh as the case names them."""
-        ends = self.table.planet, getattr(self.table, mesh)
-        gears = {**self.gears, self.table.planet: self.planet}
-        return pinion_and_wheel(ends[::-1] if mesh == "sun" else ends, gears)
+        """Pinion and wheel of the ``sun``, ``ring`` or ``planet`` mesh as the case names them."""
+        names, table = self.planet_names, self.table
+        ends = {"sun": (table.sun, names[0]), "ring": (names[-1], table.ring), "planet": names}
+        gears = {**self.gears, **dict(zip(names, self.planets, strict=True))}
+        return pinion_and_wheel(ends[mesh], gears)
 
     def case_name(self, gear: str) -> str:
         """Name of a gear in the case; that of all planets is one."""
+        if gear.startswith(f"{self.name}_ring_planet"):
+            return self.planet_names[-1]
         return self.table.planet if gear.startswith(f"{self.name}_planet") else gear
 
     def shaft_of(self, role: str) -> str:
@@ -57,34 +73,47 @@ class CaseStage:
         name: str = getattr(self.table, role)
         return name if role == "carrier" else self.gears[name].shaft
 
-    @cached_property
-    def pair_data(self) -> dict[str, Any]:
-        """Tables of the case with the centre distance of the sun mesh for the ring mesh too."""
+    def pair_data(self, mesh: str) -> dict[str, Any]:
+        """Tables of the case with the centre distance and the module of a kind of mesh."""
         body = dict(self.data["planets"][self.name])
-        body["center_distance"] = Plain(self.center_distance)
+        if mesh == "ring" and self.table.ring_normal_module is not None:
+            body["normal_module"] = Plain(self.table.ring_normal_module)
+        distance = self._given_distance(mesh)
+        if mesh == "ring" and self.table.planet_type != "meshed":
+            distance = self.center_distance
+        body.pop("center_distance", None)
+        if distance is not None:
+            body["center_distance"] = Plain(abs(float(distance)))
         return {**self.data, "planets": {self.name: body}}
+
+    def _given_distance(self, mesh: str) -> float | None:
+        names = {"sun": "center_distance", "planet": "pair_center_distance"}
+        value: float | None = getattr(self.table, names.get(mesh, "ring_center_distance"))
+        return value
 
     @cached_property
     def center_distance(self) -> float:
         """Distance from the axis of the sun to those of the planets [m]."""
-        if self.table.center_distance is not None:
-            return abs(float(self.table.center_distance))
-        return float(self._pair("sun", self.data).gear_pair.center_distance)
+        return abs(float(self.gear_pair("sun").center_distance))
 
-    def _pair(self, mesh: str, data: Mapping[str, Any]) -> Case:
-        names = self.names_of(mesh)
-        return pair_case(data, self.key, names, self.source, driver=names[0], operation=(1.0, 1.0))
+    def gear_pair(self, mesh: str) -> CylindricalPair:
+        """Geometry of a kind of mesh."""
+        if mesh not in self._pairs:
+            names = self.names_of(mesh)
+            parts = self.pair_data(mesh), self.key, names, self.source
+            case = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
+            self._pairs[mesh] = case.gear_pair  # type: ignore[assignment]
+        return self._pairs[mesh]
 
     @cached_property
-    def _gear_pairs(self) -> tuple[CylindricalPair, CylindricalPair]:
-        sun, ring = (self._pair(mesh, self.pair_data).gear_pair for mesh in ("sun", "ring"))
-        return sun, ring  # type: ignore[return-value]
+    def _pairs(self) -> dict[str, CylindricalPair]:
+        return {}
 
-    def stage(self, *, sun_drives: bool = True) -> PlanetaryStage:
-        """Stage of the machine."""
+    def stage(self, load: MeshLoad | None = None) -> PlanetaryStage:
+        """Stage of the machine, its phases for the load of a sun mesh."""
         table = self.table
-        width = self.planet.face_width
-        axial = table.pin_stiffness if table.helix_angle else 0.0
+        width = sum(gear.face_width for gear in self.planets[: 1 + self.is_stepped])
+        axial = table.pin_stiffness if table.helix_angle or self.is_stepped else 0.0
         pin = Bearing(
             "planet",
             0.0,
@@ -93,27 +122,64 @@ class CaseStage:
             tilting_stiffness=axial * width**2 / 12.0,
             carrier_position=table.carrier_position,
         )
-        return PlanetaryStage(
+        double: dict[str, Any] = {"planet_type": table.planet_type}
+        if len(self.planets) > 1:
+            double["ring_planet"] = self.planets[1]
+            double["ring_mesh"] = {"normal_module": table.ring_normal_module or table.normal_module}
+        if table.planet_type == "meshed":
+            for mesh, name in (("ring", "ring"), ("planet", "pair")):
+                distance = abs(self.gear_pair(mesh).center_distance)
+                double[f"{name}_center_distance"] = distance
+        stage = PlanetaryStage(
             *(table.sun, table.ring, table.carrier, self.planet, table.count),
             *(table.normal_module, table.helix_angle, table.hand, self.center_distance),
             table.normal_pressure_angle,
             angles=table.angles,
             pin=pin,
-            sun_to_ring=sun_to_ring_lag(*self._gear_pairs, sun_drives=sun_drives),
             pin_errors=table.pin_errors or 0.0,
             thickness_errors=table.thickness_errors or 0.0,
+            **double,
         )
+        drives = load is None or load.driver == table.sun
+        return replace(stage, **self._lags(stage, drives, load is not None and load.sense < 0))
+
+    @property
+    def is_stepped(self) -> bool:
+        """Whether the planets have two gears behind each other."""
+        return bool(self.table.planet_type == "stepped")
+
+    def _lags(self, stage: PlanetaryStage, drives: bool, backwards: bool) -> dict[str, Any]:
+        """Lags behind the sun mesh; a torque on the sun backwards has the mirrored stage."""
+        if self.is_stepped:  # the gears of a planet may have any position on its shaft
+            return {}
+        sign = -1.0 if backwards else 1.0
+        if self.table.planet_type == "single":
+            lag = sun_to_ring_lag(*map(self.gear_pair, ("sun", "ring")), sun_drives=drives)
+            return {"sun_to_ring": sign * lag % 1.0}
+        first, second = stage.planet_axes(self.gears, np.zeros(1))[:, 0]
+        line = sign * float(np.angle(second - first))
+        beyond = line - sign * float(np.angle(second))
+        sun, pair, ring = (self.gear_pair(mesh) for mesh in ("sun", "planet", "ring"))
+        at_sun = self.names_of("sun")[1] == self.table.planet
+        is_wheel = self.names_of("planet")[1] == self.table.planet
+        lag = gear_lag(sun, pair, wheel=(at_sun, is_wheel), turn=line, drives=drives)
+        last = gear_lag(pair, ring, wheel=(not is_wheel, False), turn=beyond, drives=drives)
+        return {"sun_to_planet": sign * lag % 1.0, "sun_to_ring": sign * (lag + last) % 1.0}
 
     def mesh_roles(self) -> dict[str, str]:
-        """Whether each mesh of the machine is one of the ``sun`` or of the ``ring``."""
-        numbers = range(1, self.table.count + 1)
-        return {f"{self.name}_{m}{i}": m for i in numbers for m in ("sun", "ring")}
+        """Kind of each mesh of the machine: ``sun``, ``ring`` or ``planet``."""
+        numbers, kinds = range(1, self.table.count + 1), mesh_kinds(self.table.planet_type)
+        return {f"{self.name}_{name}{i}": m for i in numbers for m, name in kinds.items()}
 
     def machine_names(self, mesh: str, role: str) -> tuple[str, str]:
         """First and second gear of a mesh of the machine."""
-        planet = f"{self.name}_planet{mesh.removeprefix(f'{self.name}_{role}')}"
-        gear = getattr(self.table, role)
-        return (gear, planet) if role == "sun" else (planet, gear)
+        kind = mesh_kinds(self.table.planet_type)[role]
+        number = mesh.removeprefix(f"{self.name}_{kind}")
+        planets = [f"{self.name}_{place}planet{number}" for place in ("", "ring_")]
+        if role == "planet":
+            return planets[0], planets[1]
+        last = planets[len(self.planets) - 1]
+        return (self.table.sun, planets[0]) if role == "sun" else (last, self.table.ring)
 
     def carrier_shaft(self, shafts: Mapping[str, Shaft]) -> Shaft:
         """Shaft of the carrier with its mass, a steel disc by default."""
@@ -146,7 +212,8 @@ class CaseStage:
             if not (loose or hold):
                 continue
             radial = getattr(self.table, f"{role}_support") if loose else None
-            axial = (radial or 0.0) if loose and self.table.helix_angle else 0.0
+            spatial = self.table.helix_angle or self.is_stepped
+            axial = (radial or 0.0) if loose and spatial else 0.0
             bearings[f"{self.name}_{role}"] = Bearing(
                 *(shaft, 0.0, radial),
                 axial_stiffness=axial,
@@ -167,7 +234,7 @@ class CaseStage:
 
 def read_stages(
     data: Mapping[str, Any], gears: dict[str, Any], problems: KeyedProblems, source: Source | None
-) -> dict[str, tuple[Any, Gear]]:
+) -> dict[str, tuple[Any, ...]]:
     """Tables and planets of all stages; the planets are taken out of the tables of gears."""
     stages, planets = {}, set()
     tables = tables_of(data, "planets", problems)
@@ -181,7 +248,12 @@ def read_stages(
         if table is None:
             continue
         count = len(problems)
-        for role in ("sun", "ring", "planet"):
+        roles: tuple[str, ...] = ("sun", "ring", "planet")
+        if table.planet_type == "single" or table.ring_planet is None:
+            problems += _double_problems(key, table)
+        else:
+            roles = (*roles, "ring_planet")
+        for role in roles:
             if (gear := getattr(table, role)) not in gears:
                 why, remedy = f"Known: {', '.join(gears)}", "Add the gear, or correct the name"
                 problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
@@ -200,13 +272,33 @@ def read_stages(
                 problems.append((f"{key}.{role}", problem))
         if len(problems) > count:
             continue
-        planets.add(table.planet)
-        planet = read_gear(table.planet, {"shaft": "planet", **gears[table.planet]}, problems)
-        if planet is not None:
-            stages[name] = table, planet
+        names = [getattr(table, role) for role in roles[2:]]
+        planets |= {*names}
+        parts: list[Any] = [read_gear(n, {"shaft": "planet", **gears[n]}, problems) for n in names]
+        if None in parts:
+            continue
+        if table.planet_type == "stepped" and "position" not in gears[names[1]]:
+            behind = 0.5 * sum(gear.face_width for gear in parts)
+            parts[1] = replace(parts[1], position=behind)
+        stages[name] = table, *parts
+        if not data.get("shafts"):  # a stage by itself: its members are shafts of their own
+            for member in (table.sun, table.ring):
+                gears[member].setdefault("shaft", member)
     for planet in planets:
         del gears[planet]
     return stages
+
+
+def _double_problems(key: str, table: Any) -> KeyedProblems:
+    """Double planets without a second gear, and single ones that have it."""
+    if (table.planet_type == "single") == (table.ring_planet is None):
+        return []
+    what = f'planet_type = "{table.planet_type}"'
+    if table.ring_planet is None:
+        why, remedy = "Double planets have a second gear", 'Add ring_planet = "NAME", a gear'
+        return [(f"{key}.ring_planet", Problem(f"{what} without ring_planet", "", why, remedy))]
+    why, remedy = "Single planets have one gear", 'Write planet_type = "stepped" or "meshed"'
+    return [(f"{key}.planet_type", Problem(f"{what} with ring_planet", "", why, remedy))]
 
 
 def stage_figures(result: Any) -> dict[str, dict[str, float]]:
