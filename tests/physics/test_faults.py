@@ -17,6 +17,7 @@ from tribodyn.faults import (
     Crack,
     Fault,
     FlankDeviations,
+    FlankTopographies,
     InclinedFlanks,
     PitchDeviations,
     Spall,
@@ -32,6 +33,7 @@ from tribodyn.faults import (
 from tribodyn.gear import (
     FlankModification,
     Material,
+    ProfileMap,
     SpurGear,
     SpurPair,
     cylindrical_pair,
@@ -122,6 +124,44 @@ def test_slopes_of_a_class(pair: SpurPair) -> None:
         mesh_with(pair, FlankDeviations(profile_slopes=(1e-6, 0.0)))
     with pytest.raises(InputError, match="neither slopes nor"):
         FlankDeviations()
+
+
+def test_measured_teeth(pair: SpurPair) -> None:
+    values = 1e-6 * np.random.default_rng(3).normal(0.0, 4.0, (3, 9, 2))
+    maps = tuple(
+        ProfileMap(tuple(np.linspace(0.0, 0.04, 9)), (-0.01, 0.01), tuple(map(tuple, rows)))
+        for rows in values
+    )
+    # the same map on all teeth is the modification of the gear
+    modified = replace(
+        pair, pinion=replace(pair.pinion, modification=FlankModification(profile_map=maps[0]))
+    )
+    expected = loaded_contact(modified, TORQUE, provider="analytic", phases=32).transmission_error
+    shared = FlankTopographies(teeth=(5,), maps=maps[:1], other_teeth="nearest")
+    mesh = mesh_with(pair, shared, phases=32)
+    np.testing.assert_allclose(mesh.transmission_error[:-1], np.tile(expected, 16), atol=1e-15)
+    # of a single tooth that deviates, the error is that of sound teeth where it does not touch
+    alone = mesh_with(pair, FlankTopographies(teeth=(5,), maps=maps[:1]), phases=32)
+    sound = loaded_contact(pair, TORQUE, provider="analytic", phases=32).transmission_error
+    differs = np.abs(alone.transmission_error[:-1].reshape(16, 32) - sound).max(axis=1) > 1e-12
+    assert alone.cycles == 16
+    assert np.flatnonzero(differs).tolist() == [3, 4, 5]  # it touches a little before the path
+    # teeth between two measured ones are those of the nearest
+    three = FlankTopographies(teeth=(9, 1, 5), maps=maps, other_teeth="nearest")
+    assert three.maps_of_teeth(16).tolist() == [1, 1, 1, 2, 2, 2, 2, 0, 0, 0, 0, 0, 1, 1, 1, 1]
+    late = replace(three, first_tooth=4, other_teeth="nominal").maps_of_teeth(16)
+    assert late[[1, 5, 13]].tolist() == [2, 0, 1]
+    assert np.count_nonzero(late >= 0) == 3
+    for wrong, message in (
+        ({"teeth": (17,)}, "The pinion has 16 teeth"),
+        (
+            {"maps": (replace(maps[0], position=tuple(np.linspace(0.02, 0.021, 9))),)},
+            "not extrapolated",
+        ),
+        ({"teeth": (1, 1)}, "Each measured tooth has one map"),
+    ):
+        with pytest.raises(InputError, match=message):
+            mesh_with(pair, replace(shared, **wrong))  # type: ignore[arg-type]
 
 
 def test_inclined_crests_cancel_over_the_face(pair: SpurPair) -> None:

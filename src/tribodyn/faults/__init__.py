@@ -5,6 +5,7 @@
 | ``fault`` | what every fault answers: the gear, the gap and the compliance that it adds |
 | ``deviations`` | eccentricity and waviness, pitch deviations of an accuracy class |
 | ``flanks`` | slopes of profile and helix that differ from tooth to tooth |
+| ``topographies`` | measured flanks of several teeth |
 | ``damage`` | spalls, broken teeth, root cracks |
 | ``cracked_tooth`` | compliance of a cracked tooth by finite elements |
 | ``turning`` | force law of a mesh over the turns of its gears |
@@ -33,6 +34,7 @@ from tribodyn.faults.excitation import (
 )
 from tribodyn.faults.fault import Fault
 from tribodyn.faults.flanks import FlankDeviations, slope_tolerances
+from tribodyn.faults.topographies import FlankTopographies
 from tribodyn.faults.turning import TurningMesh, turning_mesh, turns_of
 
 __all__ = [
@@ -44,6 +46,7 @@ __all__ = [
     "DrivenSystem",
     "Fault",
     "FlankDeviations",
+    "FlankTopographies",
     "InclinedFlanks",
     "PitchDeviations",
     "RandomLoad",

@@ -75,6 +75,8 @@ class FlankDeviations(Fault):
         Class of ISO 1328-1 from which both are drawn where neither is given.
     seed : int
         Number of the draw.
+    first_tooth : int
+        Tooth of the lists that comes into contact first, from 1.
 
     Raises
     ------
@@ -97,9 +99,11 @@ class FlankDeviations(Fault):
     helix_slopes: tuple[float, ...] = ()
     accuracy_class: int | None = None
     seed: int = 0
+    first_tooth: int = 1
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        require_whole("first_tooth", self.first_tooth)
         for name in ("profile_slopes", "helix_slopes"):
             values = np.atleast_1d(np.asarray(getattr(self, name), dtype=float))
             object.__setattr__(self, name, tuple(values.tolist()))
@@ -131,7 +135,7 @@ class FlankDeviations(Fault):
                 raise InputError(what, Argument(name), why, f"Give {count} values")
 
     def slopes(self, gear: SpurGear) -> tuple[Array, Array]:
-        """Slopes of profile and helix of all teeth.
+        """Slopes of profile and helix of all teeth in the order of contact.
 
         Parameters
         ----------
@@ -146,10 +150,11 @@ class FlankDeviations(Fault):
         if self.accuracy_class is None:
             listed = (self.profile_slopes, self.helix_slopes)
             profile, helix = (np.asarray(values or np.zeros(count)) for values in listed)
-            return profile, helix
+            return np.roll(profile, 1 - self.first_tooth), np.roll(helix, 1 - self.first_tooth)
         draw = np.random.default_rng(self.seed).standard_normal((2, count))
         tolerances = np.array(slope_tolerances(gear, self.accuracy_class))
         scaled = draw * (tolerances / np.abs(draw).max(axis=1))[:, None]
+        scaled = np.roll(scaled, 1 - self.first_tooth, axis=1)
         return scaled[0], scaled[1]
 
     def _gap(self, places: ContactPlaces, face: Array) -> Array:

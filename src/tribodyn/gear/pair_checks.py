@@ -298,9 +298,10 @@ def _end_relief_problems(name: str, gear: GearData) -> list[Problem]:
     return [Problem(what, Argument("modification.end_relief_length", name), why, remedy)]
 
 
-def _map_problems(
+def map_problems(
     name: str, chart: ProfileMap, gear: GearData, flank: FlankRange, face_width: float
 ) -> list[Problem]:
+    """Problems of a map that does not cover the used flank of its gear."""
     problems, where = [], Argument("modification.profile_map", name)
     low, high = chart.limits(gear.base_radius)
     flank = FlankRange(*sorted(map(abs, flank)))
@@ -334,7 +335,7 @@ def fit_problems(pair: FaceGeometry) -> list[Problem]:
         problems += _end_relief_problems(name, gear)
         chart = gear.modification.profile_map
         if chart is not None:
-            problems += _map_problems(name, chart, gear, flank, pair.common_face_width)
+            problems += map_problems(name, chart, gear, flank, pair.common_face_width)
     return problems
 
 

@@ -93,6 +93,33 @@ def test_a_ripple_is_in_the_motion_and_its_clock(healthy: Case) -> None:
         turning_clock(road.replace({"faults.road.duration": "60 s"}))
 
 
+def test_measured_teeth_from_a_file(healthy: Case, tmp_path: Path) -> None:
+    file = tmp_path / "teeth.csv"
+    rows = ["tooth,diameter,deviation", "1,mm,um", "5,60,0", "5,90,4", "2,60,-1", "2,90,2"]
+    file.write_text("\n".join(rows), encoding="utf-8")
+    stated = {"kind": "flank-topographies", "gear": "pinion", "file": str(file)}
+    changes = {f"faults.flanks.{key}": value for key, value in stated.items()}
+    case = healthy.replace(changes)
+    mesh = turning_mesh_of(case)
+    assert mesh.cycles == 16
+    saved = tmp_path / "case.toml"
+    saved.write_text(case.to_toml().replace(str(tmp_path) + "/", ""), encoding="utf-8")
+    assert tribodyn.load_case(saved) == case
+    nearest = turning_mesh_of(case.replace({"faults.flanks.other_teeth": "nearest"}))
+    assert nearest.peak_to_peak_transmission_error > mesh.peak_to_peak_transmission_error
+    for line, message in (
+        ("17,60,0\n17,90,1", "The pinion has 16 teeth"),
+        ("1.5,60,0", r"tooth = 1\.5 \(teeth\.csv, line 7\)"),
+        ("3,75,0\n3,90,1", "not extrapolated"),
+    ):
+        file.write_text("\n".join([*rows, line]), encoding="utf-8")
+        with pytest.raises(InputError, match=message) as raised:
+            healthy.replace(changes)
+        assert "faults.flanks.file" in str(raised.value)
+    with pytest.raises(InputError, match='give the file to a fault of kind = "flank-topographies"'):
+        healthy.replace({"gears.pinion.modification.profile_map": str(file)})
+
+
 def test_hypoid_gears_have_no_such_faults() -> None:
     with pytest.raises(InputError, match=r"faults\.crack.*hypoid"):
         tribodyn.load_case("hypoid-mixed-ehl").replace(CRACK)

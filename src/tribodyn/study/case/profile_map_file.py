@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 _PLACES = ("roll_length", "diameter")
 _FORM = (
     "The first row names the columns roll_length or diameter, face_position (if there are several) "
-    "and deviation; the second their units, for example mm,mm,um; each further row is one point"
+    "and deviation; the second their units, for example mm,mm,um; each further row is one point. "
+    "Maps of several teeth have a column tooth, with the unit 1"
 )
 
 
@@ -29,7 +30,17 @@ def _fault(path: str, line: int, what: str, why: str, remedy: str) -> InputError
 
 
 def read_profile_map(path: str, interpolation: str) -> ProfileMap:
-    """Read a map; the same file is read again when it has changed."""
+    """Read the map of all teeth of a gear."""
+    maps = read_tooth_maps(path, interpolation)
+    if 0 not in maps:
+        what, why = "the profile map has a column tooth", "This map is that of all teeth"
+        remedy = 'Remove the column, or give the file to a fault of kind = "flank-topographies"'
+        raise _fault(path, 1, what, why, remedy)
+    return maps[0]
+
+
+def read_tooth_maps(path: str, interpolation: str) -> dict[int, ProfileMap]:
+    """Read maps by tooth, 0 where none is named; a file is read again when it has changed."""
     try:
         state = Path(path).stat()
     except (OSError, ValueError) as error:
@@ -40,7 +51,7 @@ def read_profile_map(path: str, interpolation: str) -> ProfileMap:
 
 
 @lru_cache(maxsize=16)
-def _read(path: str, interpolation: str, _: tuple[int, int]) -> ProfileMap:
+def _read(path: str, interpolation: str, _: tuple[int, int]) -> dict[int, ProfileMap]:
     try:
         text = read_bytes(path, "profile map").decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
@@ -51,16 +62,22 @@ def _read(path: str, interpolation: str, _: tuple[int, int]) -> ProfileMap:
     if len(rows) < 3:
         raise _fault(path, 0, "the profile map holds no points", _FORM, "Add what is missing")
     names, factors = _head(path, rows[0], rows[1])
-    points: dict[tuple[float, float], float] = {}
+    maps: dict[int, dict[tuple[float, float], float]] = {}
     for line, cells in rows[2:]:
         values = dict(zip(names, _values(path, line, cells, factors), strict=True))
         place = values.get("roll_length", values.get("diameter", 0.0))
         at = (place, values.get("face_position", 0.0))
+        tooth = values.get("tooth", 0.0)
+        if "tooth" in names and (tooth < 1.0 or tooth != int(tooth)):
+            what, why = f"tooth = {tooth:g}", "Teeth are numbered in the order of contact from 1"
+            raise _fault(path, line, what, why, "Correct the number")
+        points = maps.setdefault(int(tooth), {})
         if at in points:
             what, why = "this point comes twice", "Each place has one deviation"
             raise _fault(path, line, what, why, "Remove one of them")
         points[at] = values["deviation"]
-    return _grid(path, "diameter" if "diameter" in names else "roll_length", interpolation, points)
+    coordinate = "diameter" if "diameter" in names else "roll_length"
+    return {tooth: _grid(path, coordinate, interpolation, maps[tooth]) for tooth in sorted(maps)}
 
 
 def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
@@ -77,20 +94,21 @@ def _head(
 ) -> tuple[list[str], list[float]]:
     """Names of the columns, and the factor of each to metres."""
     names = [name.lower().replace(" ", "_") for name in first[1]]
-    text = sorted(name for name in names if name not in _PLACES)
+    text = sorted(name for name in names if name not in (*_PLACES, "tooth"))
     sound = text in (["deviation"], ["deviation", "face_position"])
-    if not sound or len(names) != len(text) + 1:
+    if not sound or len(names) != len(text) + 1 + ("tooth" in names):
         # What is no profile map at all is not for everyone to read.
         labels = set(names) & {*_PLACES, "deviation"}
         what = f"the columns are {', '.join(first[1])}" if labels else "this is no profile map"
         raise _fault(path, first[0], what, _FORM, "Correct the first row")
-    if len(second[1]) != len(names) or any(_number(cell) is not None for cell in second[1]):
+    lengths = [u for n, u in zip(names, second[1], strict=False) if n != "tooth"]
+    if len(second[1]) != len(names) or any(_number(cell) is not None for cell in lengths):
         what = "the row of units is missing"
         raise _fault(path, second[0], what, _FORM, "Add for example mm,mm,um as the second row")
     factors = []
     for name, unit in zip(names, second[1], strict=True):
         try:
-            factors.append(units.convert(1.0, unit, "m"))
+            factors.append(1.0 if name == "tooth" else units.convert(1.0, unit, "m"))
         except units.UnitProblemError as error:
             what = f'"{unit}" is no unit of {name}'
             raise _fault(path, second[0], what, str(error), "Write mm or um") from None

@@ -224,7 +224,7 @@ def _state(path: Path) -> tuple[int, int, int] | None:
 def named_files(text: str, name: str = "") -> list[tuple[str, str]]:
     """Return the files that the text of a case names, by dotted key, without opening them."""
     data = parse_toml(text, name)
-    places = [key.split(".") for key in file_keys()]
+    places = [key.split(".") for key in file_keys(data)]
     places += [["assumed", ".".join(place), "value"] for place in places]
     values = [(".".join(place), _at(data, *place)) for place in places]
     return [(key, value) for key, value in values if isinstance(value, str)]
@@ -232,7 +232,7 @@ def named_files(text: str, name: str = "") -> list[tuple[str, str]]:
 
 def _place_files(data: dict[str, Any], folder: Path) -> None:
     """Resolve the paths of a case against its folder."""
-    files = file_keys()
+    files = file_keys(data)
     marks = [("assumed", key, "value") for key in files]
     for *tables, name in [key.split(".") for key in files] + marks:
         table = _at(data, *tables)

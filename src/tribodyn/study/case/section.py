@@ -202,9 +202,15 @@ def options_of(section: type[Section], prefix: str) -> list[tuple[str, Option]]:
     return options
 
 
-def file_keys() -> list[str]:
-    """Return the dotted keys of a case that name files."""
-    files = [key for key, option in options_of(Section.case_class, "") if option.kind == "file"]
+def file_keys(data: Mapping[str, Any] | None = None) -> list[str]:
+    """Return the dotted keys of a case that name files; of named tables those that data have."""
+    options = [key for key, option in options_of(Section.case_class, "") if option.kind == "file"]
+    files = []
+    for key in options:
+        table, name, inner = key.partition(".NAME.")
+        tables = (data or {}).get(table) if name else None
+        named = tables if isinstance(tables, Mapping) else ()
+        files += [f"{table}.{each}.{inner}" for each in named] or [key]
     for table, field in Section.case_class.fields.items():
         keys = field.kind.section_keys().keys if isinstance(field, Table) else {}
         files += [
@@ -242,7 +248,10 @@ class CaseTables(Section):
         """Files that the case names, by dotted key."""
         if self._files is None:
             values = flat(self)
-            self._files = {key: Path(values[key]) for key in file_keys() if values.get(key)}
+            keys = file_keys(
+                {"faults": vars(faults) if (faults := vars(self).get("faults")) else {}}
+            )
+            self._files = {key: Path(values[key]) for key in keys if values.get(key)}
         return self._files
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean
 from tribodyn.model import number, text
-from tribodyn.study.faults.section import KINDS, FaultTable, fault_problems, read_fault
+from tribodyn.study.faults.section import KINDS, FaultTable, fault_problems, located_in, read_fault
 
 if TYPE_CHECKING:
     from tribodyn.faults import BearingForce, Fault, ShaftExcitation
@@ -92,7 +92,8 @@ def impossible_faults(case: MachineCase) -> list[tuple[str, Problem]]:
             checks = [partial(check_shaft, fault, speed)]
         for check in checks:
             try:
-                check()
+                with located_in(fault):
+                    check()
             except InputError as error:
                 for problem in error.problems:
                     where = problem.where
@@ -167,10 +168,10 @@ def _changes(
     between = math.copysign(1.0, speed) * (angles[1] - angles[0]) % turn
     lag = machine.meshes[other].offset - machine.meshes[first].offset
     later = between / turn + lag / teeth  # turns of the gear, as the other mesh counts them
-    if fault.kind in ("eccentricity", "waviness"):
-        order = 1 if fault.kind == "eccentricity" else fault.order or 1
+    if fault.kind in ("eccentricity", "waviness", "misalignment"):
+        order = 1 if fault.kind == "eccentricity" else fault.order or 0
         return {"phase": math.remainder((fault.phase or 0.0) - order * turn * later, turn)}
-    if fault.kind == "pitch-deviations":
+    if fault.kind in ("pitch-deviations", "flank-deviations", "flank-topographies"):
         return {"first_tooth": round(-later * teeth) % teeth + 1}
     return {"tooth": ((fault.tooth or 1) - 1 + round(later * teeth)) % teeth + 1}
 

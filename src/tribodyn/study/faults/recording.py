@@ -142,7 +142,7 @@ def _lead_at(motion: PeriodicMotion, clock: Array) -> Array:
     if callable(motion.lead):
         return np.asarray(motion.lead(clock))
     count = len(motion.lead)
-    return np.interp(clock, np.arange(count) / count, motion.lead, period=1.0)
+    return np.asarray(np.interp(clock, np.arange(count) / count, motion.lead, period=1.0))
 
 
 def _band_limited(motion: PeriodicMotion, values: Array, sample_rate: float) -> Any:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from tribodyn.errors import InputError, Problem
-from tribodyn.model import REQUIRED, choice, integer, number, numbers
+from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
 from tribodyn.study.case.section import NamedTables, Section, table
 
 if TYPE_CHECKING:
@@ -25,6 +27,7 @@ KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "misalignment": (("gear", "amplitude"), ("order", "phase")),
     "pitch-deviations": (("gear", "accuracy_class"), ("seed",)),
     "flank-deviations": (("gear",), ("profile_slopes", "helix_slopes", "accuracy_class", "seed")),
+    "flank-topographies": (("gear", "file"), ("other_teeth", "interpolation")),
     "spall": (("gear", "tooth", "depth", "start", "end"), ("face_share",)),
     "broken-tooth": (("gear", "tooth"), ("remaining",)),
     "crack": (("gear", "tooth", "depth"), ("angle", "root_tangent", "face_share")),
@@ -52,6 +55,7 @@ MEANINGS = {
     "misalignment": "flanks inclined over the face, constant or turning with the shaft",
     "pitch-deviations": "pitch deviations drawn from an accuracy class",
     "flank-deviations": "slopes of profile and helix that differ from tooth to tooth",
+    "flank-topographies": "measured flanks or profiles of several teeth",
     "spall": "material missing on a part of one flank",
     "broken-tooth": "a tooth whose upper part is gone",
     "crack": "a crack at the root of one tooth",
@@ -124,6 +128,19 @@ class FaultTable(Section):
         -5e-4, 5e-4, _GUARD, unit="m", display_unit="um", example='["4 um", "-3 um", "0 um"]',
         meaning="slope of the helix of each tooth: material taken away at one end of the face",
     )  # fmt: skip
+    file: str | None = file_path(
+        meaning="CSV file with the deviations of the flanks of measured teeth: a profile map with "
+        "a column tooth",
+        example='"teeth.csv"',
+    )
+    other_teeth: str | None = choice(
+        None, ("nominal", "nearest"),
+        meaning="flanks of the teeth that were not measured: without deviation, or as the nearest "
+        "measured one",
+    )  # fmt: skip
+    interpolation: str | None = choice(
+        None, ("linear", "cubic"), meaning="how the maps are read between their points"
+    )
     seed: int | None = integer(
         None, 0, 10**9, "any whole number", meaning="number of the random draw", example="1"
     )
@@ -243,6 +260,11 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
         return faults.BearingDefect(**{k: v for k, v in values.items() if k != "gear"})
     if fault.kind == "random-load" and "torque" in values:
         return faults.RandomLoad.of_rms(values.pop("torque"), values.pop("frequencies"), **values)
+    if fault.kind == "flank-topographies":
+        from tribodyn.study.case.profile_map_file import read_tooth_maps
+
+        maps = read_tooth_maps(values.pop("file"), values.pop("interpolation", "linear"))
+        return faults.FlankTopographies(teeth=tuple(maps), maps=tuple(maps.values()), **values)
     kinds: dict[str, Any] = {
         "waviness": faults.Waviness,
         "misalignment": faults.InclinedFlanks,
@@ -259,6 +281,17 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
     return result
 
 
+@contextmanager
+def located_in(fault: FaultTable) -> Iterator[None]:
+    """Name the key of the file in problems of measured flanks."""
+    try:
+        yield
+    except InputError as error:
+        if fault.kind != "flank-topographies":
+            raise
+        raise InputError([replace(p, where=Argument("file")) for p in error.problems]) from None
+
+
 def check_fault(case: Any, fault: FaultTable) -> None:
     """Raise InputError if the pair of a case cannot have a fault."""
     from tribodyn.faults import Fault
@@ -266,9 +299,10 @@ def check_fault(case: Any, fault: FaultTable) -> None:
     if case.gears.kind != "spur":
         why = "Faults act on cylindrical pairs, whose teeth are computed one by one"
         raise InputError(f"the gears are a {case.gears.kind} pair", "kind", why, "Remove [faults]")
-    stated = read_fault(fault)
-    if isinstance(stated, Fault):
-        stated._check(case.gear_pair)
+    with located_in(fault):
+        stated = read_fault(fault)
+        if isinstance(stated, Fault):
+            stated._check(case.gear_pair)
 
 
 def _faults_of(case: Any, kind: type[T]) -> dict[str, T]:

@@ -48,9 +48,13 @@ def read_any_case(
     if not (is_machine(data) or several):
         return read_case(text, name)
     place = Path(name).parent if folder is None else folder
-    housing = data.get("housing")
-    if isinstance(housing, dict):
-        for key in HousingTable.fields:
-            if isinstance(housing.get(key), str):
-                housing[key] = str((place / housing[key]).absolute())
+    faults = data.get("faults")
+    tables = [(data.get("housing"), tuple(HousingTable.fields))]
+    tables += [
+        (table, ("file",)) for table in (faults.values() if isinstance(faults, dict) else ())
+    ]
+    for table, keys in tables:
+        for key in keys if isinstance(table, dict) else ():
+            if isinstance(table.get(key), str):
+                table[key] = str((place / table[key]).absolute())
     return MachineCase(source, **data)
