@@ -14,6 +14,7 @@ from tribodyn.dynamics import (
     System,
     energy_audit,
     harmonic_balance,
+    simulate,
     steady_state,
 )
 from tribodyn.errors import ComputationError, InputError, ModelWarning, quiet
@@ -202,6 +203,12 @@ def test_a_motion_that_does_not_repeat_names_the_contact():
     assert any(
         "Contact 0 has the largest residual" in text or "Contact 1 has" in text for text in messages
     )
+    # An integrated period stands in for the motion.
+    start = motion.position[0], motion.velocity[0]
+    again = simulate(machine, 0.31, 1, start, steps=512, extra_force=motion.extra_force)
+    at = np.interp(motion.time, again.time, again.position[:, 0])
+    assert motion.position[:, 0] == pytest.approx(at, abs=1e-4 * np.ptp(at))
+    assert (motion.engine, motion.period) == ("modal", 0)
 
 
 def test_a_mode_without_damping_at_a_harmonic_is_refused():

@@ -76,6 +76,12 @@ class ClosedStructure:
         values = np.linalg.eigvals(self.matrix) if self.modes is None else self.modes[0]
         return float(np.abs(values).max(initial=0.0))
 
+    @cached_property
+    def decay(self) -> float:
+        """Rate at which the slowest motion decays [1/s]; negative if it grows."""
+        values = np.linalg.eigvals(self.matrix) if self.modes is None else self.modes[0]
+        return -float(values.real.max(initial=-np.inf))
+
     def respond(self, omega: Array, force: ComplexArray) -> ComplexArray:
         """Amplitudes of the state (k, m) under forces (k, s)."""
         if self.modes is None:

@@ -7,7 +7,8 @@ appears by its receptances only, so that the cost hardly depends on the number o
 from __future__ import annotations
 
 import weakref
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,9 +32,9 @@ from tribodyn.dynamics.orbits.coordinates import (
     refuse_disconnected,
     static_start,
 )
-from tribodyn.dynamics.time.response import Response
+from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, require_positive, warn
+from tribodyn.errors import ComputationError, InputError, require_positive, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, ComplexArray, Mask
 
@@ -49,8 +50,11 @@ STEP_LIMIT = 1e-2
 #: Damping added at first where Newton's method does not converge, over the critical damping at the
 #: frequency of the fastest mesh, and the factors by which it is reduced.
 _ADDED = (0.3, 0.1, 0.03, 0.01, 0.003)
-#: Newton steps with each of them, and periods that are integrated where this fails too.
-_TRIES, _MARCHED = 12, (3, 6, 12, 24)
+#: Newton steps with each of them, and periods that are integrated, short ones and those that
+#: forget their start.
+_TRIES, _MARCHED, _LONG = 12, (3, 6, 12, 24), (1, 2)
+#: Natural logarithm of the decay in a period after which nothing is left of a start.
+_FORGOTTEN = 10.0
 
 
 @dataclass
@@ -213,14 +217,17 @@ def harmonic_balance(
         warn("steady-state", _not_converged(residual, solution, tolerance), stacklevel=2)
     elif step_error > STEP_LIMIT:
         warn("step-size", _step_message(residual, step_error), stacklevel=2)
-    return orbit_response(grid, residual, solution.state, converged=converged, **facts)
+    response = orbit_response(grid, residual, solution.state, converged=converged, **facts)
+    if converged or prepared.structure.modes is None:
+        return response
+    return _marched(prepared, residual, response, **facts)
 
 
 def _multipliers(prepared: Prepared, residual: Residual, solution: Solution) -> ComplexArray:
     """Floquet multipliers, with a warning of an unstable motion."""
-    grid = prepared.grid(min(prepared.grids))
     if prepared.structure.modes is None:
         return np.zeros(0, dtype=complex)
+    grid = _marching_grid(prepared, residual)
     state, torque = starting_state(residual, solution.state)
     motion = ModalMotion(grid, prepared.structure)
     multipliers = motion.multipliers(state, residual.frequency, torque)
@@ -266,34 +273,79 @@ def _start(
 
 
 def _solve(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -> Solution:
-    """Newton's method; where it fails with damping that is removed again, then from a march."""
+    """Newton's method; where it fails, with damping that is removed again and from a march."""
     best = newton(residual, y, 0.01 * tolerance)
-    if best.error <= tolerance:
-        return best
+    searches = [_with_damping, _from_march]
+    if _settles(prepared, residual):
+        searches.reverse()
+    for search in searches:
+        if not best.error <= tolerance:
+            trial = search(prepared, residual, y, tolerance)
+            best = min(best, trial, key=lambda solution: solution.error)
+    return best
+
+
+def _settles(prepared: Prepared, residual: Residual) -> bool:
+    """Whether a period of the clock forgets its start."""
+    return prepared.structure.decay / residual.frequency > _FORGOTTEN
+
+
+def _with_damping(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -> Solution:
+    """Newton's method with damping at the contacts that is removed in steps."""
     contacts = residual.contacts
     critical = contacts.rows.stiffness.sum(axis=-1).mean(axis=0)
     critical = critical / (np.pi * residual.frequency * contacts.system.cycles)
-    point = y
     for part in (*_ADDED, 0.0):
         residual.excess = part * critical
-        trial = newton(residual, point, 0.01 * tolerance, _TRIES)
+        trial = newton(residual, y, 0.01 * tolerance, _TRIES)
         if trial.error < 1e-3:
-            point = trial.state.y
+            y = trial.state.y
     residual.excess = 0.0 * critical
-    best = min(best, trial, key=lambda solution: solution.error)
-    if best.error <= tolerance or prepared.structure.modes is None:
+    return trial
+
+
+def _from_march(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -> Solution:
+    """Newton's method from motions that are integrated over some periods."""
+    best = Solution(residual.at(y), np.inf, 0, 0)
+    if prepared.structure.modes is None:
         return best
-    grid = prepared.grid(min(prepared.grids))
+    grid = _marching_grid(prepared, residual)
     motion = ModalMotion(grid, prepared.structure)
-    state, torque = starting_state(residual, residual.at(point))
-    for periods in _MARCHED:
-        states, _, trace = motion.advance(state, residual.frequency, periods, torque)
+    state, torque = starting_state(residual, best.state)
+    for periods in _LONG if _settles(prepared, residual) else _MARCHED:
+        try:
+            states, _, trace = motion.advance(state, residual.frequency, periods, torque)
+        except ComputationError:  # it grows without bounds
+            break
         state = states[-1]
-        trial = newton(residual, _resampled(grid, trace, contacts.steps), 0.01 * tolerance)
+        start = _resampled(grid, trace, residual.contacts.steps)
+        trial = newton(residual, start, 0.01 * tolerance, _TRIES)
         best = min(best, trial, key=lambda solution: solution.error)
         if best.error <= tolerance:
             break
     return best
+
+
+def _marching_grid(prepared: Prepared, residual: Residual) -> Compiled:
+    """Grid with at least as many steps as the period has samples."""
+    steps = -(-residual.contacts.steps // prepared.system.cycles)
+    return prepared.grid(max(steps, min(prepared.grids)))
+
+
+def _marched(prepared: Prepared, residual: Residual, response: Response, **facts: Any) -> Response:
+    """The last of some periods that are integrated from a motion that does not repeat."""
+    grid = _marching_grid(prepared, residual)
+    motion = ModalMotion(grid, prepared.structure)
+    start = response.position[0], response.velocity[0]
+    forces = residual.frequency, _LONG[-1], response.extra_force
+    try:
+        states = motion.march(*start, *forces, recorded=True)[-grid.grid.steps - 1 :]
+    except ComputationError:  # it grows without bounds
+        return response
+    number = prepared.structure.rate * float(grid.grid.width.max()) / residual.frequency
+    facts |= {"engine": "modal", "period": 0, "step_error": float("nan")}
+    compiled = replace(grid, step_number=number)
+    return build_response(compiled, residual.frequency, states, response.extra_force, **facts)
 
 
 def _resampled(grid: Compiled, trace: Trace, steps: int) -> Array:
@@ -327,5 +379,6 @@ def _not_converged(residual: Residual, solution: Solution, tolerance: float) -> 
     return (
         f"no periodic motion was found: certified error {solution.error:.2e}, limit "
         f"{tolerance:.0e}. Contact {worst} has the largest residual, "
-        f"{1e6 * distance[worst]:.3g} um; {reason}. Try another start or simulate over time"
+        f"{1e6 * distance[worst]:.3g} um; {reason}. A time integration stands in for "
+        "it. Try another start or simulate over time"
     )

@@ -51,7 +51,7 @@ class TangentMarch:
         self._push = np.ascontiguousarray(np.concatenate((pushed.real, pushed.imag)).T)
         self._decay = np.stack((decay.real, decay.imag))
         self._direct = np.ascontiguousarray((signals @ after).real)
-        settling = math.log(1.0 / _LEFT) / max(float(-values.real.max()), 1e-300)
+        settling = math.log(1.0 / _LEFT) / max(structure.decay, 1e-300)
         self._lead = int(min(settling / h, steps))
         self._gain = _gains(residual, state, self._direct)
 
