@@ -10,8 +10,8 @@ import numpy as np
 
 from tribodyn.compiled import announced, source_digest
 from tribodyn.compiled.cache import cached_njit
-from tribodyn.ehl._kernel.elementary import INNER, JIT
-from tribodyn.ehl._kernel.heated_shear import Across, Along, Sheared, shear_column
+from tribodyn.ehl._kernel.elementary import JIT
+from tribodyn.ehl._kernel.heated_shear import LEAN, Across, Along, Sheared, shear_column
 from tribodyn.ehl._kernel.reynolds import PLAIN, oil_state
 from tribodyn.types import Array
 
@@ -24,7 +24,7 @@ _LOCAL, _STILL, _SHORTEST = 12, 0.01, 0.1
 _SWIRL = 0.4
 
 
-@nb.njit(**INNER)
+@nb.njit(**LEAN)
 def _exchange(flux: float, conduction: float, capacity: float) -> tuple[float, float]:
     """Heat per kelvin from above to below, and the other way: power law of Patankar (1980)."""
     carried = flux * capacity
@@ -44,27 +44,28 @@ class Column(NamedTuple):
     steeper: Array  #: heat per change of the gradient of the pressure
     answer: Array  #: change of that stress per kelvin
     climb: Array  #: change of that gradient per kelvin
-    reach: Array  #: flow per rate of shear
     before: Array  #: temperatures before the step
 
 
-@nb.njit(**INNER)
+@nb.njit(**LEAN)
 def _solve_column(last: int, c: Column) -> float:
     """Newton step: the band and two products, of stress and gradient that all nodes share."""
+    low, middle, up = c.low, c.middle, c.up
+    rhs, shared, steeper = c.rhs, c.shared, c.steeper
+    middle[0] = 1.0 / middle[0]
     for j in range(1, last + 1):
-        ratio = c.low[j] / c.middle[j - 1]
-        c.middle[j] -= ratio * c.up[j - 1]
-        c.rhs[j] -= ratio * c.rhs[j - 1]
-        c.shared[j] -= ratio * c.shared[j - 1]
-        c.steeper[j] -= ratio * c.steeper[j - 1]
-    for j in range(last, -1, -1):
-        if j < last:
-            c.rhs[j] -= c.up[j] * c.rhs[j + 1]
-            c.shared[j] -= c.up[j] * c.shared[j + 1]
-            c.steeper[j] -= c.up[j] * c.steeper[j + 1]
-        c.rhs[j] /= c.middle[j]
-        c.shared[j] /= c.middle[j]
-        c.steeper[j] /= c.middle[j]
+        ratio = low[j] * middle[j - 1]
+        middle[j] = 1.0 / (middle[j] - ratio * up[j - 1])
+        rhs[j] -= ratio * rhs[j - 1]
+        shared[j] -= ratio * shared[j - 1]
+        steeper[j] -= ratio * steeper[j - 1]
+    rhs[last] *= middle[last]
+    shared[last] *= middle[last]
+    steeper[last] *= middle[last]
+    for j in range(last - 1, -1, -1):
+        rhs[j] = (rhs[j] - up[j] * rhs[j + 1]) * middle[j]
+        shared[j] = (shared[j] - up[j] * shared[j + 1]) * middle[j]
+        steeper[j] = (steeper[j] - up[j] * steeper[j + 1]) * middle[j]
     f0 = f1 = a00 = a01 = a10 = a11 = largest = 0.0
     for j in range(last + 1):
         f0 += c.answer[j] * c.rhs[j]
@@ -82,84 +83,80 @@ def _solve_column(last: int, c: Column) -> float:
     return largest
 
 
-@nb.njit(**INNER)
+@nb.njit(**LEAN)
 def _answers(i: int, h: float, follows: float, a: Across, c: Column) -> bool:
     """Changes of stress and gradient that hold speeds and flow; whether the film is sheared."""
-    last = c.rhs.size - 1
-    above = steep = tilted = flow = sheared = 0.0
-    for j in range(last, -1, -1):
-        # Everything above a node moves with the shear below it.
-        lower = above
-        above += a.mass[i, j] / a.velocity[i, j] if abs(a.velocity[i, j]) > 1e-12 else 0.0
-        weight = 0.5 if j == 0 or j == last else 1.0
-        c.reach[j] = 0.5 * (lower + (above if j > 0 else 0.0))
+    last, steep, tilted, flow, sheared = c.rhs.size - 1, 0.0, 0.0, 0.0, 0.0
+    ease, reach, rate, falling = a.steep[i], a.reach[i], a.rate[i], a.falling[i]
+    for j in range(last + 1):
         arm = h * (j / last - 0.5)
-        steep += weight * a.steep[i, j]
-        tilted += weight * a.steep[i, j] * arm
-        sheared += c.reach[j] * a.steep[i, j]
-        flow += c.reach[j] * a.steep[i, j] * arm
+        steep += ease[j]
+        tilted += ease[j] * arm
+        sheared += reach[j] * ease[j]
+        flow += reach[j] * ease[j] * arm
+    steep -= 0.5 * (ease[0] + ease[last])
+    tilted -= 0.25 * h * (ease[last] - ease[0])
     if not steep > 0.0:
         c.answer[:] = 0.0
         c.climb[:] = 0.0
         return False
     det = steep * flow - tilted * sheared
+    share, inverse = (follows / det if det != 0.0 else 0.0), 1.0 / steep
     for j in range(last + 1):
         weight = 0.5 if j == 0 or j == last else 1.0
-        faster = a.rate[i, j] * a.falling[i, j]
-        c.climb[j] = 0.0
-        if follows > 0.0 and det != 0.0:
-            c.climb[j] = follows * (sheared * weight - steep * c.reach[j]) * faster / det
-        c.answer[j] = -(weight * faster + tilted * c.climb[j]) / steep
+        faster = rate[j] * falling[j]
+        c.climb[j] = share * (sheared * weight - steep * reach[j]) * faster
+        c.answer[j] = -(weight * faster + tilted * c.climb[j]) * inverse
     return True
 
 
-@nb.njit(**INNER)
+@nb.njit(**LEAN)
 def _balance_column(
     i: int, k: int, dx: float, h: float, slope: float, west: Array, east: Array,
     rises: tuple[float, float], selfs: tuple[float, float], exact: bool, o: Sheared, a: Across,
     b: Along, c: Column,
 ) -> float:  # fmt: skip
     """Equations of a column, for Newton's method if exact; size of what is missing."""
-    last, T = west.size - 1, a.temperature
-    dz, unit = h / last, h * dx / last
-    conduction, climb, even, missing = o.conductivity * dx / dz, 0.0, 0.0, 0.0
+    last, T, unit = west.size - 1, a.temperature[i], h * dx / (west.size - 1)
+    conduction, climb, even, missing = o.conductivity * dx * last / h, 0.0, 0.0, 0.0
+    stress, rate, steep, falling = a.stress[i], a.rate[i], a.steep[i], a.falling[i]
+    before, behind = a.temperature[i - 1], a.temperature[min(i + 1, k)]
+    middle, rhs, shared = c.middle, c.rhs, c.shared
     sheared = _answers(i, h, b.follows[i], a, c)
     for j in range(last + 1):
-        c.middle[j] = c.rhs[j] = c.low[j] = c.up[j] = 0.0
         even += c.answer[j]
     for j in range(last + 1):
-        weight = 0.5 if j == 0 or j == last else 1.0
-        volume, heating = weight * unit, a.stress[i, j] * a.rate[i, j]
+        volume, heating = unit * (0.5 if j == 0 or j == last else 1.0), stress[j] * rate[j]
         squeeze = a.expansion[i, j] * a.velocity[i, j] * slope * volume
-        own, stress = heating * a.falling[i, j] * volume, a.stress[i, j] * a.steep[i, j]
-        c.shared[j] = (a.rate[i, j] + stress) * volume if sheared else 0.0
-        c.steeper[j] = c.shared[j] * h * (j / last - 0.5)
+        own = heating * falling[j] * volume
+        shared[j] = (rate[j] + stress[j] * steep[j]) * volume if sheared else 0.0
+        c.steeper[j] = shared[j] * h * (j / last - 0.5)
         if not exact:
             # As if the column were evenly warmer: this never runs away.
-            own = min(own + c.shared[j] * even, 0.0)
-            c.shared[j] = c.steeper[j] = 0.0
+            own = min(own + shared[j] * even, 0.0)
+            shared[j] = c.steeper[j] = 0.0
         into, back = max(west[j], 0.0) * o.capacity, max(-east[j], 0.0) * o.capacity
-        behind = T[i + 1, j] if i < k else o.temperature
-        c.middle[j] += into + back - own - min(squeeze, 0.0)
-        c.rhs[j] += heating * volume + squeeze * T[i, j]
-        c.rhs[j] += into * (T[i - 1, j] - T[i, j]) + back * (behind - T[i, j])
-        if j < last:
-            climb -= east[j] - west[j]
-            above, below = _exchange(climb, conduction, o.capacity)
-            c.middle[j] += above
-            c.middle[j + 1] += below
-            c.up[j], c.low[j + 1] = -above, -below
-            c.rhs[j] += above * (T[i, j + 1] - T[i, j])
-            c.rhs[j + 1] += below * (T[i, j] - T[i, j + 1])
+        middle[j] = into + back - own - min(squeeze, 0.0)
+        rhs[j] = heating * volume + squeeze * T[j]
+        rhs[j] += into * (before[j] - T[j])
+        rhs[j] += back * ((behind[j] if i < k else o.temperature) - T[j])
+    for j in range(last):
+        climb -= east[j] - west[j]
+        above, below = _exchange(climb, conduction, o.capacity)
+        middle[j] += above
+        middle[j + 1] += below
+        c.up[j], c.low[j + 1] = -above, -below
+        rhs[j] += above * (T[j + 1] - T[j])
+        rhs[j + 1] += below * (T[j] - T[j + 1])
     for wall, j in ((0, 0), (1, last)):
-        c.middle[j] += dx / selfs[wall]
-        c.rhs[j] -= dx * (T[i, j] - rises[wall]) / selfs[wall]
+        middle[j] += dx / selfs[wall]
+        rhs[j] -= dx * (T[j] - rises[wall]) / selfs[wall]
     for j in range(last + 1):
-        missing += c.rhs[j] * c.rhs[j]
+        missing += rhs[j] * rhs[j]
     return missing
 
 
-@nb.njit(**INNER)
+@nb.njit(**LEAN)
 def _conducted(i: int, k: int, response: Array, heat: Array) -> float:
     """Rise of a surface at a column by the heat that goes in at all other columns."""
     rise = 0.0
@@ -168,7 +165,7 @@ def _conducted(i: int, k: int, response: Array, heat: Array) -> float:
     return rise - (response[i, i] * heat[i] if 1 <= i <= k else 0.0)
 
 
-@nb.njit(**INNER)
+@nb.njit(**LEAN)
 def _faces(i: int, k: int, mass: Array, west: Array, east: Array) -> None:
     """Mass flux through both faces of a column."""
     for j in range(west.size):
@@ -186,11 +183,11 @@ class Stations(NamedTuple):
     response: tuple[Array, Array]  #: rise of both surfaces at each by the heat at each
 
 
-@nb.njit(**INNER)
+@nb.njit(**LEAN)
 def _relax(
     i: int, k: int, again: bool, s: Stations, rises: tuple[float, float],
     selfs: tuple[float, float], log_viscosity: float, density: float, flux: float, o: Sheared,
-    a: Across, b: Along, c: Column, fluidity: Array, west: Array, east: Array,
+    a: Across, b: Along, c: Column, work: Array, west: Array, east: Array,
 ) -> float:  # fmt: skip
     """Solve one column by Newton's method with shorter steps where it misses; first change."""
     last, T, h, dx, first = west.size - 1, a.temperature, s.film[i], s.width[i], 0.0
@@ -200,7 +197,7 @@ def _relax(
         if local > 0 or again:
             shear_column(
                 i, h, s.slope[i], pressure * o.hertz, log_viscosity, density, flux, o, a, b,
-                fluidity,
+                work,
             )  # fmt: skip
             _faces(i, k, a.mass, west, east)
         missing = _balance_column(
@@ -231,6 +228,86 @@ def _relax(
     return first
 
 
+@nb.njit(**LEAN)
+def _rises(i: int, k: int, s: Stations, o: Sheared, heat: Array) -> tuple[float, float]:
+    """Temperatures of both surfaces at a column that takes up no heat itself."""
+    first = o.surface_1 + _conducted(i, k, s.response[0], heat[0])
+    return first, o.surface_2 + _conducted(i, k, s.response[1], heat[1])
+
+
+@nb.njit(**LEAN)
+def _sweep(
+    k: int, s: Stations, o: Sheared, flux: float, a: Across, b: Along, c: Column, lneta: Array,
+    rho: Array, earlier: Array, rows: Array,
+) -> float:  # fmt: skip
+    """Solve the columns downstream, then upstream those into which oil flows back."""
+    T, last, largest, west, east = a.temperature, rows.shape[1] - 1, 0.0, rows[3], rows[4]
+    both_ahead = o.speed_1 > 0.0 and o.speed_2 > 0.0
+    for i in range(k + 1):
+        for j in range(last + 1):
+            earlier[i, j] = T[i, j]
+    for step in range(2 * k):
+        i = step + 1 if step < k else 2 * k - step
+        _faces(i, k, a.mass, west, east)
+        backwards = False
+        for j in range(last + 1):
+            backwards = backwards or east[j] < 0.0
+        if i == 1:
+            for j in range(last + 1):
+                T[0, j] = o.temperature if west[j] > 0.0 else T[1, j]
+        if step >= k and both_ahead and not backwards:
+            continue
+        rises = _rises(i, k, s, o, b.heat)
+        selfs = (s.response[0][i, i], s.response[1][i, i])
+        moved = _relax(
+            i, k, step >= k, s, rises, selfs, lneta[i], rho[i], flux, o, a, b, c, rows[:3], west,
+            east,
+        )  # fmt: skip
+        largest = max(largest, moved)
+        if step >= k and backwards:
+            # Oil that runs around in the inlet would swing between hot and cold.
+            for j in range(last + 1):
+                T[i, j] += _SWIRL * (earlier[i, j] - T[i, j])
+            b.heat[0, i] = (T[i, 0] - rises[0]) / selfs[0]
+            b.heat[1, i] = (T[i, last] - rises[1]) / selfs[1]
+    return largest
+
+
+@nb.njit(**LEAN)
+def _heat(
+    k: int, s: Stations, o: Sheared, flux: float, a: Across, b: Along, c: Column, lneta: Array,
+    rho: Array, sweeps: int, earlier: Array, rows: Array, balance: Array,
+) -> float:  # fmt: skip
+    """Sweeps over the columns, and the state that they lead to; change in the last sweep."""
+    T, west, east = a.temperature, rows[3], rows[4]
+    count, last, largest = lneta.size, rows.shape[1] - 1, 0.0
+    for sweep in range(sweeps + 1):
+        for i in range(k + 1):
+            pressure = s.pressure[i] * o.hertz
+            shear_column(
+                i, s.film[i], s.slope[i], pressure, lneta[i], rho[i], flux, o, a, b, rows[:3]
+            )
+        if sweep < sweeps:
+            largest = _sweep(k, s, o, flux, a, b, c, lneta, rho, earlier, rows)
+    for term in range(balance.size):
+        balance[term] = 0.0
+    for i in range(1, k + 1):
+        _faces(i, k, a.mass, west, east)
+        _count(i, k, s.width[i], s.film[i], s.slope[i], west, east, o, a, b, balance)
+    for i in range(count):
+        if i <= k and i > 0:
+            continue
+        first, second = _rises(i, k, s, o, b.heat)
+        for j in range(last + 1):
+            if i > k or j == 0 or j == last:
+                T[i, j] = first + (second - first) * j / last
+        if i > k:
+            b.stress[i] = b.heat[0, i] = b.heat[1, i] = 0.0
+            b.factors[0, i], b.factors[1, i] = b.factors[0, k], b.factors[1, k]
+            b.mean[i], b.share[i], b.driven[i] = b.mean[k], 1.0, 0.0
+    return largest
+
+
 def _build(digest: str) -> Any:
     @cached_njit(**JIT)
     def heat_film(
@@ -239,68 +316,17 @@ def _build(digest: str) -> Any:
     ) -> float:  # fmt: skip
         """Temperatures up to column k, and the balance of heat; change in the last sweep."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        count, last = s.film.size, a.temperature.shape[1] - 1
+        count, across = s.film.size, a.temperature.shape[1]
         lneta, dlneta, rho, drho = np.empty((4, count))
-        fluidity, west, east, q0, q1, q2, q3, q4, q5, q6, q7, q8, q9 = np.empty((13, last + 1))
-        c = Column(q0, q1, q2, q3, q4, q5, q6, q7, q8, q9)
         oil_state(count - 1, s.pressure, oil[:PLAIN], lneta, dlneta, rho, drho)
-        T, largest = a.temperature, 0.0
-        both_ahead = o.speed_1 > 0.0 and o.speed_2 > 0.0
-        for sweep in range(sweeps + 1):
-            balance[:] = 0.0
-            for i in range(k + 1):
-                pressure = s.pressure[i] * o.hertz
-                shear_column(
-                    i, s.film[i], s.slope[i], pressure, lneta[i], rho[i], flux, o, a, b, fluidity
-                )
-            if sweep == sweeps:
-                for i in range(1, k + 1):
-                    _faces(i, k, a.mass, west, east)
-                    _count(i, k, s.width[i], s.film[i], s.slope[i], west, east, o, a, b, balance)
-                break
-            largest, earlier = 0.0, T.copy()
-            for step in range(2 * k):
-                i = step + 1 if step < k else 2 * k - step
-                _faces(i, k, a.mass, west, east)
-                if i == 1:
-                    for j in range(last + 1):
-                        T[0, j] = o.temperature if west[j] > 0.0 else T[1, j]
-                if step >= k and both_ahead and np.min(east) >= 0.0:
-                    continue
-                rises = (
-                    o.surface_1 + _conducted(i, k, s.response[0], b.heat[0]),
-                    o.surface_2 + _conducted(i, k, s.response[1], b.heat[1]),
-                )
-                selfs = (s.response[0][i, i], s.response[1][i, i])
-                moved = _relax(
-                    i, k, step >= k, s, rises, selfs, lneta[i], rho[i], flux, o, a, b, c, fluidity,
-                    west, east,
-                )  # fmt: skip
-                largest = max(largest, moved)
-                if step >= k and np.min(east) < 0.0:
-                    # Oil that runs around in the inlet would swing between hot and cold.
-                    for j in range(last + 1):
-                        T[i, j] += _SWIRL * (earlier[i, j] - T[i, j])
-                    b.heat[0, i] = (T[i, 0] - rises[0]) / selfs[0]
-                    b.heat[1, i] = (T[i, last] - rises[1]) / selfs[1]
-        for i in range(count):
-            if i <= k and i > 0:
-                continue
-            first = o.surface_1 + _conducted(i, k, s.response[0], b.heat[0])
-            second = o.surface_2 + _conducted(i, k, s.response[1], b.heat[1])
-            for j in range(last + 1):
-                if i > k or j == 0 or j == last:
-                    T[i, j] = first + (second - first) * j / last
-            if i > k:
-                b.stress[i] = b.heat[0, i] = b.heat[1, i] = 0.0
-                b.factors[0, i], b.factors[1, i] = b.factors[0, k], b.factors[1, k]
-                b.mean[i], b.share[i], b.driven[i] = b.mean[k], 1.0, 0.0
-        return largest
+        rows, earlier = np.empty((14, across)), np.empty((count, across))
+        c = Column(rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8])
+        return _heat(k, s, o, flux, a, b, c, lneta, rho, sweeps, earlier, rows[9:], balance)
 
     return heat_film
 
 
-@nb.njit(**INNER)
+@nb.njit(**LEAN)
 def _count(
     i: int, k: int, dx: float, h: float, slope: float, west: Array, east: Array, o: Sheared,
     a: Across, b: Along, balance: Array,

@@ -58,7 +58,7 @@ class _Temperatures:
     def __init__(
         self, case: ContactCase, grid: DiscreteContact, model: ThermalModel, sliding: float
     ) -> None:
-        from tribodyn.ehl._kernel.heated_shear import Across, Along, Sheared
+        from tribodyn.ehl._kernel.heated_shear import Across, Along, Sheared, carreau_table
 
         lubricant = case.lubricant
         assert lubricant is not None  # the dimensionless form has no heat
@@ -72,7 +72,7 @@ class _Temperatures:
             oil.temperature, oil.temperature_viscosity_coefficient,
             case.scales.viscosity_law == "roelands", oil.thermal_conductivity,
             oil.specific_heat, case.hertz_pressure, far[0], far[1], MODELS[model.shear_model],
-            *_stresses(model),
+            *_stresses(model), carreau_table(*_stresses(model)[2:4]),
         )  # fmt: skip
         self.at, edges = _columns(grid, case)
         self.width, columns = np.diff(edges) * self.step, self.at.size
@@ -83,11 +83,11 @@ class _Temperatures:
             conduction = body.thermal_conductivity, body.diffusivity
             responses.append(surface_response(self.at, edges, self.step, moving, *conduction))
         self.responses = responses[0], responses[1]
-        fields = np.zeros((7, columns, across))
+        fields = np.zeros((8, columns, across))
         self.across = Across(np.full((columns, across), oil.temperature), *fields)
         zeros, ones = np.zeros((5, columns)), np.ones((6, columns))
-        unsettled = np.full(columns, math.inf)
-        self.along = Along._make([zeros[:2], zeros[2], zeros[3:], *ones, unsettled])
+        unsettled, zero = np.full(columns, math.inf), np.zeros((2, columns))
+        self.along = Along._make([zeros[:2], zeros[2], zeros[3:], *ones, unsettled, *zero])
         self.balance = np.zeros(5)
 
     def solve(self, grid: DiscreteContact, sweeps: int) -> float:
