@@ -128,15 +128,15 @@ def _balance_column(
     for j in range(last + 1):
         volume, heating = unit * (0.5 if j == 0 or j == last else 1.0), stress[j] * rate[j]
         squeeze = a.expansion[i, j] * a.velocity[i, j] * slope * volume
-        own = heating * falling[j] * volume
+        easing = heating * falling[j] * volume
         shared[j] = (rate[j] + stress[j] * steep[j]) * volume if sheared else 0.0
         c.steeper[j] = shared[j] * h * (j / last - 0.5)
         if not exact:
             # As if the column were evenly warmer: this never runs away.
-            own = min(own + shared[j] * even, 0.0)
+            easing = min(easing + shared[j] * even, 0.0)
             shared[j] = c.steeper[j] = 0.0
         into, back = max(west[j], 0.0) * o.capacity, max(-east[j], 0.0) * o.capacity
-        middle[j] = into + back - own - min(squeeze, 0.0)
+        middle[j] = into + back - easing - min(squeeze, 0.0)
         rhs[j] = heating * volume + squeeze * T[j]
         rhs[j] += into * (before[j] - T[j])
         rhs[j] += back * ((behind[j] if i < k else o.temperature) - T[j])

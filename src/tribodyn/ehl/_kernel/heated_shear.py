@@ -98,10 +98,7 @@ class Along(NamedTuple):
 
 @lru_cache(maxsize=8)
 def carreau_table(exponent: float, yasuda: float) -> Array:
-    """Logarithm of rate over stress, and its slope, over the logarithm of the stress.
-
-    Rate and stress in units of Carreau's stress; from ``-_RANGE/yasuda`` on in even steps.
-    """
+    """ln(rate/stress) and its slope over ln(stress) from ``-_RANGE/yasuda`` on, in its stress."""
     step = exponent / (_FINE * yasuda)
     count = 2 + int(np.ceil(_RANGE * (1.0 + exponent) / yasuda / step))
     wanted = step * np.arange(count) - _RANGE / yasuda
