@@ -233,7 +233,8 @@ def test_friction_of_a_slice_that_shears_its_film_is_that_of_a_spur_contact():
 
 def test_sheared_films_of_a_vanishing_helix_angle_are_those_of_the_spur_pair():
     options = {"stiffness_model": "iso6336", "film_model": "newton", "friction_law": "ehl"}
-    options["film_options"] = {"stiffness": "secant"}
+    # On finer grids the friction of the spur pair itself ripples by 1e-3.
+    options["film_options"] = {"stiffness": "secant", "nodes": 129}
     spur, nearly = (table(helical(helix), steps=128, **options) for helix in (0.0, 1e-3))
     for name in ("mean_friction_coefficient", "mean_friction_power", "mean_mesh_stiffness"):
         assert getattr(nearly, name) == pytest.approx(getattr(spur, name), rel=1e-3), name

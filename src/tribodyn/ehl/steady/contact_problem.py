@@ -58,6 +58,11 @@ class ContactProblem:
     start: DiscreteContact | None = field(default=None, repr=False)
     coarsest: int | None = None  #: least number of intervals of the first grid
 
+    @property
+    def heated(self) -> bool:
+        """Whether the oil has factors for the heat of a film, on the grid of its temperatures."""
+        return self.oil.size > 6
+
 
 @dataclass(frozen=True, eq=False)
 class Outcome:

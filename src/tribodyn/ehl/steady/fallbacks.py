@@ -225,8 +225,9 @@ def _trials(
         yield method, partial(engine, cold)
     if first < last:
         yield method, partial(engine, replace(cold, coarsest=min(4 * first, last)))
-    if first == last and problem.profile is None:
-        # A grid may be too coarse to have any solution: see the inlet in `first_intervals`.
+    if first == last and problem.profile is None and not problem.heated:
+        # A grid may be too coarse to have any solution: see the inlet in `first_intervals`. The
+        # heat of a film stays on the grid of its temperatures.
         for factor in (2, 4, 8, 16):
             if factor * last < MOST:
                 yield method, partial(engine, replace(cold, nodes=factor * last + 1))

@@ -6,14 +6,14 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS, film_load_share
 from tribodyn.ehl.steady.batch import Films
-from tribodyn.errors import InputError, Problem, TribodynError, collected, require_between
+from tribodyn.errors import Problem, TribodynError, collected, require_between
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
@@ -153,13 +153,6 @@ def friction_by_law(
         return LAWS[law].evaluate(part, options)
 
     return warn_of_loaded(lambda: LAWS[law].evaluate(contact, options), of_judged)
-
-
-def refuse_heated(teeth: str) -> NoReturn:
-    """Refuse a heated film of teeth whose films come from a table."""
-    what = f'film model "thermal" of {teeth}'
-    why = "heated films are solved for spur pairs and single contacts"
-    raise InputError(what, "film_model", why, 'Choose the film model "newton"')
 
 
 def smallest_film(films: Films) -> Array | None:

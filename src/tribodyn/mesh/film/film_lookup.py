@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -34,8 +34,9 @@ from tribodyn.mesh.film.film_refinement import (
     places_of,
 )
 from tribodyn.mesh.film.film_table import FilmTable
+from tribodyn.mesh.film.fitted_table import FittedTable
 from tribodyn.mesh.film.path_film import LoadedFilms, cold_film
-from tribodyn.mesh.film.sheared_film import ShearedFilms
+from tribodyn.mesh.film.sheared_film import ShearedFilms, place_from_pitch
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import SILENT
 from tribodyn.types import Array, Index, Mask
@@ -61,6 +62,9 @@ _NEIGHBOUR_AGE, _NEIGHBOUR_TIP = 0.05, 0.1
 _SAME = 1e-6
 
 
+Table = TypeVar("Table", FilmTable, FittedTable)
+
+
 class OutsideTableError(Exception):
     """Raised for a contact that lies where a table has no films."""
 
@@ -69,7 +73,7 @@ class OutsideTableError(Exception):
 class _Shared:
     """Tables of one study."""
 
-    tables: OrderedDict[Any, FilmTable] = field(default_factory=OrderedDict)
+    tables: OrderedDict[Any, Any] = field(default_factory=OrderedDict)
     lock: threading.Lock = field(default_factory=threading.Lock)
 
 
@@ -107,25 +111,28 @@ def look_up_film(
 ) -> FilmLookup | None:
     """Film of a tooth contact from the shared table, or None where it has to be solved."""
     of_slices = cycle.slices is not None
-    table = table_for(settings, pairs, of_slices=of_slices)
+    table = table_for(settings, pairs, sheared=of_slices)
     if table is None:
         return None
     # The pitch point has two sides: take the one after it.
     pitch = np.flatnonzero(np.abs(pairs.age - pitch_point_age(cycle.contact)) < _SAME)[-1:]
-    return FilmLookup(settings, table, pairs, cycle.in_contact, teeth.least_load, pitch, of_slices)
+    place = place_from_pitch(pairs.age - pitch_point_age(cycle.contact))[None]
+    in_contact, least = cycle.in_contact, teeth.least_load
+    return FilmLookup(settings, table, pairs, in_contact, least, pitch, place, of_slices)
 
 
 def table_for(
-    settings: ToothContact, pairs: PairsInContact, *, of_slices: bool = False
+    settings: ToothContact, pairs: PairsInContact, *, sheared: bool = False
 ) -> FilmTable | None:
     """Shared table of solved films; None where the settings need what no table has."""
     shared, model = _shared.get(), FILM_MODELS[settings.film_model]
     if shared is None or not model.method:
         return None
     # A law that shears the film needs its pressure at all nodes: whole pairs solve their path.
-    sheared = LAWS[settings.friction_law].needs_film or settings.film["stiffness"] == "seed"
+    # Contacts that are sheared have a table of the friction and heat of their films as well.
+    at_nodes = LAWS[settings.friction_law].needs_film or settings.film["stiffness"] == "seed"
     # The table of a heated film is that of the cold one: it does not know the sliding.
-    if (sheared or model.heated) and not of_slices:
+    if (at_nodes or model.heated) and not sheared:
         return None
     model_name, options = cold_film(settings)
     del options["positions"]
@@ -142,7 +149,7 @@ def table_for(
     return _cached_table(shared, key, table)
 
 
-def _cached_table(shared: _Shared, key: Any, make: Callable[[], FilmTable]) -> FilmTable:
+def _cached_table(shared: _Shared, key: Any, make: Callable[[], Table]) -> Table:
     """Table of a key, the same object in the blocks that share it."""
     with shared.lock:
         if key not in shared.tables:
@@ -150,11 +157,6 @@ def _cached_table(shared: _Shared, key: Any, make: Callable[[], FilmTable]) -> F
             if len(shared.tables) > _MOST_TABLES:
                 shared.tables.popitem(last=False)
         return shared.tables[key]
-
-
-def _sheared_table(films: ShearedFilms) -> FilmTable:
-    """Table of sheared or heated films, shared like that of films."""
-    return _cached_table(_shared.get() or _persistent, films.key, films.table)
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,6 +216,7 @@ class FilmLookup:
     in_contact: Mask
     least_load: float  #: lower bound of the load for which a film is computed [N/m]
     pitch: Index  #: contact at the pitch point, if there is one
+    place: Array  #: of each contact from the pitch point, and along the flank (d, contacts)
     of_slices: bool = False  #: whether contacts beyond the table are solved for themselves
 
     def solve(self, load_per_width: Array, checked: tuple[int, ...] = ()) -> FilmsFromTable:
@@ -236,11 +239,9 @@ class FilmLookup:
         # pitch point, which is solved.
         doubtful[PRESSURE] = not self.of_slices
         yielding = values[STIFFNESS]
-        sliding = pairs.sliding_speed
         if PRESSURE in checked and FILM_MODELS[self.settings.film_model].heated:
-            assert sliding is not None  # a heated film has it
-            heated = ShearedFilms(self.settings, pairs, sliding)
-            values[:STIFFNESS] += heated.film_ratios(_sheared_table(heated), loads)
+            sheared = ShearedFilms(self.settings, pairs, self.place)
+            values[:STIFFNESS] += sheared.film_ratios(self._sheared_table(sheared), loads)
         if self.settings.film["stiffness"] == "seed":
             yielding = yielding * pairs.scales(loads)["film_pressure"]
         return FilmsFromTable(
@@ -253,6 +254,15 @@ class FilmLookup:
             path=self,
             values=np.vstack([values, number]),
         )
+
+    def friction(self, load: Array) -> Array | FrictionParts:
+        """Friction of the sheared film of every contact under its load."""
+        sheared = ShearedFilms(self.settings, self.pairs, self.place)
+        return sheared.friction(self._sheared_table(sheared), load)
+
+    def _sheared_table(self, films: ShearedFilms) -> FittedTable:
+        """Table of sheared or heated films, shared like that of films."""
+        return _cached_table(_shared.get() or _persistent, films.key, films.table)
 
     def _solved(self, contacts: Index, loads: Array) -> Array:
         """Quantities of contacts that lie where the table has no films."""
@@ -283,8 +293,7 @@ class FilmsFromTable(LoadedFilms):
         """Evaluate the friction law; one that shears the film has a table of its own."""
         if not LAWS[settings.friction_law].needs_film:
             return friction_by_law(settings.friction_law, contact, settings.friction_options)
-        sheared = ShearedFilms(settings, self.pairs, motion.sliding_speed)
-        return sheared.friction(_sheared_table(sheared), contact.load_per_width)
+        return self.path.friction(contact.load_per_width)
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
         """Solve the contacts that results report; also return a mask of the certain quantities."""

@@ -69,18 +69,12 @@ class FilmTable:
     ``solve`` returns them (quantities, n) for n contacts, NaN where a contact has no solution.
     ``tolerance`` is the greatest error of a cell that is not halved, infinite for quantities that
     are not checked. Where the smallest cells miss a ``strict`` quantity, the table has no values.
-    Cells with the side ``smallest`` are not halved.
     """
 
     def __init__(
-        self,
-        solve: Callable[[Array, Array], Array],
-        tolerance: Array,
-        strict: Mask,
-        smallest: int = _SMALLEST,
+        self, solve: Callable[[Array, Array], Array], tolerance: Array, strict: Mask
     ) -> None:
         self._solve, self._tolerance, self._strict = solve, tolerance, strict
-        self._smallest = smallest
         self._solutions: dict[_Node, Array] = {}
         #: Halves of each checked cell; only the cell itself where it is accurate.
         self._halves: dict[_Cell, list[_Cell]] = {}
@@ -181,7 +175,7 @@ class FilmTable:
             np.any([self._misses(cell, powers, place) for place in places], axis=0)
             for places in _BETWEEN
         ]
-        directions = [w for w in (0, 1) if np.any(misses[w]) and cell.sides[w] > self._smallest]
+        directions = [w for w in (0, 1) if np.any(misses[w]) and cell.sides[w] > _SMALLEST]
         if not directions and np.any(misses & self._strict):
             self._unresolved.add(cell)
         return directions

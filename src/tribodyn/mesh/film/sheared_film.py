@@ -1,8 +1,8 @@
-"""Friction of films that slices of lines of contact shear, from a table over place and load.
+"""Friction and heat of films that slices or cells shear, from a table over load and place.
 
-The pressure of a film depends on the place on the path of contact and on the load alone, as does
-its friction at a sliding speed. Both are tabled, and every slice interpolates its friction at its
-own sliding speed.
+The pressure of a film depends on the place on the path of contact, or on the flank of a hypoid
+pair, and on the load alone, as does its friction at a sliding speed. Both are tabled, and every
+contact interpolates its friction at its own sliding speed.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import ComputationError, quiet
@@ -18,7 +17,7 @@ from tribodyn.friction import LAWS, FrictionParts
 from tribodyn.mesh.cycle import PairsInContact
 from tribodyn.mesh.film.film_columns import judged
 from tribodyn.mesh.film.film_refinement import STIFFNESS, Places, places_of
-from tribodyn.mesh.film.film_table import FilmTable
+from tribodyn.mesh.film.fitted_table import FittedTable
 from tribodyn.mesh.film.path_film import (
     COLD,
     Friction,
@@ -31,27 +30,38 @@ from tribodyn.mesh.sharing import ToothContact
 from tribodyn.progress import SILENT
 from tribodyn.types import Array, Index
 
-#: Cells of the table along the path of contact.
-_CELLS = 4.0
-#: Error of the coefficient and of the load share of the film from which a cell is halved.
-_TOLERANCE = 1e-4
-#: Side of the smallest cells in steps of the table.
-_SMALLEST = 64
-#: The same of a heated film, whose friction settles to 0.2 %: error of the coefficient and of the
-#: logarithm of the films over the cold ones; cells along the path and over the logarithm of the
-#: load; and the load over the greatest from which on a film is heated.
-_HEATED, _HEATED_CELLS, _OF_LOAD, _LEAST_HEATED = (5e-4, 4e-3), 2.0, 0.5, 0.05
+#: Cells of the table for each unit of the logarithm of the load, of cold and of heated films, which
+#: take longer; from the pitch point to the furthest contact, of a path and of a flank.
+_OF_LOAD, _HEATED_LOAD, _ON_PATH, _ON_FLANK = 1.0, 0.5, (2.0,), (1.0, 1.0)
+#: Load over the greatest from which on films are sheared and heated: lighter ones have the
+#: coefficient and the heat of that load.
+_LEAST_SHEARED, _LEAST_HEATED = 0.01, 0.05
 #: The last contact is in the last of these cells.
 _END = 1.0 - 1e-9
 
 
+def place_from_pitch(distance: Array) -> Array:
+    """Place from -1 to 1 by the distance from the pitch point, where heat and shear have a kink."""
+    return np.asarray(np.sign(distance) * np.sqrt(np.abs(distance) / np.abs(distance).max()))
+
+
 @dataclass(frozen=True, eq=False)
 class ShearedFilms:
-    """Friction of one mesh at one speed as a function of place and load."""
+    """Friction and heat of the contacts of a mesh at one speed over place and load."""
+
+    # The sliding speed of the contacts is the amount of their sliding: that along a line of contact
+    # shears and heats its film like that across it. Its sign says which body is the faster one.
 
     settings: ToothContact
     pairs: PairsInContact  #: contacts of the mesh table
-    sliding: Array  #: sliding speed of each of them [m/s]
+    #: Of each of them: its :func:`place_from_pitch`, and on a flank its place along it, 0 to 1.
+    place: Array
+
+    @property
+    def sliding(self) -> Array:
+        """Sliding speed of each contact [m/s]."""
+        assert self.pairs.sliding_speed is not None
+        return self.pairs.sliding_speed
 
     @property
     def key(self) -> object:
@@ -59,10 +69,10 @@ class ShearedFilms:
         settings, pairs = self.settings, self.pairs
         law = settings.friction_law, repr(sorted(settings.friction_options.items()))
         film = settings.film_model, repr(sorted(settings.film.items()))
-        columns = pairs.equivalent_radius, pairs.entrainment_speed, self.sliding, pairs.age
-        ends = tuple(float(end(column)) for column in columns for end in (np.min, np.max))
+        columns = pairs.equivalent_radius, pairs.entrainment_speed, self.sliding, *self.place
+        sums = tuple(float(number) for each in columns for number in (each.min(), each.sum()))
         bodies = settings.bodies, settings.composite_roughness
-        return (*law, *film, *bodies, pairs.lubricant, pairs.effective_modulus, ends)
+        return (*law, *film, *bodies, pairs.lubricant, pairs.effective_modulus, self.cells, sums)
 
     @property
     def heated(self) -> bool:
@@ -75,31 +85,62 @@ class ShearedFilms:
         law = LAWS[self.settings.friction_law]
         return (3 if law.asperities else 1) * self.sliding_grid.size if law.needs_film else 0
 
-    def table(self) -> FilmTable:
-        """Table over the logarithm of the load and the place on the path of contact."""
-        tolerance = np.array(_TOLERANCE)
-        if self.heated:
-            tolerance = np.repeat(_HEATED, [self.columns, STIFFNESS])
-        return FilmTable(_Sheared(self), tolerance, np.array(False), _SMALLEST)
+    @property
+    def cells(self) -> tuple[float, ...]:
+        """Cells of the table for each unit of the logarithm of the load, and of each place."""
+        load = _HEATED_LOAD if self.heated else _OF_LOAD
+        return load, *(_ON_PATH if len(self.place) == 1 else _ON_FLANK)
 
-    def place(self, age: Array) -> Array:
-        """Place on the path of contact, in cells."""
-        cells = _HEATED_CELLS if self.heated else _CELLS
-        return np.asarray(age / self.pairs.age.max() * (cells * _END))
+    def table(self) -> FittedTable:
+        """Table over the logarithm of the load and the place."""
+        return FittedTable(self._sample, 1 + len(self.place))
 
-    def values(self, table: FilmTable, load: Array) -> Array:
+    def values(self, table: FittedTable, load: Array) -> Array:
         """Rows of the table (rows, n) of every contact under its load."""
-        scale = _OF_LOAD if self.heated else 1.0
-        least = _LEAST_HEATED * load.max() if self.heated else 0.0
-        return table(scale * np.log(np.maximum(load, least)), self.place(self.pairs.age))
+        least = _LEAST_HEATED if self.heated else _LEAST_SHEARED
+        log_load = self.cells[0] * np.log(np.maximum(load, least * load.max()))
+        return table(np.concatenate([log_load[None], self._places]))
 
-    def film_ratios(self, table: FilmTable, load: Array) -> Array:
+    @property
+    def _places(self) -> Array:
+        """Place of each contact, in cells."""
+        return np.array(self.cells[1:])[:, None] * (_END * self.place)
+
+    def film_ratios(self, table: FittedTable, load: Array) -> Array:
         """Logarithms of heated films and pressure over the cold ones (3, n)."""
         ratios = self.values(table, load)[self.columns :]
         for contact in np.flatnonzero(np.isnan(ratios).any(axis=0)):
             some = np.array([contact])
             ratios[:, some] = self.heat(self.pairs.some(some), load[some])[1]
         return ratios
+
+    def _sample(self, places: Array) -> tuple[Array, Array, Array]:
+        """Solve the contacts nearest to places, with other loads."""
+        from scipy.spatial import cKDTree
+
+        nearest = cKDTree(self._places.T).query(places[1:].T)[1]
+        load = np.exp(places[0] / self.cells[0])
+        rows = self._solved(np.asarray(nearest), load)
+        return np.concatenate([places[:1], self._places[:, nearest]]), rows[1:], rows[0]
+
+    def _solved(self, chosen: Index, load: Array) -> Array:
+        """Tips of the pressure, and rows of the table; NaN where a contact has no solution."""
+        contacts = self.pairs.some(chosen)
+        try:
+            places, ratios = self.heat(contacts, load)
+        except ComputationError:
+            if load.size == 1:
+                return np.full((1 + self.columns + (STIFFNESS if self.heated else 0), 1), np.nan)
+            halves = zip(np.array_split(chosen, 2), np.array_split(load, 2), strict=True)
+            return np.concatenate([self._solved(*half) for half in halves], axis=1)
+        rows = [places.peak_place[None]]
+        if self.columns:
+            index = np.repeat(np.arange(load.size), self.sliding_grid.size)
+            sliding = np.tile(self.sliding_grid, load.size)
+            with quiet():
+                friction = sheared_friction(places, contacts, self.settings, index, sliding)
+            rows += [part.reshape(load.size, -1).T for part in parts_of(friction)]
+        return np.concatenate([*rows, ratios])
 
     def heat(self, contacts: PairsInContact, load: Array) -> tuple[Places, Array]:
         """Films of some contacts, and logarithms of films and pressure over the cold ones."""
@@ -130,7 +171,7 @@ class ShearedFilms:
         """Sliding speeds of the table with their directions [m/s]."""
         return np.ravel(self.signs[:, None] * self.speeds)
 
-    def friction(self, table: FilmTable, load: Array) -> Friction:
+    def friction(self, table: FittedTable, load: Array) -> Friction:
         """Friction of every contact under its load."""
         values, count = self.values(table, load)[: self.columns], np.arange(load.size)
         rows = values.reshape(-1, self.signs.size, self.speeds.size, load.size)
@@ -155,49 +196,3 @@ class ShearedFilms:
             places, _ = self.heat(contacts, load[chosen])
             friction = sheared_friction(places, contacts, self.settings, index, sliding)
             parts[:, chosen] = parts_of(friction)
-
-
-class _Sheared:
-    """Solver of a table: friction at all sliding speeds over the load and the place."""
-
-    def __init__(self, films: ShearedFilms) -> None:
-        self.films = films
-        pairs, place = films.pairs, films.place(films.pairs.age)
-        # Along the path of involutes the radius is quadratic, and the speeds are linear.
-        self._radius = Polynomial.fit(place, pairs.equivalent_radius, 2)
-        self._speed = Polynomial.fit(place, pairs.entrainment_speed, 1)
-        self._sliding = Polynomial.fit(place, films.sliding, 1)
-
-    def __call__(self, log_load: Array, place: Array) -> Array:
-        """Rows of the table (rows, n); NaN where a contact has no solution."""
-        films = self.films
-        try:
-            return self._solved(np.exp(log_load / (_OF_LOAD if films.heated else 1.0)), place)
-        except ComputationError:
-            if log_load.size == 1:
-                return np.full((films.columns + (STIFFNESS if films.heated else 0), 1), np.nan)
-        halves = zip(np.array_split(log_load, 2), np.array_split(place, 2), strict=True)
-        return np.concatenate([self(*half) for half in halves], axis=1)
-
-    def _solved(self, load: Array, place: Array) -> Array:
-        films, zero = self.films, np.zeros(load.size)
-        contacts = PairsInContact(
-            zero,
-            self._radius(place),
-            self._speed(place),
-            films.pairs.lubricant,
-            films.pairs.effective_modulus,
-            1.0,
-            self._sliding(place),
-        )
-        places, ratios = films.heat(contacts, load)
-        if not films.columns:
-            return ratios
-        sliding = films.sliding_grid
-        index = np.repeat(np.arange(load.size), sliding.size)
-        with quiet():
-            friction = sheared_friction(
-                places, contacts, films.settings, index, np.tile(sliding, load.size)
-            )
-        parts = [part.reshape(load.size, -1).T for part in parts_of(friction)]
-        return np.concatenate([*parts, ratios])

@@ -16,19 +16,19 @@ import numpy as np
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS, hamrock_dowson_minimum
 from tribodyn.ehl.steady.batch import Films
-from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear.hypoid.kinematics import CellMotion
 from tribodyn.mesh.cycle import PairsInContact
-from tribodyn.mesh.film.film_columns import friction_by_law, refuse_heated
 from tribodyn.mesh.film.film_lookup import (
     FilmLookup,
     OutsideTableError,
     shared_films,
     table_for,
 )
+from tribodyn.mesh.film.film_table import FilmTable
 from tribodyn.mesh.film.path_film import FormulaFilm
+from tribodyn.mesh.film.sheared_film import place_from_pitch
 from tribodyn.mesh.hypoid.cells import CellSprings
 from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact
 from tribodyn.mesh.loads import (
@@ -43,8 +43,6 @@ from tribodyn.types import Array, Index, Mask
 
 #: Film model of each line as an elliptical contact; the other models are for line contacts.
 ELLIPTICAL = "hamrock-dowson"
-#: Contact lines, and cells of each, whose sheared film is solved; between them friction is linear.
-_LINES, _ON_LINE = 48, 9
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,10 +134,15 @@ def cell_films(
 ) -> CellFilms:
     """Films and friction of all cells, their films in series with the teeth if requested."""
     cells, in_series = loaded.cells, settings.film_in_series
-    if FILM_MODELS[settings.film_model].heated:
-        refuse_heated("hypoid teeth")
     width = loaded.line_force / cells.length
     solved = bool(FILM_MODELS[settings.film_model].method)
+    if LAWS[settings.friction_law].needs_film and not solved:
+        raise InputError(
+            f'friction law "{settings.friction_law}" with a film by formula',
+            where="film_model",
+            why="The law needs the pressure of a solved film",
+            remedy='Choose film_model = "newton", or another law',
+        )
     active = np.ones(width.shape, dtype=bool) if in_series else width > 0.0
     least = LEAST_SHARE * float(loaded.line_force.sum() / cells.length.sum())
     teeth = _CellTeeth(loaded, active, least if solved or in_series else 0.0)
@@ -150,51 +153,50 @@ def cell_films(
         lubricant=settings.lubricant,
         effective_modulus=effective_modulus(settings.material, settings.material),
         length=cells.length[active],
+        sliding_speed=_signed_sliding(motion)[active],
     )
-    loads = _loads(teeth, settings, pairs, cells.side_radius[active], active)
+    loads = _loads(teeth, settings, pairs, active)
     loaded = teeth.loaded
     films = loads.film_at(loads.tribological)
     flat = SimpleNamespace(**{name: column[active] for name, column in motion._asdict().items()})
     contact = tribological_contact(
         cast(Any, flat), pairs, loads.tribological, settings.composite_roughness, None, films
     )
-    if LAWS[settings.friction_law].needs_film:
-        friction = _sheared(loaded, motion, settings, teeth.least_load)[active]
-        parts = FrictionParts(*friction.T)
-    else:
-        parts = _parts(
-            friction_by_law(settings.friction_law, contact, settings.friction_options), contact
-        )
+    parts = _parts(loads.film_at.friction(contact, cast(Any, flat), settings))
     reported = reported_films(films, loads, teeth.least_load)
     return _carrying(loaded, active, reported, contact, parts)
 
 
-def _loads(
-    teeth: _CellTeeth,
-    settings: ToothContact,
-    pairs: PairsInContact,
-    side_radius: Array,
-    active: Mask,
-) -> Loads:
+def _signed_sliding(motion: CellMotion) -> Array:
+    """Amount of the sliding; negative where the wheel rolls through the contact faster."""
+    pinion, wheel = motion.pinion_rolling_speed, motion.wheel_rolling_speed
+    faster = np.where(np.abs(pinion) >= np.abs(wheel), 1.0, -1.0)
+    return np.asarray(faster * motion.sliding_speed)
+
+
+def _loads(teeth: _CellTeeth, settings: ToothContact, pairs: PairsInContact, active: Mask) -> Loads:
     """Loads of the cells and their films."""
     film: FormulaFilm | FilmLookup
+    cells, line = teeth.loaded.cells, np.asarray(np.nonzero(active)[0])
     with shared_films(persistent=True):
         if settings.film_model == "none":
-            line = np.asarray(np.nonzero(active)[0])
-            film = _EllipseFilm(settings, pairs, teeth.least_load, line, side_radius)
+            film = _EllipseFilm(settings, pairs, teeth.least_load, line, cells.side_radius[active])
         elif not FILM_MODELS[settings.film_model].method:
             film = FormulaFilm(settings, pairs, teeth.least_load)
         else:
-            table = table_for(replace(settings, friction_law="none"), pairs)
-            if table is None:
+            if settings.film["stiffness"] == "seed":
                 raise InputError(
                     'stiffness = "seed" of a hypoid pair',
                     where="film.stiffness",
                     why="Cells interpolate their films in a table, which does not have this sum",
                     remedy='Choose "approach", "tangent" or "none"',
                 )
-            none = np.zeros(0, dtype=np.int64)
-            film = FilmLookup(settings, table, pairs, teeth.in_contact, teeth.least_load, none)
+            table = cast(FilmTable, table_for(settings, pairs, sheared=True))
+            no_pitch, (along, across) = np.zeros(0, dtype=np.int64), cells.touch.places[active].T
+            place = np.stack([place_from_pitch(across), (along - along.min()) / np.ptp(along)])
+            film = FilmLookup(
+                settings, table, pairs, teeth.in_contact, teeth.least_load, no_pitch, place
+            )
         try:
             loads = under_load(cast(Any, teeth), cast(Any, teeth), settings, film)
         except OutsideTableError:
@@ -208,7 +210,7 @@ def _loads(
         return loads
 
 
-def _parts(friction: Array | FrictionParts, contact: TribologicalContact) -> FrictionParts:
+def _parts(friction: Array | FrictionParts) -> FrictionParts:
     """Film and asperities of friction; a law without asperities has all of it in the film."""
     if isinstance(friction, FrictionParts):
         return friction
@@ -237,46 +239,3 @@ def _carrying(
         replace(contact, **{name: some(value) for name, value in vars(contact).items()}),
         FrictionParts(*(some(values) for values in vars(parts).values())),
     )
-
-
-def _sheared(
-    loaded: HypoidLoadedContact, motion: CellMotion, settings: ToothContact, least: float
-) -> Array:
-    """Friction of the sheared film of all cells (lines, cells, 3), from some that are solved."""
-    from scipy.interpolate import RegularGridInterpolator
-
-    if not FILM_MODELS[settings.film_model].method:
-        raise InputError(
-            f'friction law "{settings.friction_law}" with a film by formula',
-            where="film_model",
-            why="The law needs the pressure of a solved film",
-            remedy='Choose film_model = "newton", or another law',
-        )
-    cells = loaded.cells
-    order = np.argsort(cells.age, kind="stable")
-    count, on_line = cells.length.shape
-    lines = np.unique(np.linspace(0, count - 1, min(_LINES, count)).round().astype(int))
-    columns = np.unique(np.linspace(0, on_line - 1, min(_ON_LINE, on_line)).round().astype(int))
-    chosen = np.ix_(order[lines], columns)
-    shape = lines.size, columns.size
-    flat: Any = SimpleNamespace(
-        **{n: v[chosen].reshape(-1, *v.shape[2:]) for n, v in motion._asdict().items()}
-    )
-    load = np.maximum((loaded.line_force / cells.length)[chosen].ravel(), least)
-    modulus = effective_modulus(settings.material, settings.material)
-    oil, radius = settings.lubricant, flat.equivalent_radius
-    pairs = PairsInContact(radius, radius, flat.entrainment_speed, oil, modulus, 1.0)
-    films = pairs.films(settings.film_model, load, **settings.film)
-    contact = tribological_contact(flat, pairs, load, settings.composite_roughness, None, films)
-    contact = replace(
-        contact, film=FilmState.from_solutions(films.solutions), bodies=settings.bodies
-    )
-    parts = _parts(
-        friction_by_law(settings.friction_law, contact, settings.friction_options), contact
-    )
-    values = np.stack([each.reshape(shape) for each in vars(parts).values()], axis=-1)
-    between = RegularGridInterpolator((lines.astype(float), columns.astype(float)), values)
-    grid = np.meshgrid(np.arange(count), np.arange(on_line), indexing="ij")
-    result = np.empty((count, on_line, 3))
-    result[order] = between(np.stack(grid, axis=-1).astype(float))
-    return result

@@ -208,9 +208,6 @@ def _heated_film(inputs: UserInput, film: FilmModel | None) -> KeyedProblems:
         if inputs.get(f"friction.{key}"):
             what, remedy = f"{key} = true with a heated film", f"Set {key} = false"
             yield f"friction.{key}", Problem(what, "", f"{why}: heat would count twice", remedy)
-    if inputs.get("gears.kind") == "hypoid":
-        what, limit = f'film.model = "{film.name}"', "Heated films are solved for cylindrical gears"
-        yield "film.model", Problem(what, "", limit, 'Set model = "newton" in [film]')
 
 
 def _shear(inputs: UserInput, law: FrictionLaw | None) -> KeyedProblems:
