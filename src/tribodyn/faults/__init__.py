@@ -8,6 +8,7 @@
 | ``topographies`` | measured flanks of several teeth |
 | ``damage`` | spalls, broken teeth, root cracks |
 | ``cracked_tooth`` | compliance of a cracked tooth by finite elements |
+| ``cracked_face`` | the same over path and face, of a crack on a part of the face |
 | ``turning`` | force law of a mesh over the turns of its gears |
 | ``excitation`` | torque and speed over the turns of a shaft, random loads |
 | ``driven`` | a system with them |
@@ -16,6 +17,7 @@
 
 from tribodyn.arguments import guard
 from tribodyn.faults.bearing_defect import BearingDefect, BearingForce, BearingImpacts
+from tribodyn.faults.cracked_face import crack_influence
 from tribodyn.faults.cracked_tooth import crack_compliance
 from tribodyn.faults.damage import BrokenTooth, Crack, Spall
 from tribodyn.faults.deviations import (
@@ -58,6 +60,7 @@ __all__ = [
     "Waviness",
     "clock_cycles",
     "crack_compliance",
+    "crack_influence",
     "drive",
     "eccentricity",
     "pitch_tolerances",

@@ -26,6 +26,7 @@ _DEEPEST = 0.8
 _LOWEST = 0.5
 #: Refinement of the mesh of a whole gear: the tip of the crack needs small elements.
 _REFINED = 2.0
+_FINE = MeshSize().refined(_REFINED)
 #: Angles of a crack to the centre line of its tooth: into the body, and square to the tooth.
 STEEPEST, SQUARE = math.radians(45.0), 0.5 * math.pi
 #: Points at which the tangent of the fillet is tabulated.
@@ -138,15 +139,21 @@ def crack_compliance(
     """
     line = CrackLine(depth, angle, root_tangent)
     line.check(gear)
-    radius, added = _unit_compliance(gear, material.poissons_ratio, line, refined)
+    size = MeshSize().refined(refined)
+    radius, added = section_compliance(gear, material.poissons_ratio, line, size)
     return radius, added / material.youngs_modulus
 
 
 @lru_cache(maxsize=64)
-def _unit_compliance(
-    gear: SpurGear, poissons_ratio: float, line: CrackLine, refined: float
+def section_compliance(
+    gear: SpurGear,
+    poissons_ratio: float,
+    line: CrackLine,
+    size: MeshSize = _FINE,
+    sharp: bool = False,
 ) -> tuple[Array, Array]:
-    mesh, others = _sound_ring(gear, poissons_ratio, refined)
+    """Compliance of a crack for a Young's modulus of one, with quarter points if sharp."""
+    mesh, others = _sound_ring(gear, poissons_ratio, size)
     base = gear.base_radius
     low = gear.roll_angle(max(gear.form_radius, base)) * base
     radius = np.linspace(
@@ -155,7 +162,7 @@ def _unit_compliance(
     forces = flank_loads(gear, mesh, radius).forces
     added = np.zeros(radius.size)
     for row, weight in crack_rows(gear, mesh, line):
-        tooth = open_seam(mesh, row, line.depth / gear.normal_module, line.angle)
+        tooth = open_seam(mesh, row, line.depth / gear.normal_module, line.angle, sharp)
         sound, cracked = (
             _self_compliance(part, forces, poissons_ratio, others)
             for part in (tooth.sound, tooth.cracked)
@@ -180,10 +187,13 @@ class CrackedTooth:
     sound: SectorMesh  #: with a row of element edges on the crack
     cracked: SectorMesh  #: the same with the nodes of the crack doubled, the second ones last
     seam: Index  #: nodes that are doubled
+    tip: int  #: node at the tip of the crack
     part: float  #: compliance of the crack over that of the seam, which is an element at least
 
 
-def open_seam(mesh: SectorMesh, row: int, length: float, angle: float) -> CrackedTooth:
+def open_seam(
+    mesh: SectorMesh, row: int, length: float, angle: float, sharp: bool = False
+) -> CrackedTooth:
     """Move a row of element edges onto a crack and open it; lengths in modules."""
     seam = mesh.tooth[:, row]
     reach = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(mesh.nodes[seam], axis=0).T))])
@@ -196,19 +206,21 @@ def open_seam(mesh: SectorMesh, row: int, length: float, angle: float) -> Cracke
     shift[: tip + 1] = mesh.nodes[seam[0]] - along * direction - mesh.nodes[seam[: tip + 1]]
     shift[tip:] = shift[tip] * ((reach[-1] - reach[tip:]) / (reach[-1] - reach[tip]))[:, None]
     sound = _moved(mesh, row, shift)
+    if sharp:
+        _move_to_quarters(sound, row, tip)
     twins = np.arange(len(mesh.nodes))
     twins[seam[:tip]] = len(mesh.nodes) + np.arange(tip)
     above = np.asarray(np.isin(mesh.elements, mesh.tooth[:, row - 1]).any(axis=1))
     elements = np.where(above[:, None], twins[mesh.elements], mesh.elements)
     nodes = np.concatenate([sound.nodes, sound.nodes[seam[:tip]]])
     cracked = replace(sound, nodes=nodes, elements=elements)
-    return CrackedTooth(sound, cracked, seam[:tip], (length / meshed) ** 2)
+    part = (length / meshed) ** 2
+    return CrackedTooth(sound, cracked, seam[:tip], int(seam[tip]), part)
 
 
 def _moved(mesh: SectorMesh, row: int, shift: Array) -> SectorMesh:
     """Mesh whose row of nodes across the tooth is moved, less towards tip and bore."""
-    levels = np.arange(mesh.right_cut.size + 1)
-    columns = np.concatenate([mesh.tooth[:, :-1], mesh.tooth[:, -1:] + levels], axis=1)
+    columns = tooth_columns(mesh)
     place = mesh.nodes[columns]
     reach = np.cumsum(np.hypot(*np.diff(place, axis=1, prepend=place[:, :1]).transpose(2, 0, 1)), 1)
     at, end = reach[:, row, None], reach[:, -1:]
@@ -216,6 +228,28 @@ def _moved(mesh: SectorMesh, row: int, shift: Array) -> SectorMesh:
     nodes = mesh.nodes.copy()
     nodes[columns] += weight[:, :, None] * shift[:, None]
     return replace(mesh, nodes=nodes)
+
+
+def tooth_columns(mesh: SectorMesh) -> Index:
+    """Nodes across the tooth and the body under it, from the tip to the bore."""
+    levels = np.arange(mesh.right_cut.size + 1)
+    return np.concatenate([mesh.tooth[:, :-1], mesh.tooth[:, -1:] + levels], axis=1)
+
+
+def _move_to_quarters(mesh: SectorMesh, row: int, tip: int) -> None:
+    """Move the middles of the edges that end at the tip of a crack to a quarter (Barsoum)."""
+    nodes, grid = mesh.nodes, tooth_columns(mesh)
+    for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        end, begin = grid[tip + 2 * a, row + 2 * b], grid[tip, row]
+        nodes[grid[tip + a, row + b]] = 0.75 * nodes[begin] + 0.25 * nodes[end]
+    for a in (1, -1):
+        for b in (1, -1):
+            patch = nodes[grid[np.ix_(tip + a * np.arange(3), row + b * np.arange(3))]]
+            corners, edges = (
+                patch[::2, ::2].sum((0, 1)),
+                patch[::2, 1].sum(0) + patch[1, ::2].sum(0),
+            )
+            nodes[grid[tip + a, row + b]] = 0.5 * edges - 0.25 * corners
 
 
 def _stiffness(mesh: SectorMesh, poissons_ratio: float) -> Any:
@@ -249,11 +283,11 @@ def _self_compliance(
 
 
 @lru_cache(maxsize=8)
-def _sound_ring(gear: SpurGear, poissons_ratio: float, refined: float) -> tuple[SectorMesh, Array]:
+def _sound_ring(gear: SpurGear, poissons_ratio: float, size: MeshSize) -> tuple[SectorMesh, Array]:
     """Mesh of a sector, and the stiffness of all others between its right and its left cut."""
     from scipy.sparse.linalg import splu
 
-    mesh = tooth_mesh(gear, held_radius(gear), MeshSize().refined(refined))
+    mesh = tooth_mesh(gear, held_radius(gear), size)
     matrix = _stiffness(mesh, poissons_ratio)
     cuts, turn = _cut_freedoms(mesh)
     inner = np.setdiff1d(np.arange(matrix.shape[0]), np.append(cuts, _freedoms(mesh.fixed)))

@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.errors import Argument, InputError, require_one_of
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.nomenclature import GEARS
-from tribodyn.stiffness.loaded.problem import ContactPlaces
+from tribodyn.stiffness.loaded.problem import ContactPlaces, ContactProblem
 from tribodyn.types import Array, Index, Mask
 
 GearName = Literal["pinion", "wheel"]
@@ -43,9 +43,12 @@ class Fault:
         # Face (s, 1): place of each slice along the face, from its middle [m].
         return 0.0
 
-    def _compliance(self, places: ContactPlaces, material: Material, sound: Array) -> Array | float:
-        """Compliance per face width that is added to that of the sound teeth (p, n) [m^2/N]."""
-        return 0.0
+    def _softened(self, places: ContactPlaces) -> Mask | None:
+        """Contacts (p, n) whose tooth is softer than a sound one."""
+        return None
+
+    def _soften(self, problem: ContactProblem, material: Material) -> None:
+        """Add the compliance of the fault to that of the sound teeth."""
 
     def _gear_of(self, pair: SpurPair) -> SpurGear:
         """The gear that has the fault."""
@@ -79,6 +82,9 @@ class Fault:
 
     def _check(self, pair: SpurPair) -> None:
         """Raise InputError if the pair cannot have this fault."""
+
+    def _check_model(self, pair: SpurPair, provider: str) -> None:
+        """Raise InputError if the fault needs another stiffness model of the pair."""
 
 
 @dataclass(frozen=True, kw_only=True)

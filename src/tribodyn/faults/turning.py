@@ -7,10 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import cached_property
 from hashlib import sha256
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.contact.face_contacts import face_positions
 from tribodyn.errors import InputError, require_positive
 from tribodyn.faults.fault import Fault
 from tribodyn.gear import Material, SpurPair
@@ -20,7 +21,13 @@ from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.stiffness.loaded.contact import contact_problem
 from tribodyn.stiffness.loaded.face_problem import has_slices
-from tribodyn.stiffness.loaded.problem import FAR, Compliance, ContactProblem, slice_gaps
+from tribodyn.stiffness.loaded.problem import (
+    FAR,
+    Compliance,
+    ContactPlaces,
+    ContactProblem,
+    slice_gaps,
+)
 from tribodyn.stiffness.model import MODELS
 from tribodyn.types import Array, Index
 
@@ -79,6 +86,11 @@ class TurningMesh(Record):
         Slope of the force over the approach there [N/m].
     load_share : (k, pairs) array
         Part of the force on each pair.
+    face_position : (slices,) array
+        Middles of slices of the face, from its middle [m].
+    face_load : (cycles, slices) array
+        Load of each tooth pair, in the order of contact, on slices of the face over its time in
+        contact; the mean of all is one.
     force_law : MeshForceLaw
         Force over the compression, over the phase of all turns.
     cycles : int
@@ -89,6 +101,8 @@ class TurningMesh(Record):
     transmission_error: Array = quantity("phase", of="static_transmission_error")
     mesh_stiffness_tangent: Array = quantity("phase")
     load_share: Array = quantity("phase", "pair")
+    face_position: Array = quantity("face_position", unit="m", axis=True)
+    face_load: Array = quantity("tooth_pair", "face_position", unit="1")
     force_law: MeshForceLaw
     cycles: int = fact()
 
@@ -208,6 +222,7 @@ def turning_mesh(
     require_positive("torque", torque, "N*m")
     for fault in faults:
         fault._check(pair)
+        fault._check_model(pair, provider)
         pair = fault._on(pair)
     cycles = turns_of(pair, faults)
     if phases is None:
@@ -220,15 +235,14 @@ def turning_mesh(
         raise InputError(what, "argument faults", f"At most {_MOST} phases are solved", remedy)
     material = material or Material()
     force = torque / pair.pinion.base_radius
-    problem = _problem(
+    places, distinct, shift, rows = _turns(
         pair, faults, np.arange(cycles * phases) / phases, material,
         provider=provider, extended_contact=extended_contact, total_force=force, options=options,
     )  # fmt: skip
-    shift, distinct, rows = _distinct(problem, cycles)
     solved = distinct.at_loads(np.array([force]))
     approach = solved.approach[0][rows] + shift
     if approach.max() > 0.5 * FAR:
-        cycle = problem.places.phase[int(np.argmax(approach))]
+        cycle = places.phase[int(np.argmax(approach))]
         raise InputError(
             f"no tooth pair is left to carry {cycle:.4g} mesh cycles after the start",
             "argument faults",
@@ -240,45 +254,60 @@ def turning_mesh(
     law = MeshForceLaw(
         phase_grid((0.0,), cycles * phases), *(_closed(x) for x in (place, stiffness))
     )
+    pair_force = distinct.widths * solved.load[0]
+    face_load = _face_load(places, pair_force, rows, cycles)
     return TurningMesh(
         phase=np.arange(cycles * phases + 1) / phases,
         transmission_error=_closed(approach),
         mesh_stiffness_tangent=_closed(solved.tangent[0][rows]),
-        load_share=_closed(_of_pairs(problem, distinct.forces(solved.load[0])[rows] / force)),
+        load_share=_closed(_of_pairs(places, pair_force.sum(axis=1)[rows] / force)),
+        face_position=face_positions(places.contact, face_load.shape[1]),
+        face_load=face_load,
         force_law=law,
         cycles=cycles,
     )
 
 
-def _distinct(problem: ContactProblem, cycles: int) -> tuple[Array, ContactProblem, Index]:
-    """Shift of the approach (p,), the mesh cycles that differ by more, and their rows (p,)."""
-    shift = problem.least_gap[:, None, None]
-    gaps = np.where(problem.gaps >= FAR, FAR, problem.gaps - shift)
-    structure, phases = problem.compliance.structure, len(gaps) // cycles
+class _Turns(NamedTuple):
+    """Contacts over all turns, and the problem of those mesh cycles that differ."""
+
+    places: ContactPlaces
+    problem: ContactProblem  #: of the mesh cycles that differ by more than a shift of the approach
+    shift: Array  #: of the approach (p,) [m]
+    rows: Index  #: row of the problem of each phase (p,)
+
+
+def _distinct(places: ContactPlaces, gaps: Array, faults: Sequence[Fault], cycles: int) -> Array:
+    """Number of the first mesh cycle that differs from each one by no more than a shift."""
+    phases = len(gaps) // cycles
+    softened = [mask for fault in faults if (mask := fault._softened(places)) is not None]
     groups: dict[bytes, int] = {}
-    number, first = np.empty(cycles, dtype=np.int64), list[int]()
+    first = np.empty(cycles, dtype=np.int64)
     for cycle in range(cycles):
         part = slice(cycle * phases, (cycle + 1) * phases)
-        key = np.rint(gaps[part] * _SAME).tobytes() + structure[part].tobytes()
-        number[cycle] = groups.setdefault(sha256(key).digest(), len(groups))
-        if number[cycle] == len(first):
-            first.append(cycle)
-    within = np.arange(phases)
-    chosen = (np.array(first)[:, None] * phases + within).ravel()
-    parts, widths = problem.compliance, problem.widths
-    compliance = Compliance(structure[chosen], parts.local[chosen], parts.logarithm)
-    distinct = ContactProblem(
-        problem.places, compliance, gaps[chosen], widths if len(widths) == 1 else widths[chosen]
-    )
-    return shift[:, 0, 0], distinct, (number[:, None] * phases + within).ravel()
+        key = np.rint(gaps[part] * _SAME).tobytes() + b"".join(m[part].tobytes() for m in softened)
+        first[cycle] = groups.setdefault(sha256(key).digest(), cycle)
+    return first
 
 
-def _of_pairs(problem: ContactProblem, share: Array) -> Array:
+def _of_pairs(places: ContactPlaces, share: Array) -> Array:
     """Shares of tooth pairs from those of their slices (p, n)."""
-    if not problem.places.is_sliced:
+    if not places.is_sliced:
         return share
-    count = np.unique(problem.places.number).size
+    count = np.unique(places.number).size
     return np.asarray(share.reshape(len(share), count, -1).sum(axis=2))
+
+
+def _face_load(places: ContactPlaces, force: Array, rows: Index, cycles: int) -> Array:
+    """Load of each tooth pair on slices of the face (cycles, s), their mean over all pairs one."""
+    numbers = np.unique(places.number)
+    sliced = (len(force), numbers.size, -1)
+    of_slices = force.reshape(sliced) if places.is_sliced else force.transpose(0, 2, 1)
+    load = np.zeros((cycles, of_slices.shape[2]))
+    entered = np.floor(places.phase).astype(int)
+    for column, number in enumerate(numbers):
+        np.add.at(load, (entered - number) % cycles, of_slices[rows, column])
+    return np.asarray(load / load.mean())
 
 
 def _closed(values: Array) -> Array:
@@ -286,44 +315,51 @@ def _closed(values: Array) -> Array:
     return np.concatenate([values, values[:1]])
 
 
-def _problem(
+def _turns(
     pair: SpurPair, faults: Sequence[Fault], phase: Array, material: Material, **settings: Any
-) -> ContactProblem:
+) -> _Turns:
     """Loaded tooth contact with the gaps and compliances of all faults."""
     sliced = has_slices(pair, MODELS[settings["provider"]])
     if not sliced:
         varies = any(fault._varies_over_face for fault in faults)
         settings["slices"] = _SLICES if varies else None
-    problem = contact_problem(pair, phase=phase[phase < 1.0], material=material, **settings)
-    count = problem.gaps.shape[1]
-    number = problem.places.number
+    cycle = contact_problem(pair, phase=phase[phase < 1.0], material=material, **settings)
+    count = cycle.gaps.shape[1]
+    number = cycle.places.number
     if sliced:  # contacts are the slices of one pair after the other
         count = number.size // np.unique(number).size
     face = (((np.arange(count) + 0.5) / count - 0.5) * pair.common_face_width)[:, None]
     if sliced:
-        face = np.tile(face.T, problem.gaps.shape[2] // count)
-    problem = _repeated(problem, phase, face)
-    places, gaps, structure = problem.places, problem.gaps, problem.compliance.structure
-    contacts, apart = np.arange(structure.shape[1]), gaps >= FAR
+        face = np.tile(face.T, cycle.gaps.shape[2] // count)
+    within = np.arange(phase.size) % len(cycle.gaps)  # the places of a cycle repeat
+    places = replace(_at_phases(cycle.places, within), phase=phase)
+    gaps = slice_gaps(places, face)
+    separated = gaps >= FAR
     for fault in faults:
         gaps = gaps + fault._gap(places, face)
-        sound = structure[:, contacts, contacts]
-        structure[:, contacts, contacts] = sound + fault._compliance(places, material, sound)
-    return replace(problem, gaps=np.where(apart, FAR, np.minimum(gaps, FAR)))
+    gaps = np.where(separated, FAR, np.minimum(gaps, FAR))
+    shift = gaps.min(axis=(1, 2), keepdims=True)
+    gaps = np.where(gaps >= FAR, FAR, gaps - shift)
+    first = _distinct(places, gaps, faults, phase.size // len(cycle.gaps))
+    chosen, group = np.unique(first, return_inverse=True)
+    phases = np.arange(len(cycle.gaps))
+    rows = (chosen[:, None] * phases.size + phases).ravel()
+    parts, widths = cycle.compliance, cycle.widths
+    problem = ContactProblem(
+        _at_phases(places, rows),
+        Compliance(parts.structure[within[rows]], parts.local[within[rows]], parts.logarithm),
+        gaps[rows],
+        widths if len(widths) == 1 else widths[within[rows]],
+    )
+    for fault in faults:
+        fault._soften(problem, material)
+    return _Turns(places, problem, shift[:, 0, 0], (group[:, None] * phases.size + phases).ravel())
 
 
-def _repeated(problem: ContactProblem, phase: Array, face: Array) -> ContactProblem:
-    """The problem of a mesh cycle at the phases of many: places and compliances repeat."""
-    cycles = phase.size // problem.places.phase.size
-
-    def tiled(values: Array) -> Array:
-        """Rows of a cycle for all cycles."""
-        return np.tile(values, (cycles, *(1,) * (values.ndim - 1)))
-
-    names = ("path", "separation", "pinion_curvature_radius", "wheel_curvature_radius")
-    rows: dict[str, Any] = {name: tiled(getattr(problem.places, name)) for name in names}
-    places = replace(problem.places, phase=phase, **rows)
-    parts, widths = problem.compliance, problem.widths
-    compliance = Compliance(tiled(parts.structure), tiled(parts.local), parts.logarithm)
-    gaps = slice_gaps(places, face)
-    return ContactProblem(places, compliance, gaps, widths if len(widths) == 1 else tiled(widths))
+def _at_phases(places: ContactPlaces, rows: Index) -> ContactPlaces:
+    """Places at some phases."""
+    names = (
+        "phase", "path", "separation", "pinion_curvature_radius", "wheel_curvature_radius"
+    )  # fmt: skip
+    chosen: dict[str, Any] = {name: getattr(places, name)[rows] for name in names}
+    return replace(places, **chosen)

@@ -95,34 +95,53 @@ def turning_motion(motion: TurningMotion) -> Any:
     heading="Mesh over whole turns",
     caption="Static transmission error and tangent stiffness under the mean load over all mesh "
     "cycles after which the same teeth meet again. A deviation lifts the error of its tooth, a "
-    "crack lowers the stiffness where its tooth carries.",
+    "crack lowers the stiffness where its tooth carries. Where the face has slices, the last panel "
+    "is the load along the face of the tooth pair that differs most, over its time in contact, and "
+    "the median of all pairs.",
     of="TurningMesh",
     made_by="Call tribodyn.faults.turning_mesh(...) and its plot method.",
 )
 def turning_mesh(mesh: TurningMesh) -> Any:
-    """Draw transmission error and stiffness over the mesh cycles."""
+    """Draw transmission error and stiffness over the mesh cycles, and the load along the face."""
     curves = (
         ("static_transmission_error", mesh.transmission_error, "Error at rest", PINION),
         ("mesh_stiffness_tangent", mesh.mesh_stiffness_tangent, "Stiffness", WHEEL),
     )
-    panels = [
-        Panel(
-            axis_label(quantity, name),
-            [
-                line(
-                    mesh.phase,
-                    displayed(quantity, values),
-                    name.lower(),
-                    color,
-                    unit=display_unit(quantity),
-                )
-            ],
+    rows = [
+        Row(
+            "Mesh cycles",
+            Panel(
+                axis_label(quantity, name),
+                [
+                    line(
+                        mesh.phase,
+                        displayed(quantity, values),
+                        name.lower(),
+                        color,
+                        unit=display_unit(quantity),
+                    )
+                ],
+            ),
         )
         for quantity, values, name, color in curves
     ]
+    if mesh.face_position.size > 1:
+        rows.append(_load_along_face(mesh))
     swing = rounded("static_transmission_error", mesh.peak_to_peak_transmission_error)
     title = f"The transmission error varies by {swing} over {mesh.cycles} mesh cycles"
-    return stack(title, "Mesh cycles", panels)
+    return stack_rows(title, rows)
+
+
+def _load_along_face(mesh: TurningMesh) -> Row:
+    """Load of the tooth pair that differs most from the others along the face."""
+    median = np.median(mesh.face_load, axis=0)
+    pair = int(np.argmax(np.abs(mesh.face_load - median).max(axis=1)))
+    place = 1e3 * mesh.face_position
+    curves = [
+        line(place, median, "median of all tooth pairs", TOTAL),
+        line(place, mesh.face_load[pair], f"tooth pair {pair + 1}", PINION),
+    ]
+    return Row("From the middle of the face [mm]", Panel("Load over its mean", curves))
 
 
 @drawing(

@@ -6,7 +6,7 @@ import hashlib
 import math
 from functools import cache as remember
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -155,7 +155,7 @@ def _looked_up(
 ) -> UnitFaceCompliances:
     if not cache:
         return unit_face_compliances(sector, neighbours, progress)
-    name = _file_name(sector, neighbours)
+    name = file_name(sector, neighbours)
     arrays = load_arrays(name, "fe3d")
     if arrays is not None and set(arrays) == set(UnitFaceCompliances._fields):
         unit = UnitFaceCompliances(**arrays)
@@ -172,7 +172,7 @@ def _looked_up(
     return unit
 
 
-def _file_name(sector: Sector, neighbours: int) -> str:
+def file_name(sector: Sector, *settings: Any) -> str:
     """Hash of everything that the compliances for a Young's modulus of one depend on."""
     form, module = sector.form, sector.form.normal_module
     outline = (
@@ -185,7 +185,7 @@ def _file_name(sector: Sector, neighbours: int) -> str:
         form.helix_angle,
     )
     solid = (sector.width, sector.held, sector.twist, sector.poissons_ratio, sector.size)
-    text = repr((outline, solid, neighbours, _digest()))
+    text = repr((outline, solid, *settings, _digest()))
     return hashlib.sha256(text.encode()).hexdigest()
 
 

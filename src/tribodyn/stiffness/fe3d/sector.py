@@ -119,7 +119,7 @@ class Sector:
         axial = np.full(angle.shape, -self.twist * self.base_radius)
         return np.stack([-np.cos(angle), -np.sin(angle), axial], axis=-1)
 
-    def _directions(self) -> Array:
+    def directions(self) -> Array:
         """Directions (n, 3, freedom): polar on the borders, along the load on the flank."""
         mesh = self.mesh
         turn = np.tile(np.eye(3), (len(mesh.nodes), 1, 1))
@@ -134,7 +134,7 @@ class Sector:
         turn[self.flank] = np.stack([load, aside, np.cross(load, aside)], axis=2)
         return turn
 
-    def _groups(self) -> list[Index]:
+    def groups(self) -> list[Index]:
         """Rows of elements from the tip to the foot, then from the root to the inner circle."""
         columns, rows = ((size - 1) // 2 for size in self.mesh.tooth.shape)
         body = np.arange(len(self.mesh.elements) - columns * rows)
@@ -180,14 +180,14 @@ class Sector:
         """Stiffness (f, z, f, z) of the flank, in its loaded direction, and of the borders."""
         mesh = self.mesh
         matrices = element_matrices(mesh.nodes[mesh.elements], self.twist, self.stress)
-        turn = self._directions()[mesh.elements]
+        turn = self.directions()[mesh.elements]
 
         freedoms = node_freedoms(mesh.elements)
         if not self.on_ring:
             freedoms[np.repeat(np.isin(mesh.elements, mesh.fixed), 3, axis=1)] = -1
         retained = np.concatenate([3 * self.flank, *map(node_freedoms, self.border)], axis=None)
         parts = SectionMatrices(*(turned_stiffness(matrix, turn) for matrix in matrices))
-        return condensed(freedoms, parts, self._groups(), retained, self.face)
+        return condensed(freedoms, parts, self.groups(), retained, self.face)
 
 
 def turned_stiffness(matrix: Array, turn: Array) -> Array:

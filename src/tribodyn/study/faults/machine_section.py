@@ -124,7 +124,9 @@ def _check_gear_fault(case: MachineCase, fault: MachineFaultTable, mesh: str) ->
             what = f"mesh {mesh} is a {pair.gears.kind} pair"
             why = "Faults act on cylindrical pairs, whose teeth are computed one by one"
             raise InputError(what, Argument("gear"), why, "Name another gear")
-        _on_mesh(case, fault, mesh)._check(pair.spur_pair)
+        gear_fault = _on_mesh(case, fault, mesh)
+        gear_fault._check(pair.spur_pair)
+        gear_fault._check_model(pair.spur_pair, pair.stiffness.model)
     elif fault.kind not in ("eccentricity", "waviness") or fault.lead_angle:
         what = f"mesh {mesh} has a constant stiffness, and the fault is of the kind {fault.kind}"
         why = "Of a constant stiffness the teeth are not computed one by one"

@@ -30,7 +30,10 @@ KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "flank-topographies": (("gear", "file"), ("other_teeth", "interpolation")),
     "spall": (("gear", "tooth", "depth", "start", "end"), ("face_share",)),
     "broken-tooth": (("gear", "tooth"), ("remaining",)),
-    "crack": (("gear", "tooth", "depth"), ("angle", "root_tangent", "face_share")),
+    "crack": (
+        ("gear", "tooth", "depth"),
+        ("angle", "root_tangent", "face_share", "face_length", "face_position"),
+    ),
     "bearing-defect": (
         (
             "gear",
@@ -103,6 +106,11 @@ class FaultTable(Section):
     start: float | None = _share("lower end of a spall on the used flank, from its lowest point")
     end: float | None = _share("upper end of a spall on the used flank; 1 is the tip")
     face_share: float | None = _share("part of the face width that is damaged; all by default")
+    face_length: float | None = _length("length of a crack along the face", 10.0, '"8 mm"')
+    face_position: float | None = number(
+        None, -10.0, 10.0, _GUARD, unit="m", display_unit="mm", example='"6 mm"',
+        meaning="middle of a crack along the face, from the middle of the face",
+    )  # fmt: skip
     remaining: float | None = _share("part of the used flank that is left; none by default")
     amplitude: float | None = _length("eccentricity, or amplitude of a wave", 1e-3, '"10 um"')
     order: int | None = integer(
@@ -303,6 +311,7 @@ def check_fault(case: Any, fault: FaultTable) -> None:
         stated = read_fault(fault)
         if isinstance(stated, Fault):
             stated._check(case.gear_pair)
+            stated._check_model(case.gear_pair, case.stiffness.model)
 
 
 def _faults_of(case: Any, kind: type[T]) -> dict[str, T]:
