@@ -67,8 +67,8 @@ def crack_influence(
     ends : (float, float)
         Ends of the crack along the face, counted from the end of the face where lines of contact
         are at the tip; of a spur gear from either end [m].
-    angle, root_tangent
-        As for :func:`crack_compliance`.
+    angle, root_tangent : float, float
+        As for :func:`crack_compliance` [rad].
     size : SolidSize
         Sizes of the elements.
 

@@ -90,7 +90,7 @@ class TurningMesh(Record):
         Middles of slices of the face, from its middle [m].
     face_load : (cycles, slices) array
         Load of each tooth pair, in the order of contact, on slices of the face over its time in
-        contact; the mean of all is one.
+        contact; the mean of all is one [1].
     force_law : MeshForceLaw
         Force over the compression, over the phase of all turns.
     cycles : int
