@@ -79,13 +79,16 @@ def orbit_response(compiled: Compiled, residual: Residual, state: State, **facts
     force, torque = structure.balanced(spectrum, state.y.mean(axis=0))
     phase, shape = compiled.nodes.phase.reshape(-1), (1, compiled.grid.steps, 3, -1)
     into_motion = structure.push.T @ structure.coordinates.inverse
-    motion = []
+    amplitudes, jumped = [], []
     # Harmonics beyond those of the samples are those that jumps of the acceleration cause.
     for amplitude, power in zip(structure.motion(residual.omega, force), (3, 2), strict=True):
         scale = residual.frequency ** (1.0 - power) * into_motion
         amplitude[1:-1] -= pulses / _orders(len(pulses)) ** power @ scale
-        motion.append(series(amplitude, steps, phase) + jumps.polynomials(phase, power) @ scale)
-    q, v = (values.reshape(shape) for values in motion)
+        amplitudes.append(amplitude)
+        jumped.append(jumps.polynomials(phase, power) @ scale)
+    motion = series(np.concatenate(amplitudes, axis=1), steps, phase)
+    motion += np.concatenate(jumped, axis=1)
+    q, v = (np.ascontiguousarray(part).reshape(shape) for part in np.split(motion, 2, axis=1))
     ends = np.concatenate((q[0, :, 0], v[0, :, 0]), axis=1)
     states = np.concatenate((ends, ends[:1]))
     number = structure.rate * float(compiled.grid.width.max()) / residual.frequency

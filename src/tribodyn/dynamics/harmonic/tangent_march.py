@@ -19,8 +19,8 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.dynamics.harmonic.newton import Residual, State
 
-#: Part of the start that is left when the motion is recorded, and rows that are solved together.
-_LEFT, _CHUNK = 1e-4, 4096
+#: Part of the start that is left when the motion is recorded.
+_LEFT = 1e-4
 _OPTIONS: dict[str, Any] = {
     "nogil": True, "fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy",
 }  # fmt: skip
@@ -53,41 +53,33 @@ class TangentMarch:
         self._direct = np.ascontiguousarray((signals @ after).real)
         settling = math.log(1.0 / _LEFT) / max(structure.decay, 1e-300)
         self._lead = int(min(settling / h, steps))
-        self._gain = _gains(residual, state, self._direct)
+        self._tangents = _tangents(residual, state)
 
     def __call__(self, motion: Array) -> Array:
         """Motion whose product with the derivative of the residual is nearly this one."""
         right = np.concatenate((motion, self.rate(motion)), axis=1)
-        parts = self._decay, self._output, self._push, self._direct, self._gain
+        parts = self._decay, self._output, self._push, self._direct, self._tangents
         return np.asarray(motion + march_tangent(*parts, right, self._lead))
 
 
-def _gains(residual: Residual, state: State, direct: Array) -> Array:
-    """Forces per free motion and rate at the contacts, at each sample (steps, s, 2 r)."""
+def _tangents(residual: Residual, state: State) -> Array:
+    """Forces per motion and rate at the contacts, at each sample (steps, s, 2 r)."""
     structure, breaks = residual.structure, state.breaks
-    stiffness = np.broadcast_to(
-        structure.contact_stiffness - state.law.stiffness,
-        (len(state.y), *structure.contact_stiffness.shape),
-    )
-    damping = np.broadcast_to(structure.contact_damping - state.law.damping, stiffness.shape)
+    (s, r), steps = structure.contact_stiffness.shape, len(state.y)
+    tangents = np.empty((steps, s, 2 * r))
+    tangents[..., :r] = structure.contact_stiffness - state.law.stiffness
+    tangents[..., r:] = structure.contact_damping - state.law.damping
     if breaks.step.size:
-        stiffness = stiffness.copy()
         part = breaks.fraction[:, None, None]
-        np.add.at(stiffness, breaks.step, (1.0 - part) * breaks.tangent)
-        np.add.at(stiffness, (breaks.step + 1) % len(stiffness), part * breaks.tangent)
-    s, r = structure.contact_stiffness.shape
-    gain, eye = np.empty((len(stiffness), s, 2 * r)), np.eye(s)
-    for begin in range(0, len(gain), _CHUNK):
-        rows = slice(begin, begin + _CHUNK)
-        both = np.concatenate((stiffness[rows], damping[rows]), axis=2)
-        gain[rows] = np.linalg.solve(eye - both @ direct, both)
-    return gain
+        np.add.at(tangents[..., :r], breaks.step, (1.0 - part) * breaks.tangent)
+        np.add.at(tangents[..., :r], (breaks.step + 1) % steps, part * breaks.tangent)
+    return tangents
 
 
 def _build(digest: str) -> Any:
     @cached_njit(**_OPTIONS)
     def march_tangent(
-        decay: Array, output: Array, push: Array, direct: Array, gain: Array, right: Array,
+        decay: Array, output: Array, push: Array, direct: Array, tangents: Array, right: Array,
         lead: int,
     ) -> Array:  # fmt: skip
         """Motion at the contacts (steps, r), after ``lead`` samples before the first."""
@@ -95,7 +87,7 @@ def _build(digest: str) -> Any:
         steps, wide = right.shape
         m, s, r = decay.shape[1], push.shape[0], wide // 2
         motion, z = np.zeros((steps, r)), np.zeros(2 * m)
-        signal, force = np.empty(wide), np.empty(s)
+        signal, force, a = np.empty(wide), np.empty(s), np.empty((s, s))
         for step in range(steps - lead, 2 * steps):
             row = step % steps
             for o in range(wide):
@@ -106,8 +98,23 @@ def _build(digest: str) -> Any:
             for j in range(s):
                 total = 0.0
                 for o in range(wide):
-                    total += gain[row, j, o] * (signal[o] + right[row, o])
+                    total += tangents[row, j, o] * (signal[o] + right[row, o])
                 force[j] = total
+                for i in range(s):
+                    total = 1.0 if i == j else 0.0
+                    for o in range(wide):
+                        total -= tangents[row, j, o] * direct[o, i]
+                    a[j, i] = total
+            # Forces change motions within a step little: the matrix is near the unit matrix.
+            for k in range(s):
+                for j in range(s):
+                    if j != k:
+                        factor = a[j, k] / a[k, k]
+                        for i in range(k, s):
+                            a[j, i] -= factor * a[k, i]
+                        force[j] -= factor * force[k]
+            for j in range(s):
+                force[j] /= a[j, j]
             for o in range(r):
                 total = signal[o]
                 for j in range(s):

@@ -19,7 +19,7 @@ from tribodyn.study.faults.clock import MOST_CYCLES
 from tribodyn.study.faults.driven_shafts import drive_machine
 from tribodyn.study.faults.impact_transfer import FreeStructure, ImpactResponse, impact_response
 from tribodyn.study.faults.machine_section import faults_of_mesh
-from tribodyn.study.faults.motion import SAMPLES, signal_lines
+from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines
 from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
 from tribodyn.types import Array, ComplexArray
 
@@ -108,7 +108,7 @@ class MachineTurningMotion:
         else:
             values = getattr(motion, place.quantity)[:, motion.mesh.index(place.part)]
         count = SAMPLES * self.cycles
-        even = np.interp(np.arange(count) / count, motion.clock, values, period=1.0)
+        even = even_samples(motion.clock, count)(values)
         if place.seat is not None:
             lines = np.fft.rfft(even)
             lines *= place.seat(np.arange(lines.size, dtype=float) * motion.frequency)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -26,8 +27,9 @@ if TYPE_CHECKING:
 
 #: Steps of the search for each mesh cycle, tried in turn, and even samples of the motion.
 _STEPS, SAMPLES = (128, 256, 512), 512
-#: Change of the motion with half the steps, over its size, that is small enough.
-_ACCURATE = 2e-3
+#: Change of the motion with half the steps, over its size, that is small enough, and the certified
+#: error that suffices beside it.
+_ACCURATE, _CERTIFIED = 2e-3, 1e-6
 
 
 @record
@@ -103,6 +105,25 @@ class TurningMotion(Record):
             f"TurningMotion({self.cycles} mesh cycles at {self.mesh_frequency:.6g} Hz, mesh force "
             f"{force.min():.5g} to {force.max():.5g} N)"
         )
+
+
+def even_samples(phase: Array, count: int) -> Callable[[Array], Array]:
+    """Linear interpolation of periodic values (p, ...) at phases to ``count`` even samples."""
+    order = np.argsort(phase, kind="stable")
+    order = np.concatenate((order[-1:], order, order[:1]))
+    place = phase[order] + np.array([-1.0, *np.zeros(phase.size), 1.0])
+    at = np.arange(count) / count
+    after = np.searchsorted(place, at, side="right")
+    width = place[after] - place[after - 1]
+    part = np.divide(at - place[after - 1], width, out=np.zeros(count), where=width > 0.0)
+    left, right = order[after - 1], order[after]
+
+    def sampled(values: Array) -> Array:
+        weight = part.reshape(-1, *[1] * (values.ndim - 1))
+        begin = values[left]
+        return np.asarray(begin + weight * (values[right] - begin))
+
+    return sampled
 
 
 def signal_lines(values: Array, period: float) -> tuple[Array, ComplexArray]:
@@ -184,6 +205,7 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
                     frequency,
                     steps=steps * driven.cycles // driven.system.cycles,
                     start=response,
+                    tolerance=_CERTIFIED,
                     progress=progress,
                 )
             if not response.step_error > _ACCURATE:
@@ -200,13 +222,11 @@ def _sampled(
     """The motion on evenly spaced samples."""
     cycles = driven.cycles
     fine, count, period = response.fine, SAMPLES * cycles, cycles / mesh_frequency
-    at = np.arange(count) / count
+    at, even = np.arange(count) / count, even_samples(fine.phase, count)
 
     def over(values: Array, turned: int | None = None) -> Array:
         """Values on the samples of the period, with a derivative of the fluctuating rotation."""
-        columns = values.reshape(len(values), -1).T
-        even = [np.interp(at, fine.phase, column, period=1.0) for column in columns]
-        samples = np.stack(even, axis=-1).reshape(count, *values.shape[1:])
+        samples = even(values)
         if turned is not None and driven.lead.lines.any():
             lead = driven.lead.derivative(turned)(at) / period**turned
             samples = samples + lead[:, None] * driven.rotation

@@ -19,7 +19,7 @@ from tribodyn.machine.planetary.ring_sensor import passing_weights
 from tribodyn.study.faults.driven_shafts import drive_stage
 from tribodyn.study.faults.machine_motion import repeated, seat_accelerance
 from tribodyn.study.faults.machine_section import OF_SHAFTS, name_of
-from tribodyn.study.faults.motion import SAMPLES, signal_lines
+from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines
 from tribodyn.study.machine.first_look import warn_of_orders
 from tribodyn.types import Array, ComplexArray
 
@@ -111,7 +111,6 @@ class PlanetaryTurningMotion:
             why, remedy = f"The sensors are {', '.join(self.sensors)}", "Name one of these"
             raise InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
         count, motion = SAMPLES * self.repeat, self.motion
-        at = np.arange(count) / count
         rounds = self.cycles // self.repeat
         if sensor.startswith("planet_"):
             number, _, name = sensor.removeprefix("planet_").partition(".")
@@ -119,8 +118,7 @@ class PlanetaryTurningMotion:
         else:
             columns = motion.ring_mesh_force
         clock = motion.phase / self.repeat
-        even = np.stack([np.interp(at, clock, c, period=1.0) for c in columns.T], axis=1)
-        even = np.tile(even, (rounds, 1))
+        even = np.tile(even_samples(clock, count)(columns), (rounds, 1))
         if not sensor.startswith("planet_"):
             even = even * self._weights(len(even))
         values = even.sum(axis=1)
