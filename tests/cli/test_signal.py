@@ -50,19 +50,26 @@ def test_figures_are_in_si_and_the_report_is_self_contained(
     file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arguments = (file, "--channel", "acc", "--tacho", "pulses", "--teeth", "16/24", "--out",
-                 tmp_path / "r")  # fmt: skip
+                 tmp_path / "r", "--earlier", file)  # fmt: skip
     facts = run_json(capsys, *arguments)
     assert facts["unit"] == "m/s^2"
     assert facts["mesh_harmonic_1_amplitude"] == pytest.approx(2.0, rel=0.01)
     assert facts["speed"] == pytest.approx(SPEED, rel=1e-4)
     assert facts["average_revolutions_mate"] in (39, 40)
     assert facts["notes"] == []
+    assert facts["na4_star"] == pytest.approx(facts["na4"])  # as strong as the earlier record
     assert all(np.isscalar(value) for key, value in facts.items() if key != "notes")
     assert {each.name for each in (tmp_path / "r").iterdir()} == {"report.html", "study.nc"}
     page = (tmp_path / "r" / "report.html").read_text("utf-8")
     assert "acc of rig.csv" in page
     assert "Mean revolution of the mate, 24 teeth" in page
-    for figure in ("distance of the mate", "over a turn of the shaft", "Cepstrum", "Kurtogram"):
+    for figure in (
+        "distance of the mate",
+        "over a turn of the shaft",
+        "Cepstrum",
+        "Kurtogram",
+        "Cyclic c",
+    ):
         assert figure in page
     assert 'src="http' not in page
     assert call(["signal", *map(str, arguments)]) == 2

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from typing import Any
 
@@ -11,22 +11,32 @@ import numpy as np
 from tribodyn.checks import require_whole
 from tribodyn.errors import (
     Argument,
-    ComputationError,
     InputError,
     Problem,
     require_between,
     require_positive,
 )
+from tribodyn.measurement.impacts import impact_figures, impacts_of
+from tribodyn.measurement.mean_revolutions import (
+    MATE,
+    SHAFT,
+    average_figures,
+    compare_with_earlier,
+    left_out,
+    mean_revolutions,
+)
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, in_si
 from tribodyn.measurement.shaft_speed import ShaftSpeed, shaft_speed
 from tribodyn.record import Parts, Record, fact, quantity, record
-from tribodyn.signals.condition_indicators import ConditionIndicators, condition_indicators
+from tribodyn.signals.condition_indicators import ConditionIndicators
+from tribodyn.signals.cyclic_coherence import CyclicCoherence
 from tribodyn.signals.envelope import envelope, envelope_spectrum
 from tribodyn.signals.gear_indicators import kurtosis
+from tribodyn.signals.kurtogram import Kurtogram
 from tribodyn.signals.order_map import OrderMap
 from tribodyn.signals.spectrum import SignalSpectrum, distinct_peaks, spectrum
-from tribodyn.signals.synchronous_average import SynchronousAverage, time_synchronous_average
+from tribodyn.signals.synchronous_average import SynchronousAverage
 from tribodyn.types import Array
 
 #: Peaks of a spectrum and mesh harmonics among the figures.
@@ -35,14 +45,10 @@ _PEAKS, _HARMONICS = 5, 5
 _ORDERS, _RESOLVED = 100.0, 0.95
 #: Revolutions of a block of the order map.
 _BLOCK = 8.0
-#: Share of the highest speed below which the shaft turns too slowly for a mean revolution.
-_SLOW = 0.1
 #: Lines of a spectrum over which a smeared one reads clearly low.
 _SMEARED = 8.0
 #: Lines of an order spectrum, half an order over the revolutions apart, in half the main lobe.
 _LOBE = 12
-#: Names of the shafts: that of the tachometer and of --speed, and the one of its mate.
-SHAFT, MATE = "shaft", "mate"
 
 
 @record
@@ -81,6 +87,10 @@ class SignalAnalysis(Record):
         Mean revolution of each shaft whose teeth are known.
     indicators : mapping of str to ConditionIndicators
         Condition indicators of each mean revolution.
+    kurtogram : Kurtogram, optional
+        Kurtosis of frequency bands, where the record is long enough.
+    coherence : CyclicCoherence, optional
+        Modulations up to 8.5 orders of the shaft at a constant speed, without the mesh.
     notes : tuple of Problem
         What could not be computed, why, and what is needed for it.
     """
@@ -101,6 +111,8 @@ class SignalAnalysis(Record):
     averages: Mapping[str, SynchronousAverage] = field(default_factory=dict)
     indicators: Mapping[str, ConditionIndicators] = field(default_factory=dict)
     notes: tuple[Problem, ...] = ()
+    kurtogram: Kurtogram | None = None
+    coherence: CyclicCoherence | None = None
 
     @property
     def mesh_frequency(self) -> float | None:
@@ -144,8 +156,9 @@ class SignalAnalysis(Record):
         numbers |= _peak_figures("envelope", self.envelope_spectrum)
         if self.speed is not None:
             numbers |= self._speed_figures(self.speed)
+        numbers |= impact_figures(self.kurtogram, self.coherence)
         for shaft, average in self.averages.items():
-            numbers |= _average_figures(
+            numbers |= average_figures(
                 average, self.indicators.get(shaft), "" if shaft == SHAFT else f"_{shaft}"
             )
         return numbers
@@ -229,33 +242,6 @@ def _peak_figures(name: str, lines: SignalSpectrum) -> dict[str, float]:
     return numbers
 
 
-def _average_figures(
-    average: SynchronousAverage, indicators: ConditionIndicators | None, ending: str
-) -> dict[str, float]:
-    numbers = {
-        "average_revolutions": float(average.revolutions),
-        "average_peak_to_peak": float(np.ptp(average.signal)),
-        "average_standard_error": float(np.sqrt(np.mean(average.scatter**2))),
-        "residual_rms": float(np.std(average.residual())),
-        "difference_rms": float(np.std(average.difference())),
-    }
-    if indicators is not None:
-        numbers |= {
-            "average_crest_factor": indicators.crest_factor,
-            "average_kurtosis": indicators.kurtosis,
-            "fm0": indicators.fm0,
-            "fm4": indicators.fm4,
-            "m6a": indicators.m6a,
-            "m8a": indicators.m8a,
-            "na4": indicators.na4,
-            "nb4": indicators.nb4,
-            "energy_ratio": indicators.energy_ratio,
-            "sideband_index": indicators.sideband_index,
-            "sideband_level_factor": indicators.sideband_level_factor,
-        }
-    return {f"{name}{ending}": value for name, value in numbers.items()}
-
-
 def analyse_signal(
     recording: Recording,
     channel: str,
@@ -268,6 +254,7 @@ def analyse_signal(
     band: tuple[float, float] | None = None,
     max_order: float | None = None,
     line: float | None = None,
+    earlier: Sequence[Recording] = (),
 ) -> SignalAnalysis:
     """Analyse one channel of a recording as far as speed and teeth of the shaft are known.
 
@@ -296,6 +283,8 @@ def analyse_signal(
         Frequency of the mesh, or of another line, instead of the speed [Hz]: it is followed by its
         phase, and orders are relative to it; with teeth it is the order of the teeth. In cycles per
         sample for a recording without a rate, read with ``sample_rate=1``.
+    earlier : sequence of Recording
+        Earlier recordings of the same channel in their order, with which NA4, NA4* and NB4 compare.
 
     Returns
     -------
@@ -341,9 +330,13 @@ def analyse_signal(
     parts: dict[str, Any] = {}
     if shaft is not None:
         parts |= _orders(values, rate, unit, shaft, (max_order, teeth), notes)
-        parts |= _averages(values, recording.time, unit, shaft, shafts, notes)
+        parts |= mean_revolutions(values, recording.time, unit, shaft, shafts, notes)
+        options = (tacho, pulses_per_revolution, speed, gears)
+        compare_with_earlier(parts, [(each, channel) for each in earlier], options, shafts)
         if band is None and teeth and "orders" in parts:
             band = _mesh_band(parts["orders"], teeth, shaft, rate)
+    mesh = shaft.mean * teeth / (2.0 * np.pi) if shaft is not None and teeth else None
+    parts |= impacts_of(values, rate, shaft, mesh)
     return SignalAnalysis(
         channel,
         unit,
@@ -408,7 +401,7 @@ def _orders(
     except InputError as error:
         if any("max_order" in str(each.where) for each in error.problems):
             raise
-        notes += [_left_out("no orders", each) for each in error.problems]
+        notes += [left_out("no orders", each) for each in error.problems]
         return {}
     if teeth and max_order < teeth:
         what = f"orders end at {max_order:.4g}, below the mesh at {teeth}"
@@ -428,65 +421,3 @@ def _mesh_band(
     low = (strongest - 0.5) * teeth * shaft.lowest / (2.0 * np.pi)
     high = (strongest + 0.5) * teeth * shaft.highest / (2.0 * np.pi)
     return (float(low), float(min(high, 0.49 * rate)))
-
-
-def _left_out(part: str, problem: Problem) -> Problem:
-    """The reason why a part of the analysis is missing."""
-    reason = f"{problem.what[:1].upper()}{problem.what[1:]}. {problem.why}".rstrip(". ")
-    return Problem(part, "", reason, problem.remedy)
-
-
-def _averages(
-    values: Array,
-    time: Array,
-    unit: str,
-    shaft: ShaftSpeed,
-    teeth: Mapping[str, int],
-    notes: list[Problem],
-) -> dict[str, Any]:
-    """Mean revolution and condition indicators of each shaft whose teeth are known."""
-    if SHAFT not in teeth:
-        what = "no mean revolution, no gear indicators (FM0, FM4, NA4 and others)"
-        why = "They need the number of teeth of the gear on the shaft"
-        remedy = "Give it (--teeth 29, with its mate --teeth 29/67, or --case CASE)"
-        notes.append(Problem(what, "", why, remedy))
-        return {}
-    turning = _turning(shaft.angle)
-    if turning.stop - turning.start < shaft.angle.size:
-        start, end = time[turning][[0, -1]]
-        what = f"the mean revolution is that from {start:.4g} to {end:.4g} s"
-        why = "Before or after it the shaft is at rest, or turns at less than a tenth of its speed"
-        notes.append(Problem(what, "", why, ""))
-    step = float(np.diff(shaft.angle[turning]).max())
-    averages, indicators = {}, {}
-    for name, count in teeth.items():
-        ratio = teeth[SHAFT] / count
-        resolved = int((0.9 * np.pi / (ratio * step) - 2.0) / count)
-        part = "mean revolution" if name == SHAFT else f"mean revolution of the {name}"
-        if resolved < 1:
-            why = f"The mesh at order {count} is above what the sampling resolves"
-            notes.append(Problem(f"no {part}", "", why, "Sample faster, or run slower"))
-            continue
-        try:
-            averages[name] = time_synchronous_average(
-                values[turning],
-                time[turning],
-                teeth=count,
-                rotation=ratio * shaft.angle[turning],
-                mesh_harmonics=min(resolved, _HARMONICS),
-                unit=unit,
-            )
-            indicators[name] = condition_indicators(averages[name])
-        except (InputError, ComputationError) as error:
-            part = f"no {part}" if name not in averages else f"no indicators of the {part}"
-            notes += [_left_out(part, each) for each in error.problems]
-    return {"averages": averages, "indicators": indicators}
-
-
-def _turning(angle: Array) -> slice:
-    """Longest stretch of samples in which the shaft turns, and not too slowly."""
-    steps = np.diff(angle)
-    still = np.flatnonzero(steps <= _SLOW * steps.max())
-    ends = np.concatenate(([-1], still, [angle.size - 1]))
-    longest = int(np.argmax(np.diff(ends)))
-    return slice(int(ends[longest]) + 1, int(ends[longest + 1]) + 1)

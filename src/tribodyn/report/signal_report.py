@@ -14,14 +14,14 @@ import numpy as np
 from tribodyn import plot
 from tribodyn.drawing import report_of
 from tribodyn.errors import ComputationError, InputError
+from tribodyn.measurement.mean_revolutions import MATE, SHAFT
 from tribodyn.measurement.modulating_shaft import explain_modulation, modulating_shaft
 from tribodyn.measurement.sideband_cursors import sideband_cursors
-from tribodyn.measurement.signal_analysis import MATE, SHAFT
 from tribodyn.plot.signals.analysed import visible_frequency
 from tribodyn.plot.theme.labels import readable, significant
 from tribodyn.report.study import write_study_report
 from tribodyn.report.study_report_data import Picture, StudyReportData
-from tribodyn.signals import cepstrum, kurtogram, narrowband_demodulation
+from tribodyn.signals import cepstrum, narrowband_demodulation
 
 if TYPE_CHECKING:
     from tribodyn.drawing import Drawing
@@ -59,10 +59,20 @@ _AVERAGE = {
     "m6a": ("M6A", "", "sixth moment of the difference: 15 or less for sound teeth"),
     "m8a": ("M8A", "", "eighth moment of the difference: 105 or less for sound teeth"),
     "na4": ("NA4", "", "fourth moment of the residual: 3 or less for sound teeth"),
+    "na4_star": ("NA4*", "", "the same over the variance before damage began"),
     "nb4": ("NB4", "", "fourth moment of the envelope of the strongest mesh harmonic"),
     "energy_ratio": ("energy ratio", "", "rms of the difference over that of the regular mesh"),
     "sideband_index": ("sideband index", "unit", "mean of the first sidebands of the mesh"),
     "sideband_level_factor": ("sideband level factor", "", "their sum over the rms"),
+}
+_IMPACTS = {
+    "kurtogram_centre": ("Kurtogram, centre", "Hz", "of the band with the most impulsive content"),
+    "kurtogram_bandwidth": ("Kurtogram, bandwidth", "Hz", "of that band"),
+    "kurtogram_kurtosis": ("Kurtogram, kurtosis", "", "0 for noise, more for impacts"),
+    "kurtogram_limit": ("Kurtogram, limit", "", "kurtosis that noise alone does not exceed"),
+    "coherence_frequency": ("Cyclic coherence, rate", "Hz", "strongest modulation, mesh removed"),
+    "coherence": ("Cyclic coherence", "", "mean over the carriers in that band, or over all"),
+    "coherence_of_noise": ("Cyclic coherence, noise", "", "of noise alone"),
 }
 _SMEARED = (
     " The speed varies: shaft-synchronous lines are smeared in this figure and too "
@@ -205,6 +215,7 @@ def _rows(analysis: SignalAnalysis, numbers: dict[str, float]) -> list[list[str]
                 row(f"Speed, {end}", value, "rpm", "mean over a revolution")
                 for end, value in zip(("lowest", "highest"), ends, strict=True)
             ]
+    rows += [row(n, numbers[k], u, m) for k, (n, u, m) in _IMPACTS.items() if k in numbers]
     rows += _order_rows(numbers, unit)
     for shaft in analysis.averages:
         ending = "" if shaft == SHAFT else f"_{shaft}"
@@ -291,6 +302,10 @@ def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
     return [*pictures, *_diagnosis(analysis)]
 
 
+def _itself(result: Any) -> Any:
+    return result
+
+
 def _diagnosis(analysis: SignalAnalysis) -> list[Picture]:
     """Figures of diagnosis that the recording is long enough for."""
     teeth, orders = analysis.teeth.get(SHAFT), analysis.orders
@@ -302,8 +317,13 @@ def _diagnosis(analysis: SignalAnalysis) -> list[Picture]:
     for name, average in analysis.averages.items():
         demodulated = partial(narrowband_demodulation, average)
         parts.append((plot.narrowband_demodulation, f" over a turn of the {name}", demodulated))
-    for figure, method in ((plot.cepstrum, cepstrum), (plot.kurtogram, kurtogram)):
-        parts.append((figure, "", partial(method, analysis.signal, analysis.sample_rate)))
+    parts.append((plot.cepstrum, "", partial(cepstrum, analysis.signal, analysis.sample_rate)))
+    for figure, result in (
+        (plot.kurtogram, analysis.kurtogram),
+        (plot.cyclic_coherence, analysis.coherence),
+    ):
+        if result is not None:
+            parts.append((figure, "", partial(_itself, result)))
     pictures = []
     for figure, of, compute in parts:
         with suppress(InputError, ComputationError):  # too short, or too few lines

@@ -17,6 +17,7 @@ and the methods of diagnosis can be imported from this page too.
 | ``order_map`` | how strong each multiple of the rotation is over the speed |
 | ``run_up_orders`` | orders and levels of a run-up, and the natural modes of its peaks |
 | ``spectrum`` | how strong each frequency is |
+| ``locked_variance`` | variance of NA4* up to the record at which damage begins |
 | ``synchronous_average`` | what repeats with the rotation |
 """
 
@@ -39,6 +40,7 @@ from tribodyn.signals.gear_indicators import (
     sideband_level_factor,
 )
 from tribodyn.signals.kurtogram import Kurtogram, kurtogram
+from tribodyn.signals.locked_variance import locked_variance
 from tribodyn.signals.synchronous_average import SynchronousAverage, time_synchronous_average
 
 __all__ = [
@@ -57,6 +59,7 @@ __all__ = [
     "kurtogram",
     "kurtosis",
     "lifter",
+    "locked_variance",
     "m6a",
     "m8a",
     "na4",

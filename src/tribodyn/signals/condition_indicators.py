@@ -16,6 +16,7 @@ from tribodyn.signals.gear_indicators import (
     m8a,
     mesh_sum,
     na4,
+    na4_star,
     nb4,
     sideband_index,
     sideband_level_factor,
@@ -41,6 +42,8 @@ class ConditionIndicators:
     na4 : float
         Fourth moment of the residual over the square of the mean second moment of the residuals
         of this and all earlier records [-].
+    na4_star : float
+        The same with the mean of the records before damage began, where there are earlier ones [-].
     m6a, m8a : float
         Sixth and eighth standardized moment of the difference signal [-]; 15 and 105 for noise.
     nb4 : float
@@ -64,6 +67,7 @@ class ConditionIndicators:
     energy_ratio: float = float("nan")
     sideband_index: float = float("nan")
     sideband_level_factor: float = float("nan")
+    na4_star: float = float("nan")
 
     def __repr__(self) -> str:
         """One line."""
@@ -87,7 +91,7 @@ def condition_indicators(
     average : SynchronousAverage
         Of the present record.
     earlier : sequence of SynchronousAverage
-        Of all earlier records of the same gear, for NA4 and NB4.
+        Of all earlier records of the same gear in their order, for NA4, NA4* and NB4.
     mesh_harmonics : int
         Harmonics in the sum of FM0.
 
@@ -122,4 +126,5 @@ def condition_indicators(
         energy_ratio=energy_ratio(average),
         sideband_index=sideband_index(average),
         sideband_level_factor=sideband_level_factor(average),
+        na4_star=na4_star(average, earlier=earlier) if earlier else float("nan"),
     )

@@ -10,6 +10,7 @@ import numpy as np
 from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.signals.demodulation import mesh_band
+from tribodyn.signals.locked_variance import locked_variance
 from tribodyn.signals.synchronous_average import SynchronousAverage
 from tribodyn.types import Array
 
@@ -264,7 +265,12 @@ def na4(average: SynchronousAverage, *, earlier: Sequence[SynchronousAverage] = 
     return _over_variance(residual, variances)
 
 
-def na4_star(average: SynchronousAverage, healthy: Sequence[SynchronousAverage]) -> float:
+def na4_star(
+    average: SynchronousAverage,
+    healthy: Sequence[SynchronousAverage] = (),
+    *,
+    earlier: Sequence[SynchronousAverage] = (),
+) -> float:
     """NA4*: fourth moment of the residual over the squared variance of the gear in good condition.
 
     Parameters
@@ -273,6 +279,9 @@ def na4_star(average: SynchronousAverage, healthy: Sequence[SynchronousAverage])
         Mean revolution of the present record.
     healthy : sequence of SynchronousAverage
         Of records of the same gear in good condition.
+    earlier : sequence of SynchronousAverage
+        Instead of them all earlier records in their order; the variance is that of the records
+        before damage begins, as :func:`locked_variance` finds it.
 
     Returns
     -------
@@ -283,15 +292,14 @@ def na4_star(average: SynchronousAverage, healthy: Sequence[SynchronousAverage])
     Raises
     ------
     InputError
-        If there is no record in good condition.
+        If there are neither records in good condition nor earlier ones, or both.
     ComputationError
         If the residual signal is zero.
 
     Notes
     -----
     H. J. Decker, R. F. Handschuh and J. J. Zakrajsek, An enhancement to the NA4 gear vibration
-    diagnostic parameter, NASA TM-106553, 1994. Which records are in good condition is stated by
-    the user.
+    diagnostic parameter, NASA TM-106553, 1994.
 
     Examples
     --------
@@ -302,11 +310,15 @@ def na4_star(average: SynchronousAverage, healthy: Sequence[SynchronousAverage])
     >>> round(na4_star(worn, [sound]), 9)
     121.5
     """
-    if not healthy:
-        what, why = "healthy is empty", "NA4* compares with the gear in good condition"
-        raise InputError(what, Argument("healthy"), why, "Pass at least one of its averages")
-    variances = [float(np.var(_checked(each, each.residual()))) for each in healthy]
-    return _over_variance(_checked(average, average.residual()), variances)
+    if bool(healthy) == bool(earlier):
+        what = "healthy and earlier are both " + ("given" if healthy else "empty")
+        why = "NA4* compares with the gear in good condition"
+        raise InputError(what, Argument("healthy"), why, "Pass at least one average in one of them")
+    residual = _checked(average, average.residual())
+    variances = [float(np.var(_checked(e, e.residual()))) for e in healthy or earlier]
+    if earlier:
+        variances = [locked_variance([*variances, float(np.var(residual))])[0]]
+    return _over_variance(residual, variances)
 
 
 def nb4(

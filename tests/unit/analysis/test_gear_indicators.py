@@ -12,6 +12,7 @@ from tribodyn.signals import (
     energy_ratio,
     fm0,
     fm4,
+    locked_variance,
     m6a,
     m8a,
     na4,
@@ -77,6 +78,17 @@ def test_running_variance_and_that_of_the_sound_gear():
     assert na4_star(records[2], records[:2]) == pytest.approx(1.5 * 81.0 / 2.5**2)
     with pytest.raises(InputError, match="good condition"):
         na4_star(records[2], [])
+    # records of squares 1.0, 1.1, 1.2, 4 and 9: the mean is locked before the fourth
+    damaged = [
+        average(np.cos(TEETH * ANGLE) + np.sqrt(v) * np.cos(30 * ANGLE))
+        for v in (1.0, 1.1, 1.2, 4.0, 9.0)
+    ]
+    assert na4_star(damaged[4], earlier=damaged[:4]) == pytest.approx(1.5 * 81.0 / 1.1**2)
+    assert na4(damaged[4], earlier=damaged[:4]) == pytest.approx(1.5 * 81.0 / 3.26**2)
+    assert condition_indicators(damaged[4], earlier=damaged[:4]).na4_star > 100.0
+    # L = 1.1 + 3.09 * 0.1 / sqrt(3) = 1.278
+    assert locked_variance([1.0, 1.1, 1.2, 1.27]) == (pytest.approx(1.1425), 4)
+    assert locked_variance([1.0, 1.1, 1.2, 1.29]) == (pytest.approx(1.1), 3)
 
 
 def test_envelope_moment_is_that_of_the_load():

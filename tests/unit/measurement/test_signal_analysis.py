@@ -236,6 +236,26 @@ def test_wrong_input_is_refused(arguments: dict[str, Any], message: str) -> None
         analyse_signal(run, **{"channel": "acc", **arguments})
 
 
+def test_impacts_between_the_teeth_are_reported_with_band_and_rate() -> None:
+    rng, rate, seconds = np.random.default_rng(4), 12_800.0, 2.0
+    time = np.arange(round(seconds * rate)) / rate
+    ringing = np.exp(-900.0 * time[:200]) * np.sin(2 * np.pi * 4200.0 * time[:200])
+    wave = 4.0 * np.cos(2 * np.pi * 400.0 * time) + rng.normal(0.0, 0.4, time.size)
+    for strike in np.arange(0.01, 1.95, 1.0 / 71.0):  # 3.55 turns of the shaft, which slip
+        first = round((strike + rng.normal(0.0, 1e-4)) * rate)
+        wave[first : first + 200] += 4.0 * ringing
+    run = Recording({"acc": wave}, rate, {"acc": "m/s^2"})
+    numbers = analyse_signal(run, "acc", speed=2 * np.pi * 20.0, teeth=20).figures()
+    assert abs(numbers["kurtogram_centre"] - 4200.0) < numbers["kurtogram_bandwidth"]
+    assert numbers["kurtogram_kurtosis"] > numbers["kurtogram_limit"] > 0.0
+    assert numbers["coherence_frequency"] == pytest.approx(71.0, abs=0.6)
+    assert numbers["coherence"] > 5.0 * numbers["coherence_of_noise"]
+    still = Recording({"acc": 2.0 * rng.normal(0.0, 1.0, time.size)}, rate, {"acc": "m/s^2"})
+    quiet = analyse_signal(still, "acc").figures()
+    assert quiet["kurtogram_kurtosis"] < quiet["kurtogram_limit"]
+    assert "coherence" not in quiet  # its rates are searched by the turns of the shaft
+
+
 @pytest.mark.slow
 def test_result_has_export_plot_and_report(tmp_path: Any) -> None:
     _, angle = shaft(20.0)
@@ -270,6 +290,7 @@ def test_result_has_export_plot_and_report(tmp_path: Any) -> None:
         "Demodulated mesh harmonic over a turn of the mate",
         "Cepstrum",
         "Kurtogram",
+        "Cyclic coherence",
     ]
     assert all(np.isfinite(value) for value in analysis.figures().values())
     assert {len(row) for row in answer.rows} == {4}

@@ -28,6 +28,7 @@ _OPTIONS = {
     "speed": "--speed",
     "line": "--line",
     "mesh_frequency": "--line",
+    "earlier": "--earlier",
 }
 _PER_SAMPLE = Problem(
     "seconds and hertz are samples and cycles per sample",
@@ -105,6 +106,13 @@ class Channel:
         ),
     ] = None
     max_order: Annotated[float | None, _help("Highest order of the shaft.")] = None
+    earlier: Annotated[
+        Text,
+        _help(
+            'Earlier recordings of the same channel in their order, "may.mat,june.mat": NA4, NA4* '
+            "and NB4 compare with them."
+        ),
+    ] = None
 
 
 File = Annotated[Path, _help("Recording: CSV, MAT, WAV, UFF 58, TDMS, HDF5 or netCDF.")]
@@ -317,6 +325,9 @@ def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft)
         what = f'--tacho {turning.tacho} and --speed "{turning.speed}" are both given'
         raise InputError(what, "", "The tachometer measures the speed", "Keep one of them")
     band = None if options.band is None else _ends("--band", options.band)
+    files = [text.strip() for text in (options.earlier or "").split(",") if text.strip()]
+    uncut = replace(options, between=None)
+    earlier = [_recording(Path(text), uncut, turning.line) for text in files]
     try:
         return analyse_signal(
             recording,
@@ -329,6 +340,7 @@ def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft)
             band=band,
             max_order=options.max_order,
             line=_line(turning.line, recording.sample_rate),
+            earlier=earlier,
         )
     except TribodynError as error:
         raise type(error)([_by_option(each) for each in error.problems]) from None
