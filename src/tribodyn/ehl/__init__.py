@@ -66,7 +66,11 @@ from tribodyn.ehl.traction.shear_models import (
     ree_eyring_shear_stress,
 )
 from tribodyn.ehl.traction.traction import Traction, film_traction
-from tribodyn.ehl.transient.transient import TransientLineContact, solve_transient_line_contact
+from tribodyn.ehl.transient.solution import (
+    ThermalTransientLineContact,
+    TransientLineContact,
+)
+from tribodyn.ehl.transient.transient import solve_transient_line_contact
 from tribodyn.ehl.transient.waviness import (
     AmplitudeReduction,
     amplitude_reduction,
@@ -94,6 +98,7 @@ __all__ = [
     "RoughnessProfile",
     "ThermalLineContactSolution",
     "ThermalModel",
+    "ThermalTransientLineContact",
     "Traction",
     "TransientLineContact",
     "amplitude_reduction",

@@ -10,7 +10,7 @@ from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.area_contact import area_friction, finite_line_contact, point_contact
 from tribodyn.plot.film.dynamics import film_response, film_transient
-from tribodyn.plot.film.film_temperature import film_temperature
+from tribodyn.plot.film.film_temperature import film_temperature, film_temperature_over_time
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
 from tribodyn.plot.film.lubrication import film_over_operation, lubrication, lubrication_map
 from tribodyn.plot.film.mixed_contact import mixed_line_contact
@@ -134,6 +134,7 @@ __all__ = [
     "film_response",
     "film_stiffness",
     "film_temperature",
+    "film_temperature_over_time",
     "film_transient",
     "finite_line_contact",
     "flank_modification",

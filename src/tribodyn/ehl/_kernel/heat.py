@@ -11,7 +11,14 @@ import numpy as np
 from tribodyn.compiled import announced, source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.ehl._kernel.elementary import JIT
-from tribodyn.ehl._kernel.heated_shear import LEAN, Across, Along, Sheared, shear_column
+from tribodyn.ehl._kernel.heated_shear import (
+    LEAN,
+    LEAST_DENSITY,
+    Across,
+    Along,
+    Sheared,
+    shear_column,
+)
 from tribodyn.ehl._kernel.reynolds import PLAIN, oil_state
 from tribodyn.types import Array
 
@@ -31,6 +38,51 @@ def _exchange(flux: float, conduction: float, capacity: float) -> tuple[float, f
     part = max(0.0, 1.0 - 0.1 * abs(carried) / conduction)
     spread = conduction * part**5
     return spread + max(-carried, 0.0), spread + max(carried, 0.0)
+
+
+class Stations(NamedTuple):
+    """Columns of the film, the first at the inlet."""
+
+    width: Array
+    pressure: Array  #: over that of Hertz
+    slope: Array  #: of the pressure
+    film: Array
+    base: Array  #: temperature of both surfaces without the heat of this instant
+    response: tuple[Array, Array]  #: rise of both surfaces at each by the heat at each
+
+
+class Storage(NamedTuple):
+    """Mass and heat that the film stores; of a steady film all zero but the inflow and the flux."""
+
+    now: float  #: weight of the mass of this instant in its rate [1/s]
+    inflow: float  #: at the first column, over the density at the inlet
+    mass: Array  #: weighted masses of the two instants before (2, columns, nodes) [kg/(m s)]
+    temperature: Array  #: at these instants
+    rate: Array  #: of the pressure at each column [Pa/s]
+    flux: Array  #: mass flux through the face behind each column, over the density at the inlet
+    heat: Array  #: heat that the film stores [W/m]
+
+
+@nb.njit(**LEAN)
+def _mass(
+    i: int, j: int, last: int, s: Stations, density: float, o: Sheared, temperature: float
+) -> float:
+    """Mass of a cell."""
+    ratio = max(density - o.fall * (temperature - o.temperature), LEAST_DENSITY)
+    weight = 0.5 if j == 0 or j == last else 1.0
+    return weight * s.film[i] * s.width[i] / last * ratio * o.density
+
+
+@nb.njit(**LEAN)
+def _through(k: int, s: Stations, rho: Array, o: Sheared, T: Array, st: Storage) -> None:
+    """Fluxes between the columns from what these store."""
+    through, last = st.inflow, T.shape[1] - 1
+    for i in range(k + 1):
+        if st.now > 0.0:
+            for j in range(last + 1):
+                m = _mass(i, j, last, s, rho[i], o, T[i, j])
+                through -= (st.now * m - st.mass[0, i, j] - st.mass[1, i, j]) / o.density
+        st.flux[i] = through
 
 
 class Column(NamedTuple):
@@ -112,11 +164,12 @@ def _answers(i: int, h: float, follows: float, a: Across, c: Column) -> bool:
 
 @nb.njit(**LEAN)
 def _balance_column(
-    i: int, k: int, dx: float, h: float, slope: float, west: Array, east: Array,
-    rises: tuple[float, float], selfs: tuple[float, float], exact: bool, o: Sheared, a: Across,
-    b: Along, c: Column,
+    i: int, k: int, s: Stations, density: float, west: Array, east: Array,
+    rises: tuple[float, float], selfs: tuple[float, float], exact: bool, o: Sheared, st: Storage,
+    a: Across, b: Along, c: Column,
 ) -> float:  # fmt: skip
     """Equations of a column, for Newton's method if exact; size of what is missing."""
+    h, dx, slope = s.film[i], s.width[i], s.slope[i]
     last, T, unit = west.size - 1, a.temperature[i], h * dx / (west.size - 1)
     conduction, climb, even, missing = o.conductivity * dx * last / h, 0.0, 0.0, 0.0
     stress, rate, steep, falling = a.stress[i], a.rate[i], a.steep[i], a.falling[i]
@@ -127,7 +180,7 @@ def _balance_column(
         even += c.answer[j]
     for j in range(last + 1):
         volume, heating = unit * (0.5 if j == 0 or j == last else 1.0), stress[j] * rate[j]
-        squeeze = a.expansion[i, j] * a.velocity[i, j] * slope * volume
+        squeeze = a.expansion[i, j] * (a.velocity[i, j] * slope + st.rate[i]) * volume
         easing = heating * falling[j] * volume
         shared[j] = (rate[j] + stress[j] * steep[j]) * volume if sheared else 0.0
         c.steeper[j] = shared[j] * h * (j / last - 0.5)
@@ -140,8 +193,17 @@ def _balance_column(
         rhs[j] = heating * volume + squeeze * T[j]
         rhs[j] += into * (before[j] - T[j])
         rhs[j] += back * ((behind[j] if i < k else o.temperature) - T[j])
+    if st.now > 0.0:
+        for j in range(last + 1):
+            for n in range(2):
+                stored = st.mass[n, i, j] * o.capacity
+                middle[j] += stored
+                rhs[j] += stored * (st.temperature[n, i, j] - T[j])
     for j in range(last):
         climb -= east[j] - west[j]
+        if st.now > 0.0:
+            mass = st.now * _mass(i, j, last, s, density, o, T[j])
+            climb -= mass - st.mass[0, i, j] - st.mass[1, i, j]
         above, below = _exchange(climb, conduction, o.capacity)
         middle[j] += above
         middle[j + 1] += below
@@ -166,43 +228,43 @@ def _conducted(i: int, k: int, response: Array, heat: Array) -> float:
 
 
 @nb.njit(**LEAN)
-def _faces(i: int, k: int, mass: Array, west: Array, east: Array) -> None:
+def _faces(
+    i: int, k: int, density: float, mass: Array, st: Storage, west: Array, east: Array
+) -> None:
     """Mass flux through both faces of a column."""
-    for j in range(west.size):
+    last, entering, leaving = west.size - 1, 0.0, 0.0
+    for j in range(last + 1):
         west[j] = 0.5 * (mass[i - 1, j] + mass[i, j])
         east[j] = 0.5 * (mass[i, j] + mass[i + 1, j]) if i < k else mass[i, j]
-
-
-class Stations(NamedTuple):
-    """Columns of the film, the first at the inlet."""
-
-    width: Array
-    pressure: Array  #: over that of Hertz
-    slope: Array  #: of the pressure
-    film: Array
-    response: tuple[Array, Array]  #: rise of both surfaces at each by the heat at each
+        entering += west[j]
+        leaving += east[j]
+    if st.now > 0.0:
+        entering = (st.flux[i - 1] * density - entering) / last
+        leaving = (st.flux[i] * density - leaving) / last
+        for j in range(last + 1):
+            weight = 0.5 if j == 0 or j == last else 1.0
+            west[j] += weight * entering
+            east[j] += weight * leaving
 
 
 @nb.njit(**LEAN)
 def _relax(
     i: int, k: int, again: bool, s: Stations, rises: tuple[float, float],
-    selfs: tuple[float, float], log_viscosity: float, density: float, flux: float, o: Sheared,
+    selfs: tuple[float, float], log_viscosity: float, density: float, o: Sheared, st: Storage,
     a: Across, b: Along, c: Column, work: Array, west: Array, east: Array,
 ) -> float:  # fmt: skip
     """Solve one column by Newton's method with shorter steps where it misses; first change."""
-    last, T, h, dx, first = west.size - 1, a.temperature, s.film[i], s.width[i], 0.0
+    last, T, h, first = west.size - 1, a.temperature, s.film[i], 0.0
     pressure, before, part, largest = s.pressure[i], np.inf, 1.0, 0.0
-    exact = True
+    exact, flux = True, 0.5 * (st.flux[i - 1] + st.flux[i])
     for local in range(_LOCAL):
         if local > 0 or again:
             shear_column(
                 i, h, s.slope[i], pressure * o.hertz, log_viscosity, density, flux, o, a, b,
                 work,
             )  # fmt: skip
-            _faces(i, k, a.mass, west, east)
-        missing = _balance_column(
-            i, k, dx, h, s.slope[i], west, east, rises, selfs, exact, o, a, b, c
-        )
+            _faces(i, k, o.density, a.mass, st, west, east)
+        missing = _balance_column(i, k, s, density, west, east, rises, selfs, exact, o, st, a, b, c)
         if not missing < before and part > _SHORTEST:
             # Back to a shorter step; one without stress and gradient where none helps.
             part *= 0.5
@@ -211,7 +273,7 @@ def _relax(
             continue
         if not missing < before and exact:
             exact = False
-            _balance_column(i, k, dx, h, s.slope[i], west, east, rises, selfs, False, o, a, b, c)
+            _balance_column(i, k, s, density, west, east, rises, selfs, False, o, st, a, b, c)
             missing = np.inf
         largest = _solve_column(last, c)
         part, before = (1.0 if largest <= _CAP else _CAP / largest), missing
@@ -229,15 +291,15 @@ def _relax(
 
 
 @nb.njit(**LEAN)
-def _rises(i: int, k: int, s: Stations, o: Sheared, heat: Array) -> tuple[float, float]:
+def _rises(i: int, k: int, s: Stations, heat: Array) -> tuple[float, float]:
     """Temperatures of both surfaces at a column that takes up no heat itself."""
-    first = o.surface_1 + _conducted(i, k, s.response[0], heat[0])
-    return first, o.surface_2 + _conducted(i, k, s.response[1], heat[1])
+    first = s.base[0, i] + _conducted(i, k, s.response[0], heat[0])
+    return first, s.base[1, i] + _conducted(i, k, s.response[1], heat[1])
 
 
 @nb.njit(**LEAN)
 def _sweep(
-    k: int, s: Stations, o: Sheared, flux: float, a: Across, b: Along, c: Column, lneta: Array,
+    k: int, s: Stations, o: Sheared, st: Storage, a: Across, b: Along, c: Column, lneta: Array,
     rho: Array, earlier: Array, rows: Array,
 ) -> float:  # fmt: skip
     """Solve the columns downstream, then upstream those into which oil flows back."""
@@ -248,7 +310,7 @@ def _sweep(
             earlier[i, j] = T[i, j]
     for step in range(2 * k):
         i = step + 1 if step < k else 2 * k - step
-        _faces(i, k, a.mass, west, east)
+        _faces(i, k, o.density, a.mass, st, west, east)
         backwards = False
         for j in range(last + 1):
             backwards = backwards or east[j] < 0.0
@@ -257,10 +319,10 @@ def _sweep(
                 T[0, j] = o.temperature if west[j] > 0.0 else T[1, j]
         if step >= k and both_ahead and not backwards:
             continue
-        rises = _rises(i, k, s, o, b.heat)
+        rises = _rises(i, k, s, b.heat)
         selfs = (s.response[0][i, i], s.response[1][i, i])
         moved = _relax(
-            i, k, step >= k, s, rises, selfs, lneta[i], rho[i], flux, o, a, b, c, rows[:3], west,
+            i, k, step >= k, s, rises, selfs, lneta[i], rho[i], o, st, a, b, c, rows[:3], west,
             east,
         )  # fmt: skip
         largest = max(largest, moved)
@@ -275,29 +337,32 @@ def _sweep(
 
 @nb.njit(**LEAN)
 def _heat(
-    k: int, s: Stations, o: Sheared, flux: float, a: Across, b: Along, c: Column, lneta: Array,
+    k: int, s: Stations, o: Sheared, st: Storage, a: Across, b: Along, c: Column, lneta: Array,
     rho: Array, sweeps: int, earlier: Array, rows: Array, balance: Array,
 ) -> float:  # fmt: skip
     """Sweeps over the columns, and the state that they lead to; change in the last sweep."""
     T, west, east = a.temperature, rows[3], rows[4]
     count, last, largest = lneta.size, rows.shape[1] - 1, 0.0
     for sweep in range(sweeps + 1):
+        _through(k, s, rho, o, T, st)
         for i in range(k + 1):
-            pressure = s.pressure[i] * o.hertz
+            pressure, flux = s.pressure[i] * o.hertz, st.inflow
+            if i > 0:
+                flux = 0.5 * (st.flux[i - 1] + st.flux[i])
             shear_column(
                 i, s.film[i], s.slope[i], pressure, lneta[i], rho[i], flux, o, a, b, rows[:3]
             )
         if sweep < sweeps:
-            largest = _sweep(k, s, o, flux, a, b, c, lneta, rho, earlier, rows)
+            largest = _sweep(k, s, o, st, a, b, c, lneta, rho, earlier, rows)
     for term in range(balance.size):
         balance[term] = 0.0
     for i in range(1, k + 1):
-        _faces(i, k, a.mass, west, east)
-        _count(i, k, s.width[i], s.film[i], s.slope[i], west, east, o, a, b, balance)
+        _faces(i, k, o.density, a.mass, st, west, east)
+        _count(i, k, s, rho[i], west, east, o, st, a, b, balance)
     for i in range(count):
         if i <= k and i > 0:
             continue
-        first, second = _rises(i, k, s, o, b.heat)
+        first, second = _rises(i, k, s, b.heat)
         for j in range(last + 1):
             if i > k or j == 0 or j == last:
                 T[i, j] = first + (second - first) * j / last
@@ -311,7 +376,7 @@ def _heat(
 def _build(digest: str) -> Any:
     @cached_njit(**JIT)
     def heat_film(
-        k: int, oil: Array, s: Stations, o: Sheared, flux: float, a: Across, b: Along,
+        k: int, oil: Array, s: Stations, o: Sheared, st: Storage, a: Across, b: Along,
         sweeps: int, balance: Array,
     ) -> float:  # fmt: skip
         """Temperatures up to column k, and the balance of heat; change in the last sweep."""
@@ -321,22 +386,29 @@ def _build(digest: str) -> Any:
         oil_state(count - 1, s.pressure, oil[:PLAIN], lneta, dlneta, rho, drho)
         rows, earlier = np.empty((14, across)), np.empty((count, across))
         c = Column(rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8])
-        return _heat(k, s, o, flux, a, b, c, lneta, rho, sweeps, earlier, rows[9:], balance)
+        return _heat(k, s, o, st, a, b, c, lneta, rho, sweeps, earlier, rows[9:], balance)
 
     return heat_film
 
 
 @nb.njit(**LEAN)
 def _count(
-    i: int, k: int, dx: float, h: float, slope: float, west: Array, east: Array, o: Sheared,
+    i: int, k: int, s: Stations, density: float, west: Array, east: Array, o: Sheared, st: Storage,
     a: Across, b: Along, balance: Array,
 ) -> None:  # fmt: skip
     """Add the heat of a column to the balance."""
-    last, T = west.size - 1, a.temperature
+    last, T, dx, h, slope = west.size - 1, a.temperature, s.width[i], s.film[i], s.slope[i]
+    if i == 1:
+        st.heat[0] = 0.0
     for j in range(last + 1):
         volume = h * dx / last * (0.5 if j == 0 or j == last else 1.0)
         balance[0] += a.stress[i, j] * a.rate[i, j] * volume
-        balance[1] += a.expansion[i, j] * a.velocity[i, j] * slope * T[i, j] * volume
+        pressing = a.velocity[i, j] * slope + st.rate[i]
+        balance[1] += a.expansion[i, j] * pressing * T[i, j] * volume
+        stored = st.now * _mass(i, j, last, s, density, o, T[i, j]) * (T[i, j] - o.temperature)
+        for n in range(2):
+            stored -= st.mass[n, i, j] * (st.temperature[n, i, j] - o.temperature)
+        st.heat[0] += o.capacity * stored
         if i == 1:
             balance[4] -= west[j] * o.capacity * (T[0, j] - o.temperature)
         if i == k:

@@ -32,7 +32,9 @@ _DRIVEN, _NEGLIGIBLE, _BOUNDED = 0.2, 1e-6, 12
 #: Flow by pressure over all flow that is lost in rounding.
 _ROUNDING = 1e-6
 #: Factors on density and flow beyond which the film is nonsense.
-_LEAST_FLOW, _LEAST_DENSITY = 1e-3, 0.3
+_LEAST_FLOW, LEAST_DENSITY = 1e-3, 0.3
+#: Greatest factor by which the flow is scaled.
+_SCALED = 10.0
 #: Change of a rate over it after which stresses and rates follow in proportion.
 _STEADY = 1e-6
 #: Range of Carreau's law in exponents, on both sides, and intervals of its table for each.
@@ -53,8 +55,6 @@ class Sheared(NamedTuple):
     conductivity: float
     capacity: float  #: heat per mass and kelvin
     hertz: float  #: unit of the pressure
-    surface_1: float  #: temperature far before the contact
-    surface_2: float
     model: int
     eyring: float  #: Eyring's stress
     carreau: float  #: Carreau's stress
@@ -307,10 +307,10 @@ def shear_column(
     # While pressure and temperatures are not settled, the gradient that the mass flux needs
     # counts where it drives much of it, and elsewhere no more than could be needed: else heat
     # and flow would run away. Both are roots of a flow that rises with the gradient.
-    missing = idle - flux
-    b.driven[i] = abs(missing) / flux
+    missing, size = idle - flux, max(abs(flux), _LEAST_FLOW * abs(idle))
+    b.driven[i] = abs(missing) / size
     part = min(max(b.driven[i] / _DRIVEN - 0.5, 0.0), 1.0)
-    most, needed, better, b.follows[i] = _EXCESS * abs(missing) + _SPARE * flux, 0.0, slope, 1.0
+    most, needed, better, b.follows[i] = _EXCESS * abs(missing) + _SPARE * size, 0.0, slope, 1.0
     total, at = idle, 0.0
     if part > 0.0:
         needed = _gradient(i, h, limit, idle, missing, o, a, b, work)
@@ -328,7 +328,7 @@ def shear_column(
         total, slips = _flow(i, h, b.slope[i], limit, o, a, b, work)
     # Flow by pressure is what the flow without a gradient has more, in the limit that it grows by.
     secant = b.growth[i]
-    if abs(idle - total) > _ROUNDING * flux and (idle > total) == (b.slope[i] > 0.0):
+    if abs(idle - total) > _ROUNDING * size and (idle > total) == (b.slope[i] > 0.0):
         secant = (idle - total) / b.slope[i]
     moved = total + secant * b.slope[i]
     b.factors[1, i] = max(moved / (density * h * 0.5 * (o.speed_1 + o.speed_2)), _LEAST_FLOW)
@@ -337,19 +337,25 @@ def shear_column(
     unit = 12.0 * o.viscosity * exp_(log_viscosity) / (density * h * h * h * exact)
     b.factors[0, i] = np.log(b.factors[1, i] / max(unit * secant, _LEAST_FLOW))
     b.share[i] = min(secant / b.growth[i], 1.0)
-    _carry(i, h, flux / total * o.density, slips, o, a, work)
+    _carry(i, h, flux, total, slips, o, a, work)
 
 
 @nb.njit(**LEAN)
-def _carry(i: int, h: float, scale: float, slips: bool, o: Sheared, a: Across, work: Array) -> None:
-    """Velocity and mass flux of a column that is sheared; the same flow everywhere."""
-    last, u = work.shape[1] - 1, o.speed_1
+def _carry(
+    i: int, h: float, flux: float, total: float, slips: bool, o: Sheared, a: Across, work: Array
+) -> None:
+    """Velocity and mass flux of a column that is sheared, with the flow that the film has."""
+    last, u, scale, added = work.shape[1] - 1, o.speed_1, flux / total, 0.0
+    if not 1.0 / _SCALED < scale < _SCALED:
+        # A film that is squeezed may have none.
+        scale, added = 1.0, (flux - total) / last * o.density
+    scale *= o.density
     half = 0.5 * h / last
     for j in range(last + 1):
         if j > 0:
             u += half * (a.rate[i, j - 1] + a.rate[i, j])
         a.velocity[i, j] = u
-        a.mass[i, j] = scale * work[1, j] * u
+        a.mass[i, j] = scale * work[1, j] * u + (0.5 if j == 0 or j == last else 1.0) * added
         if slips:
             # A film that yields makes the same heat at any temperature.
             a.falling[i, j] = 0.0
@@ -407,7 +413,7 @@ def _fill_oil(
             falling[j] = o.thinning
             fluidity[j] = exp_(o.thinning * (T[j] - o.temperature) - log_viscosity - cold)
     for j in range(last + 1):
-        ratio = max(density - o.fall * (T[j] - o.temperature), _LEAST_DENSITY)
+        ratio = max(density - o.fall * (T[j] - o.temperature), LEAST_DENSITY)
         expansion[j] = o.fall / ratio
         mass[j] = ratio * dz
         mean += fluidity[j]

@@ -268,7 +268,8 @@ def _keep(
 @nb.njit(inline="always", **INNER)
 def _follow(
     contact: TransientContact, setting: _Setting, time: Array, table: Array, halvings: int,
-    every: int, P: Array, H: Array, state: Instant, records: Array, pressures: Array, films: Array,
+    every: int, past: Array, P: Array, H: Array, state: Instant, records: Array, pressures: Array,
+    films: Array,
 ) -> tuple[int, int, Instant]:  # fmt: skip
     """Follow a contact over time, from the state of the first instant."""
     n, start, dx, oil = contact.n, contact.start, contact.dx, contact.oil
@@ -300,6 +301,8 @@ def _follow(
                 squeeze, expected, expected_load = dx / width, film, load
                 for i in range(n + 1):
                     history[i] = squeeze * before[i]
+                if past.size > 0:
+                    squeeze, history[:] = past[0], past[1:]
             else:
                 r = width / last
                 squeeze = dx / width * (1.0 + 2.0 * r) / (1.0 + r)
@@ -341,18 +344,20 @@ def _build(digest: str) -> Any:
     @cached_njit(**JIT)
     def follow_contact(
         contact: TransientContact, ratio: float, time: Array, table: Array, halvings: int,
-        every: int, P: Array, H: Array, state: Instant, records: Array, pressures: Array,
-        films: Array, flag: Index,
+        every: int, past: Array, P: Array, H: Array, state: Instant, records: Array,
+        pressures: Array, films: Array, flag: Index,
     ) -> tuple[int, int, Instant]:  # fmt: skip
         """Follow a contact over time or, without any, carry a steady one to other inputs."""
+        # A single step may have its squeeze term imposed: `past` is its factor and its history.
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         setting = _setting(contact, flag)
         if time.size == 0:
             status, final_state = _carry(contact, setting, ratio, table, P, H, state)
             return status, nb.int64(0), final_state
         return _follow(
-            contact, setting, time, table, halvings, every, P, H, state, records, pressures, films
-        )
+            contact, setting, time, table, halvings, every, past, P, H, state, records, pressures,
+            films,
+        )  # fmt: skip
 
     return follow_contact
 

@@ -20,7 +20,7 @@ from tribodyn.ehl.steady.grid_error import GridError, grid_error
 from tribodyn.ehl.steady.rough_flow import solve_rough
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
 from tribodyn.ehl.thermal.thermal_contact import HeatedFilm, solve_heated
-from tribodyn.ehl.thermal.thermal_model import ThermalModel
+from tribodyn.ehl.thermal.thermal_model import ThermalModel, read_thermal
 from tribodyn.ehl.thermal.thermal_solution import with_heat
 from tribodyn.errors import InputError, real_numbers, require_between, warn
 from tribodyn.interrupt import aside
@@ -55,11 +55,7 @@ class SolverOptions:
     @property
     def heat(self) -> ThermalModel | None:
         """How the film is heated; None where it is not."""
-        model = ThermalModel() if self.thermal is True else self.thermal or None
-        if model is not None and not isinstance(model, ThermalModel):
-            what = f"thermal is of the type {type(model).__name__}"
-            remedy = "Give True, or ThermalModel(shear_model, ...)"
-            raise InputError(what, "argument thermal", "It says how the film is heated", remedy)
+        model = read_thermal(self.thermal)
         if model is not None and self.flow_factors is not None:
             what, why = "thermal and flow_factors", "the heat between rough surfaces is not solved"
             raise InputError(what, "argument flow_factors", why, "Leave one of them out")

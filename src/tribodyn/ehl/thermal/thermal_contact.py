@@ -19,6 +19,8 @@ from tribodyn.ehl.thermal.thermal_model import MODELS, ThermalModel
 from tribodyn.errors import ComputationError, require_between
 from tribodyn.types import Array, Index
 
+#: Greatest sliding over the entrainment speed.
+MOST_SLIDING = 20.0
 #: Sweeps over the temperatures before the first film, and before each other one.
 _FIRST, _OTHER = 2, 1
 #: Distance of the columns in half widths, where it grows, and by which factor.
@@ -26,13 +28,13 @@ _FINE, _NEAR, _SPARSE = 0.025, -1.5, 4
 #: Passes whose differences predict the next factors.
 _MEMORY = 8
 #: Change of the factors that does not move the film, and traction over the load that is none.
-_NO_CHANGE, _IDLE = 1e-5, 1e-6
+NO_CHANGE, IDLE = 1e-5, 1e-6
 _EVEN = 0.5
 #: Part of a change of the factors for which the film could not be solved; part of the heat that may
 #: be missing, and how often it is sought.
-_PART, _MISSING, _BALANCING = 0.25, 5e-4, 15
+PART, _MISSING, _BALANCING = 0.25, 5e-4, 15
 #: Part of a change of the factors that the tolerance allows.
-_OF_FACTORS = 0.02
+OF_FACTORS = 0.02
 #: How strongly short waves of the factors are damped.
 _SHORT = 0.06
 #: Weight of nodes that pressure drives no oil through.
@@ -52,12 +54,13 @@ class HeatedFilm:
     traction: float  #: [N/m], of the sign of the sliding
 
 
-class _Temperatures:
+class Temperatures:
     """Temperatures of one contact, which go on from one film to the next."""
 
     def __init__(
         self, case: ContactCase, grid: DiscreteContact, model: ThermalModel, sliding: float
     ) -> None:
+        from tribodyn.ehl._kernel.heat import Storage
         from tribodyn.ehl._kernel.heated_shear import Across, Along, Sheared, carreau_table
 
         lubricant = case.lubricant
@@ -71,17 +74,17 @@ class _Temperatures:
             speeds[0], speeds[1], lubricant.dynamic_viscosity, lubricant.density, oil.expansion,
             oil.temperature, oil.temperature_viscosity_coefficient,
             case.scales.viscosity_law == "roelands", oil.thermal_conductivity,
-            oil.specific_heat, case.hertz_pressure, far[0], far[1], MODELS[model.shear_model],
+            oil.specific_heat, case.hertz_pressure, MODELS[model.shear_model],
             *_stresses(model), carreau_table(*_stresses(model)[2:4]),
         )  # fmt: skip
-        self.at, edges = _columns(grid, case)
-        self.width, columns = np.diff(edges) * self.step, self.at.size
+        self.at, self.edges = _columns(grid, case)
+        self.width, columns = np.diff(self.edges) * self.step, self.at.size
         responses = []
         for speed, body in zip(speeds, model.bodies, strict=True):
             least = slowest_speed(body.diffusivity, case.equivalent_radius)
             moving = math.copysign(max(abs(speed), least), speed)
             conduction = body.thermal_conductivity, body.diffusivity
-            responses.append(surface_response(self.at, edges, self.step, moving, *conduction))
+            responses.append(surface_response(self.at, self.edges, self.step, moving, *conduction))
         self.responses = responses[0], responses[1]
         fields = np.zeros((8, columns, across))
         self.across = Across(np.full((columns, across), oil.temperature), *fields)
@@ -89,20 +92,30 @@ class _Temperatures:
         unsettled, zero = np.full(columns, math.inf), np.zeros((2, columns))
         self.along = Along._make([zeros[:2], zeros[2], zeros[3:], *ones, unsettled, *zero])
         self.balance = np.zeros(5)
+        self.base = np.repeat(np.array(far)[:, None], columns, axis=1)
+        fields, rates = np.zeros((4, columns, across)), np.zeros((2, columns))
+        self.storage = Storage(0.0, 0.0, fields[:2], fields[2:], rates[0], rates[1], np.zeros(1))
+
+    def inflow(self, grid: DiscreteContact) -> float:
+        """Flux at the first column, over ``b^2/R`` and the entrainment speed."""
+        return float(np.mean(fluxes(grid, grid.H)[: grid.free + 1]))
 
     def solve(self, grid: DiscreteContact, sweeps: int) -> float:
         """Improve the temperatures of a film; greatest change of the last sweep [K]."""
         from tribodyn.ehl._kernel.heat import Stations, heat_film
 
-        film = grid.H[self.at] * self.case.half_width**2 / self.case.equivalent_radius
-        flow = float(np.mean(fluxes(grid, grid.H)[: grid.free + 1])) * self.case.entrainment_speed
-        slope = np.gradient(grid.P, self.step)[self.at] * self.case.hertz_pressure
-        stations = Stations(self.width, grid.P[self.at], slope, film, self.responses)
+        unit = self.case.half_width**2 / self.case.equivalent_radius
+        flow = self.inflow(grid) * self.case.entrainment_speed * unit
+        slope, film = np.gradient(grid.P, self.step)[self.at] * self.case.hertz_pressure, grid.H
+        stations = Stations(
+            self.width, grid.P[self.at], slope, film[self.at] * unit, self.base, self.responses
+        )
+        self.storage = self.storage._replace(inflow=flow)
         last = int(np.searchsorted(self.at, grid.free, side="right")) - 1
         return float(
             heat_film(
-                last, grid.oil, stations, self.oil, flow * film[0] / grid.H[self.at[0]],
-                self.across, self.along, sweeps, self.balance,
+                last, grid.oil, stations, self.oil, self.storage, self.across, self.along, sweeps,
+                self.balance,
             )
         )  # fmt: skip
 
@@ -124,10 +137,20 @@ class _Temperatures:
     def balance_heat(self, grid: DiscreteContact) -> None:
         """Improve the temperatures of a settled film until the heat made is that led away."""
         for _ in range(_BALANCING):
-            shear, compression, first, second, carried = self.balance.tolist()
-            if abs(shear + compression - first - second - carried) <= _MISSING * shear:
+            if abs(self.missing) <= _MISSING * self.most_heat:
                 break
             self.solve(grid, 4)
+
+    @property
+    def missing(self) -> float:
+        """Heat made that is neither led away nor stored [W/m]."""
+        signs = np.array([1.0, 1.0, -1.0, -1.0, -1.0])
+        return float(signs @ self.balance - self.storage.heat[0])
+
+    @property
+    def most_heat(self) -> float:
+        """Heat made by shear, which alone makes the heat of a steady film [W/m]."""
+        return float(self.balance[0])
 
     @property
     def traction(self) -> float:
@@ -168,7 +191,7 @@ def _stresses(model: ThermalModel) -> tuple[float, float, float, float, float, f
     )
 
 
-class _Prediction:
+class Prediction:
     """Next factors from the last passes, by extrapolation of their changes."""
 
     def __init__(self) -> None:
@@ -197,35 +220,35 @@ def solve_heated(
     sliding_speed: float,
 ) -> tuple[Verified, HeatedFilm]:
     """Heat a contact that is solved at one temperature."""
-    most = 20.0 * case.entrainment_speed
+    most = MOST_SLIDING * case.entrainment_speed
     require_between("sliding_speed", sliding_speed, -most, most, "m/s")
     grid = cold.outcome.grid
     assert grid is not None  # a verified outcome has a grid
-    temperatures = _Temperatures(case, grid, model, sliding_speed)
+    temperatures = Temperatures(case, grid, model, sliding_speed)
     problem = replace(
         problem, nodes=grid.n + 1, film_tolerance=0.0, profile=_profile(problem, grid)
     )
     solved, point = cold, np.zeros((2, grid.n + 1))
-    prediction, traction, film = _Prediction(), math.inf, math.inf
+    prediction, traction, film = Prediction(), math.inf, math.inf
     for passes in range(1, model.passes + 1):
         moved = temperatures.solve(grid, _FIRST if passes == 1 else _OTHER)
         factors, share, weight = temperatures.factors(grid.n + 1)
         change = factors - point
         drag = abs(temperatures.traction - traction) / max(
-            abs(traction), _IDLE * case.load_per_width
+            abs(traction), IDLE * case.load_per_width
         )
         traction = temperatures.traction
         flow = float(np.max(np.abs(change * share * weight)))
-        settled = flow < _NO_CHANGE or max(film, drag, _OF_FACTORS * flow) < model.tolerance
+        settled = flow < NO_CHANGE or max(film, drag, OF_FACTORS * flow) < model.tolerance
         if settled:
             temperatures.balance_heat(grid)
             return _scaled(solved, cold, grid), temperatures.film(grid.n + 1, passes)
-        change = _smooth(change * share, grid)
+        change = smooth(change * share, grid)
         last, point = point, prediction.next(point, change, weight)
         solved, point = _toward(replace(problem, start=grid), cold.method, last, point)
         before, grid = grid, solved.outcome.grid
         assert grid is not None
-        film = float(np.max(np.abs(_films(grid) / _films(before) - 1.0)))
+        film = float(np.max(np.abs(films_of(grid) / films_of(before) - 1.0)))
     raise _not_settled(case, model, sliding_speed, (film, drag, moved))
 
 
@@ -238,12 +261,12 @@ def _toward(
         try:
             return solve_problem(replace(problem, oil=oil), method), point
         except ComputationError:
-            if np.max(np.abs(point - last)) < _NO_CHANGE:
+            if np.max(np.abs(point - last)) < NO_CHANGE:
                 raise
-        point = last + _PART * (point - last)
+        point = last + PART * (point - last)
 
 
-def _films(grid: DiscreteContact) -> Array:
+def films_of(grid: DiscreteContact) -> Array:
     """Central and least film."""
     least = float(np.min(grid.H[: grid.free + 1]))
     return np.array([float(np.interp(0.0, grid.X, grid.H)), least])
@@ -258,7 +281,7 @@ def _scaled(solved: Verified, cold: Verified, grid: DiscreteContact) -> Verified
     return replace(solved, outcome=replace(solved.outcome, films=scaled))
 
 
-def _smooth(change: Array, grid: DiscreteContact) -> Array:
+def smooth(change: Array, grid: DiscreteContact) -> Array:
     """Damp short waves of a change (2, nodes)."""
     # The pressure follows a wave of the film in proportion to its wave number and to the film, and
     # the temperature follows the pressure.

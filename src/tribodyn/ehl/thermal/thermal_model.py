@@ -174,3 +174,13 @@ class ThermalModel:
             capacity,
             DENSITY_FALL / density if compressible else 0.0,
         )
+
+
+def read_thermal(thermal: object) -> ThermalModel | None:
+    """The argument ``thermal`` of a solver, checked; None for a film at one temperature."""
+    model = ThermalModel() if thermal is True else thermal or None
+    if model is not None and not isinstance(model, ThermalModel):
+        what = f"thermal is of the type {type(model).__name__}"
+        remedy = "Give True, or ThermalModel(shear_model, ...)"
+        raise InputError(what, "argument thermal", "It says how the film is heated", remedy)
+    return model

@@ -15,6 +15,8 @@ from tribodyn.ehl.formulas.dimensionless_groups import Groups, survey_film
 from tribodyn.ehl.roughness import RoughnessProfile, warn_if_unresolved
 from tribodyn.ehl.steady.contact_case import ContactScales, contact_scales, moes_numbers
 from tribodyn.ehl.steady.line_contact import solve_line_contact
+from tribodyn.ehl.thermal.thermal_contact import MOST_SLIDING
+from tribodyn.ehl.thermal.thermal_model import ThermalModel
 from tribodyn.errors import ComputationError, InputError, require_one_of, require_positive
 from tribodyn.interrupt import stoppable
 from tribodyn.lubricant import Lubricant
@@ -35,6 +37,7 @@ class TransientInputs:
     radius: Array  #: reduced radius of curvature [m]
     entrainment_speed: Array  #: HALF the sum of the surface speeds [m/s]
     approach: Array | None  #: imposed approach [m]
+    surface_speeds: Array  #: of the two surfaces [m/s]
     travel: Array  #: distances that the two surfaces have travelled [m]
     profiles: tuple[RoughnessProfile | None, RoughnessProfile | None]
 
@@ -60,8 +63,10 @@ def read_inputs(
     _require_speed(speed)
     _require_impose(impose, approach)
     approach_series = None if approach is None else _series("approach", approach, t)
-    travel = _travel(t, speed, surface_speeds, roughness)
-    return TransientInputs(t, load, radius, speed, approach_series, travel, roughness)
+    speeds = _surface_speeds(t, speed, surface_speeds, roughness)
+    steps = 0.5 * (speeds[:, 1:] + speeds[:, :-1]) * np.diff(t)
+    travel = np.concatenate((np.zeros((2, 1)), np.cumsum(steps, axis=1)), axis=1)
+    return TransientInputs(t, load, radius, speed, approach_series, speeds, travel, roughness)
 
 
 def _time(time: ArrayLike) -> Array:
@@ -115,20 +120,20 @@ def _require_impose(impose: str, approach: Series | None) -> None:
         )
 
 
-def _travel(
+def _surface_speeds(
     t: Array,
     speed: Array,
     surface_speeds: tuple[Series, Series] | None,
     roughness: tuple[RoughnessProfile | None, RoughnessProfile | None],
 ) -> Array:
-    """Distances that the surfaces have travelled, by the trapezoidal rule."""
+    """Speeds of both surfaces, those of rolling without any."""
     if surface_speeds is None:
         if any(profile is not None for profile in roughness):
             what = "a roughness profile without surface speeds"
             why = "each surface carries its roughness at its own speed"
             remedy = "Give (u_1, u_2); both are entrainment_speed in pure rolling"
             raise InputError(what, "argument surface_speeds", why, remedy)
-        return np.zeros((2, t.size))
+        return np.stack([speed, speed])
     speeds = np.array([_series("surface_speeds", item, t) for item in surface_speeds])
     mean = 0.5 * (speeds[0] + speeds[1])
     mismatch = np.abs(mean - speed)
@@ -141,8 +146,7 @@ def _travel(
             why="the entrainment speed is HALF the sum of the surface speeds",
             remedy="Give (u1 + u2)/2",
         )
-    steps = 0.5 * (speeds[:, 1:] + speeds[:, :-1]) * np.diff(t)
-    return np.concatenate((np.zeros((2, 1)), np.cumsum(steps, axis=1)), axis=1)
+    return speeds
 
 
 @dataclass(frozen=True)
@@ -247,6 +251,7 @@ class MovingContact:
     compressible: bool  #: whether the density rises with pressure
     length: float  #: distance at which the deflection is zero [m]
     tolerance: float  #: relative change of the pressure, and flux error, at convergence
+    thermal: ThermalModel | None = None  #: how the film is heated
 
     @property
     def dx(self) -> float:
@@ -330,6 +335,22 @@ class MovingContact:
             Profiles(heights[0], heights[1], ends),
             Limits(self.tolerance, self.tolerance, 40, 1e-3, 0.3),
         )
+
+    def require_rolling(self) -> None:
+        """Refuse a heated film that is not carried along."""
+        first, second = self.inputs.surface_speeds
+        speed = self.inputs.entrainment_speed
+        bad = np.flatnonzero(np.abs(first - second) > MOST_SLIDING * speed)
+        bad = bad if bad.size else np.flatnonzero(speed == 0.0)
+        if bad.size:
+            i = int(bad[0])
+            raise InputError(
+                f"surface speeds {first[i]:.6g} and {second[i]:.6g} m/s at instant {i}",
+                where="arguments thermal and surface_speeds",
+                why=f"a heated film slides at most {MOST_SLIDING:g} times as fast as it is "
+                "entrained: without rolling it stores all its heat",
+                remedy="Leave these instants out, or solve the film without thermal",
+            )
 
     def check_roughness(self) -> None:
         """Warn of waves that the grid does not resolve."""
@@ -418,14 +439,18 @@ class MovingContact:
         none, ends = np.zeros((0, 0)), np.stack((first, row))
         status, _, state.instant = stoppable(
             follow_contact, self.kernel_contact(imposed, depth), _RATIO, np.zeros(0), ends, 0, 0,
-            state.P, state.H, state.instant, none, none, none,
+            np.zeros(0), state.P, state.H, state.instant, none, none, none,
         )  # fmt: skip
         if status != 0:
-            inputs = self.inputs
-            raise ComputationError(
-                f"The steady state of the first instant, t = {inputs.time[0]:.6g} s, was "
-                f"not found: {REASONS[status]}",
-                why=f"load {inputs.load[0]:.6g} N/m, radius {inputs.radius[0]:.6g} m, "
-                f"entrainment speed {inputs.entrainment_speed[0]:.6g} m/s",
-                remedy="Begin with a moderate load and without roughness, or take more nodes",
-            )
+            raise self.start_failure(REASONS[status])
+
+    def start_failure(self, reason: str) -> ComputationError:
+        """Error of a steady state of the first instant that was not reached."""
+        inputs = self.inputs
+        return ComputationError(
+            f"The steady state of the first instant, t = {inputs.time[0]:.6g} s, was "
+            f"not found: {reason}",
+            why=f"load {inputs.load[0]:.6g} N/m, radius {inputs.radius[0]:.6g} m, "
+            f"entrainment speed {inputs.entrainment_speed[0]:.6g} m/s",
+            remedy="Begin with a moderate load and without roughness, or take more nodes",
+        )

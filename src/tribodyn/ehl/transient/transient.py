@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.aliases import with_old_names
 from tribodyn.ehl.roughness import RoughnessProfile
+from tribodyn.ehl.thermal.thermal_model import ThermalModel, read_thermal
+from tribodyn.ehl.transient.heated_steps import follow_heated
 from tribodyn.ehl.transient.moving_contact import (
     REASONS,
     MovingContact,
@@ -18,6 +18,11 @@ from tribodyn.ehl.transient.moving_contact import (
     flooded_domain,
     read_inputs,
     reference_scale,
+)
+from tribodyn.ehl.transient.solution import (
+    TransientLineContact,
+    solution_over_time,
+    with_heat_over_time,
 )
 from tribodyn.errors import (
     ComputationError,
@@ -28,100 +33,6 @@ from tribodyn.errors import (
 )
 from tribodyn.interrupt import stoppable
 from tribodyn.lubricant import Lubricant
-from tribodyn.record import Labels, Record, fact, quantity, record
-from tribodyn.types import Array, Index
-
-
-@with_old_names
-@record
-class TransientLineContact(Record):
-    """Film and load of a lubricated line contact over time, isothermal.
-
-    Parameters
-    ----------
-    time : (m,) array [s]
-        Instants.
-    central_film, minimum_film : (m,) array [m]
-        Film on the line of centres, and least film between inlet and outlet.
-    load_per_width : (m,) array [N/m]
-        Integral of the pressure; the imposed load, or the answer to the imposed approach.
-    approach : (m,) array [m]
-        Approach of the bodies since their undeformed flanks touched, where the deflection
-        is counted from ``reference_length``; the imposed one, or the answer to the load.
-    maximum_pressure : (m,) array [Pa]
-        Highest pressure.
-    outlet : (m,) array [m]
-        Last position with pressure.
-    equivalent_radius, entrainment_speed : (m,) array [m], [m/s]
-        Reduced radius of curvature, and HALF the sum of the surface speeds.
-    position : (n,) array [m]
-        Nodes of the grid: distance from the line of centres in the direction of rolling.
-    stored_instants : (k,) array of int
-        Instants whose pressure and film are stored.
-    pressure, film : (k, n) array [Pa], [m]
-        Pressure and film at these instants.
-    iterations, parts : (m,) array of int
-        Newton steps of each time step, and parts that it was divided into; one unless it failed as
-        a whole.
-    balance_error : (m,) array [1]
-        Sum of the mass balances over the mean flux.
-    ruptured : (m,) array [m]
-        Width of the cavities inside the film, before the outlet. A fast unloading tears it.
-    half_width, hertz_pressure : float [m], [Pa]
-        Half width of the widest dry contact, the unit of the grid, and its Hertz pressure.
-    domain : (float, float) [b]
-        First and last position, b being ``half_width``.
-    reference_length : float [m]
-        Distance from the line of centres at which a half space has the deflection zero.
-    impose : str
-        ``"load"`` or ``"approach"``.
-    inlet : str
-        ``"flooded"`` or ``"zero"``.
-    """
-
-    DERIVED: ClassVar[Mapping[str, Labels]] = {
-        "stored_time": Labels(("kept_time",), "s", axis=True, name="kept_time")
-    }
-
-    time: Array = quantity("time", unit="s", axis=True)
-    central_film: Array = quantity("time", unit="m")
-    minimum_film: Array = quantity("time", unit="m")
-    load_per_width: Array = quantity("time", unit="N/m")
-    approach: Array = quantity("time", unit="m")
-    maximum_pressure: Array = quantity("time", unit="Pa")
-    outlet: Array = quantity("time", unit="m")
-    equivalent_radius: Array = quantity("time", unit="m")
-    entrainment_speed: Array = quantity("time", unit="m/s")
-    position: Array = quantity("position", unit="m", axis=True)
-    stored_instants: Index
-    pressure: Array = quantity("kept_time", "position", unit="Pa")
-    film: Array = quantity("kept_time", "position", unit="m")
-    iterations: Index = quantity("time", unit="1")
-    parts: Index = quantity("time", unit="1")
-    balance_error: Array = quantity("time", unit="1")
-    ruptured: Array = quantity("time", unit="m")
-    half_width: float = fact()
-    hertz_pressure: float = fact()
-    domain: tuple[float, float]
-    reference_length: float = fact()
-    impose: str = fact()
-    inlet: str = fact()
-
-    @property
-    def stored_time(self) -> Array:
-        """Instants whose pressure and film are stored [s]."""
-        return np.asarray(self.time[self.stored_instants])
-
-    def __repr__(self) -> str:
-        """One line with the main figures."""
-        low, high = float(self.minimum_film.min()), float(self.central_film.max())
-        return (
-            f"TransientLineContact({self.time.size - 1} steps over "
-            f"{(self.time[-1] - self.time[0]) * 1e3:.4g} ms, imposed {self.impose}, minimum film "
-            f"{low * 1e6:.4f} um, greatest central film {high * 1e6:.4f} um, "
-            f"{self.position.size} nodes)"
-        )
-
 
 #: Share of the load near the last node above which the grid is too short, and how often it is
 #: extended.
@@ -146,6 +57,7 @@ def solve_transient_line_contact(
     compressible: bool = True,
     roughness: tuple[RoughnessProfile | None, RoughnessProfile | None] = (None, None),
     surface_speeds: tuple[Series, Series] | None = None,
+    thermal: bool | ThermalModel = False,
     reference_length: float | None = None,
     tolerance: float = 1e-8,
     step_halvings: int = 6,
@@ -188,7 +100,11 @@ def solve_transient_line_contact(
     roughness : two of RoughnessProfile or None
         Heights of the two surfaces, carried along at their speeds.
     surface_speeds : two of float, array or callable, optional [m/s]
-        Speeds of the two surfaces; needed with roughness.
+        Speeds of the two surfaces; needed with roughness. A heated film rolls without them.
+    thermal : bool or ThermalModel
+        Whether temperatures, pressure and film are solved together at every instant, and how the
+        oil shears; see :func:`tribodyn.ehl.solve_line_contact`. The result is then a
+        :class:`ThermalTransientLineContact`.
     reference_length : float, optional [m]
         Distance from the line of centres at which a half space has the deflection zero; by
         default the greatest radius. It shifts the approach by a multiple of the load.
@@ -206,9 +122,11 @@ def solve_transient_line_contact(
     ComputationError
         If an instant does not converge; the message names it.
 
-    Valid for smooth or resolved rough surfaces, isothermal, Newtonian; the film must not touch.
-    Beyond the outlet the gap counts as full when the contact grows over it.
+    Valid for smooth or resolved rough surfaces, isothermal and Newtonian unless ``thermal``; the
+    film must not touch. Beyond the outlet the gap counts as full when the contact grows over it.
     Source: Reynolds equation; Venner and Lubrecht, Multilevel Methods in Lubrication (2000).
+    A heated surface moves as a half-space with all the heat that it took up, after Carslaw and
+    Jaeger, Conduction of Heat in Solids (1959), section 10.3.
 
     Examples
     --------
@@ -251,6 +169,7 @@ def solve_transient_line_contact(
         inputs=inputs, scale=scale, lubricant=lubricant, modulus=effective_modulus, nodes=nodes,
         domain=(float(extent[0]), float(extent[1])), inlet=inlet, law=viscosity_law,
         compressible=compressible, length=length, tolerance=tolerance,
+        thermal=read_thermal(thermal),
     )  # fmt: skip
     return _extended(contact, start, step_halvings, keep_every, domain == "auto")
 
@@ -297,24 +216,36 @@ def _follow(
 
     inputs = contact.inputs
     imposed = inputs.approach is None
+    if contact.thermal is not None:
+        contact.require_rolling()
     state = contact.steady() if start == "steady" else contact.unloaded()
     m, n = inputs.time.size, contact.nodes - 1
     records = np.zeros((m, RECORD))
     stored_instants = np.arange(0, m, keep_every) if keep_every > 0 else np.zeros(0, np.int64)
     pressures, films = np.zeros((2, stored_instants.size, n + 1))
+    if contact.thermal is not None:
+        heat = follow_heated(
+            contact, contact.thermal, state, step_halvings, stored_instants,
+            (records, pressures, films), steady=start == "steady",
+        )  # fmt: skip
+        if heat.failure:
+            raise _failure(contact, heat.failure, heat.instant, step_halvings)
+        result = solution_over_time(contact, records, stored_instants, pressures, films)
+        heated = with_heat_over_time(result, inputs.surface_speeds, heat, contact.thermal)
+        return heated, float(np.max(records[:, 10]))
     posed = contact.kernel_contact(imposed, 1.0 if imposed else contact.depth)
     status, instant, _ = stoppable(
         follow_contact, posed, 1.25, contact.time, contact.table(), step_halvings, keep_every,
-        state.P, state.H, state.instant, records, pressures, films,
+        np.zeros(0), state.P, state.H, state.instant, records, pressures, films,
     )  # fmt: skip
     if status != 0:
-        raise _failure(contact, status, instant, step_halvings)
-    result = _result(contact, records, stored_instants, pressures, films)
+        raise _failure(contact, REASONS[status], instant, step_halvings)
+    result = solution_over_time(contact, records, stored_instants, pressures, films)
     return result, float(np.max(records[:, 10]))
 
 
 def _failure(
-    contact: MovingContact, status: int, instant: int, step_halvings: int
+    contact: MovingContact, reason: str, instant: int, step_halvings: int
 ) -> ComputationError:
     inputs = contact.inputs
     operating_point = (
@@ -324,49 +255,11 @@ def _failure(
     )
     return ComputationError(
         f"The contact did not converge at instant {instant} of {inputs.time.size - 1}, "
-        f"t = {inputs.time[instant]:.6g} s: {REASONS[status]}",
+        f"t = {inputs.time[instant]:.6g} s: {reason}",
         where=f"{operating_point}, radius {inputs.radius[instant]:.6g} m, entrainment speed "
         f"{inputs.entrainment_speed[instant]:.6g} m/s",
         why=f"the step from t = {inputs.time[instant - 1]:.6g} s failed after it was halved "
         f"{step_halvings} times",
         remedy="Use more time steps, smoother inputs, or a longer ramp from and to 1 to 2 % "
         "of the load",
-    )
-
-
-def _result(
-    contact: MovingContact, records: Array, stored_instants: Index, pressures: Array, films: Array
-) -> TransientLineContact:
-    inputs, scale = contact.inputs, contact.scale
-    offset, total, load, central, minimum, free, steps, flux, parts, highest, _, cavities = (
-        records.T
-    )
-    X = np.linspace(*contact.domain, contact.nodes)
-    if inputs.approach is None:
-        # The kernel counts the deflection from the distance b.
-        offset = offset - total * np.log(contact.depth) / np.pi
-    return TransientLineContact(
-        time=inputs.time,
-        central_film=central * scale.film,
-        minimum_film=minimum * scale.film,
-        load_per_width=load * scale.pressure * scale.half_width,
-        approach=-offset * scale.film,
-        maximum_pressure=highest * scale.pressure,
-        outlet=X[free.astype(int)] * scale.half_width,
-        equivalent_radius=inputs.radius,
-        entrainment_speed=inputs.entrainment_speed,
-        position=X * scale.half_width,
-        stored_instants=stored_instants,
-        pressure=pressures * scale.pressure,
-        film=films * scale.film,
-        iterations=steps.astype(int),
-        parts=parts.astype(int),
-        balance_error=flux,
-        ruptured=cavities * contact.dx * scale.half_width,
-        half_width=scale.half_width,
-        hertz_pressure=scale.pressure,
-        domain=contact.domain,
-        reference_length=contact.length,
-        impose="load" if inputs.approach is None else "approach",
-        inlet=contact.inlet,
     )

@@ -224,8 +224,8 @@ def moving_film(
         Of the flank line, from the middle of the face; the nearest slice is followed. Whole pairs
         are the same everywhere.
     **options : Any
-        Further options of :func:`tribodyn.ehl.solve_transient_line_contact`, such as ``nodes``
-        and ``keep_every``.
+        Further options of :func:`tribodyn.ehl.solve_transient_line_contact`, such as ``nodes``,
+        ``keep_every`` and ``thermal``.
 
     Returns
     -------
@@ -273,7 +273,7 @@ def moving_film(
         lubricant,
         effective_modulus(material, material),
         roughness=roughness,
-        surface_speeds=None if roughness == _NO_ROUGHNESS else surfaces,
+        surface_speeds=surfaces,
         **options,
     )
 

@@ -1,4 +1,4 @@
-"""Temperatures of a heated line contact: in the film, along both surfaces and in the middle."""
+"""Temperatures of a heated line contact: in the film, along both surfaces, and over time."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.film.line_contact import contact_scales, window
-from tribodyn.plot.theme.labels import axis_label, display_unit
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import PAIR_COLORS, TOTAL, Trace, line
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, Trace, line
 from tribodyn.types import Array
 
 #: Levels of the height, and height over the central film up to which it is drawn.
@@ -86,4 +86,56 @@ def film_temperature(solution: Any) -> Any:
             Panel(axis_label("temperature", "Temperature"), curves),
         ],
         marks,
+    )
+
+
+@drawing(
+    "film_temperature_over_time",
+    heading="Temperature of the film over time",
+    caption="Film, highest temperature of the oil and of both surfaces, and friction of a contact "
+    "whose load, radius and speeds change.",
+    of="ThermalTransientLineContact",
+    made_by="Call tribodyn.ehl.solve_transient_line_contact with thermal=True and its plot method.",
+)
+def film_temperature_over_time(transient: Any) -> Any:
+    """Draw film, temperatures and friction of a heated line contact over time.
+
+    Parameters
+    ----------
+    transient : ThermalTransientLineContact
+        What :func:`tribodyn.ehl.solve_transient_line_contact` returns with ``thermal``.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    time, film = displayed("time", transient.time), "film_thickness"
+    rows = [
+        (transient.highest_film_temperature, "oil", TOTAL),
+        (transient.highest_surface_temperatures[0], "surface 1", PAIR_COLORS[0]),
+        (transient.highest_surface_temperatures[1], "surface 2", PAIR_COLORS[1]),
+    ]
+    hottest = int(np.argmax(rows[0][0]))
+    friction = line(time, transient.friction_coefficient, "friction", TOTAL, unit="1")
+    films = [
+        line(time, displayed(film, values), name, color, unit=display_unit(film))
+        for values, name, color in (
+            (transient.central_film, "film in the centre", PAIR_COLORS[2]),
+            (transient.minimum_film, "film at its thinnest", MUTED),
+        )
+    ]
+    thick = displayed(film, transient.central_film)
+    view = {"range": [0.0, float(min(1.05 * np.max(thick), 4.0 * np.median(thick)))]}
+    return stack(
+        f"The oil gets {rows[0][0][hottest] - _ZERO:.0f} {_UNIT} hot, after "
+        f"{rounded('time', float(transient.time[hottest]))}",
+        axis_label("time"),
+        [
+            Panel(axis_label(film, "Film"), films, view),
+            Panel(
+                axis_label("temperature", "Highest temperature"),
+                [line(time, t - _ZERO, name, color, unit=_UNIT) for t, name, color in rows],
+            ),
+            from_zero(axis_label("friction_coefficient", "Friction"), [friction], height=0.6),
+        ],
     )
