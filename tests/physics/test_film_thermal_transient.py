@@ -120,10 +120,10 @@ def test_heat_lags_the_sliding_in_proportion_to_its_rate():
 
 @pytest.mark.slow
 def test_second_order_in_time():
-    model = ThermalModel("ree-eyring", tolerance=3e-6, nodes_across=5, passes=200)
+    model = ThermalModel("ree-eyring", tolerance=1e-6, nodes_across=5, passes=200)
     period = 8.0 * TRANSIT
     series = []
-    for steps in (12, 24, 48):
+    for steps in (16, 32, 64):
         time = np.linspace(0.0, period, steps + 1)
         swing = np.sin(np.pi * time / period) ** 2
         film = solve(time, LOAD * (1.0 - 0.2 * swing), 1.0 - 0.3 * swing, thermal=model)
