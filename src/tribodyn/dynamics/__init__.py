@@ -6,6 +6,7 @@ from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.step_limit import recommended_steps
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 from tribodyn.dynamics.harmonic.harmonic_balance import harmonic_balance
+from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance, clearance_motion
 from tribodyn.dynamics.linear.campbell import Campbell, Resonance, campbell
 from tribodyn.dynamics.linear.forced_response import ForcedResponse, forced_response
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
@@ -66,6 +67,7 @@ __all__ = [
     "LoadFriction",
     "MeshForce",
     "NaturalModes",
+    "RadialClearance",
     "Resonance",
     "Response",
     "RunUp",
@@ -77,6 +79,7 @@ __all__ = [
     "System",
     "assemble",
     "campbell",
+    "clearance_motion",
     "continuation",
     "energy_audit",
     "follow_load",

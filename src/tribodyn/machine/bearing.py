@@ -68,6 +68,11 @@ class Bearing:
         Position of its mid plane on the carrier [m].
     offset : (6,) array
         Displacement of its seat from where it should be, such as the error of a pin [m, rad].
+    clearance : float
+        Radial distance that the shaft can move from the middle before a linear bearing with equal
+        stiffnesses along y and z holds it, half of the diametral clearance [m].
+    unloaded : Bearing, optional
+        Bearing with clearance whose stiffness at its working load this one has.
 
     Raises
     ------
@@ -102,6 +107,8 @@ class Bearing:
     carrier: str | None = None
     carrier_position: float = 0.0
     offset: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    clearance: float = 0.0
+    unloaded: Bearing | None = None
 
     def __post_init__(self) -> None:
         check_name(self, "shaft")
@@ -131,11 +138,21 @@ class Bearing:
                 what, why = f"carrier and {other} are given", "A planet turns on its pin"
                 raise InputError(what, Argument(f"Bearing.{other}"), why, f"Leave {other} out")
         check_number(self, "carrier_position", "m", -1e3, 1e3)
+        check_number(self, "clearance", "m", 0.0, 0.01)
+        if self.clearance:
+            _check_clearance(self)
         shift = real_numbers(Argument("Bearing.offset"), self.offset)
         if shift.shape != (6,) or not np.all(np.abs(shift) < 0.1):
             what, why = f"offset = {shift.tolist()}", "Wanted: six numbers in m and rad below 0.1"
             remedy = "Give the displacement of the seat along and about x, y, z"
             raise InputError(what, Argument("Bearing.offset"), why, remedy)
+
+    @property
+    def nonlinear(self) -> str:
+        """Kind of bearing whose stiffness depends on its load; empty of a linear one."""
+        if self.rolling is not None:
+            return "rolling bearing"
+        return "bearing with clearance" if self.clearance else ""
 
     @property
     def is_default(self) -> bool:
@@ -184,6 +201,21 @@ def _check_pair(bearing: Bearing, name: str, unit: str, size: int) -> None:
         raise InputError(what, where, why, f"Give {name} in {unit}")
     value = float(values) if not values.ndim else tuple(values.tolist())
     object.__setattr__(bearing, name, value)
+
+
+def _check_clearance(bearing: Bearing) -> None:
+    """Refuse a clearance of a bearing that has another law, or unequal stiffnesses."""
+    where, what = Argument("Bearing.clearance"), f"clearance = {bearing.clearance * 1e6:.6g} um"
+    if bearing.torsional_stiffness:
+        why, remedy = "It holds the shaft by torsional_stiffness", "Give another bearing for that"
+        raise InputError(what, where, why, remedy)
+    if bearing.rolling is not None or bearing.stiffness is not None:
+        why = "A rolling bearing has its own clearance, and a matrix holds all directions together"
+        raise InputError(what, where, why, "Give radial_stiffness, or radial_clearance of its type")
+    radial = bearing.stiffness_matrix.diagonal()[1:3]
+    if not radial[0] == radial[1] > 0.0:
+        why = f"Beyond it the radial stiffness is {radial[0]:.4g} and {radial[1]:.4g} N/m"
+        raise InputError(what, where, why, "Give one radial_stiffness above 0")
 
 
 def _matrix(name: str, value: ArrayLike) -> Array:

@@ -61,7 +61,7 @@ def machine_structure(machine: Machine, *, damping_ratio: float = 0.02) -> Machi
     ...     operation=Operation("in", "out", 100.0, 60.0))).reduction
     Reduction(336 to 40 coordinates, error 3.3e-04 up to 5000 Hz)
     """
-    if any(bearing.rolling is not None for bearing in machine.bearings.values()):
+    if any(bearing.nonlinear for bearing in machine.bearings.values()):
         machine = static_balance(machine).linearized()
     structure = MachineStructure(machine, damping_ratio)
     return reduce_structure(structure) if structure.size > _LARGE else structure

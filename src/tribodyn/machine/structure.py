@@ -113,11 +113,12 @@ class MachineStructure:
         if self.element_length is not None:
             check_number(self, "element_length", "m", 0.0, above=True)
         for name, bearing in self.machine.bearings.items():
-            if bearing.rolling is not None:
-                what = "the stiffness of a rolling bearing depends on its load"
+            if bearing.nonlinear:
+                what = f"the stiffness of a {bearing.nonlinear} depends on its load"
                 why = "Matrices hold the stiffness at the working load"
                 remedy = "Use the machine of static_balance(machine).linearized()"
-                raise InputError(what, f"bearings.{name}.rolling", why, remedy)
+                key = "rolling" if bearing.rolling else "clearance"
+                raise InputError(what, f"bearings.{name}.{key}", why, remedy)
 
     def __repr__(self) -> str:
         """One line."""

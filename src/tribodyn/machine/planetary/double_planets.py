@@ -151,6 +151,7 @@ class Directions:
         self, angles: Array, sun: float, ring: float, double: DoublePlanets | None
     ) -> None:
         self.angles, count = angles, angles.size
+        self.ratios = force_ratios(double)
         meshed = double if isinstance(double, MeshedPlanets) else None
         self.bodies = 2 * count if meshed else count
         self.size = _PLANETS + 3 * self.bodies
@@ -159,7 +160,7 @@ class Directions:
         if meshed:
             self.radius[count:] = meshed.radius_ratio
             self.at = np.concatenate([angles, angles + meshed.angle])
-        first = _PLANETS + 3 * np.arange(self.bodies)
+        self.first = first = _PLANETS + 3 * np.arange(self.bodies)
         right = 0.5 * np.pi
         carrier, turn = np.zeros(self.bodies, int), -self.radius
         self.radial = self._between((first, carrier), self.at, (0.0, 0.0))
@@ -187,20 +188,15 @@ class Directions:
             out[rows, start + 2] = turn
         return out
 
-    def carried(self, pins: Array, supports: Array) -> Array:
-        """Stiffness of the pins and of the supports of carrier, ring and sun (n, n)."""
-        matrix = np.diag(np.append(supports, np.zeros(3 * self.bodies)))
-        stiffness = np.tile(pins, self.bodies // pins.size)
-        for along in (self.radial, self.tangential):
-            matrix += (along.T * stiffness) @ along
-        return matrix
+    def forces(self, force: float) -> dict[str, float]:
+        """Force of each kind of mesh for that of the sun mesh [N]."""
+        return {mesh: force * ratio for mesh, ratio in self.ratios.items()}
 
     def load(self, force: dict[str, float]) -> Array:
         """Forces on carrier, ring and sun that balance the meshes in rotation (3,)."""
         total = sum(force[mesh] * along.sum(axis=0) for mesh, along in self.meshes.items())
         carried = np.zeros(self.size)  # the planets displaced by a rotation of the carrier
-        first = _PLANETS + 3 * np.arange(self.bodies)
-        carried[first] = -self.radius * np.sin(self.at)
-        carried[first + 1] = self.radius * np.cos(self.at)
+        carried[self.first] = -self.radius * np.sin(self.at)
+        carried[self.first + 1] = self.radius * np.cos(self.at)
         by_mesh = [force[mesh] * (along @ carried).sum() for mesh, along in self.meshes.items()]
         return np.array([sum(by_mesh), total[_RING + 2], total[_SUN + 2]])

@@ -25,9 +25,9 @@ from tribodyn.machine.planetary.double_planets import (
     Directions,
     DoublePlanets,
     MeshedPlanets,
-    force_ratios,
 )
 from tribodyn.machine.planetary.phases import MeshPhases
+from tribodyn.machine.planetary.pins import Pins
 from tribodyn.machine.planetary.positions import read_angles
 from tribodyn.types import Array
 
@@ -74,6 +74,7 @@ def planetary_plane_model(
     damping_ratio: float = 0.0,
     carrier_speed: float = 0.0,
     double_planets: DoublePlanets | None = None,
+    pin_clearance: float = 0.0,
 ) -> System:
     """Build the plane model of a spur planetary stage in the frame of its carrier.
 
@@ -126,6 +127,10 @@ def planetary_plane_model(
         Second gears of the planets, or second planets of pairs; then the other data of planets are
         those of the gear at the sun.
 
+    pin_clearance : float
+        Radial distance that each planet can move on its pin before it is held [m]. The pins are
+        linear about the load of ``force_per_planet``: across it they are softer.
+
     Returns
     -------
     System
@@ -173,18 +178,17 @@ def planetary_plane_model(
     if isinstance(double_planets, MeshedPlanets):
         bodies.append((double_planets.mass, double_planets.inertia))
         meshes["planet"] = double_planets.mesh_stiffness, double_planets.mesh_error
-    masses = _masses(central[:, [0, 0, 1]], bodies, count)
-    pins = _of_planets("pin_stiffness", pin_stiffness, count, "N/m", positive=True)
-    stiffness = axes.carried(pins, central[:, [2, 2, 3]])
-    force = require_number("force_per_planet", force_per_planet)
-    load = _load(axes, force_ratios(double_planets), force, central[:, 3])
-    ahead = pins * _of_planets("pin_errors", pin_errors, count, "m")
-    load += ahead @ axes.tangential[:count]
+    carried = _of_planets("pin_stiffness", pin_stiffness, count, "N/m", positive=True)
+    pins = Pins(axes, carried, _of_planets("pin_errors", pin_errors, count, "m"), pin_clearance)
+    forces = axes.forces(require_number("force_per_planet", force_per_planet))
+    stiffness, pushed = pins.springs(forces)
+    stiffness[np.diag_indices(9)] += central[:, [2, 2, 3]].reshape(-1)
+    load = _load(axes, forces, central[:, 3]) + pushed
     thick = _of_planets("thickness_errors", thickness_errors, count, "m")
-    require_between("mesh_gap", require_number("mesh_gap", mesh_gap), 0.0, 1.0, "m")
     contacts = _contacts(axes, meshes, thick, mesh_gap, phases)
-    speed = require_number("carrier_speed", carrier_speed)
-    system = _system(masses, stiffness, load, contacts, (axes, speed))
+    frame = axes, require_number("carrier_speed", carrier_speed)
+    masses = _masses(central[:, [0, 0, 1]], bodies, count)
+    system = _system(masses, stiffness, load, contacts, frame)
     return with_modal_damping(system, damping_ratio)
 
 
@@ -226,6 +230,7 @@ def _contacts(
     phases: MeshPhases | None,
 ) -> list[Contact]:
     """Meshes of all planets by kind."""
+    require_between("mesh_gap", require_number("mesh_gap", gap), 0.0, 1.0, "m")
     count, contacts = thickness.size, []
     for mesh, entries in meshes.items():
         stiffness = _entries(f"{mesh}_mesh_stiffness", entries[0], count, phases, positive=True)
@@ -311,16 +316,15 @@ def without_excess(error: Any, thickness: float) -> Entry:
     return lambda phase: function(phase) - thickness
 
 
-def _load(axes: Directions, ratios: dict[str, float], force: float, supports: Array) -> Array:
+def _load(axes: Directions, force: dict[str, float], supports: Array) -> Array:
     """Forces on the members that are free to turn; supports react on the others."""
-    if force and supports.all():
-        what = f"force_per_planet = {force:.6g} N, and no member is free to turn"
+    if force["sun"] and supports.all():
+        what = f"force_per_planet = {force['sun']:.6g} N, and no member is free to turn"
         why = "Carrier, ring and sun have torsional supports, so that no torque can act"
         remedy = "Set the torsional support of the driving member to 0"
         raise InputError(what, Argument("force_per_planet"), why, remedy)
     load = np.zeros(axes.size)
-    forces = {mesh: force * ratio for mesh, ratio in ratios.items()}
-    load[[2, 5, 8]] = axes.load(forces) * (supports == 0.0)
+    load[[2, 5, 8]] = axes.load(force) * (supports == 0.0)
     return load
 
 

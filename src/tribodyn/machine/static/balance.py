@@ -157,14 +157,18 @@ class StaticBalance:
         """
         bearings = dict(self.machine.bearings)
         for name, bearing in bearings.items():
-            if bearing.rolling is not None:
+            if bearing.nonlinear:
                 state = self.bearings[name]
                 stiffness = state.stiffness
                 force = state.load - stiffness @ state.displacement
+                loose = bearing if bearing.clearance else None
                 bearings[name] = replace(
-                    bearing, rolling=None, stiffness=stiffness, force=force, offset=np.zeros(6)
-                )
-                if not stiffness.any():
+                    bearing, rolling=None, radial_stiffness=None, axial_stiffness=0.0,
+                    tilting_stiffness=0.0, clearance=0.0,
+                    stiffness=stiffness, force=force, offset=np.zeros(6), unloaded=loose,
+                )  # fmt: skip
+                least = 1e-3 * loose.stiffness_matrix[1, 1] if loose else 0.0
+                if np.abs(stiffness[:3, :3]).max() <= least:
                     warn(
                         "unloaded-bearing",
                         f'bearing "{name}" carries no load, so that its stiffness is zero: reduce '
@@ -270,7 +274,7 @@ class _Forces:
 def _solve(model: StaticModel, external: Array, output_row: Array) -> tuple[Array, float, int]:
     """Displacement of all coordinates, torque that holds the output, number of steps."""
     laws = {name: model.law(name) for name in model.meshes}
-    rolling = [n for n, b in model.machine.bearings.items() if b.rolling is not None]
+    rolling = [n for n, b in model.machine.bearings.items() if b.nonlinear]
     reach = np.concatenate([model.bearings[n][:3] for n in rolling] or [np.zeros((0, model.size))])
     shift, softest = (1e7 if rolling else 0.0), 1e-3
     displacement, best, torque = np.zeros(model.size), np.inf, 0.0

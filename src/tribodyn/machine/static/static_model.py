@@ -16,6 +16,7 @@ from tribodyn.machine.graph.kinematics import mean_stiffness
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.plane_law import mean_in_space
+from tribodyn.machine.static.clearance import clearance_load
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
 
@@ -105,6 +106,8 @@ class StaticModel:
         """Load and stiffness of a bearing."""
         part = self.machine.bearings[name]
         displacement = displacement - np.asarray(part.offset)
+        if part.clearance:
+            return clearance_load(part, displacement)
         if part.rolling is None:
             matrix = part.stiffness_matrix
             return matrix @ displacement, matrix
@@ -118,6 +121,6 @@ class StaticModel:
 def _as_spring(bearing: Bearing) -> Bearing:
     """Stand-in for a rolling bearing that holds what it can hold under some load."""
     if bearing.rolling is None:
-        return bearing
+        return replace(bearing, clearance=0.0)
     holds = np.diag([float(bearing.rolling.takes_axial_force), 1.0, 1.0, 1.0, 1.0])
     return replace(bearing, rolling=None, stiffness=holds)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import Argument, InputError
+from tribodyn.machine.static.clearance import spring_loads
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray
 
@@ -215,9 +216,8 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
     bearings = {}
     for name, bearing in machine.bearings.items():
         motion = structure.bearing(name).T
-        springs = fine.position @ motion @ bearing.stiffness_matrix
         dampers = fine.velocity @ motion @ bearing.damping_matrix
-        bearings[name] = np.asarray(springs + dampers + bearing.rest_load)
+        bearings[name] = spring_loads(structure, name, fine.position) + dampers
     nodes = machine.housing.nodes if machine.housing is not None else {}
     accelerations = {n: fine.acceleration @ structure.housing_node(n)[:3].T for n in nodes or {}}
     return MachineMotion(

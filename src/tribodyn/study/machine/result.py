@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import single_blas_thread
+from tribodyn.machine.static.clearance import clearance_supports, without_clearance_supports
 from tribodyn.record import html_table
 from tribodyn.study.machine.motion import MachineMotion, machine_motion
 from tribodyn.study.machine.summary import summary_of
@@ -42,11 +43,15 @@ def steady_motion(
     structure: MachineStructure, system: System, start: Response | None = None
 ) -> Response:
     """Motion of a machine over one period of its clock; a start fits if its coordinates do."""
-    from tribodyn.dynamics import harmonic_balance
+    from tribodyn.dynamics import clearance_motion, harmonic_balance
 
     if start is not None and start.names != tuple(system.names):
         start = None
-    return harmonic_balance(system, structure.machine.clock.frequency, steps=STEPS, start=start)
+    supports, frequency = clearance_supports(structure), structure.machine.clock.frequency
+    if supports:
+        system = without_clearance_supports(structure, system)
+        return clearance_motion(system, [*supports.values()], frequency, steps=STEPS, start=start)
+    return harmonic_balance(system, frequency, steps=STEPS, start=start)
 
 
 @dataclass(frozen=True, eq=False)

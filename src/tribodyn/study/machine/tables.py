@@ -23,6 +23,11 @@ def _stiffness(meaning: str, unit: str = "N/m", **more: Any) -> Any:
     return number(more.pop("default", None), 0.0, 1e14, _GUARD, unit=unit, meaning=meaning, **more)
 
 
+def _clearance(meaning: str) -> Any:
+    length = {"unit": "m", "display_unit": "um", "example": '"20 um"', "meaning": meaning}
+    return number(0.0, 0.0, 0.01, _GUARD, **length)
+
+
 def _position(meaning: str, default: Any = REQUIRED, **more: Any) -> Any:
     length_in_mm = {"unit": "m", "display_unit": "mm", "example": '"85 mm"', "meaning": meaning}
     return number(default, -100.0, 100.0, _GUARD, **length_in_mm, **more)
@@ -74,6 +79,9 @@ class BearingTable(Section):
         "N*m*s/rad",
         default=0.0,
         pair=True,
+    )
+    clearance: float = _clearance(
+        "radial distance that the shaft can move before it is held; half of the diametral clearance"
     )
     node: str | None = text(None, meaning="node of the housing that carries it", example='"seat A"')
 
@@ -392,6 +400,9 @@ class PlanetsTable(Section):
         meaning="angles of the planets about the sun; equally spaced by default",
     )
     pin_stiffness: float = _support("radial stiffness of each planet on the carrier")
+    pin_clearance: float = _clearance(
+        "radial distance that each planet can move on its pin before it is held"
+    )
     sun_support: float = _support("radial stiffness of the supports of the sun; 0 lets it float")
     ring_support: float = _support("radial stiffness of the supports of the ring; 0 lets it float")
     carrier_support: float = _support(

@@ -58,7 +58,6 @@ _KEYS = {
 _MODEL = (
     ("motion", "in the plane", "axial motion and tilting of the members are left out"),
     ("members", "rigid", "the flexibility of ring and carrier is left out"),
-    ("planet bearings", "linear", "their clearance is left out"),
 )
 
 
@@ -430,6 +429,8 @@ class PlanetaryCase(PartsCase):
         if "torsional_support" not in body:
             reason = f"the held member, {self.members[self.roles[2]]}, is stiff"
             yield Assumption(f"{key}.torsional_support", f"{STIFF:g} N/m", "default", reason)
+        if "pin_clearance" not in body:
+            yield Assumption(f"{key}.pin_clearance", "0 um", "default", "planets without clearance")
         for name in ("carrier_mass", "carrier_moment_of_inertia"):
             if name not in body:
                 reason = "a steel disc of the radius of the pins and the face width of the planets"

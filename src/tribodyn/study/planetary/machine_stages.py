@@ -121,6 +121,7 @@ class CaseStage:
             axial_stiffness=axial,
             tilting_stiffness=axial * width**2 / 12.0,
             carrier_position=table.carrier_position,
+            clearance=table.pin_clearance,
         )
         double: dict[str, Any] = {"planet_type": table.planet_type}
         if len(self.planets) > 1:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.machine.planetary.pins import pins_of
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
@@ -94,10 +95,11 @@ def planetary_motion(response: Response, data: Mapping[str, Any], turn: int) -> 
     fine, angles = response.fine, data["phases"].angles
     count = angles.size
     position = fine.position.reshape(len(fine.phase), -1, 3)
-    tangent = np.stack([-np.sin(angles), np.cos(angles)], axis=1)
-    carrier = position[:, :1, :2] + position[:, :1, 2:] * tangent
-    ahead = np.broadcast_to(data["pin_errors"], (count,))[:, None] * tangent
-    pin_force = data["pin_stiffness"] * (position[:, 3:, :2] - carrier - ahead)
+    # Radial and tangential forces of the planets on their pins, turned to x and y.
+    laws = pins_of(data).supports()
+    on_pins = np.stack([law.force(law.displacement(fine.position)) for law in laws], axis=1)
+    turned = (on_pins[..., 0] + 1j * on_pins[..., 1]) * np.exp(1j * angles)
+    pin_force = np.stack([turned.real, turned.imag], axis=-1)
     return PlanetaryMotion(
         phase=fine.phase - fine.phase[0],
         weight=fine.weight,
@@ -105,7 +107,7 @@ def planetary_motion(response: Response, data: Mapping[str, Any], turn: int) -> 
         member=("carrier", "ring", "sun"),
         axis=("x", "y", "u"),
         sun_mesh_force=fine.contact_force[:, :count],
-        ring_mesh_force=fine.contact_force[:, count:],
+        ring_mesh_force=fine.contact_force[:, count : 2 * count],
         pin_force=pin_force * np.array([1.0, turn]),
         displacement=position[:, :3] * np.array([1.0, turn, turn]),
         mesh_frequency=response.mesh_frequency,

@@ -5,11 +5,12 @@ from __future__ import annotations
 import sys
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.dynamics import harmonic_balance
 from tribodyn.errors import collected, frames
 from tribodyn.interrupt import single_blas_thread
+from tribodyn.machine.planetary.pins import motion_in_clearance
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.machine.load_cases import LoadCase
 from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
@@ -72,7 +73,11 @@ def run_load(
     system = stage_system(case, load, teeth, data)
     if start is not None and start.names != tuple(system.names):
         start = None
-    response = harmonic_balance(system, lossless.mesh_frequency, steps=STEPS, start=start)
+    search: dict[str, Any] = {"steps": STEPS, "start": start}
+    if data["pin_clearance"]:
+        response = motion_in_clearance(system, data, lossless.mesh_frequency, **search)
+    else:
+        response = harmonic_balance(system, lossless.mesh_frequency, **search)
     progress.finish()
     return PlanetaryLoadResult(
         load=load,

@@ -95,6 +95,7 @@ def stage_data(
         "carrier_speed": turn * stage.speeds["carrier"],
         "pin_errors": turn * np.array(table.pin_errors or 0.0),
         "thickness_errors": np.array(table.thickness_errors or 0.0),
+        "pin_clearance": table.pin_clearance,
     }
 
 

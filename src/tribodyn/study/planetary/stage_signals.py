@@ -39,7 +39,7 @@ def signals_along(result: PlanetaryLoadResult, response: Response) -> MachineMot
         bearing=tuple(radial),
         node=(),
         mesh_force=force,
-        compression=response.fine.deflection,
+        compression=response.fine.deflection[:, : len(meshes)],
         transmission_error=response.fine.position @ rotations.T,
         open=(force == 0.0).astype(float),
         bearing_force=forces,

@@ -5,7 +5,8 @@ import pytest
 
 from known_planetary import ALPHA, LIN_PARKER
 from tribodyn.errors import InputError
-from tribodyn.machine import load_shares, mesh_phases
+from tribodyn.machine import load_shares, mesh_phases, planetary_plane_model
+from tribodyn.machine.planetary.pins import motion_in_clearance, pins_of
 
 
 def shares(planets, sun_support, errors, **changes):
@@ -105,3 +106,46 @@ def test_unknown_and_missing_arguments_are_named():
     phases = mesh_phases(sun_teeth=17, ring_teeth=61, planets=3)
     with pytest.raises(InputError, match="sun_mesh_stiffness"):
         shares(3, 1e8, 0.0, phases=phases, sun_mesh_stiffness=lambda phase: None)
+
+
+def test_clearance_of_the_pins_softens_them_across_their_load():
+    """Without clearance nothing changes; with it each pin gives F/(c + F/k) across its load."""
+    data = {"force_per_planet": 3000.0, **LIN_PARKER}
+    plain = planetary_plane_model(planets=4, **data)
+    same = planetary_plane_model(planets=4, pin_clearance=0.0, **data)
+    np.testing.assert_array_equal(same.stiffness, plain.stiffness)
+    loose = planetary_plane_model(planets=4, pin_clearance=20e-6, **data)
+    # Equal angles of pressure: the load of the pin is tangential, 2 F cos(alpha).
+    load, planet = 2 * 3000.0 * np.cos(ALPHA), slice(9, 11)  # at angle 0: x is across the load
+    across, along = np.diag(np.asarray(loose.stiffness)[planet, planet])
+    assert along == pytest.approx(1e8, rel=1e-4)
+    assert across == pytest.approx(load / (20e-6 + load / 1e8), rel=1e-4)
+    shares_of = [
+        load_shares(planets=4, pin_errors=[30e-6, 0, 0, 0], **{**data, "pin_clearance": c}).share
+        for c in (0.0, 20e-6)
+    ]
+    np.testing.assert_allclose(shares_of[0], shares_of[1], atol=0.02)  # all pins move by the same
+    with pytest.raises(InputError, match="pin_clearance without a load"):
+        planetary_plane_model(planets=4, pin_clearance=20e-6, **LIN_PARKER)
+
+
+@pytest.mark.parametrize("clearance", [1e-12, 40e-6])
+def test_slow_motion_with_clearance_is_that_of_statics(clearance):
+    phases = mesh_phases(sun_teeth=17, ring_teeth=61, planets=3)
+    errors = [30e-6, 0.0, 0.0]
+    data = {
+        "planets": 3, "phases": phases, "force_per_planet": 3000.0, "pin_errors": errors,
+        **LIN_PARKER, "sun_support": 1e12, "damping_ratio": 0.05, "pin_clearance": clearance,
+    }  # fmt: skip
+    system = planetary_plane_model(**data)
+    motion = motion_in_clearance(system, data, 1.0, steps=32)
+    force = motion.contact_force[0]
+    expected = load_shares(**data)
+    np.testing.assert_allclose(force[:3] / force[:3].mean(), expected.share, atol=5e-3)
+    if clearance < 1e-9:
+        np.testing.assert_allclose(force[:3], expected.force, rtol=1e-6)
+    # Each planet is displaced by the clearance and the deflection of its pin.
+    for law, sun, ring in zip(pins_of(data).supports(), force[:3], force[3:6], strict=True):
+        displacement = law.displacement(motion.position[0])
+        load = np.hypot((sun - ring) * np.sin(ALPHA), (sun + ring) * np.cos(ALPHA))
+        assert np.hypot(*displacement) == pytest.approx(clearance + load / 1e8, rel=1e-5)
