@@ -37,6 +37,8 @@ _PHASES, _FEWEST = 256, 32
 _MOST = 400_000
 #: Gaps that differ by less than half of its inverse are rounding [1/m].
 _SAME = 1e17
+#: Difference of force laws, over their size, that is rounding.
+_ROUNDING = 1e-9
 #: Slices of the face where a fault is narrower than it.
 _SLICES = 21
 
@@ -110,6 +112,27 @@ class TurningMesh(Record):
     def peak_to_peak_transmission_error(self) -> float:
         """Largest less least transmission error [m]."""
         return float(np.ptp(self.transmission_error))
+
+    def repeats(self, cycle: TurningMesh) -> bool:
+        """Whether all mesh cycles have the force law of a mesh over one cycle, but for rounding.
+
+        Parameters
+        ----------
+        cycle : TurningMesh
+            Over one mesh cycle, on the same phases of it.
+
+        Returns
+        -------
+        bool
+        """
+        for name in ("knot_deflection", "knot_stiffness"):
+            knots, once = (getattr(law, name) for law in (self.force_law, cycle.force_law))
+            if len(knots) - 1 != self.cycles * (len(once) - 1) or knots.shape[1] != once.shape[1]:
+                return False
+            rows = knots[:-1].reshape(self.cycles, *once[:-1].shape)
+            if np.abs(rows - once[:-1]).max() > _ROUNDING * np.abs(once).max():
+                return False
+        return True
 
     def functions(self, healthy: MeshFunctions) -> MeshFunctions:
         """What a dynamic model reads: this force law, and the friction of the sound mesh.

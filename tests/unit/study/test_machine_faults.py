@@ -80,6 +80,26 @@ def test_a_fault_of_no_size_changes_nothing_and_a_longer_clock_neither() -> None
         np.testing.assert_allclose(values, expected, atol=1e-5 * np.ptp(sound))
 
 
+def test_computed_teeth_with_a_fault_of_no_size_move_as_sound_ones() -> None:
+    case = case_with().replace({**TEETH, "dynamics.friction_load": "dynamic"}, by="test")
+    sound, sensor = td.run(case), "bearings.C.acceleration_30deg"
+
+    def motion(amplitude: str) -> Any:
+        fault = {"kind": "eccentricity", "gear": "z1", "amplitude": amplitude}
+        stated = {f"faults.axis.{key}": value for key, value in fault.items()}
+        return machine_turning_motion(case.replace(stated, by="test"), sound.operation)
+
+    expected = machine_turning_motion(case, sound.operation).signal(sensor)[0]
+    np.testing.assert_array_equal(motion("0 um").signal(sensor)[0], expected)
+    # With a size the phases of the teeth are coarser; friction follows their load all the same.
+    small = motion("1e-4 um")
+    assert small.cycles == 17
+    mesh = small.machine.meshes["first"]
+    assert len(mesh.frictions) == len(sound.operation.machine.meshes["first"].frictions) > 0
+    error = small.signal(sensor)[0].reshape(17, -1) - expected
+    assert np.abs(error).max() < 0.02 * np.ptp(expected)
+
+
 def test_a_long_period_is_announced() -> None:
     both = case_with(axis=AXIS, wheel={**AXIS, "gear": "z2"})
     machine = turning_machine(both, result().operation)

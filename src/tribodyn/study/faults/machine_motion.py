@@ -19,7 +19,7 @@ from tribodyn.study.faults.clock import MOST_CYCLES
 from tribodyn.study.faults.driven_shafts import drive_machine
 from tribodyn.study.faults.impact_transfer import FreeStructure, ImpactResponse, impact_response
 from tribodyn.study.faults.machine_section import faults_of_mesh
-from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines
+from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines, turning_system_of
 from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
 from tribodyn.types import Array, ComplexArray
 
@@ -229,9 +229,8 @@ def _mesh_over_turns(
     case: MachineCase, sound: LoadResult, name: str, faults: list[Fault]
 ) -> dict[str, Any]:
     """Fields of a mesh with faults; empty where all its teeth are equal."""
-    from tribodyn.dynamics import law_contact
     from tribodyn.faults import turning_mesh
-    from tribodyn.study.pipeline.assembly import damping_of, structure_of
+    from tribodyn.study.pipeline.assembly import damping_of
     from tribodyn.study.pipeline.tooth_contact import loaded_settings
 
     if name not in sound.tables:
@@ -240,12 +239,15 @@ def _mesh_over_turns(
     if pair.spur_pair is None or not (faults or pair.spur_pair.teeth_differ):
         return {}
     settings = loaded_settings(pair)
-    turning = turning_mesh(pair.gear_pair, abs(pair.pinion_torque), faults, **settings)
-    functions = turning.functions(table.functions())
-    first, *_ = structure_of(pair, functions, damping_of(pair, table), "stiffness").contacts
-    contact = law_contact(first, turning.force_law)
-    events = functions.event_phases
-    return {"contacts": (contact,), "frictions": (), "events": events, "period": turning.cycles}
+    gears, torque = pair.gear_pair, abs(pair.pinion_torque)
+    turning = turning_mesh(gears, torque, faults, **settings)
+    equal = not pair.spur_pair.teeth_differ
+    if equal and turning.repeats(turning_mesh(gears, torque, **settings)):
+        return {}  # faults of no size leave the mesh as it is, at its finer phases
+    system = turning_system_of(pair, table, damping_of(pair, table), turning)
+    events = turning.functions(table.functions()).event_phases
+    laws = {"contacts": system.contacts, "frictions": system.frictions, "events": events}
+    return {**laws, "period": turning.cycles}
 
 
 def _error_over_turns(

@@ -150,18 +150,28 @@ def turning_mesh_of(case: Case) -> TurningMesh:
 
 def turning_system(result: Result | PreparedRun, mesh: TurningMesh) -> System:
     """The structure of a result with the mesh over whole turns as its contact."""
-    return _turning_system(result.case, result.mesh, result.damping, mesh)
+    return turning_system_of(result.case, result.mesh, result.damping, mesh)
 
 
-def _turning_system(case: Case, table: MeshTable, damping: Damping, mesh: TurningMesh) -> System:
+def turning_system_of(case: Case, table: MeshTable, damping: Damping, mesh: TurningMesh) -> System:
     """The structure of a case with the mesh over whole turns as its contact."""
-    from tribodyn.dynamics import law_contact
+    from tribodyn.dynamics import follow_load, law_contact
+    from tribodyn.dynamics.equations.clock import on_clock
+    from tribodyn.dynamics.equations.system import FRICTION_ENTRIES
     from tribodyn.study.pipeline.assembly import structure_of
+    from tribodyn.study.pipeline.tooth_contact import load_friction_of
 
     functions = mesh.functions(table.functions())
     system = structure_of(case, functions, damping, "stiffness")
     first, *others = system.contacts
-    return replace(system, contacts=(law_contact(first, mesh.force_law), *others))
+    contacts = (law_contact(first, mesh.force_law), *others)
+    friction = load_friction_of(case, table)
+    if friction is None:
+        return replace(system, contacts=contacts)
+    rubbing = follow_load(replace(system, frictions=()), friction).frictions
+    over_turns = [on_clock(each, FRICTION_ENTRIES, mesh.cycles, 0.0) for each in rubbing]
+    contacts = tuple(replace(contact, friction=None) for contact in contacts)
+    return replace(system, contacts=contacts, frictions=(*system.frictions, *over_turns))
 
 
 def driven_system(
@@ -172,7 +182,7 @@ def driven_system(
     from tribodyn.study.faults.section import excitations
     from tribodyn.study.pipeline.assembly import rotation_of, shaft_coordinates
 
-    system = _turning_system(case, table, damping, mesh)
+    system = turning_system_of(case, table, damping, mesh)
     return drive(
         system,
         mesh.cycles,
