@@ -11,13 +11,14 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_whole
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
+from tribodyn.dynamics.equations.nodes import lowest_of_each_law
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.dynamics.running_up.run_up_march import CycleMarcher, Pace, Samples
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile, read_profile
 from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
-from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
+from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, systems_by_frequency
 from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, quiet, require_positive
@@ -134,7 +135,7 @@ def run_up(
         output_unit=output_unit,
         samples=int(samples),
         teeth=int(teeth),
-        cycles=_statistics(of_mesh, count, *figures[:3], first, cycles),
+        cycles=_statistics(of_mesh, count, *figures[:3], marcher.tables.at(path.lowest), cycles),
         profile=of_mesh,
         step_number=figures[3],
         modes=_modes(systems[len(systems) // 2]),
@@ -265,15 +266,16 @@ def _statistics(
     moments: Array,
     extras: Array,
     steps: list[int],
-    system: System,
+    table: Table,
     cycles: int,
 ) -> CycleStatistics:
     # Figures of a period of the clock are those of all of its mesh cycles.
     time = path.time_at(np.arange(count * cycles + 1))
     period = np.diff(time)
     rows = np.repeat(moments, cycles, axis=-1).reshape(-1, PLAIN_MOMENTS, count * cycles)
-    contacts, size = len(system.contacts), system.size
-
+    nodes = table.nodes[0]
+    contacts, size = nodes.direction.shape[2:]
+    stiff = nodes.stiffness.any(axis=(0, 1))
     return CycleStatistics(
         time=0.5 * (time[1:] + time[:-1]),
         mesh_frequency=1.0 / period,
@@ -285,4 +287,5 @@ def _statistics(
         contact_loss_share=rows[contacts : 2 * contacts, 4].T,
         extra_force=np.repeat(extras, cycles, axis=0),
         steps=np.repeat(np.array(steps, dtype=np.int64) // cycles, cycles),
+        last_to_open=lowest_of_each_law(nodes) & stiff,
     )

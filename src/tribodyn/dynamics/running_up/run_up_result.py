@@ -12,7 +12,7 @@ from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
 from tribodyn.dynamics.time.ensemble import LaneStatistics
 from tribodyn.errors import InputError
 from tribodyn.record import Parts, Record, fact, quantity, record
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.linear.natural_modes import NaturalModes
@@ -32,6 +32,8 @@ class CycleStatistics:
     contact_loss_share: Array = field(repr=False)  #: part of the cycle off the driving flank [-]
     extra_force: Array = field(repr=False)  #: [N or N*m]
     steps: Index = field(repr=False)  #: integration steps
+    #: Contacts of which the teeth are apart where they are open: the last to open of each mesh.
+    last_to_open: Mask = field(repr=False)
 
     def __repr__(self) -> str:
         """One line."""
@@ -138,7 +140,8 @@ class RunUp(Record):
     def __repr__(self) -> str:
         """One line."""
         beat = np.asarray(self.profile.mesh_frequency)
-        lost = float(np.max(self.cycles.contact_loss_share, initial=0.0))
+        loss = self.cycles.contact_loss_share[:, self.cycles.last_to_open]
+        lost = float(np.max(loss, initial=0.0))
         top, count = self.profile.highest, len(self.names)
         back = f" and back to {beat[-1]:.6g}" if beat[-1] < top else ""
         return (

@@ -175,7 +175,7 @@ def turning_system_of(case: Case, table: MeshTable, damping: Damping, mesh: Turn
 
 
 def driven_system(
-    case: Case, table: MeshTable, damping: Damping, mesh: TurningMesh, *, fixed_phase: bool = False
+    case: Case, table: MeshTable, damping: Damping, mesh: TurningMesh
 ) -> DrivenSystem:
     """The system with the mesh over whole turns and the excitation of its shafts."""
     from tribodyn.faults import drive
@@ -191,7 +191,6 @@ def driven_system(
         teeth={name: abs(gear.teeth) for name, gear in case.gears.by_name.items()},
         coordinates=shaft_coordinates(case, system),
         rotation=rotation_of(case, system.names),
-        fixed_phase=fixed_phase,
     )
 
 

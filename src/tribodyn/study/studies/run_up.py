@@ -71,8 +71,8 @@ def run_up(
     RunUp or MachineLevels
         Its speed is that of the gear whose speed the case gives. Outputs are the forces of the
         supports, where there are any. The inertia of the prescribed acceleration loads the teeth.
-        Faults of the case follow the angle of the shafts, over whole turns; the mesh phase then
-        follows a prescribed fluctuation of the speed, not the rotation that a ripple causes.
+        Faults of the case follow the angle of the shafts, over whole turns. The rotation that a
+        ripple causes moves the mesh phase; between two ``tables`` it is interpolated.
         A machine has the levels of each period of its clock, without this inertia; its teeth, film
         and gyroscopic moments are those of the mean speed (``tables``, ``samples`` and ``steps``
         are of pairs).
@@ -148,7 +148,7 @@ def _turning_systems(case: Case, members: list[Member]) -> tuple[dict[float, Sys
     systems = {}
     for each in members:
         damping = damping_of(each.case, each.mesh)
-        driven = driven_system(each.case, each.mesh, damping, mesh, fixed_phase=True)
+        driven = driven_system(each.case, each.mesh, damping, mesh)
         systems[each.mesh.mesh_frequency] = split_ramps(driven.system)
     return systems, driven.cycles
 
