@@ -18,6 +18,7 @@ from tribodyn.machine.graph.placement import pin_lever
 from tribodyn.machine.housing import AXES
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
+from tribodyn.machine.planetary.centrifugal import centrifugal_force
 from tribodyn.machine.shaft import Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices
 from tribodyn.types import Array, Mask
@@ -162,9 +163,8 @@ class MachineStructure:
     @cached_property
     def mass(self) -> Array:
         """Mass matrix, (n, n) [kg, kg*m, kg*m^2]."""
-        total = self._projected(
-            _blocks([s.mass for s in self.shafts.values()], self._housing("mass"))
-        )
+        masses = [shaft.mass for shaft in self.shafts.values()]
+        total = self._projected(_blocks(masses, self._housing("mass")))
         for _, body, motion in self._bodies():
             across = body.transverse_moment_of_inertia
             inertia = [*3 * [body.mass], body.moment_of_inertia, across, across]
@@ -420,7 +420,7 @@ class MachineStructure:
 
     @cached_property
     def force(self) -> Array:
-        """Torques on the input and on the output, without losses, and forces of bearings, (n,)."""
+        """Torques of input and output without losses, forces of bearings and planets, (n,)."""
         run, loads = self.machine.operation, self.machine.kinematics.shafts
         sense = -1.0 if run.speed < 0.0 else 1.0
         turning = np.copysign(sense, sense * float(loads[run.output].ratio))
@@ -428,7 +428,7 @@ class MachineStructure:
         force = force - turning * loads[run.output].torque * self.balance
         for name, bearing in self.machine.bearings.items():
             force = force - self.bearing(name).T @ bearing.rest_load
-        return np.asarray(force)
+        return np.asarray(force + centrifugal_force(self))
 
     def _projected(self, matrix: Array) -> Array:
         return np.asarray(self.basis.T @ matrix @ self.basis)

@@ -192,6 +192,13 @@ class Directions:
         """Force of each kind of mesh for that of the sun mesh [N]."""
         return {mesh: force * ratio for mesh, ratio in self.ratios.items()}
 
+    def outward(self, masses: Array, acceleration: float) -> Array:
+        """Centrifugal forces of the planets for an acceleration at the first pins (n,)."""
+        load = np.zeros(self.size)
+        pull = masses[self.first] * self.radius * acceleration
+        load[self.first], load[self.first + 1] = pull * np.cos(self.at), pull * np.sin(self.at)
+        return load
+
     def load(self, force: dict[str, float]) -> Array:
         """Forces on carrier, ring and sun that balance the meshes in rotation (3,)."""
         total = sum(force[mesh] * along.sum(axis=0) for mesh, along in self.meshes.items())

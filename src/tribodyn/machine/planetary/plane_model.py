@@ -75,6 +75,7 @@ def planetary_plane_model(
     carrier_speed: float = 0.0,
     double_planets: DoublePlanets | None = None,
     pin_clearance: float = 0.0,
+    pin_radius: float = 0.0,
 ) -> System:
     """Build the plane model of a spur planetary stage in the frame of its carrier.
 
@@ -131,6 +132,10 @@ def planetary_plane_model(
         Radial distance that each planet can move on its pin before it is held [m]. The pins are
         linear about the load of ``force_per_planet``: across it they are softer.
 
+    pin_radius : float
+        Distance of the pins of the planets from the axis, for the centrifugal force of the planets
+        at the speed of the carrier [m]; 0 leaves it out.
+
     Returns
     -------
     System
@@ -186,10 +191,9 @@ def planetary_plane_model(
     load = _load(axes, forces, central[:, 3]) + pushed
     thick = _of_planets("thickness_errors", thickness_errors, count, "m")
     contacts = _contacts(axes, meshes, thick, mesh_gap, phases)
-    frame = axes, require_number("carrier_speed", carrier_speed)
     masses = _masses(central[:, [0, 0, 1]], bodies, count)
-    system = _system(masses, stiffness, load, contacts, frame)
-    return with_modal_damping(system, damping_ratio)
+    frame = axes, carrier_speed, pin_radius
+    return with_modal_damping(_system(masses, stiffness, load, contacts, frame), damping_ratio)
 
 
 def _pressure_angles(sun: float, ring: float) -> tuple[float, float]:
@@ -333,10 +337,13 @@ def _system(
     stiffness: Array,
     load: Array,
     contacts: list[Contact],
-    frame: tuple[Directions, float],
+    frame: tuple[Directions, float, float],
 ) -> System:
     """System in a frame that turns at a speed, with Coriolis and centripetal terms."""
-    axes, speed = frame
+    axes, speed, radius = frame
+    require_number("carrier_speed", speed)
+    require_between("pin_radius", require_number("pin_radius", radius), 0.0, 100.0, "m")
+    load = load + axes.outward(masses, radius * speed**2)
     x = np.arange(0, masses.size, 3)
     gyroscopic = np.zeros_like(stiffness)
     gyroscopic[x, x + 1] = -2.0 * speed * masses[x]
@@ -344,12 +351,12 @@ def _system(
     stiffness[x, x] -= speed**2 * masses[x]
     stiffness[x + 1, x + 1] -= speed**2 * masses[x]
     # Pulled outwards, the planets hold the carrier: what is free to turn turns without force.
-    for planet, (angle, radius) in enumerate(zip(axes.at, axes.radius, strict=True)):
-        turning = radius * speed**2 * masses[9 + 3 * planet]
+    for planet, (angle, reach) in enumerate(zip(axes.at, axes.radius, strict=True)):
+        turning = reach * speed**2 * masses[9 + 3 * planet]
         tangent = np.array([-np.sin(angle), np.cos(angle)])
         stiffness[2, 9 + 3 * planet : 11 + 3 * planet] += turning * tangent
         stiffness[9 + 3 * planet : 11 + 3 * planet, 2] += turning * tangent
-        stiffness[2, 2] -= radius * turning
+        stiffness[2, 2] -= reach * turning
     count = axes.angles.size
     members = [*CENTRAL, *(f"planet{i + 1}" for i in range(count))]
     members += [f"ring_planet{i + 1}" for i in range(axes.bodies - count)]

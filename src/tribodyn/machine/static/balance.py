@@ -24,6 +24,7 @@ from tribodyn.errors import (
 from tribodyn.gear import Misalignment
 from tribodyn.machine.bearing import HELD
 from tribodyn.machine.machine import Machine
+from tribodyn.machine.planetary.centrifugal import centrifugal_force
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
 from tribodyn.machine.static.face_law import FaceLaw
 from tribodyn.machine.static.static_model import MeshLaw, StaticModel
@@ -240,6 +241,7 @@ def static_balance(
     run = machine.operation
     torque = np.copysign(1.0, run.speed) * run.torque
     external = torque * model.structure.at(run.input, 0.0)[3]
+    external += centrifugal_force(model.structure)
     for name, load in (loads or {}).items():
         values = real_numbers(Argument(f"loads[{name}]"), load)
         if values.shape != (6,):

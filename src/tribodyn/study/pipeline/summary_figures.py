@@ -61,6 +61,8 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
         "dynamic_load_factor": ("", "K_gamma in motion: of the mean loads over a mesh cycle"),
         "planets_unloaded": ("", "number of planets without load at rest"),
         "mean_pin_force": ("bearing_force", "greatest mean force of a planet on its pin"),
+        "peak_pin_force": ("bearing_force", "greatest force of a planet on its pin"),
+        "centrifugal_force": ("bearing_force", "part of the pin force by the turning carrier"),
         "sun_orbit": ("deflection", "root mean square of the radial motion of the sun"),
     },
     "shafts": {

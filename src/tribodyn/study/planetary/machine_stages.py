@@ -12,6 +12,7 @@ import numpy as np
 
 from tribodyn.errors import Problem
 from tribodyn.machine import Bearing, Gear, Mesh, PlanetaryStage, Shaft, sun_to_ring_lag
+from tribodyn.machine.planetary.centrifugal import centrifugal_loads
 from tribodyn.machine.planetary.mesh_laws import gear_lag
 from tribodyn.machine.planetary.stage_parts import mesh_kinds
 from tribodyn.study.case.values import KeyedProblems, Plain
@@ -306,7 +307,7 @@ def stage_figures(result: Any) -> dict[str, dict[str, float]]:
     """Figures of each stage of a machine under one load, in SI."""
     figures = {}
     machine, motion = result.machine, result.motion
-    flow = machine.kinematics
+    flow, outward = machine.kinematics, centrifugal_loads(machine)
     for name, stage in machine.planets.items():
         suns = stage.mesh_names(name)["sun"]
         rest = np.array([result.static.meshes[mesh].force for mesh in suns])
@@ -321,6 +322,8 @@ def stage_figures(result: Any) -> dict[str, dict[str, float]]:
             "load_factor": float(rest.max() / rest.mean()),
             "dynamic_load_factor": float(moving.max() / moving.mean()),
             "mean_pin_force": float(np.hypot(pin[:, 1], pin[:, 2]).max()),
+            "peak_pin_force": float(motion.radial_force[:, pins].max()),
+            "centrifugal_force": outward[f"{name}_planet1"],
         }
     return figures
 

@@ -96,6 +96,7 @@ def stage_data(
         "pin_errors": turn * np.array(table.pin_errors or 0.0),
         "thickness_errors": np.array(table.thickness_errors or 0.0),
         "pin_clearance": table.pin_clearance,
+        "pin_radius": case.center_distance,
     }
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.study.machine.summary import table_figures
+from tribodyn.study.planetary.stage_signals import signals_along
 
 if TYPE_CHECKING:
     from tribodyn.machine import PlanetaryKinematics
@@ -40,6 +41,8 @@ def summary_of(case: PlanetaryCase, result: PlanetaryLoadResult) -> dict[str, fl
     values: dict[str, Any] = kinematic_figures(case, stage)
     lost = count * sum(table.mean_friction_power for table in result.tables.values())
     pin = np.linalg.norm(motion.mean(motion.pin_force), axis=1)
+    data, errors = result.data, signals_along(result, result.response).transmission_error
+    outward = data["planet_mass"] * data["pin_radius"] * data["carrier_speed"] ** 2
     sun = motion.displacement[:, motion.member.index("sun"), :2]
     values |= {
         "machine.friction_power": lost,
@@ -48,9 +51,12 @@ def summary_of(case: PlanetaryCase, result: PlanetaryLoadResult) -> dict[str, fl
         f"planets.{name}.dynamic_load_factor": motion.load_factor,
         f"planets.{name}.planets_unloaded": float(len(result.shares.unloaded)),
         f"planets.{name}.mean_pin_force": float(pin.max()),
+        f"planets.{name}.peak_pin_force": float(np.linalg.norm(motion.pin_force, axis=2).max()),
+        f"planets.{name}.centrifugal_force": float(outward),
         f"planets.{name}.sun_orbit": float(np.hypot(*motion.rms(sun))),
     }
-    for mesh, force in (("sun", motion.sun_mesh_force), ("ring", motion.ring_mesh_force)):
+    forces = {"sun": motion.sun_mesh_force, "ring": motion.ring_mesh_force}
+    for number, (mesh, force) in enumerate(forces.items()):
         mean = motion.mean(force)
         figures = {
             "mesh_frequency": stage.mesh_frequency,
@@ -61,6 +67,9 @@ def summary_of(case: PlanetaryCase, result: PlanetaryLoadResult) -> dict[str, fl
             "minimum_mesh_force": float(force.min()),
             "dynamic_factor_peak": float(force.max() / mean.mean()),
             "contact_loss_share": float(motion.mean((force == 0.0).astype(float)).max()),
+            "transmission_error_peak_to_peak": float(
+                np.ptp(errors[:, number * count : (number + 1) * count], axis=0).max()
+            ),
             **table_figures(result.tables[mesh]),
         }
         values |= {f"meshes.{mesh}.{key}": value for key, value in figures.items()}
