@@ -320,3 +320,25 @@ def test_a_fluctuating_shaft_modulates_the_mesh_and_shows_in_the_tacho() -> None
     edges = np.flatnonzero(np.diff(tacho["tacho"]) > 0.0) / 409_600.0
     step = 2.0 * ahead / 27 * abs(np.sin(2.0 * np.pi * 27 / 51))
     assert np.ptp(np.diff(edges)) * 50.0 == pytest.approx(2.0 * step, rel=0.1)
+
+
+def test_a_labelled_set_of_a_machine(tmp_path: Path) -> None:
+    from tribodyn.cli import call
+
+    case = tmp_path / "geared.toml"
+    text = case_with(outer=DEFECT).to_toml()
+    case.write_text(text, encoding="utf-8")
+    options = ["--sensor", "bearings.A.force_y", "--duration", "0.5 s", "--sample-rate", "8000 Hz"]
+    command = ["recording", str(case), "faults.outer.impact_force=0,400 N", "--repeats", "2"]
+    assert call([*command, *options, "--out", str(tmp_path / "set")]) == 0
+    over = {"faults.outer.impact_force": ["0 N", "400 N"]}
+    labelled = td.study.record_set(
+        td.load_case(case), tmp_path / "set", over, sensor="bearings.A.force_y", duration=0.5,
+        sample_rate=8000.0, repeats=2,
+    )  # fmt: skip
+    assert [label["faults.outer.impact_force"] for label in labelled.labels] == [0, 0, 400, 400]
+    assert {*labelled[2].channels} == {"bearings.A.force_y", "tacho"}
+    spread = [float(np.abs(recording["bearings.A.force_y"]).max()) for _, recording in labelled]
+    assert min(spread[2:]) > 1.01 * max(spread[:2])
+    assert call(["recording", str(case), *options, "--out", str(tmp_path / "one.h5")]) == 0
+    assert '"impact_force": 200.0' in (tmp_path / "one.json").read_text("utf-8")

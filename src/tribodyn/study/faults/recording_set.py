@@ -7,7 +7,7 @@ import hashlib
 import itertools
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +26,7 @@ from tribodyn.study.studies.study_axes import Axis, read_axes
 if TYPE_CHECKING:
     from tribodyn.measurement import Recording
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.user_tables import PartsCase
 
 #: Files of a set: description, labels, and recordings of one variant.
 CARD, LABELS, PART = "card.json", "labels.csv", "variant-{:05d}.h5"
@@ -76,7 +77,7 @@ class RecordingSet:
 
 
 def record_set(
-    case: Case,
+    case: Case | PartsCase,
     folder: str | os.PathLike[str],
     over: Mapping[str, Any],
     *,
@@ -94,8 +95,8 @@ def record_set(
 
     Parameters
     ----------
-    case : Case
-        With ``[faults.NAME]``.
+    case : Case, MachineCase or PlanetaryCase
+        With ``[faults.NAME]``. Load cases besides ``[operation]`` are left out.
     folder : str or path
         Where they are stored. The same call goes on where an interrupted one ended.
     over : mapping
@@ -170,7 +171,9 @@ def record_set(
     return _finished(place, card, axes, points, units)
 
 
-def _card(case: Case, axes: tuple[Axis, ...], settings: dict[str, Any]) -> dict[str, Any]:
+def _card(
+    case: Case | PartsCase, axes: tuple[Axis, ...], settings: dict[str, Any]
+) -> dict[str, Any]:
     """Description of a set, with a digest of everything that it depends on."""
     from tribodyn import __version__
 
@@ -216,21 +219,37 @@ def _seed(seed: int, variant: int, draw: int) -> int:
     return int.from_bytes(hashlib.sha256(text).digest()[:4], "big") % 10**9
 
 
+def _recorder(case: Case | PartsCase, sensor: str) -> Callable[[float, float, Scatter], Recording]:
+    """Function of duration, rate and scatter that samples the motion of a case."""
+    from tribodyn.study.machine.user_tables import PartsCase
+
+    if isinstance(case, PartsCase):
+        from tribodyn.cases.load import run
+
+        result: Any = run(case.replace({"load_cases": None}))
+        return lambda duration, rate, draw: result.recording(
+            sensor, duration, rate, **draw._asdict()
+        )
+    from tribodyn.study.pipeline.run import prepare_run
+
+    motion, defects = turning_motion(prepare_run(case)), tuple(bearing_defects(case).values())
+    return lambda duration, rate, draw: recording_of(
+        motion, defects, [sensor], duration, rate, draw
+    )
+
+
 def _write(
-    part: Path, case: Case, sampling: Mapping[str, Any], draws: list[Scatter]
+    part: Path, case: Case | PartsCase, sampling: Mapping[str, Any], draws: list[Scatter]
 ) -> Mapping[str, str]:
     """Compute the motion of one variant and write all its recordings; return their units."""
     import h5py
 
     from tribodyn.errors import collected
-    from tribodyn.study.pipeline.run import prepare_run
 
-    sensors = [sampling["sensor"]]
     with collected():
-        motion = turning_motion(prepare_run(case))
-    defects = tuple(bearing_defects(case).values())
-    span = sampling["duration"], sampling["sample_rate"]
-    recordings = [recording_of(motion, defects, sensors, *span, draw) for draw in draws]
+        record = _recorder(case, sampling["sensor"])
+        span = sampling["duration"], sampling["sample_rate"]
+        recordings = [record(*span, draw) for draw in draws]
     with atomic_write(part) as file, h5py.File(file, "w") as store:
         for name, unit in recordings[0].units.items():
             rows = np.stack([recording[name] for recording in recordings]).astype(np.float32)

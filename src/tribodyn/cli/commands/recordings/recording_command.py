@@ -14,7 +14,6 @@ from tribodyn.cli.settings import (
     Force,
     Settings,
     changed_any_case,
-    changed_case,
     check_file,
     read_ranges,
 )
@@ -140,10 +139,10 @@ def _record(
     with progress_bar() as progress:
         result: Any = run(ready, progress)
         recorded: Recording = result.recording(names, settings.pop("duration"), **settings)
-    faults = getattr(ready, "faults", None)
+    faults: Any = getattr(ready, "faults", None) or {}
     truth = {
         name: {key: value for key, value in vars(fault).items() if value is not None}
-        for name, fault in (vars(faults) if faults is not None else {}).items()
+        for name, fault in (faults if isinstance(faults, dict) else vars(faults)).items()
     }
     recorded.save(file, truth={"title": ready.title, "faults": truth})
     rate, size = recorded.sample_rate, next(iter(recorded.channels.values())).size
@@ -163,7 +162,7 @@ def _record_set(
     from tribodyn.study import record_set
 
     folder = out if out is not None else Path(f"{Path(case).stem}-recordings")
-    ranges, ready = read_ranges(over), changed_case(case, set_ or [])
+    ranges, ready = read_ranges(over), changed_any_case(case, set_ or [])
     settings = {**sampling.settings(), "sensor": sampling.sensor, "repeats": sampling.repeats}
     with progress_bar() as progress:
         labelled = record_set(ready, folder, ranges, progress=progress, **settings)
