@@ -10,6 +10,7 @@
 | ``cracked_tooth`` | compliance of a cracked tooth by finite elements |
 | ``cracked_face`` | the same over path and face, of a crack on a part of the face |
 | ``turning`` | force law of a mesh over the turns of its gears |
+| ``turning_table`` | the same of hypoid pairs, whose deviations are errors of the mesh |
 | ``excitation`` | torque and speed over the turns of a shaft, random loads |
 | ``driven`` | a system with them |
 | ``bearing_defect`` | frequencies of a damaged rolling bearing and its impacts |

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from tribodyn.checks import require_whole
 from tribodyn.errors import require_between
 from tribodyn.faults.fault import Fault, GearName
-from tribodyn.gear import SpurGear, SpurPair
+from tribodyn.gear import SpurPair
 from tribodyn.stiffness.loaded.problem import ContactPlaces
 from tribodyn.types import Array
 
@@ -144,20 +144,36 @@ def eccentricity(gear: GearName, amount: float, phase: float = 0.0) -> Waviness:
     return Waviness(gear=gear, amplitude=amount, order=1, phase=phase)
 
 
-def class_sizes(gear: SpurGear, accuracy_class: int) -> tuple[float, float, float]:
+class PitchedGear(Protocol):
+    """A gear with what its pitch tolerances depend on."""
+
+    @property
+    def teeth(self) -> int:
+        """Number of teeth, negative of a ring."""
+
+    @property
+    def reference_radius(self) -> float:
+        """Radius of the pitch circle [m]."""
+
+    @property
+    def normal_module(self) -> float:
+        """Normal module [m]."""
+
+
+def class_sizes(gear: PitchedGear, accuracy_class: int) -> tuple[float, float, float]:
     """Reference diameter and module [mm], and factor of a tolerance [m] of ISO 1328-1."""
     require_between("accuracy_class", accuracy_class, 1, 11, "")
     scale = 1e-6 * math.sqrt(2.0) ** (accuracy_class - 5)
     return 2e3 * abs(gear.reference_radius), 1e3 * gear.normal_module, scale
 
 
-def pitch_tolerances(gear: SpurGear, accuracy_class: int) -> tuple[float, float]:
+def pitch_tolerances(gear: PitchedGear, accuracy_class: int) -> tuple[float, float]:
     """Tolerances of single and of total cumulative pitch deviation.
 
     Parameters
     ----------
     gear : SpurGear
-        The gear.
+        The gear, or another with teeth, reference_radius and normal_module.
     accuracy_class : int
         Class of ISO 1328-1, 1 to 11.
 
@@ -232,7 +248,7 @@ class PitchDeviations(Fault):
         require_between("accuracy_class", self.accuracy_class, 1, 11, "")
         object.__setattr__(self, "seed", require_whole("seed", self.seed, 0))
 
-    def single(self, gear: SpurGear) -> Array:
+    def single(self, gear: PitchedGear) -> Array:
         """Single pitch deviations of a gear in the order of contact; their sum is zero.
 
         Parameters

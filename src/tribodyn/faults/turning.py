@@ -107,6 +107,8 @@ class TurningMesh(Record):
     face_load: Array = quantity("tooth_pair", "face_position", unit="1")
     force_law: MeshForceLaw
     cycles: int = fact()
+    #: Deviations as an error of the mesh over the phase of all turns [m], where no tooth has a gap.
+    error: Callable[[Array | float], Array] | None = None
 
     @property
     def peak_to_peak_transmission_error(self) -> float:
@@ -156,6 +158,11 @@ class TurningMesh(Record):
         cycle = np.arange(self.cycles)[:, None]
         events = (np.array(healthy.event_phases) + cycle).ravel() / self.cycles
         functions |= {"event_phases": tuple(events.tolist()), "force_law": self.force_law}
+        if self.error is not None:
+            deviations, sound = self.error, functions["error"]
+            functions["error"] = (
+                deviations if sound is None else lambda phase: sound(phase) + deviations(phase)
+            )
         return replace(healthy, **functions)
 
     def _turning(self, function: Callable[..., Array] | None) -> Callable[..., Array] | None:

@@ -60,7 +60,7 @@ def turning_clock(case: Case) -> TurningClock:
     Parameters
     ----------
     case : Case
-        Of a cylindrical pair, with its faults.
+        Of a cylindrical or hypoid pair, with its faults.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def turning_clock(case: Case) -> TurningClock:
     Raises
     ------
     InputError
-        If the gears are no cylindrical pair, or the period is too long to be computed.
+        If the gears are those of a table, or the period is too long to be computed.
 
     Examples
     --------
@@ -82,17 +82,18 @@ def turning_clock(case: Case) -> TurningClock:
     (24, 1.5)
     """
     from tribodyn.faults import clock_cycles, turns_of
-    from tribodyn.study.faults.section import excitations, gear_faults
+    from tribodyn.study.faults.section import excitations, gear_faults, require_teeth
 
-    if case.gears.kind != "spur":
-        why = "The teeth of a cylindrical pair are computed one by one, others are not"
-        what = f"the gears are a {case.gears.kind} pair"
-        raise InputError(what, "gears.kind", why, "Give a cylindrical pair")
-    pair = case.gear_pair
-    teeth = {name: abs(gear.teeth) for name, gear in pair.gears.items()}
+    require_teeth(case)
+    pair = case.spur_pair
+    teeth = {name: abs(gear.teeth) for name, gear in case.gears.by_name.items()}
     frequency = case.pinion_speed * teeth["pinion"] / (2.0 * math.pi)
     faults = tuple(gear_faults(case).values())
-    of_teeth = turns_of(pair, faults)
+    of_teeth = (
+        turns_of(pair, faults)
+        if pair is not None
+        else math.lcm(*(teeth[fault.gear] for fault in faults))
+    )
     cycles = clock_cycles(of_teeth, tuple(excitations(case).values()), teeth, frequency)
     if cycles > MOST_CYCLES:
         raise InputError(
@@ -102,8 +103,11 @@ def turning_clock(case: Case) -> TurningClock:
             "Give faults of one gear, orders that repeat after fewer turns, or a random load of a "
             f"shorter duration ({of_teeth} mesh cycles are those of the teeth)",
         )
-    over_face = pair.has_lead_modification or any(fault._varies_over_face for fault in faults)
-    cost_of_teeth = _TEETH[2 if pair.helix_angle else 1 if over_face else 0]
+    cost_of_teeth = 0.0
+    if pair is not None:
+        over_face = pair.has_lead_modification or any(fault._varies_over_face for fault in faults)
+        lines = pair.helix_angle or case.stiffness.model == "fe3d"
+        cost_of_teeth = _TEETH[2 if lines else 1 if over_face else 0]
     cost = _LEAST + of_teeth * cost_of_teeth + cycles * (_MOTION + cycles * _JUMPS)
     turns_pinion, turns_wheel = (cycles / teeth[gear] for gear in ("pinion", "wheel"))
     return TurningClock(cycles, cycles / frequency, turns_pinion, turns_wheel, cost)

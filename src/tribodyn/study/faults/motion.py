@@ -77,7 +77,7 @@ class TurningMotion(Record):
     def signal(self, sensor: str) -> tuple[Array, str]:
         """Return acceleration of a coordinate, mesh force or transmission error, with its unit."""
         if sensor in self.names:
-            unit = "rad/s^2" if sensor.endswith("_theta") else "m/s^2"
+            unit = "rad/s^2" if "_theta" in sensor else "m/s^2"
             return self.acceleration[:, self.names.index(sensor)], unit
         if sensor not in self.sensors:
             why, remedy = f"The sensors are {', '.join(self.sensors)}", "Name one of these"
@@ -133,18 +133,17 @@ def signal_lines(values: Array, period: float) -> tuple[Array, ComplexArray]:
     return np.arange(lines.size) / period, lines
 
 
-def turning_mesh_of(case: Case) -> TurningMesh:
+def turning_mesh_of(case: Case, table: MeshTable) -> TurningMesh:
     """Force law of a case over whole turns, with its faults and its pitch deviations."""
     from tribodyn.faults import turning_mesh
-    from tribodyn.study.faults.section import gear_faults
+    from tribodyn.faults.turning_table import turning_table
+    from tribodyn.study.faults.section import bevel_gears, gear_faults
     from tribodyn.study.pipeline.tooth_contact import loaded_settings
 
-    if case.gears.kind != "spur":
-        why = "The teeth of a cylindrical pair are computed one by one, others are not"
-        what = f"the gears are a {case.gears.kind} pair"
-        raise InputError(what, "gears.kind", why, "Give a cylindrical pair")
-    settings = loaded_settings(case)
     faults = tuple(gear_faults(case).values())
+    if case.gears.kind == "hypoid":
+        return turning_table(table, bevel_gears(case, table), faults, case.gears.driver)
+    settings = loaded_settings(case)
     return turning_mesh(case.gear_pair, abs(case.pinion_torque), faults, **settings)
 
 
@@ -203,7 +202,7 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
     with locate_errors(case):
         clock = turning_clock(case)
         progress.start(f"Teeth over whole turns: {clock}")
-        mesh = turning_mesh_of(case)
+        mesh = turning_mesh_of(case, result.mesh)
         driven = driven_system(case, result.mesh, result.damping, mesh)
         frequency = result.mesh.mesh_frequency / driven.cycles
         response: Response | None = None
@@ -252,8 +251,7 @@ def _sampled(
         mesh=mesh,
         mesh_frequency=mesh_frequency,
         cycles=cycles,
-        pinion_teeth=case.gear_pair.pinion.teeth,
-        wheel_teeth=abs(case.gear_pair.wheel.teeth),
+        **{f"{name}_teeth": abs(gear.teeth) for name, gear in case.gears.by_name.items()},
         response=response,
         lead=driven.lead(at),
     )

@@ -14,6 +14,8 @@ from tribodyn.study.case.section import NamedTables, Section, table
 
 if TYPE_CHECKING:
     from tribodyn.faults import BearingDefect, Fault, ShaftExcitation
+    from tribodyn.faults.turning_table import BevelGear
+    from tribodyn.mesh import MeshTable
 
 T = TypeVar("T")
 _TURN = 2.0 * math.pi
@@ -303,15 +305,40 @@ def located_in(fault: FaultTable) -> Iterator[None]:
 def check_fault(case: Any, fault: FaultTable) -> None:
     """Raise InputError if the pair of a case cannot have a fault."""
     from tribodyn.faults import Fault
+    from tribodyn.faults.turning_table import check_hypoid_fault
 
-    if case.gears.kind != "spur":
-        why = "Faults act on cylindrical pairs, whose teeth are computed one by one"
-        raise InputError(f"the gears are a {case.gears.kind} pair", "kind", why, "Remove [faults]")
+    require_teeth(case)
     with located_in(fault):
         stated = read_fault(fault)
-        if isinstance(stated, Fault):
+        if isinstance(stated, Fault) and case.gears.kind == "hypoid":
+            check_hypoid_fault(stated)
+        elif isinstance(stated, Fault):
             stated._check(case.gear_pair)
             stated._check_model(case.gear_pair, case.stiffness.model)
+
+
+def require_teeth(case: Any) -> None:
+    """Raise InputError if the gears are those of a table."""
+    if case.gears.kind == "table":
+        why = "Faults act on cylindrical and hypoid pairs, whose teeth are known"
+        raise InputError("the gears are a table pair", "gears.kind", why, "Remove [faults]")
+
+
+def bevel_gears(case: Any, table: MeshTable) -> dict[str, BevelGear]:
+    """Both gears of a hypoid pair, with the levers of the mesh force."""
+    from tribodyn.faults.turning_table import BevelGear
+
+    blank = case.hypoid_flanks.blank
+    levers = abs(table.grid.mean(table.direction[:, [4, 10]]))
+    return {
+        name: BevelGear(
+            getattr(blank, f"teeth_{name}"),
+            0.5 * getattr(blank, f"mean_pitch_diameter_{name}"),
+            blank.mean_normal_module,
+            float(lever),
+        )
+        for name, lever in zip(("pinion", "wheel"), levers, strict=True)
+    }
 
 
 def _faults_of(case: Any, kind: type[T]) -> dict[str, T]:

@@ -144,7 +144,7 @@ def _turning_systems(case: Case, members: list[Member]) -> tuple[dict[float, Sys
     from tribodyn.study.faults.motion import driven_system, turning_mesh_of
     from tribodyn.study.pipeline.assembly import damping_of
 
-    mesh = turning_mesh_of(case)
+    mesh = turning_mesh_of(case, members[-1].mesh)
     systems = {}
     for each in members:
         damping = damping_of(each.case, each.mesh)
