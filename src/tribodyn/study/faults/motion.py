@@ -133,8 +133,8 @@ def signal_lines(values: Array, period: float) -> tuple[Array, ComplexArray]:
     return np.arange(lines.size) / period, lines
 
 
-def turning_mesh_of(case: Case, table: MeshTable) -> TurningMesh:
-    """Force law of a case over whole turns, with its faults and its pitch deviations."""
+def turning_mesh_of(case: Case, table: MeshTable | None = None) -> TurningMesh:
+    """Force law of a case with its faults over whole turns; of hypoid pairs from their table."""
     from tribodyn.faults import turning_mesh
     from tribodyn.faults.turning_table import turning_table
     from tribodyn.study.faults.section import bevel_gears, gear_faults
@@ -142,6 +142,7 @@ def turning_mesh_of(case: Case, table: MeshTable) -> TurningMesh:
 
     faults = tuple(gear_faults(case).values())
     if case.gears.kind == "hypoid":
+        assert table is not None
         return turning_table(table, bevel_gears(case, table), faults, case.gears.driver)
     settings = loaded_settings(case)
     return turning_mesh(case.gear_pair, abs(case.pinion_torque), faults, **settings)
