@@ -123,10 +123,11 @@ def _unit_influence(
         sector, gear.normal_module, line, ends, source_digest(Path(__file__).parent, _MODULES)
     )
     arrays = load_arrays(name, "cracked") or {}
-    parts = tuple(arrays.get(key, np.array(np.nan)) for key in ("radius", "knots", "added"))
+    missing: Array = np.array(np.nan)
+    parts = tuple(arrays.get(key, missing) for key in ("radius", "knots", "added"))
     shape = (parts[0].size,) * 2 + (parts[1].size - 4,) * 2
     if parts[2].shape == shape and all(np.all(np.isfinite(part)) for part in parts):
-        return parts
+        return parts[0], parts[1], parts[2]
     announce(
         "computing the compliance of a cracked tooth over its face, once on this machine, 3 to 30 "
         "seconds"

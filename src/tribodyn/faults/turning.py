@@ -307,7 +307,7 @@ class _Turns(NamedTuple):
     rows: Index  #: row of the problem of each phase (p,)
 
 
-def _distinct(places: ContactPlaces, gaps: Array, faults: Sequence[Fault], cycles: int) -> Array:
+def _distinct(places: ContactPlaces, gaps: Array, faults: Sequence[Fault], cycles: int) -> Index:
     """Number of the first mesh cycle that differs from each one by no more than a shift."""
     phases = len(gaps) // cycles
     softened = [mask for fault in faults if (mask := fault._softened(places)) is not None]

@@ -82,7 +82,9 @@ def modulating_shaft(
         require_whole(name, count, 1)
     reach = _LOBE * float(orders.orders[1])
     top = float(orders.orders[-1]) - reach
-    families = [np.arange(1, int(top / each) + 1) * each for each in (1.0, teeth / mate_teeth)]
+    families: list[Array] = [
+        np.arange(1.0, int(top / each) + 1.0) * each for each in (1.0, teeth / mate_teeth)
+    ]
     floor = _floor(orders, np.concatenate(families))
     mesh = np.arange(0.0, top + teeth, teeth)
 

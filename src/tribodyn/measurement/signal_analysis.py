@@ -87,12 +87,12 @@ class SignalAnalysis(Record):
         Mean revolution of each shaft whose teeth are known.
     indicators : mapping of str to ConditionIndicators
         Condition indicators of each mean revolution.
+    notes : tuple of Problem
+        What could not be computed, why, and what is needed for it.
     kurtogram : Kurtogram, optional
         Kurtosis of frequency bands, where the record is long enough.
     coherence : CyclicCoherence, optional
         Modulations up to 8.5 orders of the shaft at a constant speed, without the mesh.
-    notes : tuple of Problem
-        What could not be computed, why, and what is needed for it.
     """
 
     channel: str = fact()

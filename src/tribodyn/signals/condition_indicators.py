@@ -42,8 +42,6 @@ class ConditionIndicators:
     na4 : float
         Fourth moment of the residual over the square of the mean second moment of the residuals
         of this and all earlier records [-].
-    na4_star : float
-        The same with the mean of the records before damage began, where there are earlier ones [-].
     m6a, m8a : float
         Sixth and eighth standardized moment of the difference signal [-]; 15 and 105 for noise.
     nb4 : float
@@ -54,6 +52,8 @@ class ConditionIndicators:
         Mean amplitude of the first sidebands of the mesh frequency, in the unit of the signal.
     sideband_level_factor : float
         Sum of their amplitudes over the alternating rms of the mean revolution [-].
+    na4_star : float
+        NA4 with the mean of the records before damage began, where there are earlier ones [-].
     """
 
     crest_factor: float

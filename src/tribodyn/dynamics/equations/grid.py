@@ -159,7 +159,7 @@ class RowEvaluator:
                 table, *clock = looked_up
                 tables, clocks = groups.setdefault((type(table), id(table.grid)), ({}, {}))
                 tables[id(table.values)] = table
-                clocks[clock[0], clock[1]] = None
+                clocks[int(clock[0]), float(clock[1])] = None
         for (kind, _), (tables, clocks) in groups.items():
             if len(tables) * len(clocks) > 1:
                 self._look_up(kind, list(tables.values()), np.array(list(clocks)))

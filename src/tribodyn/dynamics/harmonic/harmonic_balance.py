@@ -207,9 +207,8 @@ def harmonic_balance(
     progress.finish()
     fine = count if steps is not None else min(samples // (2 * system.cycles), _RECORDED)
     grid = prepared.grid(max(fine, min(prepared.grids)))
-    multipliers = np.zeros(0, dtype=complex)
-    if stability and solution.error <= tolerance:
-        multipliers = _multipliers(prepared, residual, solution)
+    wanted = stability and solution.error <= tolerance
+    multipliers = _multipliers(prepared, residual, solution) if wanted else np.zeros(0, complex)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "floquet_multipliers": multipliers}
     converged = bool(np.isfinite(error) and error <= tolerance)
@@ -337,12 +336,13 @@ def _marched(prepared: Prepared, residual: Residual, response: Response, **facts
     grid = _marching_grid(prepared, residual)
     motion = ModalMotion(grid, prepared.structure)
     start = response.position[0], response.velocity[0]
-    forces = residual.frequency, _LONG[-1], response.extra_force
+    frequency, extra = residual.frequency, response.extra_force
     try:
-        states = motion.march(*start, *forces, recorded=True)[-grid.grid.steps - 1 :]
+        states = motion.march(*start, frequency, _LONG[-1], extra, recorded=True)
     except ComputationError:  # it grows without bounds
         return response
     number = prepared.structure.rate * float(grid.grid.width.max()) / residual.frequency
+    states = states[-grid.grid.steps - 1 :]
     facts |= {"engine": "modal", "period": 0, "step_error": float("nan")}
     compiled = replace(grid, step_number=number)
     return build_response(compiled, residual.frequency, states, response.extra_force, **facts)

@@ -8,7 +8,7 @@ time integration of the linearized equations preconditions them, so that a few p
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -92,8 +92,8 @@ class Residual:
         stiffness = self.structure.contact_stiffness - state.law.stiffness
         damping = self.structure.contact_damping - state.law.damping
         breaks, damped = state.breaks, bool(np.any(damping))
-        spread = _spread(breaks, len(state.y)) if breaks.step.size else None
-        gather = None if spread is None else spread.T.tocsr()
+        spread: Any = _spread(breaks, len(state.y)) if breaks.step.size else None
+        gather: Any = None if spread is None else spread.T.tocsr()
 
         def product(motion: Array) -> Array:
             force = (stiffness @ motion[..., None])[..., 0]

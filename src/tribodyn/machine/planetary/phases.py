@@ -60,7 +60,7 @@ class MeshPhases:
         from 0 to below 1, while the sun turns towards greater angles relative to the carrier. In
         the other direction of rotation they lead by as much [1].
     planet : (N,) array, optional
-        The same of the meshes between the planets of pairs.
+        The same of the meshes between the planets of pairs [1].
     cycles : mapping of str to int
         Mesh cycles of each kind of mesh in the period of all. They differ for stepped planets, of
         which each lag is in cycles of its own mesh.

@@ -68,13 +68,12 @@ class PlanetaryStage:
     pin : Bearing
         Bearing of each planet on the carrier; its shaft and carrier are ignored. Stiff by default,
         along x only for helical teeth, which also tilt the planet.
-    sun_mesh, ring_mesh, planet_mesh : mapping
+    sun_mesh, ring_mesh : mapping
         Further fields of the meshes, such as ``stiffness``, or another ``normal_module``. The first
-        gear of a sun mesh is the sun, that of a ring mesh the planet, and that of the mesh of a
-        pair the planet at the sun.
-    sun_to_ring, sun_to_planet : float
-        Mesh cycles by which the ring mesh of a planet, and the mesh of a pair, lag behind its sun
-        mesh [1]; :func:`sun_to_ring_lag` computes it from the teeth.
+        gear of a sun mesh is the sun, that of a ring mesh the planet.
+    sun_to_ring : float
+        Mesh cycles by which the ring mesh of a planet lags behind its sun mesh [1];
+        :func:`sun_to_ring_lag` computes it from the teeth.
     pin_errors, thickness_errors : float or (N,) array
         Distance by which a pin is ahead of its place, from y towards z, and excess of the base
         tooth thickness of a planet [m]; of a pair those of the planet at the sun.
@@ -83,6 +82,10 @@ class PlanetaryStage:
     ring_planet : Gear, optional
         Second gear of stepped planets, at its position behind the first one, or planet at the ring
         of pairs; then ``planet`` is that at the sun.
+    planet_mesh : mapping
+        As ``sun_mesh``, of the mesh of a pair, whose first gear is the planet at the sun.
+    sun_to_planet : float
+        Mesh cycles by which the mesh of a pair lags behind its sun mesh [1].
     ring_center_distance, pair_center_distance : float, optional
         Distance from the axis of the sun to the planets at the ring of pairs, and between the
         planets of a pair [m]; without profile shift by default.

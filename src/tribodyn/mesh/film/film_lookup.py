@@ -156,7 +156,8 @@ def _cached_table(shared: _Shared, key: Any, make: Callable[[], Table]) -> Table
             shared.tables[key] = make()
             if len(shared.tables) > _MOST_TABLES:
                 shared.tables.popitem(last=False)
-        return shared.tables[key]
+        table: Table = shared.tables[key]
+        return table
 
 
 @dataclass(frozen=True, eq=False)

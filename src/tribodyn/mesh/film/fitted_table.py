@@ -48,7 +48,7 @@ class FittedTable:
     @property
     def solved(self) -> int:
         """Number of contacts that were solved for it."""
-        return len(self._cells) * self._places.shape[1]
+        return len(self._cells) * int(self._places.shape[1])
 
     def __call__(self, places: Array) -> Array:
         """Rows (rows, n) at places (d, n), NaN where too many contacts have no solution."""

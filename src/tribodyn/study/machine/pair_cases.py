@@ -103,7 +103,7 @@ def pair_case(
     group, _, mesh = table.partition(".")
     body = data[group][mesh]
     inner, crossed = mesh_tables(body), mesh_table_kind(body) is HypoidMeshTable
-    tables = {
+    tables: dict[str, Any] = {
         name: _merged(name, data.get(name, {}), inner.get(name, {}))
         for name in SHARED
         if name in inner or (name in data and not (crossed and name == "stiffness"))

@@ -49,7 +49,7 @@ def read_any_case(
         return read_case(text, name)
     place = Path(name).parent if folder is None else folder
     faults = data.get("faults")
-    tables = [(data.get("housing"), tuple(HousingTable.fields))]
+    tables: list[tuple[Any, tuple[str, ...]]] = [(data.get("housing"), tuple(HousingTable.fields))]
     tables += [
         (table, ("file",)) for table in (faults.values() if isinstance(faults, dict) else ())
     ]
