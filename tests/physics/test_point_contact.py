@@ -62,6 +62,7 @@ def test_round_contact_has_the_same_film_in_every_direction() -> None:
     straight = solve(5.0, 0.01, 0.01, 1.0)
     for angle in (math.pi / 4, -2.2):
         oblique = solve(5.0, 0.01, 0.01, 1.0, entrainment_angle=angle)
+        assert oblique.cycles < 8
         assert oblique.central_film == pytest.approx(straight.central_film, rel=0.01)
         assert oblique.minimum_film == pytest.approx(straight.minimum_film, rel=0.02)
 

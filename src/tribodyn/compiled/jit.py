@@ -86,3 +86,6 @@ INNER_OPTIONS: dict[str, Any] = {
     "no_cfunc_wrapper": True,
     "pipeline_class": _InnerCompiler,
 }
+#: Options of one that allocates nothing either: it does not count references to its arrays, which
+#: in a short function takes longer than its work.
+LEAN_OPTIONS: dict[str, Any] = {**INNER_OPTIONS, "_nrt": False}

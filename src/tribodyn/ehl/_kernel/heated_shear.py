@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
-from tribodyn.ehl._kernel.elementary import INNER, exp_, log_
+from tribodyn.compiled.jit import LEAN_OPTIONS
+from tribodyn.ehl._kernel.elementary import JIT, exp_, log_
 from tribodyn.types import Array
 
-#: Functions that allocate nothing do without the counts of references, which cost more than they.
-LEAN = {**INNER, "_nrt": False}
+LEAN = {**JIT, **LEAN_OPTIONS}
 #: Shear models by the number that the kernel has for them.
 NEWTONIAN, EYRING, CARREAU, CARREAU_EYRING, BAIR_WINER = 0, 1, 2, 3, 4
 #: Greatest stress over Eyring's, and part of a limit.
