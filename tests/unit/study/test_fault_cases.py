@@ -120,6 +120,17 @@ def test_measured_teeth_from_a_file(healthy: Case, tmp_path: Path) -> None:
         healthy.replace({"gears.pinion.modification.profile_map": str(file)})
 
 
+def test_the_cost_of_a_motion_is_in_proportion_to_its_cycles(healthy: Case) -> None:
+    axis = {f"faults.axis.{k}": v for k, v in (("kind", "eccentricity"), ("amplitude", "5 um"))}
+    one, two = (healthy.replace({**axis, "faults.axis.gear": g}) for g in ("pinion", "wheel"))
+    short, long = (turning_clock(case) for case in (one, two))
+    assert (short.cycles, long.cycles) == (16, 24)
+    per_cycle = (long.cost - short.cost) / 8
+    assert 1.0 < short.cost / (16 * per_cycle) < 2.5  # 0.2 s in 16 cycles, 2.5 s in 408
+    cracked = turning_clock(one.replace(CRACK))
+    assert cracked.cost - short.cost > 1.0  # finite elements of the tooth
+
+
 def test_hypoid_gears_have_no_such_faults() -> None:
     with pytest.raises(InputError, match=r"faults\.crack.*hypoid"):
         tribodyn.load_case("hypoid-mixed-ehl").replace(CRACK)

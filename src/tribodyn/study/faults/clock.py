@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 #: Mesh cycles of the longest motion: beyond it the samples need more memory than a notebook has.
 MOST_CYCLES = 6000
 #: Seconds of one core: at least, for each mesh cycle of the motion, and of the teeth whose contacts
-#: are lines, slices of the face, or slices of helical teeth. Each jump of the force is felt at each
-#: sample of the motion, so that its time has a part that grows with the square.
-_LEAST, _MOTION, _JUMPS, _TEETH = 0.2, 1.2e-2, 8e-5, (5e-3, 0.05, 0.6)
+#: are lines, slices of the face, or slices of helical teeth; finite elements of a cracked tooth in
+#: the plane and in space.
+_LEAST, _MOTION, _TEETH, _CRACK = 0.1, 6.5e-3, (5e-4, 0.04, 0.095), (3.5, 6.5)
 
 
 class TurningClock(NamedTuple):
@@ -30,7 +30,7 @@ class TurningClock(NamedTuple):
     turns_pinion, turns_wheel : float
         Turns of both gears.
     cost : float [s]
-        Rough time of one core for the motion, once all is compiled.
+        Processor time of the motion, once all is compiled, within a factor of two.
     """
 
     cycles: int
@@ -81,7 +81,7 @@ def turning_clock(case: Case) -> TurningClock:
     >>> clock.cycles, clock.turns_pinion
     (24, 1.5)
     """
-    from tribodyn.faults import clock_cycles, turns_of
+    from tribodyn.faults import Crack, clock_cycles, turns_of
     from tribodyn.study.faults.section import excitations, gear_faults, require_teeth
 
     require_teeth(case)
@@ -103,11 +103,12 @@ def turning_clock(case: Case) -> TurningClock:
             "Give faults of one gear, orders that repeat after fewer turns, or a random load of a "
             f"shorter duration ({of_teeth} mesh cycles are those of the teeth)",
         )
-    cost_of_teeth = 0.0
+    cost = _LEAST + cycles * _MOTION
     if pair is not None:
         over_face = pair.has_lead_modification or any(fault._varies_over_face for fault in faults)
-        lines = pair.helix_angle or case.stiffness.model == "fe3d"
-        cost_of_teeth = _TEETH[2 if lines else 1 if over_face else 0]
-    cost = _LEAST + of_teeth * cost_of_teeth + cycles * (_MOTION + cycles * _JUMPS)
+        in_space = case.stiffness.model == "fe3d"
+        cost += of_teeth * _TEETH[2 if pair.helix_angle or in_space else 1 if over_face else 0]
+        cracks = sum(isinstance(fault, Crack) and fault.depth > 0.0 for fault in faults)
+        cost += cracks * _CRACK[in_space]
     turns_pinion, turns_wheel = (cycles / teeth[gear] for gear in ("pinion", "wheel"))
     return TurningClock(cycles, cycles / frequency, turns_pinion, turns_wheel, cost)
