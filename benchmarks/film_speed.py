@@ -23,7 +23,7 @@ import numpy as np
 from film_contacts import MoesContact, random_contacts, twin
 from plain.film_newton import solve_plain
 from race import Goal, arguments, machine, print_goals, print_table
-from tribodyn.ehl import ThermalModel, solve_line_contact
+from tribodyn.ehl import ThermalModel, solve_line_contact, solve_transient_line_contact
 from tribodyn.errors import ComputationError
 from tribodyn.lubricant import from_library
 
@@ -160,6 +160,23 @@ def _heated(rounds: int) -> dict[str, float]:
     return spent
 
 
+def _heated_over_time(steps: int, rounds: int) -> float:
+    """Processor time of a heated film over time over that of the film at one temperature."""
+    time, load = np.linspace(0.0, 5e-4, steps + 1), 147802.0
+    loads = load * (1.0 + 0.3 * np.sin(2.0 * np.pi * time / time[-1]))
+    follow = partial(
+        solve_transient_line_contact, time, loads, 8e-3, 3.0722, from_library("80W"), 2.2e11,
+        nodes=257, surface_speeds=(3.9939, 2.1505), keep_every=0,
+    )  # fmt: skip
+    runners = {
+        "one temperature": lambda contact: contact(),
+        "heated": lambda contact: contact(thermal=ThermalModel("ree-eyring")),
+    }
+    cold, hot = (1e3 * float(t[0]) / steps for t in quickest(runners, [follow], rounds).values())
+    print(f"Film over time, 257 nodes, {steps} steps, CPU ms a step: {cold:.2f}, heated {hot:.2f}")
+    return hot / cold
+
+
 def _against_plain(count: int, nodes: int, rounds: int) -> float:
     """Median ratio of processor times."""
     spent, unsolved = plain_times(random_contacts(count, seed=7), nodes, rounds)
@@ -190,6 +207,7 @@ def main(words: Sequence[str] | None = None) -> None:
         _random_set(2, (257,), 1)
         _against_plain(2, 257, 1)
         _heated(1)
+        _heated_over_time(4, 1)
         return
     found = _random_set(100, (1025, 4097), 3)
     exponents = _growth(15, 3)
@@ -208,6 +226,9 @@ def main(words: Sequence[str] | None = None) -> None:
         Goal(f"heated film, {name}", 40.0, spent, "ms CPU", at_least=False)
         for name, spent in _heated(3).items()
     ]
+    goals.append(
+        Goal("heated film over time", 30.0, _heated_over_time(200, 3), "times", at_least=False)
+    )
     print_goals(goals)
 
 

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
+from tribodyn import load_case, run
+from tribodyn.contact import effective_modulus
 from tribodyn.ehl import (
     BodyHeat,
     ThermalModel,
@@ -17,6 +19,7 @@ from tribodyn.ehl import (
 from tribodyn.ehl.thermal.surface_history import SurfaceHistory
 from tribodyn.errors import InputError
 from tribodyn.lubricant import from_library
+from tribodyn.mesh import moving_film
 
 pytestmark = pytest.mark.filterwarnings("ignore:\\[film-resolution\\]")
 OIL = from_library("80W")
@@ -163,6 +166,56 @@ def test_surface_that_turns_around_under_a_jump_of_heat():
     weight = np.interp(then, time, heat) * np.sqrt(duration) / 20000.0
     exact = 1e8 / body.thermal_contact_coefficient / np.sqrt(np.pi) * (spread @ weight)
     assert rise == pytest.approx(exact, abs=1e-3 * exact.max())
+
+
+def test_exchange_of_the_surfaces_mirrors_a_film_under_one_that_turns():
+    time = np.linspace(0.0, 15.0 * TRANSIT, 16)
+    fast, turning = np.full(16, SPEED), SPEED * np.linspace(0.4, -0.4, 16)
+    films = [
+        solve_transient_line_contact(
+            time, np.where(time < time[7], LOAD, 0.5 * LOAD), RADIUS, 0.5 * (fast + turning), OIL,
+            MODULUS, nodes=129, surface_speeds=speeds, keep_every=15,
+            thermal=ThermalModel("ree-eyring", nodes_across=5, tolerance=1e-5),
+        )
+        for speeds in ((fast, turning), (turning, fast))
+    ]  # fmt: skip
+    assert films[0].traction == pytest.approx(-films[1].traction, rel=1e-3)
+    swapped = films[1].film_temperature[:, :, ::-1]
+    assert films[0].film_temperature == pytest.approx(swapped, abs=0.1)
+    for film in films:
+        assert np.abs(film.heat_balance_error).max() < 1e-3
+    # A surface that slows down stays longer under the heat.
+    assert (
+        films[0].highest_surface_temperatures[1, 6]
+        > films[0].highest_surface_temperatures[1, 0] + 3.0
+    )
+
+
+def test_heated_film_of_a_tooth_pair_has_the_sliding_of_its_mesh():
+    case = load_case("fzg-roughness").replace({"film.model": "moes"})
+    mesh, oil, steel = run(case).mesh, case.lubricant_properties, case.material_properties
+    film = moving_film(
+        mesh, oil, steel, steps=60, nodes=129, keep_every=0,
+        thermal=ThermalModel("ree-eyring", nodes_across=5),
+    )  # fmt: skip
+    # Tooth flanks roll at the pitch point; from there on that of the pinion is the faster one.
+    sliding = film.surface_speeds[0] - film.surface_speeds[1]
+    rolls = int(np.argmin(np.abs(sliding)))
+    assert sliding[-1] > 0.0 > sliding[0]
+    assert np.all(np.sign(film.traction[rolls + 2 :]) == 1.0)
+    assert np.all(np.sign(film.traction[3 : rolls - 1]) == -1.0)
+    assert np.abs(film.heat_balance_error).max() < 1e-3
+    cooler, slower = film.highest_surface_temperatures[:, 50]
+    assert slower > cooler + 2.0
+    assert film.highest_film_temperature[rolls] < oil.temperature + 5.0
+    i = 45
+    steady = solve_line_contact(
+        film.load_per_width[i], film.equivalent_radius[i], film.entrainment_speed[i], oil,
+        effective_modulus(steel, steel), nodes=257, thermal=film.thermal_model,
+        sliding_speed=sliding[i],
+    )  # fmt: skip
+    assert film.traction[i] == pytest.approx(steady.traction, rel=0.05)
+    assert film.central_film[i] == pytest.approx(steady.central_film, rel=0.05)
 
 
 def test_wrong_input_is_refused_with_the_remedy():

@@ -30,7 +30,9 @@ _LENGTH, _UNTOUCHED, _EMPTY = 5, 0.4, 0.6
 #: Points of the quadrature over the last step.
 _POINTS = 48
 #: Way over the margin after which the fields are cut off at its end.
-_CUT = 0.05
+_CUT = 0.1
+#: Decay of a wave along that leaves nothing of it.
+_FADED = 20.0
 #: Empty margins that a surface moves on in a step, above which no earlier heat is left.
 _MOST = 5
 
@@ -73,13 +75,16 @@ class SurfaceHistory:
         self.unit = math.sqrt(body.diffusivity) / body.thermal_conductivity
         self.waves, weights = depth_waves(*times)
         self.weights = self.unit * weights
-        self.numbers = 2.0 * math.pi * np.fft.rfftfreq(self.size, self.step)
+        numbers = 2.0 * math.pi * np.fft.rfftfreq(self.size, self.step)
+        # Shorter waves along have faded before they could be seen.
+        self.numbers = numbers[self.kappa * numbers**2 * times[0] < _FADED]
         node = np.arange(self.size)
         out = np.maximum(margin - node, node - margin - span) / margin
         past = np.clip((out - _UNTOUCHED) / (_EMPTY - _UNTOUCHED), 0.0, 1.0)
         self.window = np.cos(0.5 * math.pi * past) ** 2
         self.reach = margin * self.step
         self.fields: ComplexArray = np.zeros((self.waves.size, self.numbers.size), dtype=complex)
+        self.fading = self.waves[:, None] ** 2 + self.kappa * self.numbers**2
         self.heat, self.way = np.zeros(at.size), 0.0
         distances = np.rint(2.0 * (self.places[:, None] - self.edges[None, :])).astype(np.int64)
         self.furthest = int(np.max(np.abs(distances)))
@@ -92,7 +97,11 @@ class SurfaceHistory:
 
     def _transformed(self, heat: Array) -> ComplexArray:
         cells = np.sinc(self.numbers * self.step / (2.0 * math.pi))
-        return np.asarray(np.fft.rfft(self._cells(heat)) * cells)
+        return self._along(self._cells(heat)) * cells
+
+    def _along(self, values: Array) -> ComplexArray:
+        """Waves along the surface, those that last."""
+        return np.asarray(np.fft.rfft(values)[..., : self.numbers.size])
 
     def rest_on(self, heat: Array, speed: float) -> None:
         """Begin with the fields of a heat that has always been there, at a constant speed."""
@@ -115,7 +124,7 @@ class SurfaceHistory:
         kernel /= (2.0 * self.kappa * root)[:, None]
         size = kernel.shape[1]
         spread = np.fft.irfft(np.fft.rfft(kernel) * np.fft.rfft(self._cells(heat), size), size)
-        self.fields = np.fft.rfft(spread[:, : self.size] * self.window)
+        self.fields = self._along(spread[:, : self.size] * self.window)
         self.heat = heat.copy()
 
     def _recent(self, duration: float, speed: float, gain: float) -> tuple[Array, Array]:
@@ -144,39 +153,36 @@ class SurfaceHistory:
         self.part, self.duration = self.last / parts, duration
         self.speeds = speeds[1] - gain * self.part * (np.arange(parts)[::-1] + 0.5)
         response, begins = self._recent(duration, speeds[1], gain)
-        fields = self._before()
-        for i in range(parts):
-            fields = np.exp(-self._rate(i) * self.part) * (self._cut(fields) if i else fields)
+        fields, fade = self._before(), np.exp(-self.fading * self.part)
+        turns = np.exp(-1j * self.part * self.speeds[:, None] * self.numbers)
+        self.decays = [fade * turn for turn in turns]
+        for i, decay in enumerate(self.decays):
+            fields = decay * (self._cut(fields) if i else fields)
         earlier = np.fft.irfft(self.weights @ fields, self.size)
         return earlier[self.places] + begins @ self.heat, response
-
-    def _rate(self, part: int) -> ComplexArray:
-        """Rate at which waves along fade and turn, in a part of the step."""
-        turning = 1j * float(self.speeds[part]) * self.numbers
-        fading = self.kappa * self.numbers**2 + turning
-        return np.asarray(self.waves[:, None] ** 2 + fading, dtype=complex)
 
     def _before(self) -> ComplexArray:
         """Fields before the last part of the step from which heat is left under the contact."""
         return self.fields if self.last == self.duration else np.zeros_like(self.fields)
 
     def _cut(self, fields: ComplexArray) -> ComplexArray:
-        return np.asarray(np.fft.rfft(np.fft.irfft(fields, self.size) * self.window))
+        return self._along(np.fft.irfft(fields, self.size) * self.window)
 
     def end(self, heat: Array) -> None:
         """Take up the heat of the step that was begun."""
         old, new = self._transformed(self.heat), self._transformed(heat)
-        parts = self.speeds.size
-        shares = 1.0 - self.last / self.duration * np.linspace(1.0, 0.0, parts + 1)
+        shares = 1.0 - self.last / self.duration * np.linspace(1.0, 0.0, len(self.decays) + 1)
         self.fields, self.heat = self._before(), heat.copy()
-        for i in range(parts):
-            z = self._rate(i) * self.part
-            small, decay = np.abs(z) < 1e-3, np.exp(-z)
-            safe = np.where(small, 1.0, z)
-            begins = np.where(small, 0.5 - z / 3.0, (1.0 - decay * (1.0 + z)) / safe**2)
-            ends = np.where(small, 1.0 - 0.5 * z, (1.0 - decay) / safe) - begins
+        for i, decay in enumerate(self.decays):
+            z = (self.fading + 1j * float(self.speeds[i]) * self.numbers) * self.part
+            inverse = 1.0 / z
+            every = (1.0 - decay) * inverse
+            begins = (every - decay) * inverse
+            small = np.nonzero(np.abs(z) < 1e-3)
+            every[small], begins[small] = 1.0 - 0.5 * z[small], 0.5 - z[small] / 3.0
             first, last = (old + share * (new - old) for share in shares[i : i + 2])
-            self.fields = decay * self.fields + self.part * (begins * first + ends * last)
+            self.fields = decay * self.fields
+            self.fields += every * (self.part * last) + begins * (self.part * (first - last))
             self.way += abs(float(self.speeds[i])) * self.part / self.reach
             if self.way > _CUT:
                 self.fields, self.way = self._cut(self.fields), 0.0

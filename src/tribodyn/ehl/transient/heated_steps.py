@@ -76,7 +76,7 @@ class _MovingTemperatures(Temperatures):
         self.far = self.base
         steps = np.diff(inputs.time)
         times = [
-            (float(steps.min()) / 64.0, max(scale.radius**2 / body.diffusivity, float(steps.sum())))
+            (float(steps.min()) / 4.0, max(scale.radius**2 / body.diffusivity, float(steps.sum())))
             for body in model.bodies
         ]
         self.surfaces = [
@@ -159,10 +159,9 @@ class _HeatedContact:
         """A state as the steady solvers have it."""
         contact, n = self.contact, self.contact.nodes - 1
         oil = np.concatenate([contact.numbers.oil[:6], point[0], np.exp(point[1])])
-        X = np.linspace(*contact.domain, n + 1)
         return DiscreteContact(
-            n, contact.dx, X, state.P, state.H, 0.0, contact.numbers.lam * speed, oil,
-            int(state.instant.free), 0.0, 0.0, X,
+            n, contact.dx, contact.X, state.P, state.H, 0.0, contact.numbers.lam * speed, oil,
+            int(state.instant.free), 0.0, 0.0, contact.X,
         )  # fmt: skip
 
     def _solve_film(self, row: Array, past: Array, grid: DiscreteContact, state: State) -> State:
@@ -239,7 +238,8 @@ class _HeatedContact:
         raise _StepFailedError(
             f"film and temperatures did not settle in {self.model.passes} passes: in the last one "
             f"the film changed by {film:.2g} of it, the traction by {drag:.2g} and the temperature "
-            f"by {moved:.2g} K"
+            f"by {moved:.2g} K. A ThermalModel that yields or thins, with more passes or a larger "
+            "tolerance may settle"
         )
 
     def start(self, row: Array, steady: bool) -> None:

@@ -258,6 +258,11 @@ class MovingContact:
         """Width of an interval, in half widths."""
         return (self.domain[1] - self.domain[0]) / (self.nodes - 1)
 
+    @cached_property
+    def X(self) -> Array:
+        """Positions of the nodes, in half widths."""
+        return np.linspace(*self.domain, self.nodes)
+
     @property
     def flooded(self) -> bool:
         """Whether the first node carries the pressure of the inlet before it."""
@@ -395,7 +400,7 @@ class MovingContact:
             remedy = 'Use start = "steady", or impose the approach'
             raise InputError(what, "argument start", "an unloaded film carries no load", remedy)
         n, row = self.nodes - 1, self.table()[0]
-        X = np.linspace(*self.domain, n + 1)
+        X = self.X
         H = row[1] + 0.5 * row[3] * X**2
         for travel, profile in zip(self.inputs.travel, self.inputs.profiles, strict=True):
             if profile is not None:

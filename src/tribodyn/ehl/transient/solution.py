@@ -100,7 +100,7 @@ class TransientLineContact(Record):
         """One line with the main figures."""
         low, high = float(self.minimum_film.min()), float(self.central_film.max())
         return (
-            f"TransientLineContact({self.time.size - 1} steps over "
+            f"{type(self).__name__}({self.time.size - 1} steps over "
             f"{(self.time[-1] - self.time[0]) * 1e3:.4g} ms, imposed {self.impose}, minimum film "
             f"{low * 1e6:.4f} um, greatest central film {high * 1e6:.4f} um, "
             f"{self.position.size} nodes)"
