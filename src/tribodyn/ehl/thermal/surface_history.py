@@ -97,7 +97,7 @@ class SurfaceHistory:
 
     def _transformed(self, heat: Array) -> ComplexArray:
         cells = np.sinc(self.numbers * self.step / (2.0 * math.pi))
-        return self._along(self._cells(heat)) * cells
+        return np.asarray(self._along(self._cells(heat)) * cells)
 
     def _along(self, values: Array) -> ComplexArray:
         """Waves along the surface, those that last."""
