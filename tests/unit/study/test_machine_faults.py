@@ -342,3 +342,67 @@ def test_a_labelled_set_of_a_machine(tmp_path: Path) -> None:
     assert min(spread[2:]) > 1.01 * max(spread[:2])
     assert call(["recording", str(case), *options, "--out", str(tmp_path / "one.h5")]) == 0
     assert '"impact_force": 200.0' in (tmp_path / "one.json").read_text("utf-8")
+
+
+def rigid_shafts() -> Any:
+    """The same gears on rigid shafts, without excitation by the mesh."""
+    lines = [
+        line for line in GEARED.splitlines() if not line.startswith(("sections", "transmission"))
+    ]
+    return td.run(read_any_case("\n".join(lines)).replace({"operation.torque": "5 N*m"}))
+
+
+def test_a_loose_seat_lifts_once_a_turn() -> None:
+    """A piecewise linear support against a march of the equations by hand."""
+    run = rigid_shafts()
+    sound, structure, system = run.operation, run.structure, run.operation.system
+    torque = {**RIPPLE, "orders": [5.0], "torques": ["20 N*m"]}
+    loose = {"kind": "looseness", "bearing": "A", "stiffness_share": 0.25, "press_angle": "-91 deg"}
+
+    def motion_of(**faults: dict[str, Any]) -> Any:
+        stated = {f"faults.{n}.{k}": v for n, fault in faults.items() for k, v in fault.items()}
+        return machine_turning_motion(run.case.replace(stated), sound)
+
+    def forces_of(motion: Any) -> np.ndarray:
+        return np.asarray(motion.signal("bearings.A.force_-91deg")[0])
+
+    expected = forces_of(motion_of(motor=RIPPLE))
+    pressed = forces_of(motion_of(motor=RIPPLE, seat=loose))  # its load never falls to zero
+    np.testing.assert_allclose(pressed, expected, atol=1e-6)
+    motion = motion_of(motor=torque, seat=loose)
+    force = forces_of(motion)
+    assert 0.05 < np.mean(force < 0.0) < 0.95
+    # M q'' + C q' + K q = f, with the stiffness of the seat by the sign of its displacement
+    along = np.array([0.0, np.cos(np.radians(91.0)), -np.sin(np.radians(91.0)), 0.0, 0.0, 0.0])
+    row, contact = along @ structure.bearing("A"), system.contacts[0]
+    mesh = np.outer(contact.direction, contact.direction)
+    stiffness = system.stiffness + contact.stiffness * mesh
+    damping = system.damping + system.gyroscopic + contact.damping * mesh
+    inverse, place = np.linalg.inv(system.mass), structure.at("input", 0.0)[3]
+    step, per_turn = 0.02 / 1000, 1000
+    drive = np.outer(20.0 * np.cos(10 * np.pi * np.arange(2 * per_turn) / (2 * per_turn)), place)
+
+    def rate(state: np.ndarray, load: np.ndarray) -> np.ndarray:
+        q, v = np.split(state, 2)
+        lifted = 0.75 * 4e8 * min(float(row @ q), 0.0) * row
+        return np.concatenate([v, inverse @ (load - stiffness @ q - damping @ v + lifted)])
+
+    state, moved = np.concatenate([np.linalg.pinv(stiffness) @ system.force, 0.0 * row]), []
+    for turn in range(10):
+        for i in range(per_turn):
+            loads = [
+                system.force + drive[k % (2 * per_turn)] for k in (2 * i, 2 * i + 1, 2 * i + 2)
+            ]
+            a = rate(state, loads[0])
+            b = rate(state + 0.5 * step * a, loads[1])
+            c = rate(state + 0.5 * step * b, loads[1])
+            d = rate(state + step * c, loads[2])
+            if turn == 9:
+                moved.append(float(row @ state[: row.size]))
+            state = state + step / 6.0 * (a + 2.0 * b + 2.0 * c + d)
+    marched = 4e8 * (np.array(moved) - 0.75 * np.minimum(moved, 0.0))
+    lines = [2.0 * np.fft.rfft(x)[[5, 10, 15]] / x.size for x in (force, marched)]
+    np.testing.assert_allclose(*lines, atol=5e-4 * np.abs(lines[1]).max())
+    assert abs(lines[1][1]) > 0.02 * abs(lines[1][0])  # twice the order
+    with pytest.raises(InputError, match=r"faults\.f\.stiffness_share.*missing"):
+        case_with(f={"kind": "looseness", "bearing": "A"})

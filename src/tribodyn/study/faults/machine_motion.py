@@ -18,6 +18,11 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.faults.clock import MOST_CYCLES
 from tribodyn.study.faults.driven_shafts import drive_machine
 from tribodyn.study.faults.impact_transfer import FreeStructure, ImpactResponse, impact_response
+from tribodyn.study.faults.loose_seat import (
+    loose_seats,
+    with_lifted_forces,
+    with_loose_seats,
+)
 from tribodyn.study.faults.machine_section import faults_of_mesh
 from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines, turning_system_of
 from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
@@ -308,7 +313,9 @@ def machine_turning_motion(
         mesh_frequency = max(clock.cycles.values()) * clock.frequency
         _refuse_long_period(max(clock.cycles.values()), 1.0 / clock.frequency)
         structure = replace(sound.structure, machine=machine)
-        driven = drive_machine(structure, system_of(structure), case.faults)
+        seats = loose_seats(case, structure, sound.motion)
+        system = with_loose_seats(system_of(structure), seats)
+        driven = drive_machine(structure, system, case.faults)
         frequency = mesh_frequency / driven.cycles
         _refuse_long_period(driven.cycles, 1.0 / frequency)
         if frequency < clock.frequency:
@@ -325,7 +332,7 @@ def machine_turning_motion(
                 break
         for warning in model_warnings:
             warn(warning.code, warning.message)
-        motion = machine_motion(structure, response)
+        motion = with_lifted_forces(machine_motion(structure, response), response, seats)
         periods = round(clock.frequency / frequency)
         motion = replace(motion, cycles=periods * motion.cycles, frequency=frequency)
     tacho, seat = machine.operation.input, seat_accelerance(case)

@@ -8,8 +8,15 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean
-from tribodyn.model import number, text
-from tribodyn.study.faults.section import KINDS, FaultTable, fault_problems, located_in, read_fault
+from tribodyn.model import REQUIRED, choice, number, text
+from tribodyn.study.faults.section import (
+    KINDS,
+    MEANINGS,
+    FaultTable,
+    fault_problems,
+    located_in,
+    read_fault,
+)
 
 if TYPE_CHECKING:
     from tribodyn.faults import BearingForce, Fault, ShaftExcitation
@@ -43,12 +50,26 @@ class MachineFaultTable(FaultTable):
             ("bearing", "place", "impact_force"),
             (*_GEOMETRY, "contact_angle", "impact_duration", "slip"),
         ),
+        "looseness": (("bearing", "stiffness_share"), ("press_angle",)),
     }
+    kind: str = choice(
+        REQUIRED, {**MEANINGS, "looseness": "a seat that is softer while the shaft lifts from it"},
+        meaning="what it is",
+    )  # fmt: skip
     gear: str | None = text(None, meaning="gear that has it", example='"z1"')  # type: ignore[assignment]
     shaft: str | None = SHAFT
     bearing: str | None = text(None, meaning="bearing that has it", example='"A"')
     impact_force: float | None = _FORCE
     impact_duration: float | None = _DURATION
+    stiffness_share: float | None = number(
+        None, 0.0, 1.0, "a share", example="0.3",
+        meaning="radial stiffness of a lifted seat over that of the pressed one",
+    )  # fmt: skip
+    press_angle: float | None = number(
+        None, -2.0 * math.pi, 2.0 * math.pi, "one turn", unit="rad", display_unit="deg",
+        example='"-90 deg"', meaning="direction from y towards z in which the shaft presses on a "
+        "loose seat; that of its mean load by default",
+    )  # fmt: skip
 
 
 def name_of(reference: str, group: str) -> str:
@@ -85,7 +106,9 @@ def impossible_faults(case: MachineCase) -> list[tuple[str, Problem]]:
             for mesh in case.meshes
             if fault.gear is not None and name_of(fault.gear, "gears") in case._names(mesh)
         ]
-        if fault.bearing:
+        if fault.kind == "looseness":
+            checks = [partial(_check_seat, case, fault)]
+        elif fault.bearing:
             checks = [partial(bearing_impacts, case, fault)]
         elif fault.shaft:
             speed = case.machine().kinematics.shafts[name_of(fault.shaft, "shafts")].speed
@@ -101,6 +124,14 @@ def impossible_faults(case: MachineCase) -> list[tuple[str, Problem]]:
                     problems.append((f"faults.{name}{key}", problem))
                 break
     return problems
+
+
+def _check_seat(case: MachineCase, fault: MachineFaultTable) -> None:
+    """Raise InputError if a bearing has no seat that could be loose."""
+    bearing = case.bearings[name_of(fault.bearing or "", "bearings")]
+    if bearing.carrier is not None:
+        what, why = f"{fault.bearing} is on the pin of a planet", "It turns with the carrier"
+        raise InputError(what, Argument("bearing"), why, "Name a bearing of the housing")
 
 
 def check_shaft(fault: FaultTable, speed: float) -> None:
