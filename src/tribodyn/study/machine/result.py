@@ -13,12 +13,11 @@ from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.static.clearance import clearance_supports, without_clearance_supports
-from tribodyn.record import html_table
 from tribodyn.study.machine.motion import MachineMotion, machine_motion
 from tribodyn.study.machine.summary import summary_of
 from tribodyn.study.machine_studies.levels import MeshOrder, mesh_orders
+from tribodyn.study.pipeline.parts_result import PartsResult
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.study.pipeline.summary_figures import summary_rows
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.measurement import Recording
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.faults.machine_motion import MachineTurningMotion
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
@@ -142,7 +140,7 @@ class LoadResult:
 
 
 @dataclass(frozen=True, eq=False)
-class MachineResult:
+class MachineResult(PartsResult):
     """What :func:`tribodyn.run` returns for a machine.
 
     Parameters
@@ -253,54 +251,6 @@ class MachineResult:
             Scatter(noise, speed_fluctuation, tacho_jitter, seed),
         )
 
-    @cached_property
-    def _summary(self) -> dict[str, float]:
-        figures = dict(self.operation.figures)
-        for each in self.load_cases:
-            prefix = f"load_cases.{each.load.name}"
-            figures |= {f"{prefix}.{key}": value for key, value in each.figures.items()}
-        return figures
-
-    def summary(self) -> dict[str, float]:
-        """All figures as one flat dictionary: ``meshes.first.mesh_frequency``, ...
-
-        Returns
-        -------
-        dict of str to float
-            In SI; those of load cases begin with ``load_cases.NAME.``.
-        """
-        return dict(self._summary)
-
-    @property
-    def assumptions(self) -> tuple[Assumption, ...]:
-        """What was assumed because the case does not give it."""
-        return self.case.assumptions
-
-    def cite(self, style: str = "text") -> str:
-        """Name the papers behind the tooth contacts of this result.
-
-        Parameters
-        ----------
-        style : str
-            ``"text"`` or ``"bibtex"``.
-
-        Returns
-        -------
-        str
-
-        Raises
-        ------
-        InputError
-            If there is no such style.
-        """
-        from tribodyn.study.pipeline.citations import cite
-
-        names = self.case.meshes_with_teeth
-        texts = [cite(self.case.pair(name, self.operation.load), style) for name in names]
-        separator = "\n\n" if style == "bibtex" else "\n"
-        entries = [entry for text in texts for entry in text.split(separator) if entry.strip()]
-        return separator.join(dict.fromkeys(entries))
-
     def mounting_study(self, mesh: str) -> MisalignmentStudy:
         """Contact patterns of a hypoid mesh without load: as mounted, and as deflected.
 
@@ -343,15 +293,6 @@ class MachineResult:
     @cached_property
     def _mounting_studies(self) -> dict[str, MisalignmentStudy]:
         return {}
-
-    def to_xarray(self) -> Any:
-        """Motion at the operating point with units.
-
-        Returns
-        -------
-        xarray.Dataset
-        """
-        return self.motion.to_xarray()
 
     def mesh_spectra(self, mesh: str | None = None) -> Any:
         """Peak amplitudes of all signals at the operating point over the order of one mesh.
@@ -423,19 +364,6 @@ class MachineResult:
                 (place / "response.csv").write_text(frame.to_csv(), encoding="utf-8")
             write_report_of(self, place / "report.html")
         return target
-
-    def rows(self) -> list[tuple[str, str, str, str]]:
-        """Topic, key, value with unit and meaning of each figure of the summary.
-
-        Returns
-        -------
-        list of (str, str, str, str)
-        """
-        return summary_rows(self._summary)
-
-    def _repr_html_(self) -> str:
-        """Table of the summary by part for notebooks."""
-        return html_table(repr(self), ("part", "figure", "value", "meaning"), self.rows())
 
     def __repr__(self) -> str:
         """One line."""

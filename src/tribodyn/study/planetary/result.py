@@ -22,9 +22,8 @@ from tribodyn.machine import (
     planetary_plane_model,
     ring_sensor_signal,
 )
-from tribodyn.record import html_table
+from tribodyn.study.pipeline.parts_result import PartsResult
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.study.pipeline.summary_figures import summary_rows
 from tribodyn.study.planetary.stage_modes import StageModes
 from tribodyn.study.planetary.stage_signals import signals_along
 from tribodyn.study.planetary.summary import summary_of
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
     from tribodyn.machine import MeshPhases, PlanetaryModes
     from tribodyn.measurement import Recording
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.faults.planetary_motion import PlanetaryTurningMotion
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
@@ -181,7 +179,7 @@ class PlanetaryLoadResult:
 
 
 @dataclass(frozen=True, eq=False)
-class PlanetaryResult:
+class PlanetaryResult(PartsResult):
     """What :func:`tribodyn.run` returns for a planetary stage.
 
     Parameters
@@ -287,62 +285,6 @@ class PlanetaryResult:
             Scatter(noise, speed_fluctuation, tacho_jitter, seed),
         )
 
-    @cached_property
-    def _summary(self) -> dict[str, float]:
-        figures = dict(self.operation.figures)
-        for each in self.load_cases:
-            prefix = f"load_cases.{each.load.name}"
-            figures |= {f"{prefix}.{key}": value for key, value in each.figures.items()}
-        return figures
-
-    def summary(self) -> dict[str, float]:
-        """All figures as one flat dictionary: ``planets.low.load_factor``, ...
-
-        Returns
-        -------
-        dict of str to float
-            In SI; those of load cases begin with ``load_cases.NAME.``.
-        """
-        return dict(self._summary)
-
-    @property
-    def assumptions(self) -> tuple[Assumption, ...]:
-        """What was assumed because the case does not give it."""
-        return self.case.assumptions
-
-    def cite(self, style: str = "text") -> str:
-        """Name the papers behind the tooth contacts and the motion of this result.
-
-        Parameters
-        ----------
-        style : str
-            ``"text"`` or ``"bibtex"``.
-
-        Returns
-        -------
-        str
-
-        Raises
-        ------
-        InputError
-            If there is no such style.
-        """
-        from tribodyn.study.pipeline.citations import cite
-
-        texts = [cite(pair, style) for pair in self.case.pairs.values()]
-        separator = "\n\n" if style == "bibtex" else "\n"
-        entries = [entry for text in texts for entry in text.split(separator) if entry.strip()]
-        return separator.join(dict.fromkeys(entries))
-
-    def to_xarray(self) -> Any:
-        """Motion at the operating point with units.
-
-        Returns
-        -------
-        xarray.Dataset
-        """
-        return self.motion.to_xarray()
-
     def plot(self, figure: str = "planetary_stage") -> Any:
         """Draw a figure: ``planetary_stage``, ``planetary_forces``.
 
@@ -394,19 +336,6 @@ class PlanetaryResult:
                 (place / "response.csv").write_text(frame.to_csv(), encoding="utf-8")
             write_report_of(self, place / "report.html")
         return target
-
-    def rows(self) -> list[tuple[str, str, str, str]]:
-        """Topic, key, value with unit and meaning of each figure of the summary.
-
-        Returns
-        -------
-        list of (str, str, str, str)
-        """
-        return summary_rows(self._summary)
-
-    def _repr_html_(self) -> str:
-        """Table of the summary by part for notebooks."""
-        return html_table(repr(self), ("part", "figure", "value", "meaning"), self.rows())
 
     def __repr__(self) -> str:
         """One line."""

@@ -1,0 +1,95 @@
+"""What the results of machines and of planetary stages share: summary, sources, tables."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.record import html_table
+from tribodyn.study.pipeline.summary_figures import summary_rows
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.provenance import Assumption
+
+
+class PartsResult:
+    """Result of a case of parts at its operating point and under its load cases."""
+
+    case: Any
+    operation: Any
+    load_cases: tuple[Any, ...]
+
+    @property
+    def motion(self) -> Any:
+        """Motion at the operating point."""
+        return self.operation.motion
+
+    @cached_property
+    def _summary(self) -> dict[str, float]:
+        figures = dict(self.operation.figures)
+        for each in self.load_cases:
+            prefix = f"load_cases.{each.load.name}"
+            figures |= {f"{prefix}.{key}": value for key, value in each.figures.items()}
+        return figures
+
+    def summary(self) -> dict[str, float]:
+        """All figures as one flat dictionary: ``meshes.first.mesh_frequency``, ...
+
+        Returns
+        -------
+        dict of str to float
+            In SI; those of load cases begin with ``load_cases.NAME.``.
+        """
+        return dict(self._summary)
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """What was assumed because the case does not give it."""
+        assumptions: tuple[Assumption, ...] = self.case.assumptions
+        return assumptions
+
+    def cite(self, style: str = "text") -> str:
+        """Name the papers behind the tooth contacts of this result.
+
+        Parameters
+        ----------
+        style : str
+            ``"text"`` or ``"bibtex"``.
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        InputError
+            If there is no such style.
+        """
+        from tribodyn.study.pipeline.citations import cite
+
+        texts = [cite(pair, style) for _, pair, _ in self.case.mesh_pairs()]
+        separator = "\n\n" if style == "bibtex" else "\n"
+        entries = [entry for text in texts for entry in text.split(separator) if entry.strip()]
+        return separator.join(dict.fromkeys(entries))
+
+    def to_xarray(self) -> Any:
+        """Motion at the operating point with units.
+
+        Returns
+        -------
+        xarray.Dataset
+        """
+        return self.motion.to_xarray()
+
+    def rows(self) -> list[tuple[str, str, str, str]]:
+        """Topic, key, value with unit and meaning of each figure of the summary.
+
+        Returns
+        -------
+        list of (str, str, str, str)
+        """
+        return summary_rows(self._summary)
+
+    def _repr_html_(self) -> str:
+        """Table of the summary by part for notebooks."""
+        return html_table(repr(self), ("part", "figure", "value", "meaning"), self.rows())
