@@ -33,13 +33,7 @@ class PartsResult:
         return figures
 
     def summary(self) -> dict[str, float]:
-        """All figures as one flat dictionary: ``meshes.first.mesh_frequency``, ...
-
-        Returns
-        -------
-        dict of str to float
-            In SI; those of load cases begin with ``load_cases.NAME.``.
-        """
+        """All figures in SI by dotted key; those of load cases begin with ``load_cases.NAME.``."""
         return dict(self._summary)
 
     @property
@@ -49,22 +43,7 @@ class PartsResult:
         return assumptions
 
     def cite(self, style: str = "text") -> str:
-        """Name the papers behind the tooth contacts of this result.
-
-        Parameters
-        ----------
-        style : str
-            ``"text"`` or ``"bibtex"``.
-
-        Returns
-        -------
-        str
-
-        Raises
-        ------
-        InputError
-            If there is no such style.
-        """
+        """Name the papers behind the tooth contacts, as ``"text"`` or ``"bibtex"``."""
         from tribodyn.study.pipeline.citations import cite
 
         texts = [cite(pair, style) for _, pair, _ in self.case.mesh_pairs()]
@@ -73,21 +52,11 @@ class PartsResult:
         return separator.join(dict.fromkeys(entries))
 
     def to_xarray(self) -> Any:
-        """Motion at the operating point with units.
-
-        Returns
-        -------
-        xarray.Dataset
-        """
+        """Motion at the operating point with units."""
         return self.motion.to_xarray()
 
     def rows(self) -> list[tuple[str, str, str, str]]:
-        """Topic, key, value with unit and meaning of each figure of the summary.
-
-        Returns
-        -------
-        list of (str, str, str, str)
-        """
+        """Topic, key, value with unit and meaning of each figure of the summary."""
         return summary_rows(self._summary)
 
     def _repr_html_(self) -> str:
