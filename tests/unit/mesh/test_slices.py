@@ -196,6 +196,27 @@ def test_solved_films_of_slices_agree_with_their_formula():
     assert 0.85 < np.nanmin(part) < np.nanmax(part) < 1.15
 
 
+def test_the_last_slices_of_a_line_have_the_film_of_its_load():
+    """However small the helix angle: those that leave last carry more than the spur pair there."""
+    options = {"stiffness_model": "iso6336", "film_model": "newton", "friction_law": "none"}
+    options["film_options"] = {"stiffness": "none", "nodes": 129}
+
+    def least_at_the_end(helix):
+        mesh = table(helical(helix), steps=128, **options)
+        sliding, film = mesh.sliding_speed[mesh.in_contact], mesh.minimum_film[mesh.in_contact]
+        place = np.nanargmin(np.where(sliding > 0.999 * sliding.max(), film, np.inf))
+        names = "minimum_film", "load_per_width", "equivalent_radius", "entrainment_speed"
+        return [getattr(mesh, name)[mesh.in_contact][place] for name in names]
+
+    film, load, *motion = least_at_the_end(0.0)
+    least, heavy, *slice_motion = least_at_the_end(1e-3)
+    assert slice_motion == pytest.approx(motion, rel=1e-3)
+    assert heavy > 1.3 * load
+    modulus = effective_modulus(Material(), Material())
+    films = FILM_MODELS["newton"].films([load, heavy], *motion, OIL, modulus, nodes=129)
+    assert [film, least] == pytest.approx(films.minimum_film, rel=1e-3)
+
+
 def test_a_film_in_series_softens_the_mesh_of_slices():
     pair = helical()
     dry = table(pair)
