@@ -13,8 +13,9 @@ from tribodyn.dynamics.harmonic.newton import Residual, State, uncorrected
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.types import Array, ComplexArray, Index
 
-#: Refinement of the samples between which the motion is interpolated, and points of a polynomial.
-_REFINED, _POINTS = 4, 8
+#: Refinement of the samples between which the motion is interpolated, points of a polynomial, and
+#: phases that are evaluated together.
+_REFINED, _POINTS, _CHUNK = 4, 8, 1024
 #: Terms of the exponential series of a pulse within its step, of which the last is below 1e-15.
 _TERMS = 22
 
@@ -135,10 +136,11 @@ def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:
     if np.abs(place - nearest).max() < 1e-7:
         return np.asarray(fine[nearest.astype(np.int64) % count])
     first = np.floor(place).astype(np.int64) - _POINTS // 2 + 1
-    weights = _lagrange(place - first)
-    result = np.zeros((phase.size, amplitudes.shape[1]))
-    for point in range(_POINTS):
-        result += weights[:, point, None] * fine[(first + point) % count]
+    weights, result = _lagrange(place - first), np.zeros((phase.size, amplitudes.shape[1]))
+    for begin in range(0, phase.size, _CHUNK):
+        rows = slice(begin, begin + _CHUNK)
+        for point in range(_POINTS):
+            result[rows] += weights[rows, point, None] * fine[(first[rows] + point) % count]
     return result
 
 
