@@ -48,21 +48,24 @@ class Pins:
     def springs(self, force: dict[str, float]) -> tuple[Array, Array]:
         """Stiffness (n, n) and load (n,) of the pins, linear about their load by the meshes."""
         matrix, load = np.zeros((self.axes.size, self.axes.size)), np.zeros(self.axes.size)
+        if not self.clearance:
+            count = self.stiffness.size
+            for along in (self.axes.radial, self.axes.tangential):
+                matrix += (along.T * np.tile(self.stiffness, self.axes.bodies // count)) @ along
+            return matrix, (self.stiffness * self.ahead) @ self.axes.tangential[:count]
         pushed = sum(-force[mesh] * along.sum(axis=0) for mesh, along in self.axes.meshes.items())
         for law, first, at in zip(self.supports(), self.axes.first, self.axes.at, strict=True):
             x, y = np.asarray(pushed)[first : first + 2]
             on_pin = np.array([np.cos(at) * x + np.sin(at) * y, np.cos(at) * y - np.sin(at) * x])
             size, rows = float(np.hypot(*on_pin)), np.asarray(law.directions)
-            if self.clearance and not size:
+            if not size:
                 what, why = "pin_clearance without a load", "The springs are linear about the load"
                 raise InputError(what, Argument("pin_clearance"), why, "Give force_per_planet")
-            displacement = on_pin / law.stiffness
-            if size:
-                displacement = on_pin / size * (self.clearance + size / law.stiffness)
+            displacement = on_pin / size * (self.clearance + size / law.stiffness)
             tangent = law.tangent(displacement)
             matrix += rows.T @ tangent @ rows
-            moved = np.asarray(law.offset) + (displacement if self.clearance else 0.0)
-            load += rows.T @ (tangent @ moved - law.force(displacement) * bool(self.clearance))
+            moved = np.asarray(law.offset) + displacement
+            load += rows.T @ (tangent @ moved - law.force(displacement))
         return matrix, load
 
 
