@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from tribodyn.arrays.memo import Memo
-from tribodyn.arrays.products import times
 from tribodyn.dynamics.equations.clock import table_of
 from tribodyn.dynamics.equations.entry import (
     Entry,
@@ -194,7 +193,7 @@ class RowEvaluator:
         if values is None:
             return None
         onto = getattr(table, "onto", None)
-        values = values if onto is None else times(values, onto.T)
+        values = values if onto is None else values @ onto
         return values if values.shape[1] == size else None
 
     def is_smooth(self, entry: Entry) -> bool:

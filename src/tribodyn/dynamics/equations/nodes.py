@@ -225,14 +225,14 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
         for j, entry in enumerate(entries):
             if (same := _evaluated_before(entries, j)) is not None:
                 table[:, :, j] = table[:, :, same]
-            elif entry is not None:
+            elif entry is not None and (varies(entry) or take == rows.values):
                 table[:, :, j] = take(f"contacts[{j}].{name}", entry, size)[: len(table)]
         return _one_row(table[0, 0], shape) if still else table
 
     direction = vector("direction", rows.values)
     for j in np.flatnonzero(~unrepeated(direction, 2).any(axis=(0, 1, 3))):
         raise no_direction(f"contacts[{j}].direction")
-    gap = scalar("gap", rows.values)
+    gap, rub = scalar("gap", rows.values), vector("friction", rows.values)
     refuse_negative_gap(gap)
     return Nodes(
         phase=rows.nodes,
@@ -243,7 +243,9 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
         gap=gap,
         direction=direction,
         direction_slope=vector("direction", rows.derivatives),
-        force_direction=combined(np.add, direction, vector("friction", rows.values)),
+        force_direction=combined(np.add, direction, rub)
+        if np.any(unrepeated(rub, 2))
+        else direction,
         force=rows.values("force", system.force, size),
         weight=np.full(shape, 1.0 / rows.nodes.size),
         friction_direction=friction_directions(system, rows),

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -30,6 +30,9 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
 from tribodyn.dynamics.orbits.coordinates import static_start, structure_coordinates
 from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 #: Part of a singular value below which a direction depends on others; of an entry that is no jump.
 _RANK, _JUMP = 1e-10, 1e-5
@@ -81,6 +84,15 @@ class Breaks(NamedTuple):
     jump: Array  #: change of the force at the jump (b, s)
     correction: Array  #: correction of the sum of both samples (b, s)
     tangent: Array  #: its derivative by the motion at the jump (b, s, r)
+
+    def spread(self, steps: int) -> csr_matrix:
+        """Shares of the samples in the values at the jumps, (steps, b)."""
+        from scipy.sparse import csr_matrix
+
+        at = np.concatenate([self.step, (self.step + 1) % steps])
+        shares = np.concatenate([1.0 - self.fraction, self.fraction])
+        columns = np.tile(np.arange(self.step.size), 2)
+        return csr_matrix((shares, (at, columns)), (steps, self.step.size))
 
 
 @dataclass(frozen=True)

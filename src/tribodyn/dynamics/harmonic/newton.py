@@ -8,16 +8,13 @@ time integration of the linearized equations preconditions them, so that a few p
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
 from tribodyn.dynamics.harmonic.contact_equations import Breaks, ContactEquations, Law
 from tribodyn.types import Array, Mask
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
 
 #: Newton steps, halvings of a step, and steps over which the residual may rise.
 _LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
@@ -92,7 +89,7 @@ class Residual:
         stiffness = self.structure.contact_stiffness - state.law.stiffness
         damping = self.structure.contact_damping - state.law.damping
         breaks, damped = state.breaks, bool(np.any(damping))
-        spread: Any = _spread(breaks, len(state.y)) if breaks.step.size else None
+        spread: Any = breaks.spread(len(state.y)) if breaks.step.size else None
         gather: Any = None if spread is None else spread.T.tocsr()
 
         def product(motion: Array) -> Array:
@@ -115,16 +112,6 @@ class Residual:
         nearly = TangentMarch(self, state)
         solution, count = solve_linear(lambda x: product(nearly(x)), -state.residual, accuracy)
         return nearly(solution), count
-
-
-def _spread(breaks: Breaks, steps: int) -> csr_matrix:
-    """Shares of the samples in the values at the breaks, (steps, b)."""
-    from scipy.sparse import csr_matrix
-
-    at = np.concatenate([breaks.step, (breaks.step + 1) % steps])
-    shares = np.concatenate([1.0 - breaks.fraction, breaks.fraction])
-    columns = np.tile(np.arange(breaks.step.size), 2)
-    return csr_matrix((shares, (at, columns)), (steps, breaks.step.size))
 
 
 def _scatter(force: Array, breaks: Breaks, values: Array) -> None:

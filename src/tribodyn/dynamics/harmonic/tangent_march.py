@@ -70,9 +70,8 @@ def _tangents(residual: Residual, state: State) -> Array:
     tangents[..., :r] = structure.contact_stiffness - state.law.stiffness
     tangents[..., r:] = structure.contact_damping - state.law.damping
     if breaks.step.size:
-        part = breaks.fraction[:, None, None]
-        np.add.at(tangents[..., :r], breaks.step, (1.0 - part) * breaks.tangent)
-        np.add.at(tangents[..., :r], (breaks.step + 1) % steps, part * breaks.tangent)
+        tangent = breaks.tangent.reshape(breaks.step.size, -1)
+        tangents[..., :r] += (breaks.spread(steps) @ tangent).reshape(steps, s, r)
     return tangents
 
 

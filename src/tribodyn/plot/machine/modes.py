@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.machine.orders import COLORS
-from tribodyn.plot.machine.side_view import SideView, shaft_outline
+from tribodyn.plot.machine.side_view import SideView, joined_names, shaft_outline
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import GRID, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
@@ -116,6 +116,23 @@ def machine_modes(modes: MachineModes) -> Any:
     return figure(title, [*outlines, *traces], layout)
 
 
+def _equal_orders(diagram: MachineCampbell) -> dict[str, int]:
+    """Lines of the diagram by name; those of equal order, as of all meshes of a stage, are one."""
+    groups: dict[tuple[str, str, float], dict[str, int]] = {}
+    for number, (text, order) in enumerate(zip(diagram.excitation, diagram.order, strict=True)):
+        kind, _, part = text.partition(" ")
+        name, times, harmonic = part.partition(" x ")
+        key = kind, times + harmonic, round(float(order), 9)
+        groups.setdefault(key, {})[name] = number
+    lines = {}
+    for (kind, suffix, _), numbers in groups.items():
+        stages = {name.rpartition("_")[0] for name in numbers}
+        of_stage = kind == "mesh" and len(numbers) > 1 and len(stages) == 1
+        label = (of_stage and stages.pop()) or joined_names(list(numbers))
+        lines[f"{kind} {label}{suffix}"] = min(numbers.values())
+    return lines
+
+
 @drawing(
     "machine_campbell",
     heading="Campbell diagram of the machine",
@@ -138,9 +155,11 @@ def machine_campbell(diagram: MachineCampbell) -> Any:
             {**line(speed, values, f"mode {column + 1}", MUTED, unit=unit, width=1.2),
              "showlegend": False}
         )  # fmt: skip
-    names = list(dict.fromkeys(name.rpartition(" x ")[0] or name for name in diagram.excitation))
+    equal = _equal_orders(diagram)
+    names = list(dict.fromkeys(name.rpartition(" x ")[0] or name for name in equal))
     named: set[str] = set()
-    for name, values in zip(diagram.excitation, hertz, strict=True):
+    for name, number in equal.items():
+        values = hertz[number]
         group = name.rpartition(" x ")[0] or name
         mesh = " x " in name
         color = COLORS[names.index(group) % len(COLORS)] if mesh else GRID

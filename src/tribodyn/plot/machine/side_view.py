@@ -14,7 +14,7 @@ from tribodyn.plot.theme.labels import rounded
 from tribodyn.plot.theme.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from tribodyn.machine import Machine, Mesh, Shaft
     from tribodyn.types import Array
@@ -30,6 +30,8 @@ _AREA, _CHARACTER, _SHIFTS = (620.0, 420.0), 7.0, (0, 15, -15, 30, -30)
 _TEETH = (-0.66, -0.22, 0.22, 0.66)
 #: Part of the direction of an axis from which on it is drawn upright.
 _UPRIGHT = 0.7
+#: Distance of names that are drawn as one [px], and that along the axis of names of shafts.
+_NEAR = (4.0, 70.0)
 _STEEL, _SEAT = "#c9d1d9", "#f3e3c3"
 
 
@@ -284,15 +286,48 @@ def _names(view: SideView) -> list[dict[str, Any]]:
     for name, bearing in machine.bearings.items():
         color = {"size": 12, "color": PAIR_COLORS[0]}
         note(bearing.shaft, bearing.position, 0.0, name, font=color, yshift=levels[name])
-    return notes
+    return _without_overlap(notes, _scale(view) / _MM)
+
+
+def _without_overlap(notes: list[dict[str, Any]], scale: float) -> list[dict[str, Any]]:
+    """Names with those of parts in the same place joined, such as planets behind each other."""
+    joined: list[tuple[dict[str, Any], list[str]]] = []
+    for note in notes:
+        style = {key: value for key, value in note.items() if key not in ("x", "y", "text")}
+        reach = _NEAR[1] if "xanchor" in note else _NEAR[0]
+        for other, texts in joined:
+            near = abs(note["x"] - other["x"]) * scale < reach
+            near &= abs(note["y"] - other["y"]) * scale < _NEAR[0]
+            if near and style == {key: other.get(key) for key in style}:
+                other["x"] = min(other["x"], note["x"])
+                texts.append(note["text"])
+                break
+        else:
+            joined.append((note, [note["text"]]))
+    return [{**note, "text": joined_names(texts)} for note, texts in joined]
+
+
+def joined_names(names: Sequence[str]) -> str:
+    """Names in a list: ``pin1, pin3, low`` becomes ``pin1, 3, low``."""
+    groups: dict[str, list[str]] = {}
+    for name in (name.removeprefix("<b>").removesuffix("</b>") for name in names):
+        stem = name.rstrip("0123456789")
+        groups.setdefault(stem, []).append(name.removeprefix(stem))
+    text = ", ".join(f"{stem}{', '.join(numbers)}" for stem, numbers in groups.items())
+    return f"<b>{text}</b>" if names[0].startswith("<b>") else text
+
+
+def _scale(view: SideView) -> float:
+    """Pixels of a metre in the drawing."""
+    ends = np.array([view.place(name, view.reach[name], 0.0)[0] for name in view.axes]) / _MM
+    across = 2.0 * view.height + 0.1
+    return float(min(_AREA[0] / max(float(np.ptp(ends)), 0.1), _AREA[1] / across))
 
 
 def _levels(view: SideView) -> dict[str, int]:
     """Shift of the name of each bearing [px], so that long names of one shaft do not overlap."""
-    machine = view.machine
+    machine, scale = view.machine, _scale(view)
     ends = np.array([view.place(name, view.reach[name], 0.0)[0] for name in view.axes]) / _MM
-    across = 2.0 * view.height + 0.1
-    scale = min(_AREA[0] / max(float(np.ptp(ends)), 0.1), _AREA[1] / across)
     # Right end of the last name of a level; the name of a shaft ends left of it.
     right_ends = {
         (name, 0): scale * float(x.min()) for name, x in zip(view.axes, ends, strict=True)

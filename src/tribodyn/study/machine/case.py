@@ -140,7 +140,7 @@ class MachineCase(PartsCase):
         self._blanks = read_blanks(groups, problems)
         stages = read_stages(self.data, groups["gears"], problems, source)
         self.gears: dict[str, Gear] = _read(groups, "gears", read_gear, problems)
-        self._add_shafts(groups["shafts"], [table.carrier for table, *_ in stages.values()])
+        self._add_shafts(groups["shafts"], [table for table, *_ in stages.values()])
         self._add_material(groups["shafts"])
         self.shafts: dict[str, Shaft] = _read(groups, "shafts", read_shaft, problems)
         self.bearings: dict[str, Bearing] = _read(groups, "bearings", read_bearing, problems)
@@ -198,13 +198,13 @@ class MachineCase(PartsCase):
             self.gears |= parts["gears"]
             self._mesh_tables |= dict.fromkeys(parts["meshes"], stage.table)
 
-    def _add_shafts(self, shafts: dict[str, Any], carriers: Sequence[str]) -> None:
-        """A shaft that only its gears name is a rigid one, and so is a carrier."""
-        implied = [*(g.shaft for g in self.gears.values()), *carriers]
-        self.implied_shafts = tuple(
-            dict.fromkeys(name for name in implied if name not in shafts)
-        ) if not shafts else ()  # fmt: skip
-        shafts.update({name: {} for name in carriers if name not in shafts})
+    def _add_shafts(self, shafts: dict[str, Any], stages: Sequence[Any]) -> None:
+        """A shaft that only its gears name is a rigid one, and so are the members of a stage."""
+        gears = self.gears
+        members = [gears[n].shaft for t in stages for n in (t.sun, t.ring) if n in gears]
+        members += [table.carrier for table in stages]
+        implied = members if shafts else [*(gear.shaft for gear in gears.values()), *members]
+        self.implied_shafts = tuple(dict.fromkeys(name for name in implied if name not in shafts))
         shafts.update({name: {} for name in self.implied_shafts})
 
     def _add_material(self, shafts: dict[str, Any]) -> None:

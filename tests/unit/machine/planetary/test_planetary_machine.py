@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tribodyn.dynamics import natural_modes
+from tribodyn.dynamics import harmonic_balance, natural_modes
 from tribodyn.errors import InputError
 from tribodyn.machine import (
     Bearing,
@@ -27,6 +27,7 @@ from tribodyn.machine import (
     static_balance,
     system,
 )
+from tribodyn.study.machine.motion import machine_motion
 
 ANGLE, MODULE, FORCE = math.radians(24.6), 4e-3, 3000.0
 #: Stage of Lin and Parker (1999) [kg, N/m].
@@ -264,6 +265,52 @@ def test_two_stages_and_a_parallel_one_by_hand() -> None:
     )
     balance = static_balance(machine)
     assert balance.output_torque == pytest.approx(1e5 / ratio, rel=1e-6)
+
+
+def test_two_stages_in_a_row_move_with_the_lines_of_their_meshes() -> None:
+    """Linear meshes with errors: torques balance, and lines are those of one stage or the other."""
+    laws = {"stiffness": 4e8, "error": lambda phase: 2e-6 * np.cos(2.0 * np.pi * phase)}
+    meshes = {"sun_mesh": laws, "ring_mesh": laws}
+    stages = {
+        "first": PlanetaryStage("s1", "r1", "rotor", Gear("p", 0.0, 24, 0.1), 3, 6e-3, **meshes),
+        "second": PlanetaryStage("s2", "r2", "middle", Gear("p", 0.0, 21, 0.1), 3, 4e-3, **meshes),
+    }
+    machine = Machine(
+        shafts={"rotor": Shaft(mass=90.0, moment_of_inertia=6.0),
+                "middle": Shaft(mass=20.0, moment_of_inertia=1.0),
+                **{name: Shaft() for name in ("ring1", "ring2", "high")}},
+        gears={"s1": Gear("middle", 0.0, 24, 0.1), "r1": Gear("ring1", 0.0, -72, 0.1),
+               "s2": Gear("high", 0.0, 21, 0.1), "r2": Gear("ring2", 0.0, -63, 0.1)},
+        meshes={},
+        planets=stages,
+        bearings={"middle": Bearing("middle", 0.0, 1e9), "high": Bearing("high", 0.0, 1e9),
+                  "rotor": Bearing("rotor", 0.0, 1e9),
+                  **{n: Bearing(n, 0.0, 1e9, torsional_stiffness=1e8) for n in ("ring1", "ring2")}},
+        operation=Operation("rotor", "high", 12.0, 9e3),
+    )  # fmt: skip
+    assert machine.clock.cycles["first_sun1"] == 2  # (1 + 72/24) 63/72 = 7/2 cycles of the second
+    assert machine.clock.cycles["second_ring2"] == 7
+    structure = MachineStructure(static_balance(machine).linearized(), 0.02)
+    response = harmonic_balance(system(structure), machine.clock.frequency, steps=32)
+    assert response.converged
+    motion = machine_motion(structure, response)
+    forces = dict(zip(motion.mesh, motion.mesh_force.T, strict=True))
+    mean = {name: float(motion.mean(force)) for name, force in forces.items()}
+    torque = {}
+    for name, (sun, ring, module) in {"first": (24, 72, 6e-3), "second": (21, 63, 4e-3)}.items():
+        base = 0.5 * module * math.cos(math.radians(20.0))
+        suns, rings = (sum(mean[f"{name}_{m}{i}"] for i in (1, 2, 3)) for m in ("sun", "ring"))
+        torque[name] = (base * sun * suns, base * ring * rings)
+    carrier = 9e3
+    for name in stages:  # Willis: the sun takes 1/4 of the torque of the carrier, the ring the rest
+        assert torque[name] == pytest.approx((carrier / 4.0, carrier * 3.0 / 4.0), rel=1e-9)
+        carrier = torque[name][0]
+    assert carrier * machine.kinematics.shafts["high"].speed == pytest.approx(9e3 * 12.0, rel=1e-9)
+    lines = np.abs(motion.harmonics(motion.mesh_force, np.arange(1, 12)))
+    largest = lines.max(axis=1)
+    assert largest[[0, 2, 3, 4, 5, 7, 8, 9, 10]].max() < 1e-6 * largest[[1, 6]].min()
+    first = motion.mesh.index("first_sun1")
+    assert lines[6, first] > 1e-3 * lines[1, first]  # errors of the second stage reach the first
 
 
 def test_a_stage_that_does_not_work_is_refused_by_the_part() -> None:
