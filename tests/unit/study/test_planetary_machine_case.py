@@ -123,6 +123,9 @@ def test_the_wind_turbine_gearbox_runs() -> None:
     assert suns * base == pytest.approx(250e3 * 22 / 102, rel=2e-2)  # friction takes a part
     lost = sum(v for k, v in figures.items() if k.endswith(".friction_power") and "meshes" in k)
     assert figures["machine.friction_power"] == pytest.approx(lost)
+    lines = [trace.name for trace in td.plot.machine_campbell(result.campbell).data]
+    assert {name for name in lines if name.startswith("mesh")} == {"mesh last", "mesh main"}
+    assert lines.count("mesh main") == 3  # the harmonics of six meshes
 
 
 DOUBLE = """
@@ -229,6 +232,3 @@ def test_losses_of_stepped_planets(tmp_path: Path) -> None:
     assert figures["machine.efficiency"] == pytest.approx(1.0 - lost / power, rel=1e-6)
     assert 0.98 < figures["machine.efficiency"] < 1.0
     assert figures["planets.low.load_factor"] == pytest.approx(1.0, abs=1e-6)
-    lines = [trace.name for trace in td.plot.machine_campbell(result.campbell).data]
-    assert {name for name in lines if name.startswith("mesh")} == {"mesh last", "mesh main"}
-    assert lines.count("mesh main") == 3  # the harmonics of six meshes
