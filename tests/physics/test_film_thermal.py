@@ -295,6 +295,26 @@ def test_heated_slices_are_those_of_single_contacts(short_case, changes):
     np.testing.assert_allclose(friction[chosen], expected, rtol=0.05)
 
 
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+@pytest.mark.slow
+def test_films_of_sun_and_ring_meshes_are_heated():
+    few = {"friction.law": "ehl", "film.nodes": 65, "film.positions": 8, "film.stiffness": "none"}
+    stage = load_case("planetary-stage").replace({"load_cases": None})
+    hot, before = (
+        run(stage.replace({**few, "film.model": model})).summary()
+        for model in ("thermal", "newton")
+    )
+    ratios = {
+        mesh: np.array([hot[f"meshes.{mesh}.{n}"] / before[f"meshes.{mesh}.{n}"] for n in names])
+        for mesh in ("sun", "ring")
+        for names in [("mean_friction_coefficient", "minimum_film_thickness")]
+    }
+    # The flanks of planet and ring slide less, so that they make less heat.
+    assert np.all(ratios["sun"] < ratios["ring"])
+    assert np.all(ratios["ring"] < 1.0)
+    assert hot["machine.efficiency"] > before["machine.efficiency"]
+
+
 HEAT = {
     "lubricant.temperature_viscosity_coefficient": 0.05,
     "lubricant.thermal_conductivity": 0.13,
