@@ -26,7 +26,7 @@ from tribodyn.types import Array
 _CAP = 60.0
 #: Steps of a column at most when the sweep comes to it, change at which it stays [K], and shortest
 #: part of a step.
-_LOCAL, _STILL, _SHORTEST = 12, 0.01, 0.1
+_LOCAL, _STILL, _SHORTEST = 12, 0.1, 0.1
 #: Part of the temperatures of the sweep before that oil which flows back retains.
 _SWIRL = 0.4
 

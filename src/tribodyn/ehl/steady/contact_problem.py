@@ -33,6 +33,8 @@ def heat_factors(oil: Array, n: int) -> tuple[Array, Array]:
     columns = oil[6:].reshape(2, -1)
     if not columns.size:
         return np.zeros(n + 1), np.ones(n + 1)
+    if columns.shape[1] == n + 1:
+        return columns[0], columns[1]
     places = np.linspace(0.0, 1.0, columns.shape[1])
     viscosity, density = (np.interp(np.linspace(0.0, 1.0, n + 1), places, c) for c in columns)
     return viscosity, density

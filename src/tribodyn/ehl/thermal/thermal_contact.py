@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tribodyn.ehl.steady.contact_case import ContactCase
-from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact
-from tribodyn.ehl.steady.fallbacks import Verified, fluxes, solve_problem
+from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
+from tribodyn.ehl.steady.fallbacks import ENGINES, Verified, fluxes, solve_problem, verify
 from tribodyn.ehl.thermal.surfaces import slowest_speed, surface_response
 from tribodyn.ehl.thermal.thermal_model import MODELS, ThermalModel
 from tribodyn.errors import ComputationError, require_between
@@ -228,7 +228,7 @@ def solve_heated(
     problem = replace(
         problem, nodes=grid.n + 1, film_tolerance=0.0, profile=_profile(problem, grid)
     )
-    solved, point = cold, np.zeros((2, grid.n + 1))
+    solved, point = cold.outcome, np.zeros((2, grid.n + 1))
     prediction, traction, film = Prediction(), math.inf, math.inf
     for passes in range(1, model.passes + 1):
         moved = temperatures.solve(grid, _FIRST if passes == 1 else _OTHER)
@@ -242,11 +242,12 @@ def solve_heated(
         settled = flow < NO_CHANGE or max(film, drag, OF_FACTORS * flow) < model.tolerance
         if settled:
             temperatures.balance_heat(grid)
-            return _scaled(solved, cold, grid), temperatures.film(grid.n + 1, passes)
+            hot = _verified(solved, replace(problem, oil=grid.oil, start=grid), cold)
+            return hot, temperatures.film(grid.n + 1, passes)
         change = smooth(change * share, grid)
         last, point = point, prediction.next(point, change, weight)
         solved, point = _toward(replace(problem, start=grid), cold.method, last, point)
-        before, grid = grid, solved.outcome.grid
+        before, grid = grid, solved.grid
         assert grid is not None
         film = float(np.max(np.abs(films_of(grid) / films_of(before) - 1.0)))
     raise _not_settled(case, model, sliding_speed, (film, drag, moved))
@@ -254,12 +255,16 @@ def solve_heated(
 
 def _toward(
     problem: ContactProblem, method: str, last: Array, point: Array
-) -> tuple[Verified, Array]:
+) -> tuple[Outcome, Array]:
     """Solve the film with new factors, or with some between them and the last that have one."""
     while True:
         oil = np.concatenate([problem.oil[:6], point[0], np.exp(point[1])])
+        heated = replace(problem, oil=oil)
+        outcome = ENGINES[method](heated)
+        if outcome.converged:
+            return outcome, point
         try:
-            return solve_problem(replace(problem, oil=oil), method), point
+            return solve_problem(heated, method).outcome, point
         except ComputationError:
             if np.max(np.abs(point - last)) < NO_CHANGE:
                 raise
@@ -272,13 +277,18 @@ def films_of(grid: DiscreteContact) -> Array:
     return np.array([float(np.interp(0.0, grid.X, grid.H)), least])
 
 
-def _scaled(solved: Verified, cold: Verified, grid: DiscreteContact) -> Verified:
-    """A heated solution whose coarser grids have the films of the cold one, in proportion."""
-    cold_grid, films = cold.outcome.grid, np.array(cold.outcome.films)
+def _verified(solved: Outcome, problem: ContactProblem, cold: Verified) -> Verified:
+    """A heated solution, verified; the films of its coarser grids are in proportion to the cold."""
+    grid, cold_grid, films = solved.grid, cold.outcome.grid, np.array(cold.outcome.films)
+    assert grid is not None
     assert cold_grid is not None
-    hot, before = (float(np.interp(0.0, each.X, each.H)) for each in (grid, cold_grid))
-    scaled = tuple((films * (hot / before)).tolist())
-    return replace(solved, outcome=replace(solved.outcome, films=scaled))
+    check = verify(grid)
+    if check.complaint(1.05 * problem.flux_tolerance + 1e-9):
+        hot = solve_problem(problem, cold.method)
+        solved, check = hot.outcome, hot.check
+    central, before = (float(np.interp(0.0, each.X, each.H)) for each in (grid, cold_grid))
+    scaled = tuple((films * (central / before)).tolist())
+    return replace(cold, outcome=replace(solved, films=scaled), check=check)
 
 
 def smooth(change: Array, grid: DiscreteContact) -> Array:
