@@ -37,6 +37,14 @@ _GOALS = {
     ("multigrid", 1025): 20.0,
     ("multigrid", 4097): 50.0,
 }
+#: Goals for the median processor time [ms] of a heated contact, by shear model.
+_HEATED_GOALS = {
+    "newtonian": 40.0,
+    "ree-eyring": 40.0,
+    "carreau": 100.0,
+    "carreau-eyring": 100.0,
+    "bair-winer": 100.0,
+}
 _PLAIN = "plain NumPy"
 #: Tolerances that everyone stops at: relative change of the pressure, and of the flux.
 _TOLERANCE, _FLUX_TOLERANCE = 1e-4, 1e-3
@@ -145,18 +153,20 @@ def _growth(count: int, rounds: int) -> dict[str, float]:
 
 def _heated(rounds: int) -> dict[str, float]:
     """Processor time [ms] of a heated gear contact, the median over slide-to-roll ratios."""
-    oil, spent, ratios = from_library("80W"), {}, (0.0, 0.1, 0.5, 1.0)
-    for name in ("newtonian", "ree-eyring"):
-        contacts = [
-            partial(
-                solve_line_contact, 147802.0, 8e-3, 3.0722, oil, 2.2e11, nodes=513,
-                thermal=ThermalModel(name), sliding_speed=ratio * 3.0722,
-            )
+    oil, spent, ratios = from_library("80W"), {}, (0.0, 0.1, 0.5, 1.0, 1.5)
+    contact = partial(solve_line_contact, 147802.0, 8e-3, 3.0722, oil, 2.2e11, nodes=513)
+    for name in _HEATED_GOALS:
+        contacts = [contact]
+        contacts += [
+            partial(contact, thermal=ThermalModel(name), sliding_speed=ratio * 3.0722)
             for ratio in ratios
-        ]  # fmt: skip
+        ]
         times = quickest({name: lambda contact: contact()}, contacts, rounds)[name]
-        spent[name] = 1e3 * float(np.median(times))
-        print(f"Heated film, 513 nodes, {name}, CPU ms at SR {ratios}: {(1e3 * times).round(1)}")
+        spent[name] = 1e3 * float(np.median(times[1:]))
+        print(
+            f"Heated film, 513 nodes, {name}, CPU ms at SR {ratios}: {(1e3 * times[1:]).round(1)}"
+        )
+        print(f"  over the film at one temperature: {(times[1:] / times[0]).round(1)}")
     return spent
 
 
@@ -223,7 +233,7 @@ def main(words: Sequence[str] | None = None) -> None:
     ]
     goals.append(Goal("newton over plain NumPy", 100.0, ratio, "times", at_least=True))
     goals += [
-        Goal(f"heated film, {name}", 40.0, spent, "ms CPU", at_least=False)
+        Goal(f"heated film, {name}", _HEATED_GOALS[name], spent, "ms CPU", at_least=False)
         for name, spent in _heated(3).items()
     ]
     goals.append(

@@ -28,7 +28,7 @@ _LOG_POLE, _POLE = 9.67, 138.0
 _EXCESS, _SPARE = 1.0, 0.002
 #: Part of the flow that it drives above which the flow alone counts, part that does not matter, and
 #: how often the gradient is corrected.
-_DRIVEN, _NEGLIGIBLE, _BOUNDED = 0.2, 1e-6, 12
+_DRIVEN, _NEGLIGIBLE, _BOUNDED = 0.2, 1e-5, 12
 #: Flow by pressure over all flow that is lost in rounding.
 _ROUNDING = 1e-6
 #: Factors on density and flow beyond which the film is nonsense.
@@ -36,7 +36,7 @@ _LEAST_FLOW, LEAST_DENSITY = 1e-3, 0.3
 #: Greatest factor by which the flow is scaled.
 _SCALED = 10.0
 #: Change of a rate over it after which stresses and rates follow in proportion.
-_STEADY = 1e-6
+_STEADY = 1e-4
 #: Range of Carreau's law in exponents, on both sides, and intervals of its table for each.
 _RANGE, _FINE = 30.0, 32
 
