@@ -93,6 +93,20 @@ def test_a_ripple_is_in_the_motion_and_its_clock(healthy: Case) -> None:
         turning_clock(road.replace({"faults.road.duration": "60 s"}))
 
 
+def test_low_orders_of_the_acceleration_are_those_of_the_sound_motion(healthy: Case) -> None:
+    """Jumps of the friction must not alias into them."""
+    with pytest.warns(tribodyn.ModelWarning):
+        result = tribodyn.run(healthy.replace({**WHEEL, "faults.run-out.amplitude": "0 um"}))
+    fine, motion = result.response.fine, result.turning_motion
+    for name in ("pinion_x", "pinion_y"):
+        place = fine.position[:, result.response.names.index(name)]
+        frequency, lines = motion.harmonics(name)
+        for order in (1, 2, 3):
+            wave = fine.weight * np.exp(-2j * np.pi * order * fine.phase)
+            expected = -2.0 * (wave @ place) * (2.0 * np.pi * frequency[24 * order]) ** 2
+            assert abs(lines[24 * order] / expected - 1.0) < 0.02, (name, order)
+
+
 def test_measured_teeth_from_a_file(healthy: Case, tmp_path: Path) -> None:
     file = tmp_path / "teeth.csv"
     rows = ["tooth,diameter,deviation", "1,mm,um", "5,60,0", "5,90,4", "2,60,-1", "2,90,2"]

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 #: Steps of the search for each mesh cycle, tried in turn, and even samples of the motion.
 _STEPS, SAMPLES = (128, 256, 512), 512
+#: Mesh order up to which the acceleration is that of the positions; from half of it on in part.
+_SMOOTH = 64
 #: Change of the motion with half the steps, over its size, that is small enough, and the certified
 #: error that suffices beside it.
 _ACCURATE, _CERTIFIED = 2e-3, 1e-6
@@ -225,6 +227,18 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
     return _sampled(case, mesh, driven, response, result.mesh.mesh_frequency)
 
 
+def _accelerations(position: Array, sampled: Array, cycles: int, period: float) -> Array:
+    """Accelerations without what jumps of the friction alias into the low orders."""
+    lines = np.fft.rfft(sampled, axis=0)
+    number = np.arange(len(lines))
+    rates = 2.0 * np.pi * number / period
+    smooth = -np.fft.rfft(position, axis=0) * rates[:, None] ** 2
+    # Positions are exact at low orders, samples of the acceleration hold the highest.
+    share = np.clip(2.0 * number / (_SMOOTH * cycles) - 1.0, 0.0, 1.0)[:, None]
+    blended = smooth + 0.5 * (1.0 - np.cos(np.pi * share)) * (lines - smooth)
+    return np.asarray(np.fft.irfft(blended, len(sampled), axis=0))
+
+
 def _sampled(
     case: Case, mesh: TurningMesh, driven: DrivenSystem, response: Response, mesh_frequency: float
 ) -> TurningMotion:
@@ -241,11 +255,12 @@ def _sampled(
             samples = samples + lead[:, None] * driven.rotation
         return np.asarray(samples)
 
+    position = over(fine.position, 0)
     return TurningMotion(
         time=at * period,
-        position=over(fine.position, 0),
+        position=position,
         velocity=over(fine.velocity, 1),
-        acceleration=over(fine.acceleration, 2),
+        acceleration=_accelerations(position, over(fine.acceleration, 2), cycles, period),
         mesh_force=over(fine.contact_force.sum(axis=1)),
         transmission_error=over(fine.deflection[:, 0]) - 0.5 * case.backlash,
         names=response.names,
