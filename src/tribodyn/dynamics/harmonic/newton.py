@@ -20,6 +20,8 @@ from tribodyn.types import Array, Mask
 _LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
 #: Accuracy of a linear solution and its largest number of vectors.
 _LINEAR, _VECTORS = 1e-4, 120
+#: Residual over the size of the motion that is rounding.
+_ROUNDING = 3e-14
 
 
 class State(NamedTuple):
@@ -104,6 +106,8 @@ class Residual:
 
     def correction(self, state: State, accuracy: float = _LINEAR) -> tuple[Array, int]:
         """Newton step of a motion, and the number of products that it took."""
+        if np.linalg.norm(state.residual, axis=1).max(initial=0.0) <= _ROUNDING * state.size:
+            return -state.residual, 0  # rounding: a body that nothing holds would magnify it
         product = self.derivative(state)
         if self.structure.modes is None:
             return solve_linear(product, -state.residual, accuracy)
