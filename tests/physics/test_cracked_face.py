@@ -8,6 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from references.cracked_solid import COMPLIANCE, CRACK_END, FACE
+from references.cracked_tooth import RADII
+from references.gear_compliance import MODULUS, POISSON, outline_of
 from tribodyn.arrays.bspline import bspline_integrals
 from tribodyn.errors import InputError
 from tribodyn.faults import Crack, crack_compliance, crack_influence, turning_mesh
@@ -78,6 +81,23 @@ def test_slices_of_a_crack_at_either_end_mirror_each_other() -> None:
     np.testing.assert_allclose(at_ends[0], at_ends[1][::-1, ::-1], atol=1e-9 * at_ends[0].max())
     own = at_ends[0].sum(axis=(2, 3)).diagonal()
     assert own[0] > 3.0 * own[4] > 0.0  # where the crack is, the tooth is softer
+
+
+@pytest.mark.slow
+def test_crack_at_one_end_against_wedges() -> None:
+    outline = outline_of("type C pinion")
+    gear = SpurGear(
+        teeth=outline.teeth, normal_module=1e-3 * outline.module, face_width=1e-3 * FACE[-1],
+        normal_pressure_angle=math.radians(20.0), profile_shift_coefficient=outline.shift,
+        tip_diameter=2e-3 * outline.tip_radius, bore_diameter=2e-3 * outline.bore_radius,
+    )  # fmt: skip
+    material = Material(youngs_modulus=1e6 * MODULUS, poissons_ratio=POISSON)
+    added = crack_influence(
+        gear, material, 2.5e-3, (0.0, 1e-3 * CRACK_END), root_tangent=math.radians(30.0)
+    )
+    radius = 1e-3 * np.array(RADII)
+    computed = 1e12 * np.interp(radius, added.curvature_radius, under_even_load(added))
+    np.testing.assert_allclose(computed, COMPLIANCE, rtol=0.04)
 
 
 def test_what_a_crack_along_the_face_needs() -> None:
