@@ -97,6 +97,9 @@ class TurningMesh(Record):
         Force over the compression, over the phase of all turns.
     cycles : int
         Mesh cycles of all turns.
+    error : callable, optional
+        Deviations as an error of the mesh over the phase of all turns [m], where no tooth has a
+        gap.
     """
 
     phase: Array = quantity("phase", unit="1", axis=True)
@@ -107,7 +110,6 @@ class TurningMesh(Record):
     face_load: Array = quantity("tooth_pair", "face_position", unit="1")
     force_law: MeshForceLaw
     cycles: int = fact()
-    #: Deviations as an error of the mesh over the phase of all turns [m], where no tooth has a gap.
     error: Callable[[Array | float], Array] | None = None
 
     @property

@@ -87,7 +87,7 @@ class FittedTable:
 
 
 def _even_places(count: int, dimensions: int) -> Array:
-    """Places (d, n) in the unit cell, denser near its sides: the sequence of Roberts (2018)."""
+    """Places (d, n) in the unit cell, denser near its sides: a recurrence of golden ratios."""
     golden = 2.0
     for _ in range(40):
         golden = (1.0 + golden) ** (1.0 / (dimensions + 1.0))
