@@ -196,7 +196,7 @@ class ContactEquations:
         after = (step + 1) % self.steps
         begin, end = clearance[step, contact, spring], clearance[after, contact, spring]
         fraction = begin / (begin - end)
-        lasting = _lasting((step, contact, spring), fraction, inside.shape)
+        touch = _touch_factor((step, contact, spring), fraction, inside.shape)
         rows = self.rows.at(step)
         each = np.arange(step.size)
 
@@ -215,7 +215,7 @@ class ContactEquations:
         damped = np.where(steady, 0.0, of_contact(rows.nodes.damping))
         jump = opening * damped * speed
         bend = opening * edge * rows.stiffness[each, contact, spring] * (end - begin)
-        bernoulli = fraction * (fraction - 1.0) + lasting / 6.0
+        bernoulli = fraction * (fraction - 1.0) + touch / 6.0
         total = (0.5 - fraction) * jump + 0.5 * bernoulli * bend
         slope = edge * (jump - (fraction - 0.5) * bend) / (end - begin)
         push = -law.push[step if len(law.push) > 1 else 0 * step, contact]
@@ -223,7 +223,9 @@ class ContactEquations:
         return Breaks(step, fraction, jump[:, None] * push, total[:, None] * push, tangent)
 
 
-def _lasting(crossing: tuple[Index, Index, Index], fraction: Array, shape: Sequence[int]) -> Array:
+def _touch_factor(
+    crossing: tuple[Index, Index, Index], fraction: Array, shape: Sequence[int]
+) -> Array:
     """Factor of each crossing that vanishes with a side that lasts for a single sample."""
     # Without it the correction of a spring that just touches would begin with a jump.
     step, *spring = crossing
@@ -264,10 +266,10 @@ def contact_equations(
     system: System,
     structure: ClosedStructure,
     steps: int,
-    known: ContactEquations | None = None,
+    template: ContactEquations | None = None,
 ) -> ContactEquations:
     """Sample the contacts of a system at ``steps`` equal steps of the clock."""
-    # known: on other steps, with the same events.
+    # template: on other steps, with the same events.
     every = system_events(system)
     nodes = evaluate_rows(system, PointEvaluator(np.arange(steps) / steps, every))
     inverse, bases = structure.coordinates.inverse, (structure.along, structure.push)
@@ -284,8 +286,8 @@ def contact_equations(
             *(values[:, 0] for values in springs(part)),
         )
 
-    if known is not None:
-        return replace(known, rows=rows(nodes), steps=steps)
+    if template is not None:
+        return replace(template, rows=rows(nodes), steps=steps)
     points = np.array(every)
     before, after = (
         evaluate_rows(system, PointEvaluator(points, every, before=side)) for side in (True, False)

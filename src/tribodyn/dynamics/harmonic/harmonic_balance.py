@@ -72,9 +72,9 @@ class Prepared:
         """Residual on a number of equal steps."""
         if steps not in self.samples:
             finer = self.samples.get(2 * steps)
-            known = next(iter(self.samples.values()), None)
+            template = next(iter(self.samples.values()), None)
             self.samples[steps] = (
-                contact_equations(self.system, self.structure, steps, known)
+                contact_equations(self.system, self.structure, steps, template)
                 if finer is None
                 else finer.coarser()
             )

@@ -101,10 +101,10 @@ class _MovingTemperatures(Temperatures):
         first, second = speeds[1].tolist()
         self.case = replace(self.case, entrainment_speed=0.5 * (first + second))
         self.oil = self.oil._replace(speed_1=first, speed_2=second)
-        both = zip(self.surfaces, np.stack(speeds).T.tolist(), strict=True)
-        begun = [surface.begin(duration, tuple(ends)) for surface, ends in both]
-        self.base = np.ascontiguousarray(self.far + np.stack([rise for rise, _ in begun]))
-        self.responses = begun[0][1], begun[1][1]
+        pairs = zip(self.surfaces, np.stack(speeds).T.tolist(), strict=True)
+        starts = [surface.begin(duration, tuple(ends)) for surface, ends in pairs]
+        self.base = np.ascontiguousarray(self.far + np.stack([rise for rise, _ in starts]))
+        self.responses = starts[0][1], starts[1][1]
         mass = np.stack([w * e.mass for w, e in zip(weights[1:], earlier, strict=True)])
         temperature = np.stack([each.temperature for each in earlier])
         self.storage = self.storage._replace(

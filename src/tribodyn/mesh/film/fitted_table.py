@@ -72,12 +72,12 @@ class FittedTable:
             self._cells[key] = self._fitted(self._powers(places, key), rows, tips)
 
     def _fitted(self, powers: Array, rows: Array, tips: Array) -> Array:
-        known = np.isfinite(rows).all(axis=0)
+        solved_places = np.isfinite(rows).all(axis=0)
         wave = np.stack([np.cos(2.0 * np.pi * tips), np.sin(2.0 * np.pi * tips)])
-        terms = np.concatenate([powers, wave])[:, known]
-        if known.sum() < _FEWEST * len(terms):
+        terms = np.concatenate([powers, wave])[:, solved_places]
+        if solved_places.sum() < _FEWEST * len(terms):
             return np.full((len(rows), len(powers)), np.nan)
-        fit = np.linalg.lstsq(terms.T, rows[:, known].T, rcond=_FAINT)[0]
+        fit = np.linalg.lstsq(terms.T, rows[:, solved_places].T, rcond=_FAINT)[0]
         return np.asarray(fit[: len(powers)].T)
 
     def _powers(self, places: Array, cell: tuple[int, ...]) -> Array:
