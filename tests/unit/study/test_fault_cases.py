@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from copy import copy
 from pathlib import Path
 
 import numpy as np
@@ -220,8 +221,11 @@ def test_recordings_are_sampled_motions(result: Result, tmp_path: Path) -> None:
     assert truth["fault"] == "crack"
     with pytest.raises(InputError, match="no ending of a recording"):
         noisy.save(tmp_path / "a.xyz")
+    fresh = copy(result)
+    vars(fresh).pop("turning_motion", None)
     with pytest.raises(InputError, match="The sensors are pinion_x"):
-        result.recording("pinion_z", 0.5)
+        fresh.recording("pinion_z", 0.5)
+    assert "turning_motion" not in vars(fresh), "a wrong name does not wait for the motion"
     with pytest.raises(InputError, match="16 to"):
         result.recording("pinion_y", 1e-4)
 

@@ -306,6 +306,20 @@ def _try(
 
 
 @nb.njit(**INNER)
+def _crossing(contacts: Contacts, w: Buffers, spring: Index, tau: float) -> tuple[float, float]:
+    """Fraction at which a spring crosses on the parabola through three nodes, and its slope."""
+    j, k = spring[0], spring[1]
+    first, middle = _clear(contacts, w, 0, j, k), _clear(contacts, w, 1, j, k)
+    last = _clear(contacts, w, 2, j, k)
+    square = 2.0 * first - 4.0 * middle + 2.0 * last
+    line = -3.0 * first + 4.0 * middle - last
+    root = np.sqrt(max(line * line - 4.0 * square * first, 0.0))
+    # The smaller root; the slope there is that of the falling side.
+    x = 2.0 * first / (root - line) if first > 0.0 and root > line else -1.0
+    return tau + x * (1.0 - tau), -max(root, 1e-300) / (1.0 - tau)
+
+
+@nb.njit(**INNER)
 def _divide(
     modes: Modes, contacts: Contacts, table: Array, width: float, weights: Weights, w: Buffers,
     start: Array, scale: float, reach: float, trace: Trace, sums: Array,
@@ -325,12 +339,14 @@ def _divide(
             start[:] = w.motion[2 * r :]
             return 0
         low, high = tau, 0.5 * (1.0 + tau) if middle < edge else 1.0
-        above, below = np.inf, middle if middle < edge else last
-        # Regula falsi after Illinois; the clearance at the lower end is that of the last change.
-        for round_ in range(_BISECTIONS):
+        if middle < edge:
+            _clearance(contacts, w, 1, worst)
+        at, slope = _crossing(contacts, w, worst, tau)
+        if not low < at < high:
             at = 0.5 * (low + high)
-            if above < np.inf:
-                at = low + (high - low) * above / (above - below)
+        # Secants within the bracket, the first one along the parabola.
+        previous, before = -1.0, 0.0
+        for _ in range(_BISECTIONS):
             if not _try(
                 modes, contacts, table, tau, at, (at - tau) * width, weights, w, start, scale
             ):
@@ -338,12 +354,13 @@ def _divide(
             clear = _clearance(contacts, w, 2, worst)
             if abs(clear) <= _TOUCHING * reach or high - low < 1e-14:
                 break
-            if clear > 0.0:
-                low, above = at, clear
-                below *= 0.5 if round_ > 1 else 1.0
-            else:
-                high, below = at, clear
-                above *= 0.5 if round_ > 1 else 1.0
+            low, high = (at, high) if clear > 0.0 else (low, at)
+            if previous >= 0.0 and (clear - before) * (at - previous) < 0.0:
+                slope = (clear - before) / (at - previous)
+            previous, before = at, clear
+            at -= clear / slope
+            if not low < at < high:
+                at = 0.5 * (low + high)
         _accept(modes, weights, w, (at - tau) * width, sums)
         start[:] = w.motion[2 * r :]
         tau = at

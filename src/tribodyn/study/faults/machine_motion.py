@@ -25,6 +25,7 @@ from tribodyn.study.faults.loose_seat import (
 )
 from tribodyn.study.faults.machine_section import faults_of_mesh
 from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines, turning_system_of
+from tribodyn.study.faults.recording import unlisted_sensor
 from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
 from tribodyn.types import Array, ComplexArray
 
@@ -186,8 +187,7 @@ def read_sensor(motion: MachineTurningMotion, sensor: str) -> SensorPlace:
             why = "There is no housing, and no seat that moves"
             remedy = 'Give seat_mass and seat_frequency in [dynamics], such as "10 kg" and "2 kHz"'
             raise InputError(what, "argument sensor", why, remedy)
-    why, remedy = f"The sensors are {', '.join(motion.sensors)}", "Name one of these"
-    raise InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
+    raise unlisted_sensor(sensor, motion.sensors)
 
 
 def _direction(axis: str) -> Array | None:

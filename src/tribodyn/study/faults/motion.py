@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from tribodyn.errors import InputError, collected, warn
+from tribodyn.errors import collected, warn
 from tribodyn.faults import BearingDefect
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.faults.clock import turning_clock
+from tribodyn.study.faults.recording import require_sensor
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import PreparedRun
 
+#: Signals of a mesh.
+MESH_SENSORS = ("mesh_force", "transmission_error")
 #: Steps of the search for each mesh cycle, tried in turn, and even samples of the motion.
 _STEPS, SAMPLES = (128, 256, 512), 512
 #: Mesh order up to which the acceleration is that of the positions; from half of it on in part.
@@ -74,16 +77,14 @@ class TurningMotion(Record):
     @property
     def sensors(self) -> tuple[str, ...]:
         """Signals of :meth:`signal`."""
-        return (*self.names, "mesh_force", "transmission_error")
+        return (*self.names, *MESH_SENSORS)
 
     def signal(self, sensor: str) -> tuple[Array, str]:
         """Return acceleration of a coordinate, mesh force or transmission error, with its unit."""
         if sensor in self.names:
             unit = "rad/s^2" if "_theta" in sensor else "m/s^2"
             return self.acceleration[:, self.names.index(sensor)], unit
-        if sensor not in self.sensors:
-            why, remedy = f"The sensors are {', '.join(self.sensors)}", "Name one of these"
-            raise InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
+        require_sensor(sensor, self.sensors)
         return getattr(self, sensor), "N" if sensor == "mesh_force" else "m"
 
     def impacts(

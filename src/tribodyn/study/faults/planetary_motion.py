@@ -20,6 +20,7 @@ from tribodyn.study.faults.driven_shafts import drive_stage
 from tribodyn.study.faults.machine_motion import repeated, seat_accelerance
 from tribodyn.study.faults.machine_section import OF_SHAFTS, name_of
 from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines
+from tribodyn.study.faults.recording import unlisted_sensor
 from tribodyn.study.machine.first_look import warn_of_orders
 from tribodyn.types import Array, ComplexArray
 
@@ -108,8 +109,7 @@ class PlanetaryTurningMotion:
                 what, why = "the ring is rigid at its sensor", "Nothing accelerates there"
                 remedy = "Give seat_mass and seat_frequency in [dynamics]"
                 raise InputError(what, "argument sensor", why, remedy)
-            why, remedy = f"The sensors are {', '.join(self.sensors)}", "Name one of these"
-            raise InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
+            raise unlisted_sensor(sensor, self.sensors)
         count, motion = SAMPLES * self.repeat, self.motion
         rounds = self.cycles // self.repeat
         if sensor.startswith("planet_"):

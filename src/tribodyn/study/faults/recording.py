@@ -71,6 +71,18 @@ class PeriodicMotion(Protocol):
         """What a sensor receives of a damaged bearing, the shaft or bearing of which is named."""
 
 
+def unlisted_sensor(sensor: str, sensors: Sequence[str]) -> InputError:
+    """Error of a sensor that a motion does not have."""
+    why, remedy = f"The sensors are {', '.join(sensors)}", "Name one of these"
+    return InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
+
+
+def require_sensor(sensor: str, sensors: Sequence[str]) -> None:
+    """Refuse a sensor that a motion does not have."""
+    if sensor not in sensors:
+        raise unlisted_sensor(sensor, sensors)
+
+
 def recording_of(
     motion: PeriodicMotion,
     defects: Sequence[tuple[str, BearingImpacts]],

@@ -176,9 +176,12 @@ class Result(Computed):
         ...     "faults.crack.tooth": 1, "faults.crack.depth": "1 mm"})
         >>> tribodyn.run(case).recording("pinion_y", 1.0, noise=0.5)  # doctest: +SKIP
         """
-        from tribodyn.study.faults.recording import Scatter, recording_of
+        from tribodyn.study.faults.motion import MESH_SENSORS
+        from tribodyn.study.faults.recording import Scatter, recording_of, require_sensor
         from tribodyn.study.faults.section import bearing_defects
 
+        for name in [sensor] if isinstance(sensor, str) else sensor:  # before the longest part
+            require_sensor(name, (*self.response.names, *MESH_SENSORS))
         return recording_of(
             self.turning_motion,
             tuple(bearing_defects(self.case).values()),
