@@ -131,14 +131,11 @@ def run(case: Case | PartsCase | str | os.PathLike[str], progress: Progress = SI
     >>> result = run("fzg-roughness")  # doctest: +SKIP
     """
     from tribodyn.study import run as compute
-    from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.machine.run import run_machine
-    from tribodyn.study.planetary.case import PlanetaryCase
-    from tribodyn.study.planetary.run import run_planetary
+    from tribodyn.study.machine.user_tables import PartsCase
 
     ready: Any = load_case(case) if isinstance(case, (str, os.PathLike)) else case
-    if isinstance(ready, PlanetaryCase):
-        return run_planetary(ready, progress, stacklevel=3)
-    if isinstance(ready, MachineCase):
-        return run_machine(ready, progress, stacklevel=3)
+    if isinstance(ready, PartsCase):
+        from tribodyn.study.planetary.run import run_parts
+
+        return run_parts(ready, progress, stacklevel=3)
     return compute(ready, progress, stacklevel=3)

@@ -224,9 +224,9 @@ def _recorder(case: Case | PartsCase, sensor: str) -> Callable[[float, float, Sc
     from tribodyn.study.machine.user_tables import PartsCase
 
     if isinstance(case, PartsCase):
-        from tribodyn.cases.load import run
+        from tribodyn.study.planetary.run import run_parts
 
-        result: Any = run(case.replace({"load_cases": None}))
+        result: Any = run_parts(case.replace({"load_cases": None}))
         return lambda duration, rate, draw: result.recording(
             sensor, duration, rate, **draw._asdict()
         )

@@ -12,8 +12,9 @@ from tribodyn.errors import collected, frames
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.planetary.pins import motion_in_clearance
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.load_cases import LoadCase
-from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
+from tribodyn.study.machine.run import MeshWarning, run_machine, warn_of_meshes
 from tribodyn.study.pipeline.run import rehearse
 from tribodyn.study.planetary.case import PlanetaryCase
 from tribodyn.study.planetary.motion import planetary_motion
@@ -28,6 +29,18 @@ from tribodyn.study.planetary.stage import (
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
+    from tribodyn.study.machine.result import MachineResult
+    from tribodyn.study.machine.user_tables import PartsCase
+
+
+def run_parts(
+    case: PartsCase, progress: Progress = SILENT, *, stacklevel: int = 2
+) -> MachineResult | PlanetaryResult:
+    """Compute a machine or a planetary stage."""
+    if isinstance(case, PlanetaryCase):
+        return run_planetary(case, progress, stacklevel=stacklevel + 1)
+    assert isinstance(case, MachineCase)
+    return run_machine(case, progress, stacklevel=stacklevel + 1)
 
 
 def run_planetary(
