@@ -1,10 +1,13 @@
 """Closed forms, conservation laws and observed orders of the dynamics engine."""
 
+import re
+
 import numpy as np
 import pytest
 
 from known_systems import (
     BASE_RADIUS,
+    EVENTS,
     LINE,
     MESH_FREQUENCY,
     hysteresis_system,
@@ -55,9 +58,16 @@ def test_fourth_order_where_the_contact_damper_makes_the_force_jump():
 
 def test_events_not_declared_are_reported():
     """Steps across a jump have a lower order: a warning names the phase of the jump."""
-    system = reference_system(0.1, events=(0.0,))
-    with pytest.raises(InputError, match=r"jumps by .* at the mesh phase 0.32695"):
-        simulate(system, MESH_FREQUENCY, 5, (np.zeros(6), np.zeros(6)), steps=2000)
+    phases, start = [0.0], (np.zeros(6), np.zeros(6))
+    for _ in EVENTS[1:]:  # one after the other
+        system = reference_system(0.1, events=tuple(phases))
+        with pytest.raises(InputError, match=r"jumps by .* at the mesh phase") as error:
+            simulate(system, MESH_FREQUENCY, 5, start, steps=2000)
+        phase = float(re.search(r"mesh phase (\S+),", str(error.value))[1])
+        nearest = min(EVENTS, key=lambda event: abs(event - phase))
+        assert abs(nearest - phase) < 1e-5
+        phases.append(nearest)
+    assert sorted(phases) == sorted(EVENTS)
 
 
 def test_energy_audit_closes_across_events():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from copy import copy
 from pathlib import Path
 
 import numpy as np
@@ -221,11 +220,11 @@ def test_recordings_are_sampled_motions(result: Result, tmp_path: Path) -> None:
     assert truth["fault"] == "crack"
     with pytest.raises(InputError, match="no ending of a recording"):
         noisy.save(tmp_path / "a.xyz")
-    fresh = copy(result)
-    vars(fresh).pop("turning_motion", None)
+    vars(result).pop("turning_motion")
     with pytest.raises(InputError, match="The sensors are pinion_x"):
-        fresh.recording("pinion_z", 0.5)
-    assert "turning_motion" not in vars(fresh), "a wrong name does not wait for the motion"
+        result.recording("pinion_z", 0.5)
+    assert "turning_motion" not in vars(result), "a wrong name does not wait for the motion"
+    vars(result)["turning_motion"] = motion
     with pytest.raises(InputError, match="16 to"):
         result.recording("pinion_y", 1e-4)
 
