@@ -72,7 +72,7 @@ def _fundamental(rates: Array, mean: Array) -> int:
     """Index of the largest coherence, or of the rate of which it is a harmonic."""
     peak = int(np.argmax(mean))
     for harmonic in (4, 3, 2):
-        near = np.flatnonzero(np.abs(rates - rates[peak] / harmonic) <= rates[1] - rates[0])
-        if near.size and mean[near].max() > _PART * mean[peak]:
-            return int(near[np.argmax(mean[near])])
+        candidates = np.flatnonzero(np.abs(rates - rates[peak] / harmonic) <= rates[1] - rates[0])
+        if candidates.size and mean[candidates].max() > _PART * mean[peak]:
+            return int(candidates[np.argmax(mean[candidates])])
     return peak

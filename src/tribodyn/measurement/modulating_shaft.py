@@ -9,12 +9,11 @@ import numpy as np
 
 from tribodyn.checks import require_whole
 from tribodyn.measurement.orders import OrderSpectrum
+from tribodyn.measurement.sideband_cursors import CLEAR, LOBE
 from tribodyn.types import Array
 
-#: Amplitude over the noise around it from which a line stands out, and the least number of them.
-_CLEAR, _LEAST = 4.0, 2
-#: Lines of the spectrum in half the main lobe of the window.
-_LOBE = 12
+#: Fewest lines that stand out where a gear modulates.
+_LEAST = 2
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ def modulating_shaft(
     """
     for name, count in (("teeth", teeth), ("mate_teeth", mate_teeth)):
         require_whole(name, count, 1)
-    reach = _LOBE * float(orders.orders[1])
+    reach = LOBE * float(orders.orders[1])
     top = float(orders.orders[-1]) - reach
     families: list[Array] = [
         np.arange(1.0, int(top / each) + 1.0) * each for each in (1.0, teeth / mate_teeth)
@@ -91,7 +90,7 @@ def modulating_shaft(
     def lines_of(family: Array, strange: Array) -> ShaftLines:
         places = np.rint(family[_distance(family, strange) > reach] / orders.orders[1]).astype(int)
         size = orders.amplitudes[places]
-        clear = size > _CLEAR * floor[places]
+        clear = size > CLEAR * floor[places]
         return ShaftLines(
             places.size, int(clear.sum()), float(np.sqrt(0.5 * np.sum(size[clear] ** 2)))
         )
@@ -106,11 +105,12 @@ def modulating_shaft(
     return alone[0], alone[1]
 
 
-def explain_modulation(orders: OrderSpectrum, teeth: int, mate_teeth: int, unit: str) -> str:
+def explain_modulation(
+    lines: tuple[ShaftLines, ShaftLines], teeth: int, mate_teeth: int, unit: str
+) -> str:
     """Sentence that names the gear whose lines stand out; empty where none does."""
     if teeth == mate_teeth:
         return ""
-    lines = modulating_shaft(orders, teeth, mate_teeth)
     names = ("shaft", "mate")
     loud = [k for k in (0, 1) if lines[k].stands_out]
     if not loud:
@@ -145,7 +145,7 @@ def _distance(orders: Array, others: Array) -> Array:
 def _floor(orders: OrderSpectrum, lines: Array) -> Array:
     """Noise at each order: medians between the lines over stretches of four orders."""
     step = float(orders.orders[1])
-    between = _distance(orders.orders, np.append(lines, 0.0)) > _LOBE * step
+    between = _distance(orders.orders, np.append(lines, 0.0)) > LOBE * step
     if not between.any():
         return np.full(orders.orders.size, np.inf)
     places = np.flatnonzero(between)

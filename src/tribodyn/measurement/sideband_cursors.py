@@ -11,9 +11,9 @@ from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
 #: Amplitude over the median of the lines around it from which a sideband stands out.
-_CLEAR = 4.0
+CLEAR = 4.0
 #: Lines on each side of a cursor that are its own: half the main lobe of the window.
-_LOBE = 12
+LOBE = 12
 
 
 @record
@@ -57,7 +57,7 @@ class SidebandCursors(Record):
     @property
     def clear(self) -> NDArray[np.bool_]:
         """Cursors whose lines stand out of those between them."""
-        return np.asarray(self.amplitude > _CLEAR * self.floor)
+        return np.asarray(self.amplitude > CLEAR * self.floor)
 
     @property
     def strongest(self) -> int:
@@ -123,18 +123,18 @@ def sideband_cursors(
         why = f"The spectrum goes from 0 to {orders.orders[-1]:g}"
         remedy = "Set fewer cursors, or compute more orders"
         raise InputError(what, Argument("count"), why, remedy)
-    if spacing < 2 * _LOBE * step:
+    if spacing < 2 * LOBE * step:
         what = f"sidebands every {spacing:g} orders"
-        least = 2 * _LOBE * step
+        least = 2 * LOBE * step
         why = f"Over {orders.revolutions:g} revolutions lines are separate from {least:.3g} on"
         raise InputError(what, Argument("spacing"), why, "Record longer")
     number = np.arange(-count, count + 1)
     places = np.rint((carrier + spacing * number) / step).astype(int)
     size = orders.amplitudes[places]
-    first, last = max(places[0] - 2 * _LOBE, 1), places[-1] + 2 * _LOBE + 1
+    first, last = max(places[0] - 2 * LOBE, 1), places[-1] + 2 * LOBE + 1
     between = np.ones(orders.orders.size, dtype=bool)
     for place in places:
-        between[max(place - _LOBE + 1, 0) : place + _LOBE] = False
+        between[max(place - LOBE + 1, 0) : place + LOBE] = False
     floor = float(np.median(orders.amplitudes[first:last][between[first:last]]))
     carrier_size = max(float(size[count]), 1e-300)
     return SidebandCursors(

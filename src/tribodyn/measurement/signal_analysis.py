@@ -28,6 +28,7 @@ from tribodyn.measurement.mean_revolutions import (
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, in_si
 from tribodyn.measurement.shaft_speed import ShaftSpeed, shaft_speed
+from tribodyn.measurement.sideband_cursors import LOBE
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.signals.condition_indicators import ConditionIndicators
 from tribodyn.signals.cyclic_coherence import CyclicCoherence
@@ -47,8 +48,6 @@ _ORDERS, _RESOLVED = 100.0, 0.95
 _BLOCK = 8.0
 #: Lines of a spectrum over which a smeared one reads clearly low.
 _SMEARED = 8.0
-#: Lines of an order spectrum, half an order over the revolutions apart, in half the main lobe.
-_LOBE = 12
 
 
 @record
@@ -225,12 +224,12 @@ class SignalAnalysis(Record):
 def order_peaks(lines: OrderSpectrum, count: int) -> list[tuple[float, float]]:
     """Orders and amplitudes of the largest lines that are no neighbours of larger ones."""
     size = lines.amplitudes.copy()
-    size[: _LOBE + 1] = 0.0
+    size[: LOBE + 1] = 0.0
     peaks: list[tuple[float, float]] = []
     while len(peaks) < count and size.max() > 0.0:
         top = int(np.argmax(size))
         peaks.append((float(lines.orders[top]), float(size[top])))
-        size[max(top - _LOBE, 0) : top + _LOBE + 1] = 0.0
+        size[max(top - LOBE, 0) : top + LOBE + 1] = 0.0
     return peaks
 
 

@@ -157,8 +157,9 @@ def _verdicts(analysis: SignalAnalysis) -> list[str]:
     teeth, mate, orders = analysis.teeth.get(SHAFT), analysis.teeth.get(MATE), analysis.orders
     verdicts, suspects = [], list(analysis.indicators)
     if orders is not None and teeth and mate and teeth != mate:
-        verdicts.append(explain_modulation(orders, teeth, mate, readable(analysis.unit)))
-        lines = dict(zip((SHAFT, MATE), modulating_shaft(orders, teeth, mate), strict=True))
+        of_gears = modulating_shaft(orders, teeth, mate)
+        verdicts.append(explain_modulation(of_gears, teeth, mate, readable(analysis.unit)))
+        lines = dict(zip((SHAFT, MATE), of_gears, strict=True))
         suspects = [name for name in suspects if lines[name].stands_out]
     for name in suspects:
         average, fm4 = analysis.averages[name], analysis.indicators[name].fm4

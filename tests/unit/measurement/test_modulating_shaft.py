@@ -36,12 +36,15 @@ def test_both_gears_are_named() -> None:
     np.testing.assert_allclose(
         [shaft.rms, mate.rms], np.sqrt(6 / 2) * np.array([0.05, 0.025]), 0.03
     )
-    assert explain_modulation(orders, 17, 24, "").startswith("Both gears")
+    assert explain_modulation((shaft, mate), 17, 24, "").startswith("Both gears")
 
 
 def test_a_common_factor_puts_lines_into_the_revolution_of_the_mate() -> None:
-    text = explain_modulation(orders_of(16, 24, 0.1, 0.0), 16, 24, "m/s^2")
-    assert "turns with the shaft" in text
-    assert "common factor 8" in text
-    assert "common factor" not in explain_modulation(orders_of(17, 24, 0.1, 0.0), 17, 24, "")
-    assert explain_modulation(orders_of(16, 24, 0.0, 0.0), 16, 24, "") == ""
+    def text_of(teeth: int, mate_teeth: int, shaft: float) -> str:
+        lines = modulating_shaft(orders_of(teeth, mate_teeth, shaft, 0.0), teeth, mate_teeth)
+        return explain_modulation(lines, teeth, mate_teeth, "m/s^2")
+
+    assert "turns with the shaft" in text_of(16, 24, 0.1)
+    assert "common factor 8" in text_of(16, 24, 0.1)
+    assert "common factor" not in text_of(17, 24, 0.1)
+    assert text_of(16, 24, 0.0) == ""

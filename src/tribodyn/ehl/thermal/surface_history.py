@@ -42,9 +42,9 @@ def depth_waves(shortest: float, longest: float) -> tuple[Array, Array]:
     first, last = math.log(_FAST / math.sqrt(shortest)), math.log(_SLOW / math.sqrt(longest))
     s = np.exp(first - _APART * np.arange(math.ceil((first - last) / _APART) + 1))
     # All slower waves as one with their sums of weights and of weighted squares.
-    rest, square = s[-1] / math.expm1(_APART), s[-1] ** 3 / math.expm1(3.0 * _APART)
-    waves = np.append(s, math.sqrt(square / rest))
-    return waves, 2.0 / math.pi * _APART * np.append(s, rest)
+    remainder, square = s[-1] / math.expm1(_APART), s[-1] ** 3 / math.expm1(3.0 * _APART)
+    waves = np.append(s, math.sqrt(square / remainder))
+    return waves, 2.0 / math.pi * _APART * np.append(s, remainder)
 
 
 @lru_cache(maxsize=1)
@@ -117,9 +117,9 @@ class SurfaceHistory:
         for rate in (behind, before):
             fall = rate[:, None] * self.step
             sides.append(np.exp(-fall * node) * -np.expm1(-fall) / rate[:, None])
-        own = np.sum([-np.expm1(-0.5 * rate * self.step) / rate for rate in rates], axis=0)
+        middle = np.sum([-np.expm1(-0.5 * rate * self.step) / rate for rate in rates], axis=0)
         kernel = np.concatenate(
-            [own[:, None], sides[0], np.zeros((own.size, 1)), sides[1][:, ::-1]], 1
+            [middle[:, None], sides[0], np.zeros((middle.size, 1)), sides[1][:, ::-1]], 1
         )
         kernel /= (2.0 * self.kappa * root)[:, None]
         size = kernel.shape[1]

@@ -296,9 +296,9 @@ def _without_overlap(notes: list[dict[str, Any]], scale: float) -> list[dict[str
         style = {key: value for key, value in note.items() if key not in ("x", "y", "text")}
         reach = _NEAR[1] if "xanchor" in note else _NEAR[0]
         for other, texts in joined:
-            near = abs(note["x"] - other["x"]) * scale < reach
-            near &= abs(note["y"] - other["y"]) * scale < _NEAR[0]
-            if near and style == {key: other.get(key) for key in style}:
+            overlaps = abs(note["x"] - other["x"]) * scale < reach
+            overlaps &= abs(note["y"] - other["y"]) * scale < _NEAR[0]
+            if overlaps and style == {key: other.get(key) for key in style}:
                 other["x"] = min(other["x"], note["x"])
                 texts.append(note["text"])
                 break

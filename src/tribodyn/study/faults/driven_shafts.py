@@ -56,7 +56,7 @@ def drive_stage(
     case: PlanetaryCase, sound: PlanetaryLoadResult, system: System, cycles: int
 ) -> DrivenSystem:
     """A planetary stage with the excitation of its members."""
-    table, stage, held = case.table, sound.kinematics, case.roles[2]
+    table, stage, fixed_role = case.table, sound.kinematics, case.roles[2]
     teeth = {role: abs(case.gears[getattr(table, role)].teeth) for role in ("sun", "ring")}
     planet = geometry(case.pairs["ring"])["base_radius_pinion"] / case.gears[table.planet].teeth
     radii = {role: planet * count for role, count in teeth.items()}
@@ -69,7 +69,7 @@ def drive_stage(
         torques[case.members[role]] = sound.turn * np.sign(stage.speeds[role]) * unit
     return _drive(
         system, cycles, case.faults, mesh_frequency=stage.mesh_frequency,
-        turns={case.members[role]: abs(turn - turns[held]) for role, turn in turns.items()},
+        turns={case.members[role]: abs(turn - turns[fixed_role]) for role, turn in turns.items()},
         torques=torques, reference=case.ends[0],
     )  # fmt: skip
 
