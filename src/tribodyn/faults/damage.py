@@ -193,7 +193,7 @@ class Crack(ToothFault):
         """Raise InputError if the crack ends within the face of a plane model."""
         if MODELS[provider].over_face:
             return
-        remedy = 'Set stiffness_model = "fe3d"'
+        remedy = 'Choose the stiffness model "fe3d"'
         why = f'"{provider}" is a plane model, in which a tooth is the same over its face'
         if pair.helix_angle:
             what = "the cracked tooth is helical"

@@ -225,7 +225,7 @@ class BevelTooth:
             raise ComputationError(
                 f"the {self.gear} has no room between the feet of its teeth",
                 why="Flanks and root cone leave no root land at one end of the face",
-                remedy='Set stiffness_model = "line", or give thinner teeth',
+                remedy='Choose the stiffness model "line", or give thinner teeth',
             )
         length = min(largest, most) * reach
         corners = []

@@ -38,7 +38,7 @@ def hexahedra_stiffness(corners: Array, stress: Array) -> Array:
         raise ComputationError(
             "the finite element mesh of the tooth has an element that is turned inside out",
             why="Flanks, fillets and body of this tooth do not fit into the mesh",
-            remedy='Set stiffness_model = "line", which takes one stiffness of the contact line',
+            remedy='Choose the stiffness model "line", which has one for the contact line',
         )
     slopes = np.linalg.solve(jacobian, np.broadcast_to(local, (*jacobian.shape[:2], 3, 27)))
     slopes = slopes * np.sqrt(np.abs(determinant) * weights)[..., None, None]
