@@ -171,9 +171,26 @@ class Machine:
 
     @cached_property
     def kinematics(self) -> Kinematics:
-        """Speeds, torques and power of shafts and meshes."""
-        loads = kinematics(self.graph, self.gears, self.meshes, self._drive)
-        return Kinematics({name: loads.shafts[name] for name in self.shafts}, loads.meshes)
+        """Speeds, torques and power of shafts and meshes, without losses."""
+        return self.power_flow({})
+
+    def power_flow(self, efficiency: Mapping[str, float]) -> Kinematics:
+        """Speeds, torques and power of shafts and meshes, with the losses of meshes.
+
+        Parameters
+        ----------
+        efficiency : mapping of str to float
+            Power that the driven gear of a mesh receives over that which its driving gear gives,
+            relative to their carrier [1]; meshes that are not named have no loss.
+
+        Returns
+        -------
+        Kinematics
+            The torque of the input is that of the machine, the output has what the losses leave;
+            the power of a mesh is that of its driving gear.
+        """
+        loads = kinematics(self.graph, self.gears, self.meshes, self._drive, efficiency)
+        return replace(loads, shafts={name: loads.shafts[name] for name in self.shafts})
 
     @cached_property
     def clock(self) -> Clock:

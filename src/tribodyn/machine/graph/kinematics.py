@@ -1,10 +1,10 @@
-"""Speeds, torques and power of all shafts and meshes, without losses."""
+"""Speeds, torques and power of all shafts and meshes, without losses or with those of meshes."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from tribodyn.errors import Problem
@@ -91,10 +91,13 @@ class Kinematics:
         Shafts.
     meshes : mapping of str to MeshLoad
         Meshes.
+    couplings : mapping of str to float
+        Torque about x that the first shaft of each coupling gives to the second [N*m].
     """
 
     shafts: Mapping[str, ShaftLoad]
     meshes: Mapping[str, MeshLoad]
+    couplings: Mapping[str, float] = field(default_factory=dict)
 
 
 def ratio_problems(
@@ -140,9 +143,13 @@ def ratio_problems(
 
 
 def kinematics(
-    graph: ShaftGraph, gears: Mapping[str, Gear], meshes: Mapping[str, Mesh], drive: Drive
+    graph: ShaftGraph,
+    gears: Mapping[str, Gear],
+    meshes: Mapping[str, Mesh],
+    drive: Drive,
+    efficiency: Mapping[str, float] | None = None,
 ) -> Kinematics:
-    """Speeds and torques of a machine at speed and torque of its input."""
+    """Speeds and torques at speed and torque of the input, with the efficiency of some meshes."""
     mobility = Mobility(graph, gears, meshes, drive)
     ratios, speed, torque = mobility.ratios, drive.speed, drive.torque
     sense = -1.0 if speed < 0.0 else 1.0
@@ -151,12 +158,18 @@ def kinematics(
         pair = gears[mesh.gears[0]], gears[mesh.gears[1]]
         lever = base_radius(mesh, pair[0]) / pair[0].teeth
         weight[name] = mean_stiffness(mesh, pair) * lever**2
-    loads = mobility.loads(sense * torque, {**weight, **drive.couplings})
+    weight |= drive.couplings
+    rows: Mapping[str, Mapping[str, float]] = mobility.rows
+    loads = mobility.loads(sense * torque, weight, rows)
+    if efficiency:
+        rows = mobility.rows_with_losses(loads, sense, efficiency)
+        loads = mobility.loads(sense * torque, weight, rows)
     mesh_loads = {}
     for name, mesh in meshes.items():
-        (load, shared), factors = loads[name], [*mobility.rows[name].values()]
+        load, shared = loads[name]
+        factors, torques = ([*r[name].values()] for r in (mobility.rows, rows))
         relative = [float(mobility.relative(name, gears[gear].shaft)) for gear in mesh.gears]
-        about = -factors[0] * load, factors[1] * load
+        about = -torques[0] * load, torques[1] * load
         flow = about[0] * relative[0]
         first = sense * flow > 0.0 or (flow == 0.0 and _leads(graph, name))
         drives, follows = mesh.gears if first else mesh.gears[::-1]
@@ -167,7 +180,7 @@ def kinematics(
             driven=follows,
             torque=about,
             force=abs(about[0]) / base_radius(mesh, gears[mesh.gears[0]], turn),
-            power=abs(flow * speed),
+            power=abs((about if first else about[::-1])[0] * relative[0 if first else 1] * speed),
             sense=turn,
             shared=shared,
             speeds=(relative[0] * speed, relative[1] * speed),
@@ -175,11 +188,11 @@ def kinematics(
     sign = -1.0 if torque < 0.0 else 1.0
     shaft_loads = {}
     for name, ratio in ratios.items():
-        parts = [r[name] * loads[mesh][0] for mesh, r in mobility.rows.items() if name in r]
+        parts = [r[name] * loads[mesh][0] for mesh, r in rows.items() if name in r]
         entering = sign * 0.5 * (sum(map(abs, parts)) + abs(sum(parts)))
         turning = float(ratio) * speed
         shaft_loads[name] = ShaftLoad(ratio, turning, entering, entering * abs(turning))
-    return Kinematics(shaft_loads, mesh_loads)
+    return Kinematics(shaft_loads, mesh_loads, {name: -loads[name][0] for name in drive.couplings})
 
 
 def base_radius(mesh: Mesh, gear: Gear, sense: int = 1) -> float:

@@ -124,15 +124,37 @@ class Mobility:
                 remedy = "Correct which shafts are held"
                 yield Problem("the teeth of this mesh stand", f"meshes.{name}", why, remedy)
 
-    def loads(self, torque: float, weight: Mapping[str, float]) -> dict[str, tuple[float, bool]]:
-        """Load per tooth [N*m] of each mesh, and whether its loop shares it by these weights."""
+    def rows_with_losses(
+        self,
+        loads: Mapping[str, tuple[float, bool]],
+        sense: float,
+        efficiency: Mapping[str, float],
+    ) -> dict[str, dict[str, float]]:
+        """Factors of the torques in each mesh, whose driven gear receives a part of the power."""
+        rows: dict[str, dict[str, float]] = {}
+        for name, row in self.rows.items():
+            factors: dict[str, float] = {**row}
+            if name in efficiency:
+                first, second, *carrier = row
+                flow = -row[first] * loads[name][0] * self.relative(name, first)
+                factors[second if sense * flow > 0.0 else first] *= efficiency[name]
+                factors |= dict.fromkeys(carrier, -(factors[first] + factors[second]))
+            rows[name] = factors
+        return rows
+
+    def loads(
+        self, torque: float, weight: Mapping[str, float], rows: Mapping[str, Mapping[str, float]]
+    ) -> dict[str, tuple[float, bool]]:
+        """Load per tooth [N*m] of each mesh by factors of torques, and whether a loop shares it."""
         free = [s for s in self.ratios if s not in (*self.drive.fixed, self.drive.output)]
         balance = np.array([[row.get(s, 0) for row in self.rows.values()] for s in free], float)
         balance = balance.reshape(len(free), len(self.rows))
+        torques = np.array([[row.get(s, 0) for row in rows.values()] for s in free], float)
+        torques = torques.reshape(balance.shape)
         source = np.array([-torque * (s == self.drive.input) for s in free])
         weights = np.array([weight[name] for name in self.rows])
         weights = weights / weights.max()
-        potential = np.linalg.solve((balance * weights) @ balance.T, source)
+        potential = np.linalg.solve((torques * weights) @ balance.T, source)
         loads = weights * (potential @ balance)
         # A load that another distribution with the same torques would change is one of a loop.
         loops = 1.0 - np.einsum("ij,ji->i", np.linalg.pinv(balance), balance)

@@ -10,7 +10,7 @@ from tribodyn.plot.theme.labels import rounded
 from tribodyn.plot.theme.style import MUTED, figure, translucent
 
 if TYPE_CHECKING:
-    from tribodyn.machine import Machine
+    from tribodyn.machine import Kinematics, Machine
     from tribodyn.study.machine.result import MachineResult
 
 
@@ -24,32 +24,31 @@ if TYPE_CHECKING:
 )
 def machine_power(result: MachineResult) -> Any:
     """Draw the power that flows through shafts and meshes, and what is lost."""
-    machine, tables = result.machine, result.operation.tables
-    run = machine.operation
-    drives = run.torque * run.speed >= 0.0
+    machine, lost = result.machine, result.operation.friction_power
+    run, flow, figures = machine.operation, result.operation.power_flow, result.operation.figures
     names = [f"shaft {name}" for name in machine.shafts]
     names += [f"mesh {name}" for name in machine.meshes] + ["input", "output", "friction"]
     number = {name: place for place, name in enumerate(names)}
     links: list[tuple[str, str, float, str]] = []
-    power = abs(run.torque * run.speed)
-    start, end = (run.input, run.output) if drives else (run.output, run.input)
+    power = figures["machine.input_power"]
+    leaving = power - sum(lost.values())
+    start, end = (run.input, run.output)[:: 1 if run.torque >= 0.0 else -1]
     links.append(("input", f"shaft {start}", power, MUTED))
-    lost = 0.0
     for place, name in enumerate(machine.meshes):
         color = COLORS[place % len(COLORS)]
-        friction = tables[name].mean_friction_power if name in tables else 0.0
-        gains = _gains(machine, name)
-        entering = sum(gain for gain in gains.values() if gain > 0.0)
-        for shaft, gain in gains.items():
+        for shaft, gain in _gains(machine, flow, name).items():
             if gain < 0.0:
                 links.append((f"shaft {shaft}", f"mesh {name}", -gain, color))
             elif gain > 0.0:
-                rest = gain * (1.0 - friction / entering)
-                links.append((f"mesh {name}", f"shaft {shaft}", rest, color))
-        if friction:
+                links.append((f"mesh {name}", f"shaft {shaft}", gain, color))
+        if friction := lost.get(name):
             links.append((f"mesh {name}", "friction", friction, color))
-        lost += friction
-    links.append((f"shaft {end}", "output", power - lost, MUTED))
+    for name, torque in flow.couplings.items():
+        ends = machine.couplings[name].shafts
+        passing = torque * flow.shafts[ends[0]].speed
+        giving, taking = ends if passing > 0.0 else ends[::-1]
+        links.append((f"shaft {giving}", f"shaft {taking}", abs(passing), MUTED))
+    links.append((f"shaft {end}", "output", leaving, MUTED))
     trace = {
         "type": "sankey",
         "arrangement": "snap",
@@ -68,15 +67,15 @@ def machine_power(result: MachineResult) -> Any:
             "hovertemplate": "%{source.label} to %{target.label}: %{value:.6g} W<extra></extra>",
         },
     }
-    efficiency = f", efficiency {100.0 * (1.0 - lost / power):.4g} %" if lost and power else ""
-    title = f"{rounded('power', power)} in, {rounded('power', power - lost)} out{efficiency}"
+    share = figures.get("machine.efficiency", 1.0)
+    efficiency = f", efficiency {100.0 * share:.4g} %" if share < 1.0 else ""
+    title = f"{rounded('power', power)} in, {rounded('power', leaving)} out{efficiency}"
     return figure(title, [trace], {"height": 360, "hovermode": "closest"})
 
 
-def _gains(machine: Machine, name: str) -> dict[str, float]:
+def _gains(machine: Machine, flow: Kinematics, name: str) -> dict[str, float]:
     """Power that a mesh gives to its shafts and to its carrier; negative where it takes it."""
-    flow, mesh = machine.kinematics, machine.meshes[name]
-    first, second = flow.meshes[name].torque
+    mesh, (first, second) = machine.meshes[name], flow.meshes[name].torque
     shafts = [machine.gears[gear].shaft for gear in mesh.gears]
     torques = dict(zip(shafts, (-first, second), strict=True))
     if mesh.carrier:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
     from tribodyn.gear import Misalignment, MisalignmentStudy
-    from tribodyn.machine import Machine, MachineModes, StaticBalance
+    from tribodyn.machine import Kinematics, Machine, MachineModes, StaticBalance
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.measurement import Recording
     from tribodyn.mesh import MeshTable
@@ -101,6 +101,26 @@ class LoadResult:
     def clock_frequency(self) -> float:
         """Periods of the motion in a second [Hz]."""
         return self.machine.clock.frequency
+
+    @cached_property
+    def _mesh_losses(self) -> dict[str, float]:
+        """Power that the friction of computed teeth takes of the power that enters their mesh."""
+        flow = self.machine.kinematics.meshes
+        return {
+            name: table.mean_friction_power / flow[name].power if flow[name].power else 0.0
+            for name, table in self.tables.items()
+        }
+
+    @cached_property
+    def power_flow(self) -> Kinematics:
+        """Speeds, torques and power of shafts and meshes, less the friction of computed teeth."""
+        return self.machine.power_flow({n: 1.0 - lost for n, lost in self._mesh_losses.items()})
+
+    @cached_property
+    def friction_power(self) -> dict[str, float]:
+        """Power that the computed teeth of each mesh lose of what reaches it [W]."""
+        flow = self.power_flow.meshes
+        return {name: lost * flow[name].power for name, lost in self._mesh_losses.items()}
 
     @cached_property
     def modes(self) -> MachineModes:

@@ -36,15 +36,18 @@ def summary_of(result: LoadResult) -> dict[str, float]:
 
 
 def _of_machine(result: LoadResult) -> Mapping[str, float | None]:
-    run, motion = result.machine.operation, result.motion
-    power = abs(run.speed * run.torque)
-    lost = sum(table.mean_friction_power for table in result.tables.values())
+    run, flow = result.machine.operation, result.power_flow.shafts
+    power, lost = abs(run.speed * run.torque), sum(result.friction_power.values())
+    entering = power if run.torque >= 0.0 else power + lost
+    efficiency = 1.0 - lost / entering if entering else 1.0
+    ratio = float(flow[run.output].ratio)
+    losses = efficiency if run.torque >= 0.0 else 1.0 / efficiency
     return {
-        "clock_frequency": motion.frequency,
-        "input_power": power,
+        "clock_frequency": result.motion.frequency,
+        "input_power": entering,
         "friction_power": lost if result.tables else None,
-        "efficiency": (power - lost) / power if result.tables and power else None,
-        "output_torque": abs(result.static.output_torque),
+        "efficiency": efficiency if result.tables and power else None,
+        "output_torque": abs(run.torque / ratio) * losses,
     }
 
 
@@ -68,6 +71,7 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
         "face_load_factor": balance.face_load_factor,
         **helix_figures(result.machine, name, mean),
         **_of_table(result, name, table),
+        "friction_power": result.friction_power.get(name),
     }
 
 
@@ -109,7 +113,6 @@ def table_figures(table: MeshTable) -> dict[str, float | None]:
         "static_transmission_error_peak_to_peak": float(np.ptp(table.transmission_error_at_rest)),
         "contact_ratio": table.contact_ratio_under_load,
         "mean_friction_coefficient": table.mean_friction_coefficient,
-        "friction_power": table.mean_friction_power,
         "maximum_hertz_pressure": float(np.nanmax(table.hertz_pressure)),
         "minimum_film_thickness": (
             None if film is None else float(np.fmin.reduce(film[table.in_contact]))
@@ -118,7 +121,7 @@ def table_figures(table: MeshTable) -> dict[str, float | None]:
 
 
 def _of_shaft(result: LoadResult, name: str) -> Mapping[str, float | None]:
-    load, bent = result.machine.kinematics.shafts[name], result.static.shafts[name]
+    load, bent = result.power_flow.shafts[name], result.static.shafts[name]
     return {
         "speed": load.speed,
         "torque": load.torque,

@@ -12,10 +12,24 @@ from tribodyn.study.pipeline.summary import SUMMARY, SummaryFigure
 _KINDS: dict[str, dict[str, tuple[str, str]]] = {
     "machine": {
         "clock_frequency": ("frequency", "periods of the whole motion per second"),
-        "input_power": ("power", "power that enters by the input shaft"),
-        "friction_power": ("power", "power lost to the friction of all computed teeth"),
-        "efficiency": ("", "power that leaves over power that enters; losses of the teeth only"),
-        "output_torque": ("torque", "torque that the output delivers"),
+        "input_power": (
+            "power",
+            "power that enters: by the input shaft, or by the output shaft where that drives",
+        ),
+        "friction_power": (
+            "power",
+            "power that the friction of all computed teeth takes from the input power",
+        ),
+        "efficiency": (
+            "",
+            "power that leaves over power that enters, which differ by the friction power of the "
+            "teeth",
+        ),
+        "output_torque": (
+            "torque",
+            "torque of the output shaft, less the friction of computed teeth; without friction "
+            "before teeth are computed",
+        ),
     },
     "meshes": {
         "mesh_frequency": ("mesh_frequency", "tooth engagements per second"),
@@ -49,7 +63,10 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
         "axial_force": ("mesh_force", "mean force along x on the first gear, against the second"),
         "contact_ratio": ("", "mean number of tooth pairs that carry load"),
         "mean_friction_coefficient": ("", "mean over the mesh cycle, weighted by load"),
-        "friction_power": ("power", "power lost to the friction of the teeth"),
+        "friction_power": (
+            "power",
+            "power that the friction of the teeth at rest takes from what reaches the mesh",
+        ),
         "maximum_hertz_pressure": ("hertz_pressure", "greatest contact pressure of the teeth"),
         "minimum_film_thickness": ("film_thickness", "least film of the computed teeth"),
     },
@@ -67,8 +84,8 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
     },
     "shafts": {
         "speed": ("speed", "speed of the shaft, negative where it turns against x"),
-        "torque": ("torque", "torque that it transmits"),
-        "power": ("power", "power that it transmits"),
+        "torque": ("torque", "torque that it transmits, less the friction of teeth before it"),
+        "power": ("power", "power that it transmits, less the friction of teeth before it"),
         "largest_deflection": ("deflection", "greatest radial displacement at rest"),
     },
     "bearings": {

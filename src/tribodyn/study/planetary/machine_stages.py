@@ -307,7 +307,7 @@ def stage_figures(result: Any) -> dict[str, dict[str, float]]:
     """Figures of each stage of a machine under one load, in SI."""
     figures = {}
     machine, motion = result.machine, result.motion
-    flow, outward = machine.kinematics, centrifugal_loads(machine)
+    flow, outward = result.power_flow, centrifugal_loads(machine)
     for name, stage in machine.planets.items():
         suns = stage.mesh_names(name)["sun"]
         rest = np.array([result.static.meshes[mesh].force for mesh in suns])
@@ -317,7 +317,9 @@ def stage_figures(result: Any) -> dict[str, dict[str, float]]:
         pin = motion.mean(motion.bearing_force[:, pins])
         relative = flow.shafts[f"{name}_planet1"].speed - flow.shafts[stage.carrier].speed
         figures[name] = {
-            "rolling_power": sum(flow.meshes[mesh].power for mesh in suns),
+            "rolling_power": sum(
+                abs(flow.meshes[mesh].torque[0] * flow.meshes[mesh].speeds[0]) for mesh in suns
+            ),
             "planet_speed": relative,
             "load_factor": float(rest.max() / rest.mean()),
             "dynamic_load_factor": float(moving.max() / moving.mean()),

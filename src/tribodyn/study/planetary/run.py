@@ -20,12 +20,12 @@ from tribodyn.study.planetary.case import PlanetaryCase
 from tribodyn.study.planetary.motion import planetary_motion
 from tribodyn.study.planetary.result import STEPS, PlanetaryLoadResult, PlanetaryResult
 from tribodyn.study.planetary.stage import (
-    MESHES,
     stage_data,
     stage_shares,
     stage_system,
     stage_teeth,
 )
+from tribodyn.study.planetary.summary import mesh_losses
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
@@ -77,11 +77,8 @@ def run_load(
     progress.finish()
     progress.start(f"Motion: {load.name}")
     lossless = case.kinematics(load)
-    rolling = lossless.rolling_power / case.table.count
-    efficiencies = {
-        f"{mesh}_efficiency": 1.0 - teeth.tables[mesh].mean_friction_power / rolling
-        for mesh in MESHES
-    }
+    losses = mesh_losses(case, load, teeth.tables)
+    efficiencies = {f"{mesh}_efficiency": 1.0 - lost for mesh, lost in losses.items()}
     data = stage_data(case, load, teeth.tables, case.phases(load))
     system = stage_system(case, load, teeth, data)
     if start is not None and start.names != tuple(system.names):

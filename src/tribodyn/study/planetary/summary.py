@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,8 @@ from tribodyn.study.planetary.stage_signals import signals_along
 
 if TYPE_CHECKING:
     from tribodyn.machine import PlanetaryKinematics
+    from tribodyn.mesh import MeshTable
+    from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.planetary.case import PlanetaryCase
     from tribodyn.study.planetary.result import PlanetaryLoadResult
 
@@ -34,18 +37,26 @@ def kinematic_figures(case: PlanetaryCase, stage: PlanetaryKinematics) -> dict[s
     return values
 
 
+def mesh_losses(
+    case: PlanetaryCase, load: LoadCase, tables: Mapping[str, MeshTable]
+) -> dict[str, float]:
+    """Part of the power that each mesh transmits, the carrier at rest, which its teeth lose."""
+    rolling = case.kinematics(load).rolling_power / case.table.count
+    return {mesh: table.mean_friction_power / rolling for mesh, table in tables.items()}
+
+
 def summary_of(case: PlanetaryCase, result: PlanetaryLoadResult) -> dict[str, float]:
     """All figures of a stage under one load, in SI, by dotted key."""
     stage, motion = result.kinematics, result.motion
     count, name = case.table.count, case.name
     values: dict[str, Any] = kinematic_figures(case, stage)
-    lost = count * sum(table.mean_friction_power for table in result.tables.values())
+    lost = _friction_power(result)
     pin = np.linalg.norm(motion.mean(motion.pin_force), axis=1)
     data, errors = result.data, signals_along(result, result.response).transmission_error
     outward = data["planet_mass"] * data["pin_radius"] * data["carrier_speed"] ** 2
     sun = motion.displacement[:, motion.member.index("sun"), :2]
     values |= {
-        "machine.friction_power": lost,
+        "machine.friction_power": sum(stage.power.values()),
         "machine.efficiency": stage.efficiency,
         f"planets.{name}.load_factor": result.shares.load_factor,
         f"planets.{name}.dynamic_load_factor": motion.load_factor,
@@ -71,6 +82,19 @@ def summary_of(case: PlanetaryCase, result: PlanetaryLoadResult) -> dict[str, fl
                 np.ptp(errors[:, number * count : (number + 1) * count], axis=0).max()
             ),
             **table_figures(result.tables[mesh]),
+            "friction_power": lost[mesh] / count,
         }
         values |= {f"meshes.{mesh}.{key}": value for key, value in figures.items()}
     return {key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)}
+
+
+def _friction_power(result: PlanetaryLoadResult) -> dict[str, float]:
+    """Power that the teeth of all sun and all ring meshes lose of what reaches them."""
+    case, load, stage = result.case, result.load, result.kinematics
+    losses = mesh_losses(case, load, result.tables)
+    meshes = ("sun", "ring") if case.sun_drives(load) else ("ring", "sun")
+    reaching, lost = abs(stage.torques[meshes[0]] * stage.relative_speeds[meshes[0]]), {}
+    for mesh in meshes:
+        lost[mesh] = losses[mesh] * reaching
+        reaching -= lost[mesh]
+    return lost
