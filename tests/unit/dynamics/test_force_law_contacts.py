@@ -228,3 +228,26 @@ def test_a_mesh_without_a_law_is_named(way):
 def test_a_varying_gap_is_refused():
     with pytest.raises(InputError, match="gap is not a constant"):
         law_contacts(_plain_contact(gap=lambda phase: 1e-5 + 0 * phase), constant_law([0.0], [1e8]))
+
+
+@pytest.mark.parametrize("rounding", [-2.54e-21, -1e-16])
+def test_rounding_below_a_closed_gap_is_zero(rounding):
+    gap = lambda phase: 2e-5 * (1.0 + np.cos(2.0 * np.pi * phase)) + rounding  # noqa: E731
+    closed = lambda phase: np.maximum(gap(phase), 0.0)  # noqa: E731
+    touching, exact = (
+        simulate(
+            _body([_plain_contact(stiffness=2e8, gap=each)]),
+            FREQUENCY,
+            2,
+            ([3e-5], [0.6]),
+            steps=64,
+        )
+        for each in (gap, closed)
+    )
+    np.testing.assert_allclose(touching.position, exact.position, rtol=1e-9, atol=1e-15)
+    law = constant_law([0.0, 1e-5], [2e8, 1e8])
+    early = MeshForceLaw(law.grid, law.knot_deflection + rounding, law.knot_stiffness)
+    law_contacts(_plain_contact(gap=0.0), early)
+    with pytest.raises(InputError, match="gap = -1e-12 m"):
+        open_body = _body([_plain_contact(stiffness=2e8, gap=lambda p: 0 * p - 1e-12)])
+        simulate(open_body, FREQUENCY, 1, ([3e-5], [0.6]), steps=64)

@@ -25,9 +25,9 @@ from tribodyn.dynamics.equations.grid import (
 )
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
+    positive_gap,
     ramp_count,
     refuse_falling_force,
-    refuse_negative_gap,
     step_weights,
 )
 from tribodyn.dynamics.equations.step_limit import FEWEST, examined_rows, rates_at
@@ -75,8 +75,7 @@ def evaluate_batch(systems: Sequence[System], grid: Grid, memory: Memory = new_m
         entries = [getattr(contact, name) for contact in contacts]
         return _values(evaluator, f"contacts[0].{name}", entries, size, partial(memory, name))
 
-    gap = entry_values_of("gap")
-    refuse_negative_gap(gap)
+    gap = positive_gap(entry_values_of("gap"))
     direction = evaluator.values("contacts[0].direction", contacts[0].direction, size)
     force = _constants("force", [system.force for system in systems], evaluator.nodes[:1, 0], size)
     push = entry_values_of("friction", size)

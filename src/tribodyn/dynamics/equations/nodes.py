@@ -142,6 +142,8 @@ def push_with_friction(system: System, nodes: Nodes, ratio: Array) -> Array:
 
 #: Sums of stiffnesses below zero by less than this part of the largest are rounding.
 _ROUNDING = 1e-9
+#: Gaps below zero by less than this are rounding [m].
+GAP_ROUNDING = 1e-15
 
 
 #: Weights of both ends and the middle of a step.
@@ -232,8 +234,7 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
     direction = vector("direction", rows.values)
     for j in np.flatnonzero(~unrepeated(direction, 2).any(axis=(0, 1, 3))):
         raise no_direction(f"contacts[{j}].direction")
-    gap, rub = scalar("gap", rows.values), vector("friction", rows.values)
-    refuse_negative_gap(gap)
+    gap, rub = positive_gap(scalar("gap", rows.values)), vector("friction", rows.values)
     return Nodes(
         phase=rows.nodes,
         stiffness=scalar("stiffness", rows.values),
@@ -292,13 +293,17 @@ def _one_row(row: Array, shape: tuple[int, ...]) -> Array:
     return np.broadcast_to(row, (*shape, *row.shape))
 
 
-def refuse_negative_gap(gap: Array) -> None:
-    """Refuse a negative dead zone."""
-    least = unrepeated(gap).min(initial=0.0)
-    if least < 0.0:
+def positive_gap(gap: Array) -> Array:
+    """Dead zone with rounding below zero as zero; a negative one is refused."""
+    values = unrepeated(gap)
+    least = values.min(initial=0.0)
+    if least == 0.0:
+        return gap
+    if least < -GAP_ROUNDING:
         what = f"gap = {least:.6g} m"
         why = "The gap is half the dead zone and cannot be negative"
         raise InputError(what, "Contact.gap", why, "Use `error` for an interference")
+    return np.broadcast_to(np.maximum(values, 0.0), gap.shape)
 
 
 def halved_grid(grid: Grid) -> Grid:

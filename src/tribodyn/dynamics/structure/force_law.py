@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
 import numpy as np
 
 from tribodyn.dynamics.equations.entry import Entry
+from tribodyn.dynamics.equations.nodes import GAP_ROUNDING
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 from tribodyn.dynamics.structure.plane_mesh import FRICTION_SUMS, plane_rows
 from tribodyn.errors import InputError, require_one_of
@@ -171,7 +172,7 @@ def _half_backlash(contact: Contact, law: MeshForceLaw) -> float:
         raise InputError(what, "argument contact", why, remedy)
     half = float(np.asarray(contact.gap))
     first = float(law.knot_first_touch.min())
-    if half + first < 0.0:
+    if half + first < -GAP_ROUNDING:
         raise InputError(
             f"a pair touches {-1e6 * first:.4g} um before the nominal flanks do, and half "
             f"of the backlash is {1e6 * half:.4g} um",
