@@ -16,6 +16,8 @@ from tribodyn.types import Array
 HELD = (0, 1, 2, 4, 5)
 #: Stiffness of a bearing without data: radial and axial [N/m]; it does not resist tilting.
 STIFF = 1e9
+#: Share of the greatest stiffness of a bearing below which it resists nothing.
+_FREE = 1e-12
 _UNITS = {
     "radial": ("N/m", "N*s/m"),
     "axial": ("N/m", "N*s/m"),
@@ -182,6 +184,15 @@ class Bearing:
         if self.is_default:
             return np.diag([STIFF, STIFF, STIFF, 0.0, 0.0, 0.0])
         return _assembled(self, "stiffness")
+
+    @property
+    def held(self) -> Array:
+        """Projection (6, 6) on the displacements that it resists, however stiff it is."""
+        if self.rolling is not None:
+            return np.diag([float(self.rolling.takes_axial_force), 1.0, 1.0, 0.0, 0.0, 0.0])
+        values, vectors = np.linalg.eigh(self.stiffness_matrix)
+        stiff = vectors[:, values > _FREE * values.max(initial=0.0)]
+        return np.asarray(stiff @ stiff.T)
 
     @property
     def damping_matrix(self) -> Array:

@@ -309,12 +309,14 @@ class Machine:
         problems += placement_problems(self.graph, self.gears, self.meshes, lengths)
         problems += place_problems(self.shafts, self.gears, self.bearings)
         for name, gear in self.gears.items():
-            problems += body_problems(name, gear, self._mesh_of(name), self.shafts[gear.shaft])
+            meshes = [mesh for mesh in self.meshes.values() if name in mesh.gears]
+            problems += body_problems(name, gear, meshes, self.shafts[gear.shaft])
         yield from problems
         if not problems:
-            pushed = dict.fromkeys(self.shafts, 0.0)
-            for name, load in self.gear_loads.items():
-                pushed[self.gears[name].shaft] += float(load[0])
+            pushed: dict[str, float] = {}
+            for name in dict.fromkeys(gear for mesh in self.meshes.values() for gear in mesh.gears):
+                shaft = self.gears[name].shaft
+                pushed[shaft] = pushed.get(shaft, 0.0) + float(self.gear_loads[name][0])
             yield from support_problems(self.shafts, self.bearings, pushed)
 
     def _reference_problems(self) -> Iterable[Problem]:

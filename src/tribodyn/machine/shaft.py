@@ -10,6 +10,9 @@ from tribodyn.gear import Material
 from tribodyn.machine.fields import check_number, quoted
 from tribodyn.machine.section import STEEL, Section
 
+#: Positions on a shaft closer than this are one, and overlaps below it are rounding [m].
+SAME_PLACE = 1e-9
+
 
 @dataclass(frozen=True)
 class Shaft:

@@ -11,13 +11,11 @@ import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.machine.beam import BeamElement, carried_along, part_of
-from tribodyn.machine.shaft import Shaft
+from tribodyn.machine.shaft import SAME_PLACE, Shaft
 from tribodyn.types import Array
 
 #: Longest element over its greatest diameter, or over the length of a slender shaft.
 _SLENDERNESS, _PART = 0.25, 1.0 / 60.0
-#: Positions closer than this share of the length are one node.
-_SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -109,7 +107,7 @@ class ShaftMatrices:
         self._require_on_shaft(position)
         out = np.zeros((6, self.size))
         node = int(np.abs(self.nodes - position).argmin())
-        if abs(self.nodes[node] - position) <= _SAME * self.shaft.length:
+        if abs(self.nodes[node] - position) <= SAME_PLACE:
             out[:, 6 * node : 6 * node + 6] = np.eye(6)
             return out
         element = int(np.searchsorted(self.nodes, position)) - 1
@@ -122,11 +120,10 @@ class ShaftMatrices:
         for position in self.positions if self.shaft.sections else ():
             self._require_on_shaft(position)
         elements, begin = [], 0.0
-        same = _SAME * self.shaft.length
         for section in self.shaft.sections:
             end = begin + section.length
-            inner = sorted(p for p in self.positions if begin + same < p < end - same)
-            limits = _distinct([begin, *inner, end], same)
+            inner = sorted(p for p in self.positions if begin + SAME_PLACE < p < end - SAME_PLACE)
+            limits = _distinct([begin, *inner, end])
             thick = max(section.diameters(0.0)[0], section.diameters(1.0)[0])
             longest = self.element_length or max(_SLENDERNESS * thick, _PART * self.shaft.length)
             for left, right in pairwise(limits):
@@ -143,7 +140,7 @@ class ShaftMatrices:
 
     def _require_on_shaft(self, position: float) -> None:
         length = self.shaft.length
-        if not -_SAME * length <= position <= (1.0 + _SAME) * length:
+        if not -SAME_PLACE <= position <= length + SAME_PLACE:
             what = f"position = {1e3 * position:.6g} mm"
             why = f"The shaft extends from 0 to {1e3 * length:.6g} mm"
             raise InputError(what, "argument position", why, "Give a position on the shaft")
@@ -156,10 +153,10 @@ class ShaftMatrices:
         return out
 
 
-def _distinct(limits: Iterable[float], same: float) -> list[float]:
+def _distinct(limits: Iterable[float]) -> list[float]:
     """Rising positions without those that repeat the one before."""
     out: list[float] = []
     for limit in limits:
-        if not out or limit - out[-1] > same:
+        if not out or limit - out[-1] > SAME_PLACE:
             out.append(limit)
     return out

@@ -481,7 +481,7 @@ class MachineStructure:
             elif bearing.shaft != shaft:
                 continue
             floats |= bearing.floats
-            total += arm.T @ bearing.stiffness_matrix @ arm
+            total += arm.T @ bearing.held @ arm
         size = np.sqrt(np.diag(total))
         moving = size > 1e-9 * size.max(initial=0.0)
         tilt = [i for i in (1, 2, 4, 5) if moving[i]]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from machines import two_stage_parts
 
+from tribodyn.errors import InputError
 from tribodyn.machine import Gear, GearBody, Machine, Section, Shaft
 
 RADIUS, WIDTH = 0.5 * 27 * 4.5e-3 / math.cos(math.radians(21.0)), 0.05
@@ -54,6 +55,44 @@ def test_steps_and_cones_within_the_face_are_taken_out() -> None:
     assert result.mass == pytest.approx(mass, rel=1e-9)
     assert result.moment_of_inertia == pytest.approx(polar, rel=1e-9)
     assert result.transverse_moment_of_inertia == pytest.approx(transverse, rel=1e-9)
+
+
+@pytest.mark.parametrize("left", [0.013, 0.029, 0.041, 0.058])
+@pytest.mark.parametrize("width", [0.021, 0.023, 0.025, 0.03])
+def test_a_face_that_ends_at_a_shoulder_stays_before_it(left: float, width: float) -> None:
+    """Ends of sections add up to 0.07800000000000001: that is the end of the face."""
+    sections = [
+        Section(0.3 * left, 0.03),
+        Section(0.7 * left, 0.025),
+        Section(0.1 * width, 0.02),
+        Section(0.2 * width, 0.02),
+        Section(0.7 * width, 0.02),
+        Section(0.05, 0.2),  # thicker than the gear
+    ]
+    result = body(Gear("input", left + width / 2, 27, width), [*sections, Section(0.2, 0.05)])
+    values = result.mass, result.moment_of_inertia, result.transverse_moment_of_inertia
+    assert values == pytest.approx(hollow(RADIUS, 0.01, width), rel=1e-12)
+
+
+def test_a_lumped_gear_may_be_smaller_than_its_shaft() -> None:
+    parts = two_stage_parts()
+    parts["shafts"]["input"] = Shaft([Section(0.3, 0.15)])
+    parts["meshes"]["first"] = replace(parts["meshes"]["first"], stiffness=4e8)
+    parts["gears"]["z1"] = Gear("input", 0.1, 27, WIDTH, 5.0, 0.004)
+    result = Machine(**parts).gear_bodies["z1"]
+    # a uniform disc has the transverse moment of inertia J / 2 + m b^2 / 12
+    assert (result.mass, result.moment_of_inertia) == (5.0, 0.004)
+    disc = 0.002 + 5.0 * WIDTH**2 / 12.0
+    assert result.transverse_moment_of_inertia == pytest.approx(disc, rel=1e-14)
+    parts["gears"]["z1"] = Gear("input", 0.1, 27, WIDTH, 5.0, 0.004, 0.003)
+    assert Machine(**parts).gear_bodies["z1"] == GearBody(5.0, 0.004, 0.003)
+    for gear, mesh in (
+        (Gear("input", 0.1, 27, WIDTH, 5.0), parts["meshes"]["first"]),
+        (parts["gears"]["z1"], replace(parts["meshes"]["first"], stiffness=None)),
+    ):
+        parts["gears"]["z1"], parts["meshes"]["first"] = gear, mesh
+        with pytest.raises(InputError, match="give mass and moment_of_inertia of the gear and the"):
+            Machine(**parts)
 
 
 def test_user_values_stay_and_a_mass_alone_scales_the_solid() -> None:

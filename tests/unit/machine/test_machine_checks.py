@@ -12,7 +12,20 @@ import pytest
 from machines import DEGREE, pair, split_path, two_stage_parts, two_stages
 
 from tribodyn.errors import InputError
-from tribodyn.machine import Bearing, Gear, Housing, Machine, Mesh, Operation, Section, Shaft
+from tribodyn.machine import (
+    Bearing,
+    Coupling,
+    DeepGrooveBallBearing,
+    Gear,
+    Housing,
+    Machine,
+    Mesh,
+    Operation,
+    Section,
+    Shaft,
+    machine_structure,
+    static_balance,
+)
 
 Parts = dict[str, Any]
 
@@ -198,6 +211,52 @@ def test_shafts_that_nothing_holds() -> None:
     remove("right")(parts)
     put("bearings", "input left", tilting_stiffness=1e5)(parts)
     assert len(Machine(**parts).bearings) == 5
+
+
+@pytest.mark.parametrize("stiffness", [1e3, 4e8, 1e13])
+def test_a_rolling_bearing_and_a_spring_hold_a_shaft(stiffness: float) -> None:
+    ball = DeepGrooveBallBearing(bore_diameter=0.04, outer_diameter=0.08, width=0.018)
+    parts = two_stage_parts()
+    parts["bearings"]["input left"] = Bearing("input", 0.02, rolling=ball)
+    parts["bearings"]["input right"] = Bearing("input", 0.28, radial_stiffness=stiffness)
+    parts["bearings"]["input middle"] = Bearing("input", 0.15, rolling=ball)  # three in a row
+    Machine(**parts)
+    parts["bearings"].pop("input middle")
+    machine = Machine(**parts)
+    held = [bearing.held for bearing in machine.bearings.values() if bearing.shaft == "input"]
+    np.testing.assert_allclose(held, [np.diag([1, 1, 1, 0, 0, 0]), np.diag([0, 1, 1, 0, 0, 0])])
+    put("bearings", "input right", radial_stiffness=(0.0, stiffness))(parts)
+    with pytest.raises(InputError, match="at 20 mm, 280 mm, do not hold the shaft"):
+        Machine(**parts)
+
+
+def test_a_rigid_shaft_tilts_alike_at_rest_and_in_motion() -> None:
+    ball = DeepGrooveBallBearing(bore_diameter=0.04, outer_diameter=0.08, width=0.018)
+    parts = two_stage_parts()
+    parts["shafts"]["input"] = Shaft()
+    parts["meshes"] = {name: replace(m, stiffness=4e8) for name, m in parts["meshes"].items()}
+    parts["bearings"]["input left"] = Bearing("input", 0.02, rolling=ball)
+    parts["bearings"]["input right"] = Bearing("input", 0.28, radial_stiffness=4e8)
+    balance = static_balance(Machine(**parts))
+    moving = [name for name in machine_structure(balance.linearized()).names if "input_" in name]
+    assert moving == [f"input_{axis}" for axis in ("x", "y", "z", "theta_x", "theta_y", "theta_z")]
+    assert np.count_nonzero(balance.gears["z1"]) == 6
+
+
+def test_a_shaft_without_bearings_names_its_meshes_only_where_it_has_some() -> None:
+    sections = [Section(0.3, 0.05)]
+    with pytest.raises(InputError) as error:
+        Machine(
+            shafts={"a": Shaft(sections), "b": Shaft(sections)},
+            gears={},
+            meshes={},
+            couplings={"c": Coupling(("a", "b"), 1e5)},
+            operation=Operation("a", "b", 100.0, 10.0),
+        )
+    assert "Nothing holds it" in str(error.value)
+    assert "meshes" not in str(error.value)
+    unheld = broken(lambda parts: [parts["bearings"].pop(f"input {s}") for s in ("left", "right")])
+    assert "Its meshes would push it away" in unheld
 
 
 def test_a_shaft_is_thinner_than_its_gear() -> None:

@@ -232,6 +232,19 @@ def test_nodes_of_a_shaft():
     np.testing.assert_allclose(rigid.at(0.3) @ [0, 1, 2, 0, 0.1, 0.2], [0, 1.06, 1.97, 0, 0.1, 0.2])
 
 
+def test_rounding_of_lengths_leaves_no_slivers():
+    lengths = [0.1, 0.2, 0.1 + 0.2 - 0.3, 0.7, 1e-13]  # the third is 5.6e-17 m
+    places = (0.3, 0.1 + 0.2, 0.30000000000000004 + 4e-13, 1.0, -1e-12, 0.1 * 3.0 + 0.7)
+    shaft = ShaftMatrices(Shaft([Section(length, 0.05) for length in lengths]), places)
+    assert np.diff(shaft.nodes).min() > 0.005
+    for place in places:
+        assert shaft.at(place).sum() == 6.0  # each is a node
+    plain = ShaftMatrices(Shaft([Section(0.1, 0.05), Section(0.2, 0.05), Section(0.7, 0.05)]))
+    for name in ("mass", "stiffness", "gyroscopic"):
+        matrix = getattr(plain, name)
+        np.testing.assert_allclose(getattr(shaft, name), matrix, atol=1e-9 * matrix.max())
+
+
 def test_a_position_off_the_shaft_is_refused():
     with pytest.raises(InputError, match=r"position = 201 mm.*extends from 0 to 200 mm"):
         _ = ShaftMatrices(Shaft((Section(0.2, 0.03),)), (0.201,)).nodes

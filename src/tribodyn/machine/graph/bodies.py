@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.section import STEEL
-from tribodyn.machine.shaft import Shaft
+from tribodyn.machine.shaft import SAME_PLACE, Shaft
 
 #: Outer over reference diameter of a ring, in modules: the root, and a rim of 3.75 modules.
 _RIM = 10.0
@@ -38,7 +39,8 @@ class GearBody:
     -----
     What is not prescribed is that of a steel cylinder of the reference diameter, less what the
     shaft fills; a ring reaches from its reference diameter to ten modules beyond, and bevel gears
-    are truncated pitch cones. A prescribed mass scales the moments of inertia of the solid.
+    are truncated pitch cones. A prescribed mass scales the moments of inertia of the solid; of a
+    gear that is not larger than its shaft the transverse one is ``J / 2 + m b^2 / 12``.
     """
 
     mass: float
@@ -51,6 +53,12 @@ def gear_body(gear: Gear, mesh: Mesh | None, shaft: Shaft, number: int = 0) -> G
     values = gear.mass, gear.moment_of_inertia, gear.transverse_moment_of_inertia
     if mesh is None or None not in values:
         return GearBody(*(value or 0.0 for value in values))
+    if gear.mass is not None and _fills(gear, mesh, shaft):
+        # A lumped disc: polar and transverse moments of inertia of any body of revolution whose
+        # section is the same over its width.
+        polar, transverse = gear.moment_of_inertia or 0.0, gear.transverse_moment_of_inertia
+        disc = 0.5 * polar + gear.mass * gear.face_width**2 / 12.0
+        return GearBody(gear.mass, polar, disc if transverse is None else transverse)
     solid = _solid(gear, mesh, shaft, number)
     scale = 1.0 if gear.mass is None else gear.mass / solid[0]
     mass, polar, transverse = (
@@ -91,32 +99,45 @@ def _filled(gear: Gear, shaft: Shaft) -> list[tuple[float, float, float, float]]
     for start, section in zip(shaft.ends, shaft.sections, strict=False):
         begin = max(low, start - gear.node_position)
         end = min(high, start + section.length - gear.node_position)
-        if end > begin:
+        if end - begin > SAME_PLACE:
             at = [(x + gear.node_position - start) / section.length for x in (begin, end)]
             radii = [0.5 * section.diameters(fraction)[0] for fraction in at]
             pieces.append((begin, end, radii[0], radii[1]))
     return pieces
 
 
-def body_problems(name: str, gear: Gear, mesh: Mesh | None, shaft: Shaft) -> list[Problem]:
+def _largest_diameter(gear: Gear, shaft: Shaft) -> float:
+    """Largest diameter of the shaft within the face [m]."""
+    return 2.0 * max((max(piece[2:]) for piece in _filled(gear, shaft)), default=0.0)
+
+
+def _fills(gear: Gear, mesh: Mesh, shaft: Shaft) -> bool:
+    """Whether the shaft reaches the reference diameter within the face of an external gear."""
+    if gear.is_ring or mesh.crossed is not None:
+        return False
+    return _largest_diameter(gear, shaft) >= gear.teeth * mesh.transverse_module
+
+
+def body_problems(name: str, gear: Gear, meshes: Sequence[Mesh], shaft: Shaft) -> list[Problem]:
     """A shaft that is thicker than its gear, and a gear in no mesh without a mass."""
-    if mesh is None:
+    if not meshes:
         if gear.mass is None:
             remedy = "Give its mass and moments of inertia, join it by a mesh, or remove it"
             why = "Without a module its size, and so its mass, is not known"
             return [Problem("the gear is in no mesh", f"gears.{name}", why, remedy)]
         return []
-    if gear.is_ring or mesh.crossed is not None:
+    has_teeth = any(mesh.stiffness is None or mesh.contacts for mesh in meshes)
+    is_solid = gear.mass is None or gear.moment_of_inertia is None
+    if not _fills(gear, meshes[0], shaft) or not (has_teeth or is_solid):
         return []
-    largest = 2.0 * max((max(piece[2:]) for piece in _filled(gear, shaft)), default=0.0)
-    diameter = gear.teeth * mesh.transverse_module
-    if largest < diameter:
-        return []
+    largest = _largest_diameter(gear, shaft)
+    diameter = gear.teeth * meshes[0].transverse_module
     return [
         Problem(
             f"the shaft has a diameter of {display(largest, 'm')} within the face of the gear",
             f"gears.{name}.position",
             f"It is not smaller than the reference diameter, {display(diameter, 'm')}",
-            f'Move the gear, or give shaft "{gear.shaft}" a smaller section there',
+            f'Move the gear, give shaft "{gear.shaft}" a smaller section there, or give mass and '
+            "moment_of_inertia of the gear and the stiffness of its mesh",
         )
     ]

@@ -8,15 +8,12 @@ from itertools import combinations
 import numpy as np
 
 from tribodyn.errors import Problem
+from tribodyn.machine.beam import carried_along
 from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.shaft_graph import ShaftGraph
-from tribodyn.machine.shaft import Shaft
-from tribodyn.types import Array
-
-#: Overlap of faces that is rounding [m].
-_ROUNDING = 1e-9
+from tribodyn.machine.shaft import SAME_PLACE, Shaft
 
 
 def drive_problems(
@@ -57,7 +54,7 @@ def place_problems(
             if part.position is None:
                 remedy = "Give the position of its mid face"
                 yield Problem("the position is missing", where, reach, remedy)
-            elif not -_ROUNDING <= part.position <= shaft.length + _ROUNDING:
+            elif not -SAME_PLACE <= part.position <= shaft.length + SAME_PLACE:
                 what = f"position = {display(part.position, 'm')} is beside the shaft"
                 yield Problem(what, where, reach, "Give a position on it, or a longer shaft")
     for first, second in combinations(gears, 2):
@@ -66,7 +63,7 @@ def place_problems(
             continue
         faces = 0.5 * (low.face_width + high.face_width)
         overlap = faces - abs(low.position - high.position)
-        if overlap > _ROUNDING and low.is_ring == high.is_ring:
+        if overlap > SAME_PLACE and low.is_ring == high.is_ring:
             yield Problem(
                 f"position = {display(high.position, 'm')}: gears {first} and {second} are in one "
                 f"place, their faces overlap by {display(overlap, 'm')}",
@@ -80,23 +77,26 @@ def place_problems(
 def support_problems(
     shafts: Mapping[str, Shaft], bearings: Mapping[str, Bearing], pushed: Mapping[str, float]
 ) -> Iterator[Problem]:
-    """Shafts with sections that can move away; ``pushed`` are axial forces of the meshes [N]."""
+    """Shafts with sections that can move away; ``pushed``: axial forces of meshes [N]."""
     for name, shaft in shafts.items():
         if shaft.is_rigid:
             continue
         where = f"shafts.{name}"
         supports = [bearing for bearing in bearings.values() if bearing.shaft == name]
         if not supports:
-            why = "Its meshes would push it away"
+            meshed = "Its meshes would push it away"
+            why = meshed if name in pushed else "Nothing holds it against moving and tilting"
             remedy = f'Add a bearing with shaft = "{name}", or leave out its sections'
             yield Problem("the shaft has no bearing", where, why, remedy)
             continue
-        stiffness = sum((_support_matrix(bearing) for bearing in supports), np.zeros((6, 6)))
-        lateral = stiffness[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])]
+        arms = [(bearing, carried_along(bearing.position)) for bearing in supports]
+        held = sum((arm.T @ bearing.held @ arm for bearing, arm in arms), np.zeros((6, 6)))
+        lateral = held[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])]
         length = np.array([1.0, 1.0, shaft.length, shaft.length])
         scaled = lateral / np.outer(length, length)
         if np.linalg.eigvalsh(scaled)[0] < 1e-9 * np.abs(scaled).max():
-            places = ", ".join(sorted({display(bearing.position, "m") for bearing in supports}))
+            positions = sorted({bearing.position for bearing in supports})
+            places = ", ".join(dict.fromkeys(display(position, "m") for position in positions))
             yield Problem(
                 f"its bearings, at {places}, do not hold the shaft against moving across its axis "
                 "or tilting",
@@ -104,7 +104,7 @@ def support_problems(
                 "It needs radial stiffness in y and z at two places, or tilting stiffness",
                 "Add a bearing, or give tilting_stiffness",
             )
-        if stiffness[0, 0] <= 0.0 and abs(force := pushed.get(name, 0.0)) > 1e-6:
+        if held[0, 0] <= 0.0 and abs(force := pushed.get(name, 0.0)) > 1e-6:
             yield Problem(
                 f"no bearing holds the shaft along its axis, and its meshes push it with "
                 f"{force:.6g} N",
@@ -112,14 +112,3 @@ def support_problems(
                 "axial_stiffness is 0 by default, and cylindrical roller bearings have none",
                 "Give one of its bearings an axial_stiffness, or another type",
             )
-
-
-def _support_matrix(bearing: Bearing) -> Array:
-    """Stiffness of a bearing at the beginning of its shaft; of a rolling bearing a stand-in."""
-    matrix = bearing.stiffness_matrix
-    if bearing.rolling is not None:
-        matrix = np.diag([float(bearing.rolling.takes_axial_force), 1.0, 1.0, 0.0, 0.0, 0.0])
-    arm = bearing.position
-    shift = np.eye(6)
-    shift[1, 5], shift[2, 4] = arm, -arm
-    return np.asarray(shift.T @ matrix @ shift)
