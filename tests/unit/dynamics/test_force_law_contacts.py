@@ -232,6 +232,7 @@ def test_a_varying_gap_is_refused():
 
 @pytest.mark.parametrize("rounding", [-2.54e-21, -1e-16])
 def test_rounding_below_a_closed_gap_is_zero(rounding):
+    start = ([3e-5], [0.6])
     gap = lambda phase: 2e-5 * (1.0 + np.cos(2.0 * np.pi * phase)) + rounding  # noqa: E731
     closed = lambda phase: np.maximum(gap(phase), 0.0)  # noqa: E731
     touching, exact = (
@@ -248,6 +249,6 @@ def test_rounding_below_a_closed_gap_is_zero(rounding):
     law = constant_law([0.0, 1e-5], [2e8, 1e8])
     early = MeshForceLaw(law.grid, law.knot_deflection + rounding, law.knot_stiffness)
     law_contacts(_plain_contact(gap=0.0), early)
+    negative = _body([_plain_contact(stiffness=2e8, gap=lambda phase: 0 * phase - 1e-12)])
     with pytest.raises(InputError, match="gap = -1e-12 m"):
-        open_body = _body([_plain_contact(stiffness=2e8, gap=lambda p: 0 * p - 1e-12)])
-        simulate(open_body, FREQUENCY, 1, ([3e-5], [0.6]), steps=64)
+        simulate(negative, FREQUENCY, 1, start, steps=64)
