@@ -30,8 +30,9 @@ _LONGER, _NEARLY = 4.0, 1.5
 _PRECISE = 10.0
 #: Variance of the power over its square up to which one harmonic alone is a line.
 _EVEN = 0.2
-#: Slowest shaft in a shortest block turns about once; teeth where they are not known.
-_TEETH = 64
+#: Turns of the slowest shaft in a shortest block, and mesh cycles of it where no teeth are known:
+#: the window of a block takes out all multiples of the turns, so that run-out is no speed.
+_TURNS, _SHORTEST = 2, 64
 #: Fastest change of the speed over the speed that a path follows [1/s].
 _FASTEST = 0.1
 #: Points of the demodulated phase in one block.
@@ -128,8 +129,9 @@ def mesh_speed(
     tolerance : float
         Largest relative deviation of the mesh frequency from the assumed one [-].
     teeth : sequence of int
-        Teeth of the gears; with them changes of speed up to about once per turn of the slower shaft
-        are followed, without them up to once in 64 mesh cycles.
+        Teeth of the gears; with them changes of speed below half the turns of the slowest shaft
+        are followed, and the run-out of no gear is taken for speed; without them changes slower
+        than 64 mesh cycles are.
 
     Returns
     -------
@@ -185,8 +187,9 @@ def mesh_speed(
         why = "Separating mesh harmonics from adjacent lines takes at least 20 mesh cycles"
         raise InputError(what, Argument("signal"), why, "Record longer")
     search = _Search(rows, float(sample_rate), frequency, count, wide)
-    shortest = max(max(teeth, default=_TEETH), 32) / frequency
-    return _result(search, _followed(search, round(shortest * search.rate)), tolerance)
+    shortest = max(_TURNS * max(teeth), 32) if teeth else _SHORTEST
+    path = _followed(search, round(shortest / frequency * search.rate))
+    return _result(search, path, tolerance)
 
 
 def _rows(signal: Any) -> Array:
@@ -325,7 +328,7 @@ class _Search:
         from scipy.signal import resample_poly
 
         down = max(length // _POINTS, 1)
-        window = np.hanning(_POINTS + 2)[1:-1]
+        window = np.hanning(_POINTS + 1)[1:-1]
         turn = np.exp(-1j * angle)
         wave = np.ones(self.size, dtype=complex)
         demodulated = []
@@ -434,7 +437,9 @@ def _result(search: _Search, path: _Path | None, tolerance: float) -> MeshSpeed:
     ratio = np.diff(path.angle[::step]) / (2.0 * np.pi * search.frequency * step / search.rate)
     used = np.flatnonzero(path.clear.any(axis=0)) + 1
     lines = "harmonic" + "s" * (used.size > 1)
-    blocks = "the whole record" if steady else f"blocks of {path.length / search.rate:.3g} s"
+    seconds = path.length / search.rate
+    slower = f"{seconds:.3g} s: what repeats slower than {_TURNS / seconds:.3g} Hz counts as speed"
+    blocks = "the whole record" if steady else f"blocks of {slower}"
     change = path.change / (0.5 * np.pi * turns)
     uncertainty = float(np.hypot(max(noise / turns, path.scatter, _LEAST), change))
     # A steady angle errs by its slope over the record, another one by the noise in each block.

@@ -88,21 +88,22 @@ def modulating_shaft(
     mesh = np.arange(0.0, top + teeth, teeth)
 
     def lines_of(family: Array, strange: Array) -> ShaftLines:
-        places = np.rint(family[_distance(family, strange) > reach] / orders.orders[1]).astype(int)
-        size = orders.amplitudes[places]
+        alone = family[_distance(family, strange) > reach]
+        places = np.rint(alone / orders.orders[1]).astype(int)
+        size = orders._amplitudes_at(alone)
         clear = size > CLEAR * floor[places]
         return ShaftLines(
             places.size, int(clear.sum()), float(np.sqrt(0.5 * np.sum(size[clear] ** 2)))
         )
 
-    alone = [
+    of_gears = [
         lines_of(family, np.concatenate([other, mesh]))
         for family, other in (families, families[::-1])
     ]
     for number in (0, 1):  # a multiple of its teeth is the number of its mate's
-        if not alone[number].number and not alone[1 - number].stands_out:
-            alone[number] = lines_of(families[number], mesh)
-    return alone[0], alone[1]
+        if not of_gears[number].number and not of_gears[1 - number].stands_out:
+            of_gears[number] = lines_of(families[number], mesh)
+    return of_gears[0], of_gears[1]
 
 
 def explain_modulation(

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.checks import require_whole
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.errors import Argument, InputError, require_between, require_one_of, require_positive
 from tribodyn.record import Record, fact, quantity, record
@@ -76,7 +77,7 @@ class OrderSpectrum(Record):
         )
 
     def amplitude(self, order: float) -> float:
-        """Amplitude of the line next to an order.
+        """Amplitude of an order.
 
         Parameters
         ----------
@@ -86,7 +87,8 @@ class OrderSpectrum(Record):
         Returns
         -------
         float
-            In the unit of the signal.
+            In the unit of the signal. Between two lines of the spectrum the gain of the window at
+            that distance is taken out.
 
         Raises
         ------
@@ -94,11 +96,32 @@ class OrderSpectrum(Record):
             If the spectrum does not reach that order.
         """
         require_between("order", order, 0.0, float(self.orders[-1]))
-        return float(self.amplitudes[int(np.argmin(np.abs(self.orders - order)))])
+        return float(self._amplitudes_at(np.array([order]))[0])
+
+    def _amplitudes_at(self, orders: Array) -> Array:
+        """Amplitudes of several orders."""
+        lines = np.rint(orders / self.orders[1]).astype(int)
+        lines = np.minimum(lines, self.orders.size - 1)
+        away = (orders - self.orders[lines]) * self.revolutions
+        return np.asarray(self.amplitudes[lines] / _window_gain(self.window, away))
+
+
+def _window_gain(window: str, away: Array) -> Array:
+    """Transform of a window over that at its centre, at a distance in inverse lengths."""
+    coefficients = np.abs(WINDOWS[window])  # about the middle of the block
+    shift = np.arange(coefficients.size)
+    apart = np.asarray(away)[..., None]
+    return np.asarray(0.5 * (np.sinc(apart - shift) + np.sinc(apart + shift)) @ coefficients)
 
 
 def order_spectrum(
-    signal: Any, angle: Any, max_order: float, *, window: str = "flattop", unit: str = ""
+    signal: Any,
+    angle: Any,
+    max_order: float,
+    *,
+    window: str = "flattop",
+    unit: str = "",
+    period: int = 1,
 ) -> OrderSpectrum:
     """Compute the amplitudes of a signal over the orders of a shaft.
 
@@ -115,6 +138,10 @@ def order_spectrum(
         separates close orders better.
     unit : str
         Unit of the signal, for display.
+    period : int
+        Revolutions after which the mate is back too, its teeth over the largest common factor:
+        so many or a multiple are used if the record holds them, and the orders of the mate fall on
+        lines.
 
     Returns
     -------
@@ -146,6 +173,8 @@ def order_spectrum(
     if revolutions < 4.0:
         raise _too_short(turned, 4.0)
     require_one_of("window", window, WINDOWS)
+    turns = require_whole("period", period)
+    revolutions -= revolutions % turns if revolutions >= max(turns, 4) else 0.0
     lines = _lines(values, turned, float(turned[0]), revolutions, max_order, window)
     orders = np.arange(lines.size) / (2.0 * revolutions)
     return OrderSpectrum(orders, np.abs(lines), np.angle(lines), float(revolutions), window, unit)

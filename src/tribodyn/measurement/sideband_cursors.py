@@ -129,8 +129,9 @@ def sideband_cursors(
         why = f"Over {orders.revolutions:g} revolutions lines are separate from {least:.3g} on"
         raise InputError(what, Argument("spacing"), why, "Record longer")
     number = np.arange(-count, count + 1)
-    places = np.rint((carrier + spacing * number) / step).astype(int)
-    size = orders.amplitudes[places]
+    cursors = carrier + spacing * number.astype(np.float64)
+    places = np.rint(cursors / step).astype(int)
+    size = orders._amplitudes_at(cursors)
     first, last = max(places[0] - 2 * LOBE, 1), places[-1] + 2 * LOBE + 1
     between = np.ones(orders.orders.size, dtype=bool)
     for place in places:
@@ -142,7 +143,7 @@ def sideband_cursors(
         float(carrier),
         float(spacing),
         number,
-        carrier + spacing * number.astype(np.float64),
+        cursors,
         size,
         20.0 * np.log10(np.maximum(size, 1e-300) / carrier_size),
         floor,

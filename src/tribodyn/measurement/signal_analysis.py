@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import field
+from math import gcd
 from typing import Any
 
 import numpy as np
@@ -44,6 +45,8 @@ from tribodyn.types import Array
 _PEAKS, _HARMONICS = 5, 5
 #: Highest order where no teeth are known, and its share of what the sampling resolves.
 _ORDERS, _RESOLVED = 100.0, 0.95
+#: Half the main lobe of the window "flattop" over the inverse of the revolutions.
+_FLATTOP = 5.0
 #: Revolutions of a block of the order map.
 _BLOCK = 8.0
 #: Lines of a spectrum over which a smeared one reads clearly low.
@@ -328,7 +331,7 @@ def analyse_signal(
     lines = spectrum(values, rate, unit=unit)
     parts: dict[str, Any] = {}
     if shaft is not None:
-        parts |= _orders(values, rate, unit, shaft, (max_order, teeth), notes)
+        parts |= _orders(values, rate, unit, shaft, (max_order, teeth, mate_teeth), notes)
         parts |= mean_revolutions(values, recording.time, unit, shaft, shafts, notes)
         options = (tacho, pulses_per_revolution, speed, gears)
         compare_with_earlier(parts, [(each, channel) for each in earlier], options, shafts)
@@ -378,20 +381,27 @@ def _orders(
     rate: float,
     unit: str,
     shaft: ShaftSpeed,
-    limits: tuple[float | None, int | None],
+    limits: tuple[float | None, int | None, int | None],
     notes: list[Problem],
 ) -> dict[str, Any]:
     """Order spectrum, and order map where the speed changes."""
-    max_order, teeth = limits
+    max_order, teeth, mate_teeth = limits
     fastest = float(np.diff(shaft.angle).max())
     if max_order is None:
         wanted = (_HARMONICS + 0.5) * teeth if teeth else _ORDERS
         max_order = min(wanted, _RESOLVED * np.pi / fastest)
     else:
         require_between("max_order", max_order, 1.0, 1e6)
+    pair = (teeth, mate_teeth) if teeth and mate_teeth else (1, 1)
+    # The turns of a short record part neighbouring orders by a narrower window only.
+    turned = float(np.ptp(shaft.angle)) / (2.0 * np.pi) * min(1.0, pair[0] / pair[1])
+    window = "flattop" if turned >= _FLATTOP else "hann"
+    period = pair[1] // gcd(*pair)
     try:
         parts: dict[str, Any] = {
-            "orders": order_spectrum(values, shaft.angle, max_order, unit=unit)
+            "orders": order_spectrum(
+                values, shaft.angle, max_order, window=window, unit=unit, period=period
+            )
         }
         if shaft.varies:
             parts["order_map"] = order_map(
