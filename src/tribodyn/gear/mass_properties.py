@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -52,12 +53,18 @@ class Material:
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
 
+#: Gauss-Legendre points of the fillet and of the flank.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
+#: Points along a cone; exact for the fourth power of a linear radius.
+_CONE_NODES, _CONE_WEIGHTS = np.polynomial.legendre.leggauss(3)
+
+#: Begin and end of a round hole from the mid face, and its radii there [m].
+Hole = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Mass and polar moment of inertia of a gear.
+    """Mass and moments of inertia of a gear.
 
     Parameters
     ----------
@@ -65,10 +72,40 @@ class MassProperties:
         Mass [kg].
     moment_of_inertia : float
         Polar moment of inertia about the gear axis [kg*m^2].
+    transverse_moment_of_inertia : float
+        Moment of inertia about an axis in the mid plane [kg*m^2].
     """
 
     mass: float
     moment_of_inertia: float
+    transverse_moment_of_inertia: float = 0.0
+
+    def with_values(
+        self,
+        mass: float | None = None,
+        moment_of_inertia: float | None = None,
+        transverse_moment_of_inertia: float | None = None,
+    ) -> MassProperties:
+        """Replace prescribed values; a mass scales the moments of inertia that are not prescribed.
+
+        Parameters
+        ----------
+        mass : float, optional
+            Mass [kg].
+        moment_of_inertia, transverse_moment_of_inertia : float, optional
+            Moments of inertia [kg*m^2].
+
+        Returns
+        -------
+        MassProperties
+        """
+        scale = 1.0 if mass is None else mass / self.mass
+        polar, transverse = moment_of_inertia, transverse_moment_of_inertia
+        return MassProperties(
+            self.mass if mass is None else mass,
+            scale * self.moment_of_inertia if polar is None else polar,
+            scale * self.transverse_moment_of_inertia if transverse is None else transverse,
+        )
 
 
 def section_moments(form: ToothForm) -> tuple[float, float]:
@@ -121,8 +158,29 @@ def section_moments(form: ToothForm) -> tuple[float, float]:
     return area, polar
 
 
-def mass_properties(gear: SpurGear, density: float) -> MassProperties:
-    """Mass and moment of inertia: those given with the gear, else those of the solid.
+def body_properties(
+    section: tuple[float, float], face_width: float, density: float, holes: Iterable[Hole] = ()
+) -> MassProperties:
+    """Mass and moments of inertia of a section over the face width, less coaxial round holes."""
+    area, polar = section
+    moments = np.array([area, polar, 0.5 * polar + area * face_width**2 / 12.0]) * face_width
+    for start, end, first, last in holes:
+        x = 0.5 * (start + end) + 0.5 * (end - start) * _CONE_NODES
+        weight = 0.5 * (end - start) * _CONE_WEIGHTS * math.pi
+        r = first + (last - first) * (x - start) / (end - start)
+        moments -= np.stack([r**2, 0.5 * r**4, 0.25 * r**4 + x**2 * r**2]) @ weight
+    return MassProperties(*(density * moments).tolist())
+
+
+def ring_section(hole: tuple[float, float], radius: float) -> tuple[float, float]:
+    """Area and polar moment of area of a disc of a radius with a toothed or round hole."""
+    return math.pi * radius**2 - hole[0], 0.5 * math.pi * radius**4 - hole[1]
+
+
+def mass_properties(
+    gear: SpurGear, density: float, holes: Iterable[Hole] | None = None
+) -> MassProperties:
+    """Mass and moments of inertia: those given with the gear, else those of the solid.
 
     Parameters
     ----------
@@ -130,6 +188,9 @@ def mass_properties(gear: SpurGear, density: float) -> MassProperties:
         Gear; its ``mass`` and ``moment_of_inertia``, where given, are returned as they are.
     density : float
         Density [kg/m^3].
+    holes : iterable of (float, float, float, float), optional
+        Begin and end of each coaxial hole from the mid face, and its radii there [m]; by default
+        the bore.
 
     Raises
     ------
@@ -139,8 +200,8 @@ def mass_properties(gear: SpurGear, density: float) -> MassProperties:
     Notes
     -----
     The solid is the toothed section less the bore, of a ring the disc of its rim less the hole,
-    over the face width: a helix changes neither. Source: polar area
-    integral, see :func:`section_moments`.
+    over the face width: a helix changes neither. A mass that is given alone scales the moments of
+    inertia of the solid. Source: polar area integral, see :func:`section_moments`.
 
     Examples
     --------
@@ -150,12 +211,11 @@ def mass_properties(gear: SpurGear, density: float) -> MassProperties:
     0.39
     """
     require_positive("density", density, "kg/m^3")
-    area, polar = section_moments(gear)
-    rim = gear.rim_radius
-    line_density = gear.sign * density * gear.face_width
-    mass = line_density * (area - math.pi * rim**2)
-    inertia = line_density * (polar - 0.5 * math.pi * rim**4)
-    return MassProperties(
-        mass=mass if gear.mass is None else gear.mass,
-        moment_of_inertia=inertia if gear.moment_of_inertia is None else gear.moment_of_inertia,
-    )
+    section = section_moments(gear)
+    if gear.is_ring:
+        section, holes = ring_section(section, gear.rim_radius), ()
+    elif holes is None:
+        half, bore = 0.5 * gear.face_width, gear.rim_radius
+        holes = [(-half, half, bore, bore)]
+    solid = body_properties(section, gear.face_width, density, holes)
+    return solid.with_values(gear.mass, gear.moment_of_inertia)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tribodyn.errors import Argument, InputError
-from tribodyn.machine.fields import check_name, check_number
+from tribodyn.gear import ToothForm
+from tribodyn.machine.fields import check_name, check_number, quoted
+from tribodyn.machine.section import STEEL
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,14 @@ class Gear:
         Its polar moment of inertia [kg*m^2].
     transverse_moment_of_inertia : float, optional
         Its moment of inertia about an axis in its mid plane [kg*m^2].
+    bore_diameter : float
+        Bore of a gear that is wider than its shaft, or whose shaft is rigid [m].
+    rim_diameter : float, optional
+        Outer diameter of a ring [m]; its rim is 3.5 modules thick by default.
+    density : float
+        Density [kg/m^3]; that of steel by default.
+    form : ToothForm, optional
+        Form of its teeth; by default the section is a disc of the reference diameter.
 
     Raises
     ------
@@ -36,7 +46,7 @@ class Gear:
 
     Notes
     -----
-    What is not given is that of a solid steel body of the reference diameter around the shaft; see
+    What is not given is that of the solid around the shaft or the bore; see
     :attr:`Machine.gear_bodies`.
 
     Examples
@@ -52,6 +62,10 @@ class Gear:
     mass: float | None = None
     moment_of_inertia: float | None = None
     transverse_moment_of_inertia: float | None = None
+    bore_diameter: float = 0.0
+    rim_diameter: float | None = None
+    density: float = STEEL.density
+    form: ToothForm | None = None
 
     def __post_init__(self) -> None:
         check_name(self, "shaft")
@@ -72,6 +86,18 @@ class Gear:
         ):
             if getattr(self, name) is not None:
                 check_number(self, name, unit, 0.0)
+        check_number(self, "density", "kg/m^3", 0.0, above=True)
+        check_number(self, "bore_diameter", "m", 0.0, 100.0)
+        if self.rim_diameter is not None:
+            check_number(self, "rim_diameter", "m", 0.0, 100.0, above=True)
+        other = "bore_diameter" if self.is_ring else "rim_diameter"
+        if getattr(self, other):
+            what = f"{other} of a {'ring' if self.is_ring else 'gear with external teeth'}"
+            why = "A ring has a rim, other gears have a bore"
+            raise InputError(what, Argument(f"Gear.{other}"), why, "Remove it")
+        if self.form is not None and getattr(self.form, "teeth", None) != self.teeth:
+            what, why = f"form = {quoted(self.form)}", f"Wanted: a ToothForm of {self.teeth} teeth"
+            raise InputError(what, Argument("Gear.form"), why, "Give the form of this gear")
 
     @property
     def is_ring(self) -> bool:

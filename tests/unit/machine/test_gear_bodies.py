@@ -10,9 +10,11 @@ import pytest
 from machines import two_stage_parts
 
 from tribodyn.errors import InputError
+from tribodyn.gear import cylindrical_pair, mass_properties
 from tribodyn.machine import Gear, GearBody, Machine, Section, Shaft
 
-RADIUS, WIDTH = 0.5 * 27 * 4.5e-3 / math.cos(math.radians(21.0)), 0.05
+HELIX, WIDTH = math.radians(21.0), 0.05
+RADIUS = 0.5 * 27 * 4.5e-3 / math.cos(HELIX)
 
 
 def body(gear: Gear, sections: list[Section]) -> GearBody:
@@ -105,10 +107,55 @@ def test_user_values_stay_and_a_mass_alone_scales_the_solid() -> None:
     assert polar == GearBody(solid.mass, 2.0, 3.0)
 
 
-def test_a_ring_reaches_ten_modules_beyond_its_reference_diameter() -> None:
+def test_a_ring_has_a_root_and_a_rim_of_three_and_a_half_modules() -> None:
     from machines import pair
 
     ring = pair((21, -72)).gear_bodies["b"]
-    outer, inner = 0.5 * 72 * 2e-3 + 5 * 2e-3, 0.5 * 72 * 2e-3
+    outer, inner = 0.5 * 72 * 2e-3 + 4.75 * 2e-3, 0.5 * 72 * 2e-3
     values = ring.mass, ring.moment_of_inertia, ring.transverse_moment_of_inertia
     assert values == pytest.approx(hollow(outer, inner, 0.02), rel=1e-12)
+
+
+def test_the_larger_of_bore_and_shaft_is_taken_out() -> None:
+    gear = Gear("input", 0.1, 27, WIDTH, bore_diameter=0.06, density=1400.0)
+    for sections in ([Section(0.3, 0.05)], [Section(0.1, 0.05), Section(0.2, 0.06)]):
+        result = body(gear, sections)
+        values = result.mass, result.moment_of_inertia, result.transverse_moment_of_inertia
+        steel = np.array(hollow(RADIUS, 0.03, WIDTH))
+        assert values == pytest.approx(steel * 1400.0 / 7850.0, rel=1e-12)
+    assert body(gear, [Section(0.3, 0.07)]) == body(
+        replace(gear, bore_diameter=0.0), [Section(0.3, 0.07)]
+    )
+    # a cone of 50 to 70 mm passes the bore in the middle of the face
+    cone = body(gear, [Section(0.075, 0.05), Section(0.05, 0.05, 0.0, 0.07), Section(0.2, 0.05)])
+    x = (np.arange(200_000) + 0.5) / 200_000 * WIDTH - 0.5 * WIDTH
+    r = np.maximum(0.03 + 0.2 * x, 0.03)
+    assert cone.mass == pytest.approx(1400.0 * math.pi * WIDTH * np.mean(RADIUS**2 - r**2))
+    ends = body(gear, [Section(0.1, 0.08), Section(0.2, 0.05)])  # the shaft fills half of the face
+    half = 0.5 * WIDTH * math.pi * 1400.0
+    assert ends.mass == pytest.approx(half * (2 * RADIUS**2 - 0.03**2 - 0.04**2), rel=1e-12)
+
+
+def test_a_tooth_form_gives_the_mass_of_the_gear_alone() -> None:
+    pinion = cylindrical_pair(
+        normal_module=4.5e-3, normal_pressure_angle=math.radians(20.0), helix_angle=HELIX,
+        pinion_teeth=27, wheel_teeth=51, pinion_profile_shift_coefficient=0.3,
+        wheel_profile_shift_coefficient=0.0, pinion_face_width=WIDTH, wheel_face_width=WIDTH,
+        pinion_bore_diameter=0.05,
+    ).pinion  # fmt: skip
+    gear = Gear("input", 0.1, 27, WIDTH, form=pinion)
+    result, alone = body(gear, [Section(0.3, 0.05)]), mass_properties(pinion, 7850.0)
+    assert result.mass == pytest.approx(alone.mass, rel=1e-13)
+    assert result.moment_of_inertia == pytest.approx(alone.moment_of_inertia, rel=1e-13)
+
+
+def test_bodies_of_which_nothing_is_left_are_refused() -> None:
+    with pytest.raises(InputError, match=r"gears\.z1\.bore_diameter"):
+        body(Gear("input", 0.1, 27, WIDTH, bore_diameter=0.2), [Section(0.3, 0.05)])
+    for changes, name in (
+        ({"rim_diameter": 0.2}, "rim_diameter"),
+        ({"density": 0.0}, "density"),
+        ({"form": Gear}, "form"),
+    ):
+        with pytest.raises(InputError, match=name):
+            Gear("input", 0.1, 27, WIDTH, **changes)

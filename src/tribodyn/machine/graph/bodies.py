@@ -4,52 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-
-import numpy as np
 
 from tribodyn.errors import Problem
+from tribodyn.gear import MassProperties, section_moments
+from tribodyn.gear.cylindrical_gear import RIM_COEFFICIENT
 from tribodyn.gear.hypoid.bodies import cone_bodies
+from tribodyn.gear.mass_properties import Hole, body_properties, ring_section
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.mesh import Mesh
-from tribodyn.machine.section import STEEL
 from tribodyn.machine.shaft import SAME_PLACE, Shaft
 
-#: Outer over reference diameter of a ring, in modules: the root, and a rim of 3.75 modules.
-_RIM = 10.0
-#: Gauss-Legendre points; exact for the fourth power of a linear radius.
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+#: Root circle of a ring whose tooth form is not known, over its reference circle, in modules.
+_DEDENDUM = 1.25
 
-
-@dataclass(frozen=True)
-class GearBody:
-    """Mass and inertia of a gear, without its shaft.
-
-    Parameters
-    ----------
-    mass : float
-        Mass [kg].
-    moment_of_inertia : float
-        Polar moment of inertia [kg*m^2].
-    transverse_moment_of_inertia : float
-        Moment of inertia about an axis in the mid plane [kg*m^2].
-
-    Notes
-    -----
-    What is not prescribed is that of a steel cylinder of the reference diameter, less what the
-    shaft fills; a ring reaches from its reference diameter to ten modules beyond, and bevel gears
-    are truncated pitch cones. A prescribed mass scales the moments of inertia of the solid; of a
-    gear that is not larger than its shaft the transverse one is ``J / 2 + m b^2 / 12``.
-    """
-
-    mass: float
-    moment_of_inertia: float
-    transverse_moment_of_inertia: float
+#: Mass and inertia of a gear, without its shaft.
+GearBody = MassProperties
 
 
 def gear_body(gear: Gear, mesh: Mesh | None, shaft: Shaft, number: int = 0) -> GearBody:
     """Body of the first or second gear of a mesh: prescribed values, else those of the solid."""
+    # The toothed section, or a disc of the reference diameter, less the larger of shaft and bore;
+    # bevel gears are truncated pitch cones.
     values = gear.mass, gear.moment_of_inertia, gear.transverse_moment_of_inertia
     if mesh is None or None not in values:
         return GearBody(*(value or 0.0 for value in values))
@@ -59,40 +35,56 @@ def gear_body(gear: Gear, mesh: Mesh | None, shaft: Shaft, number: int = 0) -> G
         polar, transverse = gear.moment_of_inertia or 0.0, gear.transverse_moment_of_inertia
         disc = 0.5 * polar + gear.mass * gear.face_width**2 / 12.0
         return GearBody(gear.mass, polar, disc if transverse is None else transverse)
-    solid = _solid(gear, mesh, shaft, number)
-    scale = 1.0 if gear.mass is None else gear.mass / solid[0]
-    mass, polar, transverse = (
-        factor * computed if value is None else value
-        for value, computed, factor in zip(values, solid, (1.0, scale, scale), strict=True)
-    )
-    return GearBody(mass, polar, transverse)
-
-
-def _solid(gear: Gear, mesh: Mesh, shaft: Shaft, number: int) -> tuple[float, float, float]:
-    """Mass and moments of inertia of the solid body."""
     if mesh.crossed is not None:
-        cones = cone_bodies(mesh.crossed.blank, STEEL.density)
-        return cones["wheel" if number else "pinion"]
-    radius = 0.5 * abs(gear.teeth) * mesh.transverse_module
-    half = 0.5 * gear.face_width
-    outer = radius + (0.5 * _RIM * mesh.normal_module if gear.is_ring else 0.0)
-    hollow = [(-half, half, radius, radius)] if gear.is_ring else _filled(gear, shaft)
-    mass, polar, transverse = (
-        2.0 * half * math.pi * outer**2,
-        math.pi * half * outer**4,
-        math.pi * half * outer**4 / 2.0 + math.pi * outer**2 * 2.0 * half**3 / 3.0,
-    )
-    for start, end, first, last in hollow:
-        x = 0.5 * (start + end) + 0.5 * (end - start) * _NODES
-        weight = 0.5 * (end - start) * _WEIGHTS * math.pi
-        r = first + (last - first) * (x - start) / (end - start)
-        mass -= float(weight @ r**2)
-        polar -= float(weight @ r**4) / 2.0
-        transverse -= float(weight @ (r**4 / 4.0 + x**2 * r**2))
-    return STEEL.density * mass, STEEL.density * polar, STEEL.density * transverse
+        solid = cone_bodies(mesh.crossed.blank, gear.density)["wheel" if number else "pinion"]
+    else:
+        section = _section(gear, mesh)
+        holes = () if gear.is_ring else _holes(gear, shaft)
+        solid = body_properties(section, gear.face_width, gear.density, holes)
+    return solid.with_values(*values)
 
 
-def _filled(gear: Gear, shaft: Shaft) -> list[tuple[float, float, float, float]]:
+def _section(gear: Gear, mesh: Mesh) -> tuple[float, float]:
+    """Area and polar moment of area of a gear without a bore [m^2, m^4]."""
+    radius, form = 0.5 * abs(gear.teeth) * mesh.transverse_module, gear.form
+    disc = math.pi * radius**2, 0.5 * math.pi * radius**4
+    section = disc if form is None else section_moments(form)
+    if not gear.is_ring:
+        return section
+    root = radius + _DEDENDUM * mesh.normal_module if form is None else form.root_radius
+    rim = root + RIM_COEFFICIENT * mesh.normal_module
+    return ring_section(section, rim if gear.rim_diameter is None else 0.5 * gear.rim_diameter)
+
+
+def _net_area(gear: Gear, mesh: Mesh) -> float:
+    """Area of the section less the bore [m^2]."""
+    return _section(gear, mesh)[0] - 0.25 * math.pi * gear.bore_diameter**2
+
+
+def _holes(gear: Gear, shaft: Shaft) -> list[Hole]:
+    """What the shaft fills within the face, or the bore where that is larger."""
+    low, high, bore = -0.5 * gear.face_width, 0.5 * gear.face_width, 0.5 * gear.bore_diameter
+    holes, end = [], low
+    for begin, last, *radii in _filled(gear, shaft):
+        holes.append((end, begin, bore, bore))
+        holes += _at_least(bore, (begin, last, radii[0], radii[1]))
+        end = last
+    return [hole for hole in (*holes, (end, high, bore, bore)) if hole[1] > hole[0]]
+
+
+def _at_least(bore: float, hole: Hole) -> list[Hole]:
+    """Cone widened to a bore; where it crosses the bore it is divided."""
+    begin, end, first, last = hole
+    if (first - bore) * (last - bore) >= 0.0:
+        return [(begin, end, max(first, bore), max(last, bore))]
+    middle = begin + (end - begin) * (bore - first) / (last - first)
+    return [
+        (begin, middle, max(first, bore), bore),
+        (middle, end, bore, max(last, bore)),
+    ]
+
+
+def _filled(gear: Gear, shaft: Shaft) -> list[Hole]:
     """Parts of the shaft within the face: begin, end from mid face, and radii there."""
     pieces = []
     low, high = -0.5 * gear.face_width, 0.5 * gear.face_width
@@ -119,13 +111,18 @@ def _fills(gear: Gear, mesh: Mesh, shaft: Shaft) -> bool:
 
 
 def body_problems(name: str, gear: Gear, meshes: Sequence[Mesh], shaft: Shaft) -> list[Problem]:
-    """A shaft that is thicker than its gear, and a gear in no mesh without a mass."""
+    """A gear in no mesh without a mass, and a bore, a rim or a shaft that leaves nothing of it."""
     if not meshes:
         if gear.mass is None:
             remedy = "Give its mass and moments of inertia, join it by a mesh, or remove it"
             why = "Without a module its size, and so its mass, is not known"
             return [Problem("the gear is in no mesh", f"gears.{name}", why, remedy)]
         return []
+    if meshes[0].crossed is None and not _net_area(gear, meshes[0]) > 0.0:
+        key = "rim_diameter" if gear.is_ring else "bore_diameter"
+        what, where = f"{key} = {display(getattr(gear, key), 'm')}", f"gears.{name}.{key}"
+        why = "Nothing is left between it and the teeth"
+        return [Problem(what, where, why, f"{'Increase' if gear.is_ring else 'Reduce'} it")]
     has_teeth = any(mesh.stiffness is None or mesh.contacts for mesh in meshes)
     is_solid = gear.mass is None or gear.moment_of_inertia is None
     if not _fills(gear, meshes[0], shaft) or not (has_teeth or is_solid):

@@ -18,7 +18,7 @@ from tribodyn.study.case.section import Section
 from tribodyn.study.case.user_input import UserInput
 
 if TYPE_CHECKING:
-    from tribodyn.gear import HypoidBlank, HypoidFlanks, Misalignment
+    from tribodyn.gear import HypoidBlank, HypoidFlanks, MassProperties, Misalignment
 
 
 #: Keys of the blank that are no figures of :data:`MEANINGS`.
@@ -106,8 +106,12 @@ def levers(flanks: HypoidFlanks) -> tuple[float, float]:
     return wheel / flanks.blank.ratio, wheel
 
 
-def solid(flanks: HypoidFlanks, density: float) -> dict[str, tuple[float, float]]:
-    """Return mass and polar inertia of both gears as truncated pitch cones without shafts."""
+def bodies(flanks: HypoidFlanks, density: float, gears: Gears) -> dict[str, MassProperties]:
+    """Return mass and inertia of both gears: prescribed ones, else those of their pitch cones."""
     from tribodyn.gear.hypoid.bodies import cone_bodies
 
-    return {gear: body[:2] for gear, body in cone_bodies(flanks.blank, density).items()}
+    cones = cone_bodies(flanks.blank, density)
+    return {
+        name: cones[name].with_values(gear.mass, gear.moment_of_inertia)
+        for name, gear in gears.by_name.items()
+    }

@@ -15,7 +15,7 @@ from tribodyn.errors import Problem
 from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.gears import HELICAL_STIFFNESS, RQ_OVER_RA, is_idle
-from tribodyn.study.case.hypoid import solid
+from tribodyn.study.case.hypoid import bodies
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.sections import PROPERTIES, SHEET
 from tribodyn.study.case.to_models import mesh_law_of
@@ -489,9 +489,9 @@ def _solid_cone_properties(case: CaseData) -> dict[str, float]:
     if case.hypoid_flanks is None:
         return {}
     return {
-        f"gears.{gear}.{name}": value
-        for gear, properties in solid(case.hypoid_flanks, case.material.density).items()
-        for name, value in zip(("mass", "moment_of_inertia"), properties, strict=True)
+        f"gears.{gear}.{name}": getattr(body, name)
+        for gear, body in bodies(case.hypoid_flanks, case.material.density, case.gears).items()
+        for name in ("mass", "moment_of_inertia")
     }
 
 

@@ -25,8 +25,9 @@ from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
+from tribodyn.study.case.sections import MaterialData
 from tribodyn.study.case.user_input import Source, unsound, without_spread
-from tribodyn.study.case.values import KeyedProblems
+from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.faults.machine_section import (
     MachineFaultTable,
     impossible_faults,
@@ -43,6 +44,7 @@ from tribodyn.study.machine.pair_cases import (
     pair_case,
     pinion_and_wheel,
     read_blanks,
+    with_forms,
 )
 from tribodyn.study.machine.read_parts import (
     in_si,
@@ -138,14 +140,15 @@ class MachineCase(PartsCase):
         problems += reason_faults(data.get("assumed", {}))
         groups = {group: tables_of(self.data, group, problems) for group in GROUPS}
         self._blanks = read_blanks(groups, problems)
+        self._add_material(groups)
         stages = read_stages(self.data, groups["gears"], problems, source)
         self.gears: dict[str, Gear] = _read(groups, "gears", read_gear, problems)
         self._add_shafts(groups["shafts"], [table for table, *_ in stages.values()])
-        self._add_material(groups["shafts"])
         self.shafts: dict[str, Shaft] = _read(groups, "shafts", read_shaft, problems)
         self.bearings: dict[str, Bearing] = _read(groups, "bearings", read_bearing, problems)
         self._mesh_dynamics: dict[str, Any] = {}
         self._stage_of: dict[str, tuple[CaseStage, str]] = {}
+        self._pairs: dict[str, Case] = {}
         self._mesh_tables = {
             name: self._read_mesh(name, body, problems) for name, body in groups["meshes"].items()
         }
@@ -171,6 +174,7 @@ class MachineCase(PartsCase):
         try:
             self._add_stages(stages)
             self.machine()
+            self._add_forms()
             for name in self.meshes_with_teeth:
                 self.pair(name, self.operating_point)
         except InputError as error:
@@ -179,12 +183,20 @@ class MachineCase(PartsCase):
             raise InputError(origin.place(problems))
         self._check_spreads(origin)
 
+    def _add_forms(self) -> None:
+        """Set tooth forms and densities of the gears whose teeth are computed."""
+        for mesh in self.meshes_with_teeth:
+            if mesh not in self._blanks and mesh not in self._stage_of:
+                names = self._pinion_and_wheel(mesh)
+                self.gears |= with_forms(self.gears, names, self._pair_of(mesh))
+
     def _add_stages(self, stages: Mapping[str, tuple[Any, ...]]) -> None:
         """Planetary stages, with supports of members that have none."""
-        self.stages = {
-            name: CaseStage(name, table, self.data, planets, dict(self.gears), self.source)
-            for name, (table, *planets) in stages.items()
-        }
+        self.stages = {}
+        for name, (table, *planets) in stages.items():
+            stage = CaseStage(name, table, self.data, planets, self.gears, self.source)
+            self.stages[name] = stage = stage.with_forms()
+            self.gears |= stage.gears
         linked = [self.gears[g].shaft for mesh in self._mesh_tables for g in self._names(mesh)]
         linked += [shaft for coupling in self.couplings.values() for shaft in coupling.shafts]
         for stage in self.stages.values():
@@ -205,15 +217,18 @@ class MachineCase(PartsCase):
         members += [table.carrier for table in stages]
         implied = members if shafts else [*(gear.shaft for gear in gears.values()), *members]
         self.implied_shafts = tuple(dict.fromkeys(name for name in implied if name not in shafts))
-        shafts.update({name: {} for name in self.implied_shafts})
+        shafts.update(dict.fromkeys(self.implied_shafts, self._material))
 
-    def _add_material(self, shafts: dict[str, Any]) -> None:
-        """Shafts are of the material of the gears where they have none of their own."""
+    def _add_material(self, groups: Mapping[str, Any]) -> None:
+        """Shafts and gears are of the common material where they have none of their own."""
         shared = self.data.get("material", {})
-        values = shared.items() if isinstance(shared, Mapping) else ()
-        common = {key: value for key, value in values if key in ShaftTable.fields}
-        for name, body in shafts.items():
-            shafts[name] = {**common, **body}
+        values = shared if isinstance(shared, Mapping) else {}
+        common = {key: value for key, value in values.items() if key in ShaftTable.fields}
+        for name, body in groups["shafts"].items():
+            groups["shafts"][name] = {**common, **body}
+        self._material = {"density": Plain(MaterialData.fields["density"].default), **common}
+        for body in groups["gears"].values():
+            body.setdefault("density", self._material["density"])
 
     def _read_mesh(self, name: str, body: dict[str, Any], problems: KeyedProblems) -> Any:
         key = f"meshes.{name}"
@@ -346,8 +361,8 @@ class MachineCase(PartsCase):
         values["pressure_angle"] = table.normal_pressure_angle
         if (law := self._mesh_dynamics.get(name)) is not None:
             values |= constant_law(law)
-        if values["center_distance"] is None:
-            values["center_distance"] = self._center_distances.get(name)
+        if table.center_distance is None and table.stiffness is None:
+            values["center_distance"] = self._pair_of(name).gear_pair.center_distance
         return self._exchanged(Mesh(self._names(name), **{**values, **fields}))
 
     def _exchanged(self, mesh: Mesh) -> Mesh:
@@ -357,18 +372,13 @@ class MachineCase(PartsCase):
             return mesh
         return with_exchanged_gears(mesh, internal=self.gears[wheel].is_ring)
 
-    @cached_property
-    def _center_distances(self) -> dict[str, float]:
-        """Centre distances of pairs of gears from their profile shifts [m]."""
-        distances = {}
-        for name in self.meshes_with_teeth:
-            computed = name in self._blanks or name in self._stage_of
-            if not computed and self._mesh_tables[name].center_distance is None:
-                names = self._pinion_and_wheel(name)
-                parts = self.data, f"meshes.{name}", names, self.source
-                pair = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
-                distances[name] = pair.gear_pair.center_distance
-        return distances
+    def _pair_of(self, mesh: str) -> Case:
+        """Pair of cylindrical gears, at any speed and torque."""
+        if mesh not in self._pairs:
+            names = self._pinion_and_wheel(mesh)
+            parts = self.data, f"meshes.{mesh}", names, self.source
+            self._pairs[mesh] = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
+        return self._pairs[mesh]
 
     def pair(self, mesh: str, load: LoadCase, misalignment: float | Misalignment = 0.0) -> Case:
         """Pair of a mesh under a load case, as a case of its own.

@@ -82,6 +82,14 @@ def pinion_and_wheel(names: Sequence[str], gears: Mapping[str, Gear]) -> tuple[s
     return (first, second) if teeth[0] <= teeth[1] else (second, first)
 
 
+def with_forms(gears: Mapping[str, Gear], names: tuple[str, str], pair: Case) -> dict[str, Gear]:
+    """Pinion and wheel with the tooth forms and the densities of their pair."""
+    return {
+        name: replace(gears[name], form=getattr(pair.gear_pair, role), density=pair.density(role))
+        for role, name in zip(_ROLES, names, strict=True)
+    }
+
+
 def mesh_tables(body: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
     """Tables of models inside the table of a mesh."""
     return {name: body[name] for name in SHARED if isinstance(body.get(name), Mapping)}

@@ -193,9 +193,10 @@ def read_gear(name: str, body: dict[str, Any], problems: KeyedProblems) -> Gear 
         problem = Problem("face_width is missing", "", "A gear has a width", remedy)
         problems.append((f"{key}.face_width", problem))
         return None
-    names = ("shaft", "position", "teeth", "face_width", "mass", "moment_of_inertia")
-    values = {k: getattr(table, k) for k in (*names, "transverse_moment_of_inertia")}
-    values["teeth"] = table.tooth_count
+    names = [field.name for field in fields(Gear) if field.name in GearTable.fields]
+    values = {k: getattr(table, k) for k in names} | {"teeth": table.tooth_count}
+    if table.density is None:
+        del values["density"]
     part: Gear | None = built(key, lambda: Gear(**values), problems)
     return part
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.study.case.hypoid import contact_ratio, levers, solid
+from tribodyn.study.case.hypoid import bodies, contact_ratio, levers
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.to_models import chosen_options, mesh_law_of
 from tribodyn.study.pipeline.tooth_contact import load_friction_of
@@ -134,7 +134,7 @@ _CONES = (
 
 def _of_hypoid(case: Case, flanks: HypoidFlanks) -> dict[str, float]:
     """Blank of a hypoid pair, its levers and its bodies."""
-    blank, body = flanks.blank, solid(flanks, case.material.density)
+    blank, body = flanks.blank, bodies(flanks, case.material.density, case.gears)
     values: dict[str, Any] = {
         "gear_ratio": case.gear_ratio,
         "backlash": case.backlash,
@@ -143,16 +143,11 @@ def _of_hypoid(case: Case, flanks: HypoidFlanks) -> dict[str, float]:
     }
     for key in _CONES:
         values |= {f"{key}_{gear}": getattr(blank, f"{key}_{gear}") for gear in body}
-    for (name, gear), lever in zip(
-        (("pinion", case.gears.pinion), ("wheel", case.gears.wheel)), levers(flanks), strict=True
-    ):
+    for (name, solid), lever in zip(body.items(), levers(flanks), strict=True):
         values[f"base_radius_{name}"] = lever
         values[f"face_width_{name}"] = getattr(blank, f"face_width_{name}")
-        inertias = (gear.mass, gear.moment_of_inertia)
-        for key, inertia, solid_inertia in zip(
-            ("mass", "moment_of_inertia"), inertias, body[name], strict=True
-        ):
-            values[f"{key}_{name}"] = solid_inertia if inertia is None else inertia
+        values[f"mass_{name}"] = solid.mass
+        values[f"moment_of_inertia_{name}"] = solid.moment_of_inertia
     return {name: float(value) for name, value in values.items()}
 
 

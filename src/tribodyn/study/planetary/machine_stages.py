@@ -16,13 +16,20 @@ from tribodyn.machine.planetary.centrifugal import centrifugal_loads
 from tribodyn.machine.planetary.mesh_laws import gear_lag
 from tribodyn.machine.planetary.stage_parts import mesh_kinds
 from tribodyn.study.case.values import KeyedProblems, Plain
-from tribodyn.study.machine.pair_cases import MESH_KEYS, mesh_tables, pair_case, pinion_and_wheel
+from tribodyn.study.machine.pair_cases import (
+    MESH_KEYS,
+    mesh_tables,
+    pair_case,
+    pinion_and_wheel,
+    with_forms,
+)
 from tribodyn.study.machine.read_parts import read_gear, table_of, tables_of
 from tribodyn.study.machine.tables import PlanetsTable
 
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalPair
     from tribodyn.machine import MeshLoad
+    from tribodyn.study.case.case import Case
     from tribodyn.study.case.user_input import Source
 
 #: Members of a stage; sun and ring are gears, the carrier is a shaft.
@@ -99,16 +106,27 @@ class CaseStage:
 
     def gear_pair(self, mesh: str) -> CylindricalPair:
         """Geometry of a kind of mesh."""
+        return self._pair(mesh).gear_pair  # type: ignore[return-value]
+
+    def _pair(self, mesh: str) -> Case:
+        """Pair of a kind of mesh, at any speed and torque."""
         if mesh not in self._pairs:
             names = self.names_of(mesh)
             parts = self.pair_data(mesh), self.key, names, self.source
-            case = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
-            self._pairs[mesh] = case.gear_pair  # type: ignore[assignment]
+            self._pairs[mesh] = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
         return self._pairs[mesh]
 
     @cached_property
-    def _pairs(self) -> dict[str, CylindricalPair]:
+    def _pairs(self) -> dict[str, Case]:
         return {}
+
+    def with_forms(self) -> CaseStage:
+        """Stage whose gears have their tooth forms and densities."""
+        gears = {**self.gears, **dict(zip(self.planet_names, self.planets, strict=True))}
+        for mesh in mesh_kinds(self.table.planet_type):
+            gears |= with_forms(gears, self.names_of(mesh), self._pair(mesh))
+        planets = [gears[name] for name in self.planet_names]
+        return replace(self, planets=planets, gears={name: gears[name] for name in self.gears})
 
     def stage(self, load: MeshLoad | None = None) -> PlanetaryStage:
         """Stage of the machine, its phases for the load of a sun mesh."""
@@ -185,13 +203,9 @@ class CaseStage:
 
     def carrier_shaft(self, shafts: Mapping[str, Shaft]) -> Shaft:
         """Shaft of the carrier with its mass, a steel disc by default."""
-        shaft = shafts[self.table.carrier]
-        table, radius, width = self.table, self.center_distance, self.planet.face_width
-        mass = table.carrier_mass
-        if mass is None:
-            mass = shaft.material.density * math.pi * radius**2 * width
-        inertia = table.carrier_moment_of_inertia
-        inertia = 0.5 * mass * radius**2 if inertia is None else inertia
+        shaft, table, width = shafts[self.table.carrier], self.table, self.planet.face_width
+        density = shaft.material.density
+        mass, inertia = carrier_body(table, density, self.center_distance, width)
         return replace(
             shaft,
             mass=mass,
@@ -232,6 +246,13 @@ class CaseStage:
         base *= math.cos(math.atan(tangent))
         radii = {role: base * abs(self.gears[getattr(table, role)].teeth) for role in MEMBERS[:2]}
         return {**radii, "carrier": self.center_distance}
+
+
+def carrier_body(table: Any, density: float, radius: float, width: float) -> tuple[float, float]:
+    """Mass and polar moment of inertia of a carrier, by default a disc through the pins."""
+    mass, inertia = table.carrier_mass, table.carrier_moment_of_inertia
+    mass = density * math.pi * radius**2 * width if mass is None else mass
+    return mass, 0.5 * mass * radius**2 if inertia is None else inertia
 
 
 def read_stages(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -16,6 +15,7 @@ from tribodyn.machine.planetary.mesh_laws import PlanetMesh, with_computed_teeth
 from tribodyn.machine.planetary.plane_model import modal_damping, without_free_rotation
 from tribodyn.study.machine.run import MeshWarning, teeth_of
 from tribodyn.study.pipeline.assembly import geometry
+from tribodyn.study.planetary.machine_stages import carrier_body
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
@@ -62,14 +62,10 @@ def members_of(case: PlanetaryCase) -> dict[str, float]:
         values[f"{role}_mass"] = body[f"mass_{side}"]
         inertia = body[f"moment_of_inertia_{side}"]
         values[f"{role}_inertia"] = inertia / body[f"base_radius_{side}"] ** 2
-    table, radius = case.table, case.center_distance
-    width = case.gears[table.planet].face_width
-    density = case.pairs["sun"].density("pinion")
-    mass = density * math.pi * radius**2 * width if table.carrier_mass is None else None
-    mass = table.carrier_mass if mass is None else mass
-    inertia = table.carrier_moment_of_inertia
-    values["carrier_mass"] = mass
-    values["carrier_inertia"] = 0.5 * mass if inertia is None else inertia / radius**2
+    density, radius = case.pairs["sun"].material.density, case.center_distance
+    width = case.gears[case.table.planet].face_width
+    mass, inertia = carrier_body(case.table, density, radius, width)
+    values |= {"carrier_mass": mass, "carrier_inertia": inertia / radius**2}
     return values
 
 
