@@ -11,6 +11,7 @@ import numpy as np
 from tribodyn import plot
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study import write_bifurcation_report, write_study_report
+from tribodyn.study.machine.summary import ALTERNATING
 from tribodyn.study.pipeline.save import new_directory
 
 if TYPE_CHECKING:
@@ -198,7 +199,7 @@ def run_up_report_data(
     rpm = convert(1.0, "rad/s", "rpm") * level.speed
     rows = [[f"{rpm[k]:.5g}", f"{level.rms[k]:.4g}"] for k in picked]
     figures = [figure_with_caption(plot.run_up, run), figure_with_caption(plot.run_up_map, run)]
-    facts = {"speed": level.speed.tolist(), "rms_mesh_force": level.rms.tolist()}
+    facts = {"speed": level.speed.tolist()} | dict.fromkeys(ALTERNATING, level.rms.tolist())
     head = ["Speed [rpm]", "Mesh force, rms [N]"]
     return StudyReportData(run, figures, [f"{_title(figures[0])}."], head, rows, facts)
 
@@ -225,9 +226,10 @@ def _levels_report_data(run: MachineLevels) -> StudyReportData:
     ]
     statements = [f"{_title(picture)}." for picture in figures]
     statements += [f"{'; '.join(met)}."] if met else []
+    forces = dict(zip(run.mesh, run.mesh_force.T.tolist(), strict=True))
     facts = {
         "speed": run.speed.tolist(),
-        "rms_mesh_force": dict(zip(run.mesh, run.mesh_force.T.tolist(), strict=True)),
+        **dict.fromkeys(ALTERNATING, forces),
         "rms_radial_force": dict(zip(run.bearing, run.bearing_force.T.tolist(), strict=True)),
         "rms_acceleration": dict(zip(run.node, run.acceleration.T.tolist(), strict=True)),
         "resonances": [each._asdict() for each in run.resonances],

@@ -75,7 +75,7 @@ def test_levels_are_those_of_each_speed_and_of_the_line_that_causes_them(case, l
     assert levels.speed * 30 / np.pi == pytest.approx([2500, 2750, 3000, 3250, 3500])
     figures = td.run(case.replace({"load_cases": None})).summary()
     middle = (levels.mesh_force[2, 0], levels.transmission_error[2, 0], *levels.bearing_force[2])
-    ends = ("rms_mesh_force", "transmission_error_peak_to_peak", "rms_radial_force")
+    ends = ("alternating_rms_mesh_force", "transmission_error_peak_to_peak", "rms_radial_force")
     names = [key for end in ends for key in figures if key.endswith(end)]
     assert middle == pytest.approx([figures[name] for name in names], rel=1e-6)
     # A linear machine answers its sinusoidal error with one line.
@@ -131,12 +131,12 @@ def test_commands_write_the_levels(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "pair.toml").write_text(GEARED, encoding="utf-8")
     assert command("sweep", "pair.toml", "operation.speed=2500..3500 rpm:2") == 0
-    assert "meshes.first.rms_mesh_force" in capsys.readouterr().out
+    assert "meshes.first.alternating_rms_mesh_force" in capsys.readouterr().out
     report = (tmp_path / "pair-sweep" / "report.html").read_text(encoding="utf-8")
     assert "Levels of the parts" in report
     assert command("run-up", "pair.toml", "2500..2600 rpm", "--duration", "0.01", "--json") == 0
     facts = json.loads(capsys.readouterr().out)
-    assert len(facts["rms_mesh_force"]["first"]) == len(facts["speed"])
+    assert len(facts["alternating_rms_mesh_force"]["first"]) == len(facts["speed"])
     assert (tmp_path / "pair-run-up" / "study.nc").is_file()
 
 

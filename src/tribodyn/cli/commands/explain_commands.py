@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -189,9 +190,12 @@ def _figures() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     from tribodyn.nomenclature import QUANTITIES
     from tribodyn.study.case.reference import explanations, page_of
     from tribodyn.study.pipeline.summary import SUMMARY
+    from tribodyn.study.pipeline.summary_figures import figure_of, part_figures
 
     equations = explanations()["equations"]
-    for figure in SUMMARY.values():
+    of_parts = {n: f"{kind}.NAME.{n}" for kind, names in part_figures().items() for n in names}
+    figures = {n: replace(figure_of(key), name=n) for n, key in of_parts.items()} | SUMMARY
+    for figure in figures.values():
         if figure.name not in QUANTITIES:
             entry = {
                 "figure": figure.name,

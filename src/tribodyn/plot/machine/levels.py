@@ -15,7 +15,7 @@ from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_row
 from tribodyn.plot.theme.style import MUTED, Trace, line, marked
 from tribodyn.study.machine.user_tables import PartsCase
 from tribodyn.study.pipeline.summary_labels import in_words
-from tribodyn.study.studies.sweep_result import OF_PARTS
+from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
 
 if TYPE_CHECKING:
     from tribodyn.study.machine_studies.ensemble import MachineEnsemble
@@ -160,8 +160,8 @@ def machine_sweep(study: Sweep) -> Any:
     (axis,) = study.axes
     x, levels = axis.display_values(), []
     for figure in OF_PARTS:
-        names = [name for name in study.figures if name.endswith(f".{figure}")]
-        parts = [name.partition(".")[2].removesuffix(f".{figure}") for name in names]
+        names = level_keys(study.figures, figure)
+        parts = [name.partition(".")[2].rpartition(".")[0] for name in names]
         columns = np.stack([study[name] for name in names], axis=1) if names else np.zeros((1, 0))
         levels.append((parts, columns))
     panels = _panels(x, levels)
@@ -230,9 +230,9 @@ def machine_comparison(comparison: ResultComparison) -> Any:
 def _by_kind(keys: Iterable[str]) -> Iterator[tuple[str, str, list[str], list[str]]]:
     """Quantity, label, keys of the summary and names of parts of each kind of level."""
     for (quantity, label), figure in zip(_PANELS, OF_PARTS, strict=True):
-        names = [k for k in keys if k.endswith(f".{figure}") and not k.startswith("load_cases.")]
+        names = level_keys((k for k in keys if not k.startswith("load_cases.")), figure)
         if names:
-            parts = [name.partition(".")[2].removesuffix(f".{figure}") for name in names]
+            parts = [name.partition(".")[2].rpartition(".")[0] for name in names]
             yield quantity, label, names, parts
 
 

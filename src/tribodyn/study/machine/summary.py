@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.machine.result import LoadResult
 
+#: Root mean square of the force without its mean: the name, and its deprecated name.
+ALTERNATING = ("alternating_rms_mesh_force", "rms_mesh_force")
+
 
 def summary_of(result: LoadResult) -> dict[str, float]:
     """All figures of a machine under one load, in SI, by dotted key."""
@@ -61,7 +64,7 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
         "mesh_frequency": load.mesh_frequency,
         "static_mesh_force": balance.force,
         "mean_mesh_force": mean,
-        "rms_mesh_force": float(motion.rms(force)),
+        **dict.fromkeys(ALTERNATING, float(motion.rms(force))),
         "peak_mesh_force": float(force.max()),
         "minimum_mesh_force": float(force.min()),
         "dynamic_factor_peak": float(force.max()) / mean if mean else None,

@@ -60,7 +60,8 @@ class SummaryFigure:
         return f"{float(number):.6g} {unit}"
 
 
-def _figure(name: str, quantity: str, *meaning_topic: str) -> SummaryFigure:
+def summary_entry(name: str, quantity: str, *meaning_topic: str) -> SummaryFigure:
+    """Figure with the unit of its quantity, a pure number where that is empty."""
     entry = QUANTITIES[quantity] if quantity else None
     unit, display_unit = (entry.unit, entry.display_unit) if entry else ("", "")
     return SummaryFigure(name, unit, display_unit, *meaning_topic)
@@ -69,7 +70,7 @@ def _figure(name: str, quantity: str, *meaning_topic: str) -> SummaryFigure:
 def _read() -> dict[str, SummaryFigure]:
     text = files("tribodyn.study.pipeline").joinpath("summary.toml").read_text(encoding="utf-8")
     return {
-        name: _figure(name, quantity, meaning, topic)
+        name: summary_entry(name, quantity, meaning, topic)
         for topic, rows in tomllib.loads(text).items()
         for name, (quantity, meaning) in rows.items()
     }
@@ -108,7 +109,7 @@ def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measur
     """
 
     def keep(measure: Measure) -> Measure:
-        SUMMARY[name] = _figure(name, of, meaning)
+        SUMMARY[name] = summary_entry(name, of, meaning)
         return MEASURES.register(name)(measure)
 
     return keep

@@ -4,26 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
-from tribodyn.nomenclature import QUANTITIES
-from tribodyn.study.pipeline.summary import SUMMARY, SummaryFigure
+from tribodyn.study.pipeline.summary import SUMMARY, SummaryFigure, summary_entry
 
 #: Figures of each kind of part: key, quantity that gives the unit (empty: a pure number), meaning.
+#: Others have the definition of a pair.
 _KINDS: dict[str, dict[str, tuple[str, str]]] = {
     "machine": {
         "clock_frequency": ("frequency", "periods of the whole motion per second"),
-        "input_power": (
-            "power",
-            "power that enters: by the input shaft, or by the output shaft where that drives",
-        ),
         "friction_power": (
             "power",
-            "power that the friction of all computed teeth takes from the input power",
-        ),
-        "efficiency": (
-            "",
-            "power that leaves over power that enters, which differ by the friction power of the "
-            "teeth",
+            "power that the friction of all computed teeth at rest takes from the input power",
         ),
         "output_torque": (
             "torque",
@@ -32,14 +24,16 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
         ),
     },
     "meshes": {
-        "mesh_frequency": ("mesh_frequency", "tooth engagements per second"),
-        "static_mesh_force": ("mesh_force", "force along the line of action at rest"),
-        "mean_mesh_force": ("mesh_force", "mean of the dynamic force"),
-        "rms_mesh_force": ("mesh_force", "root mean square of its alternating part"),
-        "peak_mesh_force": ("mesh_force", "greatest dynamic force"),
-        "minimum_mesh_force": ("mesh_force", "least dynamic force; zero where the flanks part"),
-        "dynamic_factor_peak": ("", "greatest dynamic force over its mean"),
-        "contact_loss_share": ("", "part of the time without contact on the driving flanks"),
+        "alternating_rms_mesh_force": (
+            "mesh_force",
+            "root mean square of the dynamic force, its mean left out; of a stage that of the "
+            "planet with the greatest",
+        ),
+        "rms_mesh_force": (
+            "mesh_force",
+            "deprecated name of alternating_rms_mesh_force; unlike the rms_mesh_force of a pair "
+            "it leaves the mean out",
+        ),
         "transmission_error_peak_to_peak": (
             "dynamic_transmission_error",
             "rotation of one gear against the other on the line of action, greatest less least",
@@ -48,27 +42,20 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
             "static_transmission_error",
             "of the computed teeth at rest under the load",
         ),
-        "mean_mesh_stiffness": ("mesh_stiffness", "mean over a mesh cycle"),
-        "misalignment": ("deflection", "of the flanks over the face, by deflected shafts"),
         "offset_error": ("deflection", "V: growth of the offset, by deflected shafts"),
         "pinion_axial_error": ("deflection", "H: pinion away from its mounting distance, likewise"),
         "wheel_axial_error": ("deflection", "J: wheel away from its mounting distance, likewise"),
         "shaft_angle_error": ("angle", "alpha: growth of the shaft angle, likewise"),
-        "face_load_factor": (
-            "",
-            "greatest over mean load along the face under this misalignment: mean over the mesh "
-            "cycle of computed helical teeth, of independent slices of other teeth",
-        ),
-        "overlap_ratio": ("overlap_ratio", "face width over axial pitch"),
         "axial_force": ("mesh_force", "mean force along x on the first gear, against the second"),
-        "contact_ratio": ("", "mean number of tooth pairs that carry load"),
-        "mean_friction_coefficient": ("", "mean over the mesh cycle, weighted by load"),
+        "contact_ratio": ("", "mean number of tooth pairs that carry load at rest"),
         "friction_power": (
             "power",
             "power that the friction of the teeth at rest takes from what reaches the mesh",
         ),
-        "maximum_hertz_pressure": ("hertz_pressure", "greatest contact pressure of the teeth"),
-        "minimum_film_thickness": ("film_thickness", "least film of the computed teeth"),
+        "minimum_film_thickness": (
+            "film_thickness",
+            "least film of the computed teeth, central where the model has no minimum film",
+        ),
     },
     "planets": {
         "ratio": ("", "speed of the input over that of the output"),
@@ -104,6 +91,16 @@ _KINDS: dict[str, dict[str, tuple[str, str]]] = {
         "peak_acceleration": ("acceleration", "greatest acceleration"),
     },
 }
+#: Figures of parts that are those of a pair.
+_OF_PAIRS = {
+    "machine": ("input_power", "efficiency"),
+    "meshes": (
+        *("mesh_frequency", "static_mesh_force", "mean_mesh_force", "peak_mesh_force"),
+        *("minimum_mesh_force", "dynamic_factor_peak", "contact_loss_share", "face_load_factor"),
+        *("mean_mesh_stiffness", "misalignment", "overlap_ratio", "mean_friction_coefficient"),
+        "maximum_hertz_pressure",
+    ),
+}
 _TOPICS = {
     "machine": "Machine",
     "meshes": "Mesh {0}",
@@ -124,10 +121,15 @@ def figure_of(key: str) -> SummaryFigure:
     prefix, part = (f"{match[1]}: ", match[2]) if match else ("", key)
     kind, _, part_key = part.partition(".")
     name, _, last = part_key.rpartition(".")
-    quantity, meaning = _KINDS[kind][last]
-    entry = QUANTITIES[quantity] if quantity else None
-    units = (entry.unit, entry.display_unit) if entry else ("", "")
-    return SummaryFigure(key, *units, meaning, prefix + _TOPICS[kind].format(name))
+    topic = prefix + _TOPICS[kind].format(name)
+    if last in _OF_PAIRS.get(kind, ()):
+        return replace(SUMMARY[last], name=key, topic=topic)
+    return summary_entry(key, *_KINDS[kind][last], topic)
+
+
+def part_figures() -> dict[str, list[str]]:
+    """Names of the figures of each kind of part."""
+    return {kind: [*figures, *_OF_PAIRS.get(kind, ())] for kind, figures in _KINDS.items()}
 
 
 def is_figure(key: str) -> bool:

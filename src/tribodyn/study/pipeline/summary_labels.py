@@ -9,6 +9,7 @@ from tribodyn.nomenclature import GEARS, QUANTITIES
 _STATISTICS = {
     "peak_to_peak": "peak to peak",
     "mean": "mean",
+    "alternating_rms": "alternating rms",
     "rms": "rms",
     "peak": "peak",
     "maximum": "greatest",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import prod
@@ -37,17 +37,26 @@ _FILMS = ("central_film", "minimum_film_ratio", "mean_friction_coefficient")
 #: Figures of the parts of a machine or stage: of all meshes, and of the bearing and the housing
 #: node with the largest.
 OF_PARTS = (
-    "rms_mesh_force",
+    "alternating_rms_mesh_force",
     "transmission_error_peak_to_peak",
     "rms_radial_force",
     "rms_acceleration",
     "dynamic_load_factor",
 )
 _OF_ALL = OF_PARTS[:2]
+#: Names of levels in older files.
+_OLD_NAMES = {"alternating_rms_mesh_force": "rms_mesh_force"}
 #: All of them.
 SHOWN = (*_MOTIONS, *_FILMS)
 #: Reason for values that an interrupted sweep did not reach.
 _NOT_REACHED = "not computed: the sweep was interrupted before"
+
+
+def level_keys(keys: Iterable[str], figure: str) -> list[str]:
+    """Keys of a level of all parts, of older files by its deprecated name."""
+    keys, names = list(keys), (figure, _OLD_NAMES.get(figure))
+    listed = ([key for key in keys if key.endswith(f".{name}")] for name in names)
+    return next(filter(None, listed), [])
 
 
 @dataclass(frozen=True)
@@ -264,7 +273,7 @@ class Sweep(Record):
         """Figures of the parts of a machine that tables show."""
         names = []
         for figure in OF_PARTS:
-            parts = [name for name in self.figures if name.endswith(f".{figure}")]
+            parts = level_keys(self.figures, figure)
             worst = sorted(parts, key=lambda name: -float(np.nanmax(self[name])))
             names += parts if figure in _OF_ALL else worst[:1]
         return names

@@ -1,0 +1,119 @@
+"""One definition of each summary figure over pairs, machines and stages."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+from test_machine_run import GEARED
+
+import tribodyn as td
+from tribodyn.cli import main
+from tribodyn.study import SUMMARY
+from tribodyn.study.machine.read import read_any_case
+from tribodyn.study.pipeline.response_series import measured, mesh_force
+from tribodyn.study.pipeline.summary_figures import figure_of, part_figures
+from tribodyn.study.studies.sweep_result import level_keys
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+QUICK = {
+    "film.model": "dowson-higginson",
+    "friction.law": "constant",
+    "friction.coefficient": 0.05,
+    "load_cases": None,
+}
+RMS = "alternating_rms_mesh_force"
+
+
+def levels(force: Any, weight: Any) -> dict[str, Any]:
+    """Figures of the force of each mesh (samples, meshes) by their definitions."""
+    mean = weight @ force
+    return {
+        "mean_mesh_force": mean,
+        "peak_mesh_force": force.max(axis=0),
+        "minimum_mesh_force": force.min(axis=0),
+        "dynamic_factor_peak": force.max(axis=0) / mean,
+        RMS: np.sqrt(weight @ (force - mean) ** 2),
+        "rms": np.sqrt(weight @ force**2),
+    }
+
+
+def same(figures: dict[str, float], expected: dict[str, Any], prefix: str = "") -> None:
+    for name, value in expected.items():
+        assert figures[prefix + name] == pytest.approx(np.asarray(value).item(), rel=1e-6, abs=1e-6)
+
+
+def test_forces_of_a_pair() -> None:
+    result = td.run(td.load_case("fzg-stiffness"))
+    samples = measured(result.response)
+    expected = levels(mesh_force(samples)[:, None], samples.weight / samples.weight.sum())
+    mean = expected["mean_mesh_force"]
+    assert expected.pop("rms") ** 2 == pytest.approx(mean**2 + expected.pop(RMS) ** 2)
+    figures = result.summary()
+    same(figures, expected)
+    square = figures["rms_mesh_force"] ** 2 - figures["mean_mesh_force"] ** 2
+    assert figures["dynamic_factor_rms"] ** 2 == pytest.approx(1.0 + square / mean.item() ** 2)
+
+
+def test_forces_of_a_machine() -> None:
+    result = td.run(read_any_case(GEARED, "geared.toml"))
+    motion, figures = result.motion, result.summary()
+    expected = levels(motion.mesh_force[:, :1], motion.weight)
+    del expected["rms"]
+    same(figures, expected, "meshes.first.")
+    assert figures["meshes.first.rms_mesh_force"] == figures[f"meshes.first.{RMS}"]
+
+
+@pytest.mark.slow
+def test_forces_of_a_stage_leave_load_sharing_to_the_load_factor() -> None:
+    uneven = {"planets.low.pin_errors": ["40 um", "0 um", "0 um"],
+              "planets.low.sun_support": "1e9 N/m"}  # fmt: skip
+    result = td.run(td.load_case("planetary-stage").replace({**QUICK, **uneven}, by="test"))
+    motion, figures = result.motion, result.summary()
+    assert figures["planets.low.dynamic_load_factor"] > 1.05
+    for mesh in ("sun", "ring"):
+        each = levels(getattr(motion, f"{mesh}_mesh_force"), motion.weight)
+        expected = {
+            "mean_mesh_force": each["mean_mesh_force"].mean(),
+            "minimum_mesh_force": each["minimum_mesh_force"].min(),
+            **{n: each[n].max() for n in ("peak_mesh_force", "dynamic_factor_peak", RMS)},
+        }
+        same(figures, expected, f"meshes.{mesh}.")
+        shared = each["peak_mesh_force"].max() / each["mean_mesh_force"].mean()
+        assert figures[f"meshes.{mesh}.dynamic_factor_peak"] < shared
+
+
+def test_a_name_has_one_meaning() -> None:
+    for kind, names in part_figures().items():
+        assert len(names) == len(set(names))
+        for name in names:
+            part = figure_of(f"{kind}.x.{name}")
+            if name in SUMMARY:
+                pair = SUMMARY[name]
+                same_unit = (pair.unit, pair.display_unit) == (part.unit, part.display_unit)
+                assert same_unit
+                if name == "rms_mesh_force":  # deprecated: both texts name the other
+                    assert RMS in part.meaning
+                    assert RMS in pair.meaning
+                else:
+                    assert part.meaning == pair.meaning
+
+
+def test_the_dictionary_tells_figures_apart(capsys: pytest.CaptureFixture[str]) -> None:
+    for name, text in (
+        (RMS, "its mean left out"),
+        ("rms_mesh_force", "its mean included"),
+        ("mean_friction_power", "in the running mesh"),
+        ("friction_power", "teeth at rest"),
+    ):
+        with pytest.raises(SystemExit):
+            main(["explain", name, "--json"])
+        assert text in str(json.loads(capsys.readouterr().out)[0]), name
+
+
+def test_older_files_name_the_level_as_before() -> None:
+    old = ["meshes.a.rms_mesh_force", "meshes.a.peak_mesh_force"]
+    assert level_keys(old, RMS) == old[:1]
+    assert level_keys([*old, f"meshes.a.{RMS}"], RMS) == [f"meshes.a.{RMS}"]
