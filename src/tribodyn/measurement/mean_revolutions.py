@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
-from tribodyn.errors import Argument, ComputationError, InputError, Problem
+from tribodyn.errors import Argument, ComputationError, InputError, Problem, TribodynError
 from tribodyn.measurement.recording import Recording, in_si
 from tribodyn.measurement.shaft_speed import ShaftSpeed, shaft_speed
 from tribodyn.signals.condition_indicators import ConditionIndicators, condition_indicators
 from tribodyn.signals.synchronous_average import SynchronousAverage, time_synchronous_average
 from tribodyn.types import Array
+
+T = TypeVar("T")
 
 #: Share of the highest speed below which the shaft turns too slowly for a mean revolution.
 _SLOW = 0.1
@@ -135,3 +137,15 @@ def left_out(part: str, problem: Problem) -> Problem:
     """The reason why a part of the analysis is missing."""
     reason = f"{problem.what[:1].upper()}{problem.what[1:]}. {problem.why}".rstrip(". ")
     return Problem(part, "", reason, problem.remedy)
+
+
+def attempt(part: str, compute: Callable[[], T], notes: list[Problem]) -> T | None:
+    """Result of one part of an analysis; None, with a note, where it fails: the rest goes on."""
+    try:
+        return compute()
+    except TribodynError as error:
+        notes += [left_out(f"no {part}", each) for each in error.problems]
+    except Exception as error:
+        why = f"This is a fault of tribodyn, not of the recording: {type(error).__name__}, {error}"
+        notes.append(Problem(f"no {part}", "", why, "Please report it"))
+    return None

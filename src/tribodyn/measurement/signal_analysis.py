@@ -338,7 +338,7 @@ def analyse_signal(
         if band is None and teeth and "orders" in parts:
             band = _mesh_band(parts["orders"], teeth, shaft, rate)
     mesh = shaft.mean * teeth / (2.0 * np.pi) if shaft is not None and teeth else None
-    parts |= impacts_of(values, rate, shaft, mesh)
+    parts |= impacts_of(values, rate, shaft, mesh, notes)
     return SignalAnalysis(
         channel,
         unit,

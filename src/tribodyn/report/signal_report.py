@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,14 +12,13 @@ import numpy as np
 
 from tribodyn import plot
 from tribodyn.drawing import report_of
-from tribodyn.errors import ComputationError, InputError
-from tribodyn.measurement.mean_revolutions import MATE, SHAFT
+from tribodyn.measurement.mean_revolutions import MATE, SHAFT, attempt
 from tribodyn.measurement.modulating_shaft import explain_modulation, modulating_shaft
 from tribodyn.measurement.sideband_cursors import sideband_cursors
 from tribodyn.plot.signals.analysed import visible_frequency
 from tribodyn.plot.theme.labels import readable, significant
 from tribodyn.report.study import write_study_report
-from tribodyn.report.study_report_data import Picture, StudyReportData
+from tribodyn.report.study_report_data import StudyReportData
 from tribodyn.signals import cepstrum, narrowband_demodulation
 
 if TYPE_CHECKING:
@@ -72,7 +70,8 @@ _IMPACTS = {
     "kurtogram_limit": ("Kurtogram, limit", "", "kurtosis that noise alone does not exceed"),
     "coherence_frequency": ("Cyclic coherence, rate", "Hz", "strongest modulation, mesh removed"),
     "coherence": ("Cyclic coherence", "", "mean over the carriers in that band, or over all"),
-    "coherence_of_noise": ("Cyclic coherence, noise", "", "of noise alone"),
+    "coherence_of_noise": ("Cyclic coherence, noise", "", "mean of noise alone"),
+    "coherence_limit": ("Cyclic coherence, limit", "", "largest of noise in 95 % of records"),
 }
 _SMEARED = (
     " The speed varies: shaft-synchronous lines are smeared in this figure and too "
@@ -87,11 +86,19 @@ def signal_report_data(analysis: SignalAnalysis) -> StudyReportData:
     facts: dict[str, Any] = {"channel": analysis.channel, "unit": analysis.unit, **numbers}
     if analysis.speed is not None:
         facts["speed_source"] = analysis.speed.source
-    facts["notes"] = [sentence(each) for each in analysis.notes]
+    notes = list(analysis.notes)
+    verdicts = attempt("verdict on the gears", partial(_verdicts, analysis), notes) or []
+    verdicts += _modulation(numbers)
+    pictures = [
+        (heading, *picture)
+        for heading, draw in _figures(analysis)
+        if (picture := attempt(f'figure "{heading}"', draw, notes)) is not None
+    ]
+    facts["notes"] = [sentence(each) for each in notes]
     return StudyReportData(
         analysis,
-        _pictures(analysis),
-        [_lead(analysis), *_verdicts(analysis), *facts["notes"]],
+        pictures,
+        [_lead(analysis), *verdicts, *facts["notes"]],
         HEAD,
         _rows(analysis, numbers),
         facts,
@@ -172,6 +179,21 @@ def _verdicts(analysis: SignalAnalysis) -> list[str]:
     return [text for text in verdicts if text]
 
 
+def _modulation(numbers: dict[str, float]) -> list[str]:
+    """Whether a random modulation is more than noise."""
+    if "coherence" not in numbers:
+        return []
+    size, limit = (significant(numbers[key]) for key in ("coherence", "coherence_limit"))
+    if not numbers["coherence"] > numbers["coherence_limit"]:
+        return [
+            f"No cyclic coherence above that of noise: {size} at most, and noise reaches {limit} "
+            "in one of 20 records."
+        ]
+    rate = significant(numbers["coherence_frequency"], _DIGITS)
+    return [f"Vibration is modulated at {rate} Hz: cyclic coherence {size}, of noise {limit} at "
+            "most in 19 of 20 records."]  # fmt: skip
+
+
 def _cards(analysis: SignalAnalysis) -> list[tuple[str, str]]:
     numbers = analysis.figures()
     unit = readable(analysis.unit)
@@ -244,90 +266,103 @@ def _order_rows(numbers: dict[str, float], unit: str) -> list[list[str]]:
     return rows
 
 
-def _sketched(figure: Drawing, result: Any) -> Picture:
-    """Heading, figure and caption; sketches avoid the slow import of plotly."""
-    return figure.heading, figure.sketch(result), figure.caption_of(result)
+#: Heading of a figure, and what draws it and writes its caption.
+Figure = tuple[str, Callable[[], tuple[Any, str]]]
 
 
-def _pictures(analysis: SignalAnalysis) -> Sequence[Picture]:
+def _sketched(figure: Drawing, result: Any, of: str = "") -> Figure:
+    """Figure of a result; sketches avoid the slow import of plotly."""
+    return figure.heading + of, lambda: (figure.sketch(result), figure.caption_of(result))
+
+
+def _computed(figure: Drawing, compute: Callable[[], Any], of: str = "") -> Figure:
+    """Figure of a result that is computed for it alone."""
+    return figure.heading + of, lambda: _sketched(figure, compute())[1]()
+
+
+def _figures(analysis: SignalAnalysis) -> list[Figure]:
     """Figures of all computed results."""
-    steady = analysis.speed is not None and not analysis.speed.varies
-    frequency, teeth = analysis.mesh_frequency, analysis.teeth.get(SHAFT)
-    mesh = [("mesh" if k == 1 else str(k), float(k)) for k in range(1, _MARKED + 1)]
-    marks: list[tuple[str, float]] = []
-    if steady and frequency is not None:
-        top = analysis.spectrum.frequency[-1]
-        marks = [(name, k * frequency) for name, k in mesh if k * frequency < top]
+    figures: list[Figure] = [
+        _sketched(plot.signal_history, analysis),
+        ("Spectrum", partial(_spectrum, analysis)),
+        ("Envelope spectrum", partial(_envelope_spectrum, analysis)),
+    ]
+    if analysis.orders is not None:
+        figures.append(("Orders", partial(_orders, analysis)))
+    if analysis.order_map is not None:
+        figures.append(_sketched(plot.order_map, analysis.order_map))
+    for shaft, average in analysis.averages.items():
+        of = "" if len(analysis.averages) == 1 else f" of the {shaft}, {average.teeth} teeth"
+        figures.append(_sketched(plot.synchronous_average, average, of))
+    return [*figures, *_diagnosis(analysis)]
+
+
+def _spectrum(analysis: SignalAnalysis) -> tuple[Any, str]:
+    """Spectrum with the mesh harmonics of a steady speed."""
+    frequency = None if _unsteady(analysis) else analysis.mesh_frequency
+    marks = [] if frequency is None else _mesh_marks(frequency, analysis.spectrum.frequency[-1])
+    caption = plot.signal_spectrum.caption_of(analysis.spectrum)
+    caption += " Dotted lines are mesh harmonics." if marks else ""
+    caption += _SMEARED if analysis.smeared else ""
+    return plot.signal_spectrum.sketch(analysis.spectrum, marks=marks), caption
+
+
+def _envelope_spectrum(analysis: SignalAnalysis) -> tuple[Any, str]:
+    """Spectrum of the envelope with the shafts of a steady speed."""
+    hull, reach, teeth = analysis.envelope_spectrum, visible_frequency(analysis), analysis.teeth
     shafts: list[tuple[str, float]] = []
-    reach = visible_frequency(analysis)
-    if steady and analysis.speed is not None:
+    if analysis.speed is not None and not _unsteady(analysis):
         turn = analysis.speed.mean / (2.0 * np.pi)
-        ratios = {SHAFT: 1.0} | {
-            name: teeth / count for name, count in analysis.teeth.items() if teeth and name == MATE
-        }
-        shafts = [(name, turn * ratio) for name, ratio in ratios.items() if turn * ratio < reach]
-    hull = analysis.envelope_spectrum
+        rates = {SHAFT: turn}
+        if teeth.get(SHAFT) and MATE in teeth:
+            rates[MATE] = turn * teeth[SHAFT] / teeth[MATE]
+        shafts = [(name, rate) for name, rate in rates.items() if rate < reach]
     band = "the whole signal"
     if analysis.band is not None:
         band = f"the band from {analysis.band[0]:.5g} to {analysis.band[1]:.5g} Hz"
-    pictures = [
-        _sketched(plot.signal_history, analysis),
-        (
-            "Spectrum",
-            plot.signal_spectrum.sketch(analysis.spectrum, marks=marks),
-            plot.signal_spectrum.caption_of(analysis.spectrum)
-            + (" Dotted lines are mesh harmonics." if marks else "")
-            + (_SMEARED if analysis.smeared else ""),
-        ),
-        (
-            "Envelope spectrum",
-            plot.signal_spectrum.sketch(hull, marks=shafts, to=reach),
-            f"The frequencies that modulate {band}; its mean of {hull.amplitude[0]:.4g} "
-            f"{readable(analysis.unit)} is left out. A line at the shaft frequency indicates a "
-            "load that varies with the rotation, its multiples indicate an impact per revolution. "
-            "The axis ends where the lines become small.",
-        ),
-    ]
-    if analysis.orders is not None:
-        top = analysis.orders.orders[-1]
-        orders = [(name, k * teeth) for name, k in mesh if teeth and k * teeth < top]
-        caption = plot.order_spectrum.caption_of(analysis.orders)
-        sketch = plot.order_spectrum.sketch(analysis.orders, marks=orders)
-        pictures.append(("Orders", sketch, caption))
-    if analysis.order_map is not None:
-        pictures.append(_sketched(plot.order_map, analysis.order_map))
-    for shaft, average in analysis.averages.items():
-        heading, sketch, caption = _sketched(plot.synchronous_average, average)
-        of = "" if len(analysis.averages) == 1 else f" of the {shaft}, {average.teeth} teeth"
-        pictures.append((f"{heading}{of}", sketch, caption))
-    return [*pictures, *_diagnosis(analysis)]
+    return plot.signal_spectrum.sketch(hull, marks=shafts, to=reach), (
+        f"The frequencies that modulate {band}; its mean of {hull.amplitude[0]:.4g} "
+        f"{readable(analysis.unit)} is left out. A line at the shaft frequency indicates a "
+        "load that varies with the rotation, its multiples indicate an impact per revolution. "
+        "The axis ends where the lines become small."
+    )
 
 
-def _itself(result: Any) -> Any:
-    return result
+def _orders(analysis: SignalAnalysis) -> tuple[Any, str]:
+    """Orders with the mesh harmonics."""
+    lines, teeth = analysis.orders, analysis.teeth.get(SHAFT)
+    assert lines is not None
+    marks = [] if teeth is None else _mesh_marks(teeth, lines.orders[-1])
+    return plot.order_spectrum.sketch(lines, marks=marks), plot.order_spectrum.caption_of(lines)
 
 
-def _diagnosis(analysis: SignalAnalysis) -> list[Picture]:
-    """Figures of diagnosis that the recording is long enough for."""
+def _unsteady(analysis: SignalAnalysis) -> bool:
+    """Whether the speed is not known, or changes."""
+    return analysis.speed is None or analysis.speed.varies
+
+
+def _mesh_marks(mesh: float, top: float) -> list[tuple[str, float]]:
+    """Names and places of the mesh harmonics below the end of an axis."""
+    harmonics = range(1, _MARKED + 1)
+    return [("mesh" if k == 1 else str(k), k * mesh) for k in harmonics if k * mesh < top]
+
+
+def _diagnosis(analysis: SignalAnalysis) -> list[Figure]:
+    """Figures of diagnosis."""
     teeth, orders = analysis.teeth.get(SHAFT), analysis.orders
-    parts: list[tuple[Drawing, str, Callable[[], Any]]] = []
+    figures = []
     if orders is not None and teeth is not None:
         for name, count in analysis.teeth.items():
             cursors = partial(sideband_cursors, orders, teeth, teeth / count, count=_CURSORS)
-            parts.append((plot.sideband_cursors, f", distance of the {name}", cursors))
+            figures.append(_computed(plot.sideband_cursors, cursors, f", distance of the {name}"))
     for name, average in analysis.averages.items():
         demodulated = partial(narrowband_demodulation, average)
-        parts.append((plot.narrowband_demodulation, f" over a turn of the {name}", demodulated))
-    parts.append((plot.cepstrum, "", partial(cepstrum, analysis.signal, analysis.sample_rate)))
-    for figure, result in (
-        (plot.kurtogram, analysis.kurtogram),
-        (plot.cyclic_coherence, analysis.coherence),
-    ):
-        if result is not None:
-            parts.append((figure, "", partial(_itself, result)))
-    pictures = []
-    for figure, of, compute in parts:
-        with suppress(InputError, ComputationError):  # too short, or too few lines
-            heading, sketch, caption = _sketched(figure, compute())
-            pictures.append((f"{heading}{of}", sketch, caption))
-    return pictures
+        of = f" over a turn of the {name}"
+        figures.append(_computed(plot.narrowband_demodulation, demodulated, of))
+    whole = partial(cepstrum, analysis.signal, analysis.sample_rate)
+    figures.append(_computed(plot.cepstrum, whole))
+    if analysis.kurtogram is not None:
+        figures.append(_sketched(plot.kurtogram, analysis.kurtogram))
+    if analysis.coherence is not None:
+        figures.append(_sketched(plot.cyclic_coherence, analysis.coherence))
+    return figures

@@ -15,6 +15,9 @@ from tribodyn.types import Array
 _FALSE_ALARM = 0.01
 #: Least periods of a cyclic frequency in the record, and independent blocks.
 _PERIODS, _BLOCKS = 4.0, 8.0
+#: Coherence, over that of noise, from which the mean power that leaks to a low cyclic frequency is
+#: subtracted.
+_LEAKAGE = 0.05
 
 
 @record
@@ -29,11 +32,13 @@ class CyclicCoherence(Record):
         Distance of the two lines, the frequency of the modulation [Hz].
     coherence : (k, m) array
         Squared modulus of the cyclic spectral coherence, from 0 to 1 [-]; 0 where one of the lines
-        lies below zero or above half the sampling rate.
+        lies below the second or above the last but one of the spectrum of a block.
     threshold : float
         Coherence that noise exceeds at 1 % of the points [-].
     blocks : float
         Number of independent blocks behind it [-].
+    spread : float
+        Number of carriers over that of independent ones among many of them [-].
     """
 
     ARRAY = "coherence"
@@ -43,6 +48,7 @@ class CyclicCoherence(Record):
     coherence: Array = quantity("frequency", "cyclic_frequency", unit="1")
     threshold: float = fact()
     blocks: float = fact()
+    spread: float = 1.0
 
     def strongest(self) -> tuple[float, float, float]:
         """Point with the largest coherence.
@@ -77,14 +83,75 @@ class CyclicCoherence(Record):
         InputError
             If no carrier lies in the band.
         """
+        values = self._carriers(band)
+        return np.asarray(values.sum(axis=0) / np.maximum((values > 0.0).sum(axis=0), 1))
+
+    def noise_limit(
+        self, band: tuple[float, float] | None = None, *, false_alarm: float = 0.05
+    ) -> float:
+        """Level that the largest mean coherence of noise exceeds with a stated probability.
+
+        Parameters
+        ----------
+        band : tuple of two float, optional
+            As for :meth:`enhanced_envelope_spectrum` [Hz].
+        false_alarm : float
+            Share of records of noise in which any of the cyclic frequencies exceeds it [-].
+
+        Returns
+        -------
+        float
+            Limit [-].
+
+        Raises
+        ------
+        InputError
+            If no carrier lies in the band, or the probability is not between 0 and 1.
+
+        Notes
+        -----
+        The squared coherence of noise over K blocks exceeds x with the probability
+        (1 - x)^(K - 1), that is, it has a beta distribution. The mean over m carriers, with
+        1 + (m - 1)/``spread`` independent ones, has about the beta distribution of the same mean
+        and variance, and the largest of all cyclic frequencies the product of these distributions.
+        Frequencies closer than half of one over the duration depend on each other: the limit is
+        then too high.
+
+        Examples
+        --------
+        >>> noise = np.random.default_rng(0).standard_normal(20000)
+        >>> result = cyclic_coherence(noise, 5000.0, np.arange(20.0, 40.0, 0.5))
+        >>> bool(result.enhanced_envelope_spectrum().max() < result.noise_limit())
+        True
+        """
+        from scipy.optimize import brentq
+        from scipy.stats import beta
+
+        require_between("false_alarm", false_alarm, 1e-12, 1.0 - 1e-12)
+        carriers = (self._carriers(band) > 0.0).sum(axis=0)
+        sizes, repeats = np.unique(carriers[carriers > 0], return_counts=True)
+        if not sizes.size:
+            return 1.0
+        independent = 1.0 + (sizes - 1.0) / self.spread
+        total = independent * (self.blocks + 1.0) - 1.0
+        first = total / self.blocks
+
+        def excess(level: float) -> float:
+            below = beta.logcdf(level, first, total - first)
+            return float(repeats @ below) - float(np.log1p(-false_alarm))
+
+        return float(brentq(excess, 1e-3 / self.blocks, 1.0, xtol=1e-9))
+
+    def _carriers(self, band: tuple[float, float] | None) -> Array:
+        """Coherence of the carriers in a band; all by default."""
         low, high = band or (0.0, np.inf)
         inside = (self.frequency >= low) & (self.frequency <= high)
         if not inside.any():
             what = f"a band from {low:g} to {high:g} Hz"
-            why = f"The carriers go from 0 to {self.frequency[-1]:g} Hz"
-            raise InputError(what, Argument("band"), why, "Give (low, high) in Hz")
-        values = self.coherence[inside]
-        return np.asarray(values.sum(axis=0) / np.maximum((values > 0.0).sum(axis=0), 1))
+            last, step = self.frequency[-1], self.frequency[1] - self.frequency[0]
+            why = f"The carriers go from 0 to {last:g} Hz in steps of {step:g} Hz"
+            raise InputError(what, Argument("band"), why, "Give a wider band (low, high) in Hz")
+        return self.coherence[inside]
 
     def __repr__(self) -> str:
         """One line."""
@@ -153,7 +220,7 @@ def cyclic_coherence(
     weights = window_values(window, block_length)
     step = max(block_length - round(overlap * block_length), 1)
     count = 1 + (values.size - block_length) // step
-    independent = _independent(weights, step, count)
+    independent, spread = _independent(weights, step, count)
     if independent < _BLOCKS:
         what = f"{independent:.3g} independent blocks of {block_length} samples"
         why = f"At least {_BLOCKS:g} separate a coherence from noise"
@@ -170,19 +237,26 @@ def cyclic_coherence(
     weights = weights.astype(np.float32)
     sample = np.arange(values.size)
     for column, each in enumerate(alpha):
-        shifted = centred * np.exp(-1j * np.pi * each / sampling_rate * sample).astype(np.complex64)
+        turning = np.exp(-1j * np.pi * each / sampling_rate * sample).astype(np.complex64)
+        shifted = centred * turning
         blocks = np.lib.stride_tricks.sliding_window_view(shifted, block_length)[::step]
         above = fft(blocks * weights, axis=1)
         # The signal is real: the line at f - a/2 is the conjugate of the mirrored one.
         below = np.concatenate((above[:, :1], above[:, :0:-1]), axis=1)[:, : half + 1]
         above = above[:, : half + 1]
-        cross = np.abs(np.mean(above * below, axis=0)) ** 2
+        phase = turning[: count * step : step] ** 2
+        leakage = phase.conj() * phase.mean()
+        if np.abs(phase.mean()) ** 2 < _LEAKAGE / independent:
+            leakage[:] = 0.0
+        cross = np.abs((1.0 - leakage) @ (above * below) / count) ** 2
         power = np.mean(np.abs(above) ** 2, axis=0) * np.mean(np.abs(below) ** 2, axis=0)
-        inside = (frequency >= 0.5 * each) & (frequency <= 0.5 * (sampling_rate - each))
+        # Next to its mirror image a line of noise is coherent with itself.
+        edge = 0.5 * each + frequency[1]
+        inside = (frequency >= edge) & (frequency <= 0.5 * sampling_rate - edge)
         inside &= power > 0.0
         coherence[inside, column] = cross[inside] / power[inside]
     threshold = 1.0 - _FALSE_ALARM ** (1.0 / (independent - 1.0))
-    return CyclicCoherence(frequency, alpha, coherence, threshold, independent)
+    return CyclicCoherence(frequency, alpha, coherence, threshold, independent, spread)
 
 
 def _check_cyclic(alpha: Array, samples: int, rate: float) -> None:
@@ -198,8 +272,16 @@ def _check_cyclic(alpha: Array, samples: int, rate: float) -> None:
         raise InputError(what, Argument("cyclic_frequencies"), why, "Sort them, or record longer")
 
 
-def _independent(weights: Array, step: int, count: int) -> float:
-    """Number of independent blocks among overlapping ones."""
-    lags = range(step, min(weights.size, count * step), step)
-    shared = [float(weights[lag:] @ weights[:-lag] / (weights @ weights)) ** 2 for lag in lags]
-    return count / (1.0 + 2.0 * sum(shared))
+def _independent(weights: Array, step: int, count: int) -> tuple[float, float]:
+    """Number of independent blocks among overlapping ones, and of lines for an independent one."""
+    size = weights.size
+    lags = range(0, min(size, count * step), step)
+    # Squared correlation of lines of two blocks, over the distance of the lines and the lag.
+    shared = (
+        np.array(
+            [np.abs(np.fft.fft(weights[lag:] * weights[: size - lag], size)) ** 2 for lag in lags]
+        )
+        / float(weights @ weights) ** 2
+    )
+    by_distance = 2.0 * shared.sum(axis=0) - shared[0]
+    return count / float(by_distance[0]), float(np.sum((by_distance / by_distance[0]) ** 2))

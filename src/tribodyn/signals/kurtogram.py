@@ -16,7 +16,7 @@ from tribodyn.types import Array, ComplexArray
 _LEAST, _ROLL_OFF = 64, 0.125
 #: Probability that noise alone has a significant band.
 _FALSE_ALARM = 0.01
-#: Distance of a band from zero and from half the sampling rate, over the rate.
+#: Distance of a wide band from zero and from half the sampling rate, over the rate.
 _EDGE = 1e-3
 
 
@@ -59,9 +59,10 @@ class Kurtogram(Record):
     def band(self) -> tuple[float, float]:
         """Lower and upper end of that band, for the envelope [Hz]."""
         centre, width = float(self.centre[self.best]), float(self.width[self.best])
-        rate = 2.0 * float((self.width * self.splits)[0])
+        half = float((self.width * self.splits)[0])
+        margin = min(2.0 * _EDGE * half, _ROLL_OFF * width)
         low, high = centre - 0.5 * width, centre + 0.5 * width
-        return max(low, _EDGE * rate), min(high, (0.5 - _EDGE) * rate)
+        return max(low, margin), min(high, half - margin)
 
     def __repr__(self) -> str:
         """One line."""
