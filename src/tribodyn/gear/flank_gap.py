@@ -17,6 +17,8 @@ from tribodyn.types import Array
 
 #: Length of an end relief over the face width, unless it is given.
 END_RELIEF_LENGTH = 0.1
+#: Places along the path of contact and along the face at which the least gap is searched.
+_GRID = 65
 
 
 def hunting_period(pair: SpurPair) -> int:
@@ -376,3 +378,15 @@ def flank_gap(
             inside = np.abs(np.clip(np.asarray(radius, dtype=float), *flank))
             gap = gap - chart.at(inside, face, base_radius=gear.base_radius)
     return np.asarray(gap)
+
+
+def least_gap(pair: SpurPair) -> float:
+    """Least gap of all flanks of a pair [m]; negative where teeth touch before nominal ones do."""
+    if not pair.has_modification:
+        return 0.0
+    path = np.linspace(*pair.path_limits, _GRID)[:, None]
+    face = np.linspace(-0.5, 0.5, _GRID) * pair.common_face_width
+    least = float(flank_gap(pair, path, pair.line_of_action_length - path, face).min())
+    if pair.has_pitch_deviation:
+        least += float(pitch_gap(pair, np.arange(hunting_period(pair))).min())
+    return least - 0.5 * sum(abs(gear.modification.run_out) for gear in (pair.pinion, pair.wheel))

@@ -73,11 +73,8 @@ def _check_machine(case: PartsCase, json: bool) -> None:
     """Show speeds, torques and power of a machine, after rehearsing its teeth."""
     from tribodyn.errors import collected
     from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.machine.first_look import (
-        kinematic_figures,
-        rehearse_machine,
-        warn_of_period,
-    )
+    from tribodyn.study.machine.first_look import kinematic_figures, warn_of_period
+    from tribodyn.study.machine.run import rehearse_machine
     from tribodyn.study.pipeline.summary_figures import summary_rows
     from tribodyn.study.planetary.case import PlanetaryCase
     from tribodyn.study.planetary.run import rehearse_planetary

@@ -171,7 +171,12 @@ def _half_backlash(contact: Contact, law: MeshForceLaw) -> float:
         remedy = "Give a constant gap, and a law whose ramps vary"
         raise InputError(what, "argument contact", why, remedy)
     half = float(np.asarray(contact.gap))
-    first = float(law.knot_first_touch.min())
+    refuse_clamped_teeth(float(law.knot_first_touch.min()), half)
+    return half
+
+
+def refuse_clamped_teeth(first: float, half: float) -> None:
+    """Refuse half of a backlash in which teeth whose first touch lies below zero are clamped."""
     if half + first < -GAP_ROUNDING:
         raise InputError(
             f"a pair touches {-1e6 * first:.4g} um before the nominal flanks do, and half "
@@ -180,7 +185,6 @@ def _half_backlash(contact: Contact, law: MeshForceLaw) -> float:
             why="The teeth would be clamped between both flanks",
             remedy=f"Give a backlash of at least {-2e6 * first:.4g} um",
         )
-    return half
 
 
 def follow_load(system: System, friction: MeshFriction) -> System:

@@ -92,7 +92,7 @@ class CaseData(CaseTables):
         """
         if self.gears.kind != "spur":
             raise InputError(to_models.no_gear_pair(self.gears.kind))
-        pair = partial(to_models.gear_pair, self.gears, self.dynamics.backlash)
+        pair = partial(to_models.case_pair, self.gears, self.dynamics)
         return self._once("gear_pair", ("gears", "dynamics"), pair)
 
     @property
@@ -166,6 +166,13 @@ class CaseData(CaseTables):
         if value is None:
             return to_models.backlash(self)
         return value
+
+    @property
+    def has_usual_backlash(self) -> bool:
+        """Whether the teeth are thinned for a usual backlash that the case does not give."""
+        if self.dynamics.backlash is not None or self.gears.kind != "spur":
+            return False
+        return self.gear_pair.pinion.tooth_thinning > 0.0
 
     @property
     def composite_roughness(self) -> float | None:

@@ -18,7 +18,7 @@ from tribodyn.study.case.gears import HELICAL_STIFFNESS, RQ_OVER_RA, is_idle
 from tribodyn.study.case.hypoid import bodies
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.sections import PROPERTIES, SHEET
-from tribodyn.study.case.to_models import mesh_law_of
+from tribodyn.study.case.to_models import USUAL_GEARS, mesh_law_of
 from tribodyn.study.case.user_input import Stated, UserInput
 from tribodyn.study.case.values import FaultError, Plain, read_value, written
 
@@ -403,7 +403,8 @@ def _marked(case: CaseData, key: str, value: Any, changed: tuple[str, ...]) -> s
 
 def _derived_from(case: CaseData, key: str) -> str:
     spec = spec_of(case, key)
-    return spec.basis if spec else ""
+    is_usual = key == "dynamics.backlash" and case.has_usual_backlash
+    return USUAL_GEARS if is_usual else spec.basis if spec else ""
 
 
 def _unused(case: CaseData, key: str) -> bool:
@@ -436,7 +437,7 @@ def assumptions(case: CaseData) -> tuple[Assumption, ...]:
         if kind == "given" or spec is None:
             continue
         if key in derived or (values[key] is None and spec.basis):
-            reason = f"derived from {spec.basis}"
+            reason = f"derived from {_derived_from(case, key)}"
         value = derived.get(key, values[key])
         display = "automatic" if value is None else spec.show(value)
         rows.append(Assumption(key, display, kind, reason or spec.meaning))
@@ -463,12 +464,12 @@ def _oil_assumptions(case: CaseData) -> list[Assumption]:
 
 def derived_values(case: CaseData) -> dict[str, float]:
     """Return all values that are derived because the case does not give them."""
-    if case.gears.kind != "spur":
-        values = _solid_cone_properties(case) | {"dynamics.backlash": case.backlash}
-        return _absent_from_case(case, values)
     from tribodyn.gear import default_relief_length, mass_properties
 
-    pair, values = case.gear_pair, {}
+    values = {"dynamics.backlash": case.backlash}
+    if case.gears.kind != "spur":
+        return _absent_from_case(case, values | _solid_cone_properties(case))
+    pair = case.gear_pair
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         solid = mass_properties(gear, case.density(name))
         values[f"gears.{name}.face_width"] = gear.face_width
@@ -480,7 +481,6 @@ def derived_values(case: CaseData) -> dict[str, float]:
     if pair.is_internal:
         values["gears.wheel.rim_diameter"] = 2.0 * pair.wheel.rim_radius
     values["gears.center_distance"] = pair.center_distance
-    values["dynamics.backlash"] = case.backlash
     return _absent_from_case(case, values)
 
 

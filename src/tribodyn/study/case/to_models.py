@@ -15,7 +15,7 @@ from tribodyn.study.case.gears import Gear, Gears, Modification
 from tribodyn.study.case.hypoid import hypoid_flanks, levers
 from tribodyn.study.case.profile_map_file import read_profile_map
 from tribodyn.study.case.section import Section, options_of
-from tribodyn.study.case.sections import Losses, LubricantData, MaterialData
+from tribodyn.study.case.sections import Dynamics, Losses, LubricantData, MaterialData
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import MeshForce
@@ -24,6 +24,11 @@ if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case_data import CaseData
+
+#: Play of usual gears on the line of action [m], and the most over the normal module.
+USUAL_BACKLASH, _MODULES = 0.1e-3, 0.1
+#: Basis of a usual backlash.
+USUAL_GEARS = "usual gears: without play, teeth that touch early are clamped between both flanks"
 
 
 def _gear_arguments(name: str, gear: Gear, other: Gear) -> dict[str, Any]:
@@ -58,6 +63,24 @@ def flank_modification(data: Modification | None, chart: ProfileMap | None) -> F
 def gear_pair(gears: Gears, backlash: float | None = None) -> SpurPair:
     """Build the gear pair of a case; its warnings are in :func:`gear_warnings`."""
     return _built(gears, backlash or None, _modifications(gears))[0]
+
+
+def case_pair(gears: Gears, dynamics: Dynamics) -> SpurPair:
+    """Build the gear pair of a case with its backlash, or a usual one where it needs one."""
+    from tribodyn.gear.flank_gap import least_gap
+
+    pair = gear_pair(gears, dynamics.backlash)
+    play = usual_backlash(gears, dynamics, pair)
+    if play is None or pair.backlash + 2.0 * least_gap(pair) >= 0.0:
+        return pair
+    return gear_pair(gears, play)
+
+
+def usual_backlash(gears: Gears, dynamics: Dynamics, pair: SpurPair) -> float | None:
+    """Return a usual backlash [m]; None where the case or its teeth have one, or a linear mesh."""
+    play = min(USUAL_BACKLASH, _MODULES * gears.normal_module)
+    is_linear = dynamics.mesh_law not in (None, "force-law")
+    return None if is_linear or dynamics.backlash is not None or pair.backlash >= play else play
 
 
 def gear_warnings(gears: Gears, backlash: float | None = None) -> tuple[ModelWarning, ...]:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from tribodyn.errors import warn
 from tribodyn.study.machine.summary import helix_figures
-from tribodyn.study.pipeline.run import rehearse
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
@@ -64,12 +63,6 @@ def warn_of_steps(cycles: int, period: str, remedy: str) -> None:
     gigabytes = 1e-9 * _BYTES * _STEPS * cycles * 100
     cost = f"{_STEPS * cycles} steps and about {gigabytes:.2g} GB for 100 coordinates"
     warn("long-period", f"{period}. Each motion takes {cost}. {remedy}")
-
-
-def rehearse_machine(case: MachineCase) -> None:
-    """Raise the input errors of the tooth contacts of a machine without computing it."""
-    for name in case.meshes_with_teeth:
-        rehearse(case.pair(name, case.operating_point))
 
 
 def kinematic_figures(case: MachineCase) -> dict[str, float]:

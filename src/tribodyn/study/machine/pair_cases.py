@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from tribodyn.study.case.case import Case
 from tribodyn.study.case.hypoid import blank_of
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.sections import Dynamics
+from tribodyn.study.case.to_models import usual_backlash
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.case.values import KeyedProblems, Plain, read_table, read_value
 from tribodyn.study.machine.read_parts import rolling_options
@@ -69,6 +70,18 @@ class PairSource(Source):
     def line(self, key: str) -> int:
         """Return the line of a key of the pair."""
         return super().line(self.key(key))
+
+    def place(self, problems: Iterable[tuple[str, Problem]]) -> list[Problem]:
+        """Set the location of each problem; those of keys that all meshes share name the mesh."""
+        stage = f'stage "{self.mesh}", gears {" and ".join(self.gears)}'
+        label = f'mesh "{self.mesh}"' if self.group == "meshes" else stage
+        named = [
+            (key, replace(problem, what=f"{label}: {problem.what}"))
+            if self.key(key).partition(".")[0] in ("dynamics", "operation")
+            else (key, problem)
+            for key, problem in problems
+        ]
+        return super().place(named)
 
     def where(self, key: str) -> str:
         """Format the location of a key of the pair."""
@@ -164,7 +177,14 @@ def _under(source: PairSource, tables: dict[str, Any], load: dict[str, float]) -
             pair._source = source
             return pair
     operation = {name: Plain(value) for name, value in load.items()}
-    pair = Case(source, operation={**operation, "speed_of": "pinion"}, **tables)
+    tables |= {"operation": {**operation, "speed_of": "pinion"}}
+    pair = Case(source, **tables)
+    if pair.gears.kind == "spur":
+        # Shafts deflect and misalign the flanks, by amounts that are not known yet.
+        play = usual_backlash(pair.gears, pair.dynamics, pair.gear_pair)
+        if play is not None:
+            tables["dynamics"] = {**tables["dynamics"], "backlash": Plain(play)}
+            pair = Case(source, **tables)
     if len(_pairs) >= _MOST_PAIRS:
         _pairs.clear()
     _pairs[key] = pair

@@ -7,10 +7,18 @@ import sys
 import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.dynamics import law_contact
-from tribodyn.errors import ModelWarning, collected, frames, warn
+from tribodyn.errors import (
+    ComputationError,
+    InputError,
+    ModelWarning,
+    collected,
+    frames,
+    warn,
+)
 from tribodyn.gear import Misalignment
 from tribodyn.interrupt import in_threads, processors, single_blas_thread
 from tribodyn.machine import (
@@ -102,16 +110,25 @@ def run_load(
     return LoadResult(load, structure, *balanced[:3], system, motion, response)
 
 
-def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SILENT) -> Balanced:
+def rehearse_machine(case: MachineCase) -> None:
+    """Raise the input errors of teeth and balance without computing films and motion."""
+    with collected(), single_blas_thread():
+        for load in (case.operating_point, *case.load_cases):
+            balanced_machine(case, load, rehearsal=True)
+
+
+def balanced_machine(
+    case: MachineCase, load: LoadCase, progress: Progress = SILENT, *, rehearsal: bool = False
+) -> Balanced:
     """Static balance of a machine with computed teeth, and their mesh tables."""
     # Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a
     # little, the deflection: teeth and balance are repeated until they agree.
     progress.start(f"Tooth contact: {load.name}")
-    static = _static(case.machine(load))  # with a usual stiffness of the teeth
+    static = _static(case, load)  # with a usual stiffness of the teeth
     for _ in range(_PASSES):
         before = {name: static.meshes[name] for name in case.meshes_with_teeth}
         misalignment = {name: misalignment_of(mesh) for name, mesh in before.items()}
-        teeth = _teeth(case, load, misalignment)
+        teeth = _teeth(case, load, misalignment, rehearsal)
         tables = {name: table for name, (table, _, _) in teeth.items()}
         laws = {name: law for name, (_, law, _) in teeth.items()}
         mesh_warnings = [  # those of the last pass are in force
@@ -119,7 +136,7 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
             for name, (_, _, of_mesh) in teeth.items()
             for warning in of_mesh
         ]
-        static = _static(case.machine(load, **laws), misalignment)
+        static = _static(case, load, laws, misalignment)
         changes = [
             _change(misalignment[name], misalignment_of(static.meshes[name])) / mesh.compression
             for name, mesh in before.items()
@@ -131,7 +148,10 @@ def balanced_machine(case: MachineCase, load: LoadCase, progress: Progress = SIL
 
 
 def _teeth(
-    case: MachineCase, load: LoadCase, misalignment: Mapping[str, float | Misalignment]
+    case: MachineCase,
+    load: LoadCase,
+    misalignment: Mapping[str, float | Misalignment],
+    rehearsal: bool,
 ) -> dict[str, tuple[MeshTable, dict[str, Any], list[ModelWarning]]]:
     """Computed teeth by mesh; planets with equal teeth and misalignment share them."""
     groups: dict[Any, list[str]] = {}
@@ -139,7 +159,8 @@ def _teeth(
         shift = round(value / _EQUAL) if isinstance(value, float) else name
         groups.setdefault((case.tooth_group(name), shift), []).append(name)
     pairs = [case.pair(names[0], load, misalignment[names[0]]) for names in groups.values()]
-    computed = zip(groups.values(), in_threads(teeth_of, pairs, processors()), strict=True)
+    compute = partial(teeth_of, rehearsal=rehearsal)
+    computed = zip(groups.values(), in_threads(compute, pairs, processors()), strict=True)
     teeth = {name: each for names, each in computed for name in names}
     return {name: teeth[name] for name in misalignment}
 
@@ -158,10 +179,12 @@ def _change(before: float | Misalignment, after: float | Misalignment) -> float:
     return abs(after - before)
 
 
-def teeth_of(pair: Case) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
+def teeth_of(
+    pair: Case, *, rehearsal: bool = False
+) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
     """Mesh table and force law of the teeth of a mesh, and their warnings."""
     with locate_errors(pair), collected() as caught:
-        table = mesh_of(pair, about_load=True)
+        table = mesh_of(pair, about_load=True, rehearsal=rehearsal)
         return table, _law(pair, table), caught
 
 
@@ -173,7 +196,7 @@ def static_with_teeth(
 ) -> StaticBalance:
     """Static balance of a machine with the force laws of its mesh tables."""
     laws = {n: _law(case.pair(n, load, misalignment[n]), table) for n, table in tables.items()}
-    return _static(case.machine(load, **laws), misalignment)
+    return _static(case, load, laws, misalignment)
 
 
 def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
@@ -189,10 +212,18 @@ def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
 
 
 def _static(
-    machine: Machine, misalignment: Mapping[str, float | Misalignment] | None = None
+    case: MachineCase,
+    load: LoadCase,
+    laws: Mapping[str, Any] | None = None,
+    misalignment: Mapping[str, float | Misalignment] | None = None,
 ) -> StaticBalance:
+    """Static balance under a load, with errors placed in the file of the machine."""
+    machine = case.machine(load, **(laws or {}))
     slopes = {n: m for n, m in (misalignment or {}).items() if not isinstance(m, Misalignment)}
-    return static_balance(machine, laws=face_laws(machine, slopes))
+    try:
+        return static_balance(machine, laws=face_laws(machine, slopes))
+    except (InputError, ComputationError) as error:
+        raise type(error)(case.placed(error)) from None
 
 
 def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:

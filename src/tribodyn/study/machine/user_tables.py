@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from tribodyn.errors import InputError, Problem
+from tribodyn.machine.fields import display
 from tribodyn.study.case.provenance import Assumption
+from tribodyn.study.case.to_models import USUAL_GEARS
 from tribodyn.study.case.user_input import Source, spread_problem
 from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_value
 from tribodyn.study.machine.pair_cases import option_of
@@ -227,8 +229,22 @@ def default_assumptions(case: MachineCase) -> Iterator[Assumption]:
         if stage.is_stepped:
             reason = "ring meshes begin their cycle with the sun mesh of the first planet"
             yield Assumption(f"planets.{name}: phase of both gears", "0", "default", reason)
+    yield from backlash_assumptions(case)
     if case.housing is None:
         yield Assumption("housing", "rigid", "default", "without [housing]")
+
+
+def backlash_assumptions(case: PartsCase) -> Iterator[Assumption]:
+    """Usual backlash of the meshes with computed teeth for which the case gives none."""
+    usual = {}
+    for key, pair, _ in case.mesh_pairs():
+        group, _, name = key.partition(".")
+        tables = case.data.get("dynamics", {}), case.data[group][name]
+        if pair.gears.kind == "spur" and not any("backlash" in table for table in tables):
+            usual[f"{key}.backlash"] = pair.dynamics.backlash
+    for key, value in usual.items():
+        if value is not None:
+            yield Assumption(key, display(value, "m"), "default", USUAL_GEARS)
 
 
 def _estimates(texts: Iterable[str]) -> Iterator[tuple[str, str, str]]:

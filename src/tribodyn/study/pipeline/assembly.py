@@ -263,7 +263,12 @@ def whole_system(case: Case, mesh: MeshTable, mesh_force: str | None = None) -> 
 def structure_of(case: Case, mesh: MeshFunctions, damping: Damping, mesh_force: str) -> System:
     """Build the structure of a case with a mesh, whose force law is named."""
     from tribodyn.dynamics import STRUCTURES, Gearing
+    from tribodyn.dynamics.structure.force_law import refuse_clamped_teeth
+    from tribodyn.gear.flank_gap import least_gap
 
+    if mesh_force == "force-law" and case.spur_pair is not None:
+        # Not by the law alone, which knows the gap at its phases only.
+        refuse_clamped_teeth(least_gap(case.spur_pair), 0.5 * case.backlash)
     body, torque = geometry(case), case.pinion_torque
     contact: dict[str, Any] = {
         "mesh_damping": damping.mesh,

@@ -37,7 +37,11 @@ from tribodyn.study.machine.read_parts import (
     unknown_keys,
 )
 from tribodyn.study.machine.tables import STIFF, MotionTable, PlanetsTable
-from tribodyn.study.machine.user_tables import PartsCase, stated_assumptions
+from tribodyn.study.machine.user_tables import (
+    PartsCase,
+    backlash_assumptions,
+    stated_assumptions,
+)
 
 _TOP = ("title", "origin", "gears", "planets", "operation", "load_cases", "dynamics", "faults")
 _MEMBERS = ("sun", "ring", "carrier")
@@ -438,6 +442,7 @@ class PlanetaryCase(PartsCase):
         for name in (self.table.sun, self.table.planet, self.table.ring):
             if "mass" not in self.data["gears"][name]:
                 yield Assumption(f"gears.{name}.mass", "", "default", "a solid body")
+        yield from backlash_assumptions(self)
         for name, value, reason in _MODEL:
             yield Assumption(f"{key}: {name}", value, "default", reason)
 
