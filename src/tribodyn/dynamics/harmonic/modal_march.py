@@ -112,11 +112,10 @@ class ModalMotion:
         double = (once - np.outer(time, first) - twice) @ self.inverse.T
         turned = free[:blocked] + once[:, count:] @ c.braked
         place, speed = np.split(free[blocked:], 2)
-        push = c.free.T @ structure.push
-        speeds = speed + sums[:, 0] @ push.T - once @ structure.free_rows.T
-        places = (
-            place + np.outer(time, speed) + sums[:, 1] @ push.T - double @ structure.free_rows.T
-        )
+        push, rows = c.free.T @ structure.push, structure.free_rows.copy()
+        rows[:, :count] = rows[:, :count] @ np.linalg.inv(structure.root)
+        speeds = speed + sums[:, 0] @ push.T - once @ rows.T
+        places = place + np.outer(time, speed) + sums[:, 1] @ push.T - double @ rows.T
         x = state[:, :count] @ structure.places.T
         x = x + turned @ (c.moving @ c.braked).T + places @ c.free.T
         rate = state[:, count:] @ c.moving.T + speeds @ c.free.T

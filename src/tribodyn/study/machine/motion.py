@@ -238,8 +238,17 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
 
 
 def mesh_rotation(structure: MachineStructure, mesh: str) -> Array:
-    """Rotation of both gears on the line of action per coordinate (n,) [1 and m]."""
-    gears = structure.machine.meshes[mesh].gears
+    """Rotation of both gears, against their carrier, on the line of action (n,) [1 and m]."""
+    gears, carrier = structure.machine.meshes[mesh].gears, structure.machine.meshes[mesh].carrier
     direction = structure.machine.directions[mesh].direction
     turns = [structure.gear(name)[3] for name in gears]
+    if carrier:
+        turned = structure.at(carrier, _carrier_position(structure, carrier))[3]
+        turns = [turn - turned for turn in turns]
     return np.asarray(direction[3] * turns[0] + direction[9] * turns[1])
+
+
+def _carrier_position(structure: MachineStructure, carrier: str) -> float:
+    """Position of the planets on their carrier [m]."""
+    bearings = structure.machine.bearings.values()
+    return next((b.carrier_position for b in bearings if b.carrier == carrier), 0.0)

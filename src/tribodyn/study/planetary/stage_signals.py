@@ -22,8 +22,11 @@ def signals_along(result: PlanetaryLoadResult, response: Response) -> MachineMot
     motion = planetary_motion(response, data, result.turn)
     count, samples = motion.planet.size, motion.phase.size
     plane = planetary_plane_model(**data)
-    rotations = np.array([np.asarray(contact.direction) for contact in plane.contacts])
-    rotations[:, np.arange(plane.size) % 3 != 2] = 0.0
+    directions = np.array([np.asarray(contact.direction) for contact in plane.contacts])
+    # The carrier takes the planets along: what turns with it does not turn against it.
+    x, angles = 9 + 3 * np.arange(count), data["phases"].angles
+    rotations = np.where(np.arange(plane.size) % 3 == 2, directions, 0.0)
+    rotations[:, 2] += directions[:, x + 1] @ np.cos(angles) - directions[:, x] @ np.sin(angles)
     meshes = [f"{mesh} {i + 1}" for mesh in ("sun", "ring") for i in range(count)]
     force = np.hstack([motion.sun_mesh_force, motion.ring_mesh_force])
     radial = {f"pin {i + 1}": motion.pin_force[:, i] for i in range(count)}
